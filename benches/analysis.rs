@@ -20,10 +20,11 @@ use gdcm_model::dataset::{
 };
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::{FrequencyGrid, PolarResponse};
-use gdcm_study::study::comparison::BundleMetrics;
-use gdcm_study::study::condition_responses::ConditionResponses;
-use gdcm_study::study::required_modes::KnownPoles;
-use gdcm_study::study::{Edit, Engine, Execution, PhaseCorrection, Study, setting};
+use gdcm_study::decisions::setting;
+use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::stages::comparison::BundleMetrics;
+use gdcm_study::stages::condition_responses::ConditionResponses;
+use gdcm_study::{Edit, Engine, Execution, PhaseCorrection, Study};
 
 #[path = "random_model/mod.rs"]
 #[expect(dead_code, reason = "other benches use the rest of it")]

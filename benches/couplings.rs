@@ -17,7 +17,8 @@ use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, ModelId, Pair};
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::FrequencyResponse;
-use gdcm_study::study::{CouplingCorrection, Edit, Engine, PhaseCorrection, Study, setting};
+use gdcm_study::decisions::setting;
+use gdcm_study::{CouplingCorrection, Edit, Engine, PhaseCorrection, Study};
 
 #[path = "stopwatch/mod.rs"]
 mod stopwatch;

@@ -12,8 +12,8 @@ use criterion::Criterion;
 use egui::{Context, Event, FullOutput, RawInput, Rect, Ui, pos2, vec2};
 use egui_plot::{Line, Plot};
 
-use gdcm::view::palette::Palette;
-use gdcm::view::plot::{BodeCurve, BodeScene, BodeView, CurveId, Role, bode_ui};
+use gdcm::gui::plot::{BodeCurve, BodeScene, BodeView, CurveId, Role, bode_ui};
+use gdcm::gui::widgets::palette::Palette;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 
 use window::Window;

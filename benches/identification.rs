@@ -11,11 +11,11 @@ use std::time::Instant;
 use nalgebra::DMatrix;
 
 use gdcm::executor::Pool;
-use gdcm_io::record_files::read_records;
+use gdcm_io::import::record_files::read_records;
 use gdcm_io::{FolderProgress, embedded_example};
 use gdcm_model::dataset::{ConditionId, StateSpace};
 use gdcm_model::progress::Progress;
-use gdcm_study::study::job::IdentificationRequest;
+use gdcm_study::jobs::job::IdentificationRequest;
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
 

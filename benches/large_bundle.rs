@@ -17,9 +17,9 @@ use gdcm_model::dataset::{
 use gdcm_model::executor::{Executor, Sequential};
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::FrequencyGrid;
-use gdcm_study::study::Execution;
-use gdcm_study::study::comparison::BundleMetrics;
-use gdcm_study::study::condition_responses::ConditionResponses;
+use gdcm_study::Execution;
+use gdcm_study::stages::comparison::BundleMetrics;
+use gdcm_study::stages::condition_responses::ConditionResponses;
 
 #[path = "random_model/mod.rs"]
 mod random_model;

@@ -7,7 +7,7 @@ use egui::{Context, Ui, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use gdcm::app::GdcmApp;
+use gdcm::gui::app::GdcmApp;
 use gdcm_io::{Opened, embedded_example};
 
 /// The window on the embedded example.

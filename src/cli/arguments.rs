@@ -8,10 +8,10 @@ use clap::{Arg, ArgAction, ArgMatches, Args, FromArgMatches, Parser, Subcommand}
 
 use gdcm_model::assembly::FileScope;
 use gdcm_plot::figure::{ColumnWidth, FigureKind, Role};
-use gdcm_study::study::AcrossRole;
-use gdcm_study::study::changed_models::SignRole;
-use gdcm_study::study::setting::SETTINGS;
-use gdcm_study::study::setting_row::{Kind, Setting};
+use gdcm_study::AcrossRole;
+use gdcm_study::decisions::changed_models::SignRole;
+use gdcm_study::decisions::setting::SETTINGS;
+use gdcm_study::decisions::setting_row::{Kind, Setting};
 
 use super::flight_records::HistoryArguments;
 use super::identify_arguments::IdentifyArguments;

@@ -3,20 +3,20 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use gdcm_io::beginning::check_beginning;
-use gdcm_io::dataset_file::dataset_faults;
 use gdcm_io::file_error::ContentFault;
-use gdcm_io::study_file::{OpenedStudy, holds_models};
+use gdcm_io::files::beginning::check_beginning;
+use gdcm_io::files::dataset_file::dataset_faults;
+use gdcm_io::files::study_file::{OpenedStudy, holds_models};
 use gdcm_io::{FileError, LoadedDataset, Opened};
 use gdcm_model::dataset::condition::{ConditionRecord, RecordKind};
 use gdcm_model::dataset::{BundleKind, Channel, Dataset, Dynamics, Model};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::progress::Unobserved;
 use gdcm_model::units::number;
-use gdcm_study::study::analysis::ConditionFailure;
-use gdcm_study::study::comparison::cautions_of_models;
-use gdcm_study::study::convention_doubt::doubts_of_models;
-use gdcm_study::study::{Execution, Study, Table};
+use gdcm_study::results::analysis::ConditionFailure;
+use gdcm_study::results::convention_doubt::doubts_of_models;
+use gdcm_study::stages::comparison::cautions_of_models;
+use gdcm_study::{Execution, Study, Table};
 
 use super::arguments::{ChannelSign, OpeningArguments};
 use super::open;

@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use gdcm_io::record_files::{FoundRecords, read_records};
+use gdcm_io::import::record_files::{FoundRecords, read_records};
 use gdcm_model::dataset::{Band, ConditionId, Dataset};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::{number, telling};
-use gdcm_study::study::time_histories::{HistoryRecords, TimeHistories, time_histories_of};
-use gdcm_study::study::{Analysis, Execution, Table};
+use gdcm_study::results::time_histories::{HistoryRecords, TimeHistories, time_histories_of};
+use gdcm_study::{Analysis, Execution, Table};
 use gdcm_sysid::identification::{CautionNote, Preparation};
 use gdcm_sysid::records::layout_problem::LayoutCaution;
 use gdcm_sysid::records::record_channels::SaidConversion;

@@ -24,13 +24,13 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::{ContextKind, ContextValue};
 
-use gdcm_io::dataset_file::write_example;
-use gdcm_io::study_file::{holds_models, open_study_of};
-use gdcm_io::variables::ReadingBudget;
+use gdcm_io::files::dataset_file::write_example;
+use gdcm_io::files::study_file::{holds_models, open_study_of};
+use gdcm_io::formats::variables::ReadingBudget;
 use gdcm_io::{Existing, Opened, load_any};
 use gdcm_model::message_text::sanitized_path;
-use gdcm_study::study::setting::SETTINGS;
-use gdcm_study::study::setting_row::Kind;
+use gdcm_study::decisions::setting::SETTINGS;
+use gdcm_study::decisions::setting_row::Kind;
 
 use crate::executor::start_threads;
 use arguments::{Arguments, Command, OpeningArguments};

@@ -5,20 +5,20 @@ use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use gdcm_io::dataset_file::add_dataset;
+use gdcm_io::files::dataset_file::add_dataset;
+use gdcm_io::files::model_collection::add_models;
+use gdcm_io::files::rules_file::{add_rules, load_rules, rules_path};
+use gdcm_io::files::study_file::relative_folder;
 use gdcm_io::formats::sources_folder;
-use gdcm_io::model_files::{EVERY_TABLE, FoundModels};
-use gdcm_io::models_file::add_models;
+use gdcm_io::import::model_files::{EVERY_TABLE, FoundModels};
 use gdcm_io::output_set::OutputSet;
-use gdcm_io::rules_file::{add_rules, load_rules, rules_path};
-use gdcm_io::study_file::relative_folder;
 use gdcm_io::{FolderProgress, read_models};
 use gdcm_model::assembly::declarations::ChannelDeclarations;
 use gdcm_model::assembly::{Assembly, FileScope, FoundModel, Headings, Rules, proposed_rules};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::number;
-use gdcm_study::study::Table;
-use gdcm_study::study::analysis::ConditionFailure;
+use gdcm_study::Table;
+use gdcm_study::results::analysis::ConditionFailure;
 
 use super::arguments::{AssembleArguments, ConvertArguments, OfFiles};
 use super::existing;

@@ -3,20 +3,20 @@
 
 use std::collections::BTreeSet;
 
-use gdcm_io::output_set::make_directory;
-use gdcm_io::requirements_file::{
+use gdcm_io::files::requirements_file::{
     REQUIREMENT_FILES, add_tolerances, requirement_paths, write_requirements,
 };
+use gdcm_io::output_set::make_directory;
 use gdcm_method::requirements::ModeVerdict;
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::s_to_ms;
-use gdcm_study::study::required_bandwidth::BandwidthFinding;
-use gdcm_study::study::required_modes::KnownPoles;
-use gdcm_study::study::requirements::{
+use gdcm_study::results::required_bandwidth::BandwidthFinding;
+use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::requirements::{
     MissingFinding, RequirementRole, Requirements, SummaryFinding,
 };
-use gdcm_study::study::time_histories::TimeHistories;
-use gdcm_study::study::{Analysis, Table};
+use gdcm_study::results::time_histories::TimeHistories;
+use gdcm_study::{Analysis, Table};
 
 use super::arguments::RequirementsArguments;
 use super::flight_records::time_histories;

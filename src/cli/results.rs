@@ -7,12 +7,12 @@ use std::sync::Arc;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-use gdcm_io::corrections_file::{result_paths, write_results};
+use gdcm_io::export::figure_file::{figure_format, write_figure};
 use gdcm_io::export::{
     EXPORTERS, ExportFormat, ExportRequest, ExportSource, ExportedRole, check_export,
     export_contents, write_export,
 };
-use gdcm_io::figure_file::{figure_format, write_figure};
+use gdcm_io::files::corrections_file::{result_paths, write_results};
 use gdcm_io::output_set::make_directory;
 use gdcm_io::report::{ReportSource, ReportSubject, report as report_of, save_report};
 use gdcm_method::correction::corrected_model::HIGHEST_PADE_ORDER;
@@ -24,10 +24,10 @@ use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::bode::BodeOptions;
 use gdcm_plot::figure::gains::{Across, Measure};
 use gdcm_plot::figure::{ConditionSource, Figure, FigureKind, FigureRequest, Role, all_channels};
-use gdcm_study::study::condition_responses::{CURVE_POINTS, curves_band};
-use gdcm_study::study::couplings_assessment::CouplingsAssessment;
-use gdcm_study::study::required_modes::KnownPoles;
-use gdcm_study::study::{Analysis, AssessedCorrection, CouplingCorrection, Engine, Study};
+use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::stages::condition_responses::{CURVE_POINTS, curves_band};
+use gdcm_study::{Analysis, AssessedCorrection, CouplingCorrection, Engine, Study};
 
 use super::arguments::{
     AnalyzeArguments, FigureArguments, PairChoice, ReportArguments, StudyArguments, real_number,

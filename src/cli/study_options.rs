@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
+use gdcm_io::files::requirements_file::{load_tolerances, read_levels};
 use gdcm_io::output_set::OutputSet;
-use gdcm_io::requirements_file::{load_tolerances, read_levels};
 use gdcm_io::{LoadedDataset, embedded_example};
 use gdcm_method::correction;
 use gdcm_model::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
 use gdcm_model::message_text::sanitized;
-use gdcm_study::study::analysis::ConditionFailure;
-use gdcm_study::study::requirements::RequirementSettings;
-use gdcm_study::study::{Analysis, Edit, Engine, Study};
+use gdcm_study::results::analysis::ConditionFailure;
+use gdcm_study::results::requirements::RequirementSettings;
+use gdcm_study::{Analysis, Edit, Engine, Study};
 
 use super::arguments::{ChannelSign, OfChannel, Rejection, StudyArguments};
 use super::identify_arguments::said_twice;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use gdcm_io::LoadedDataset;
-use gdcm_io::corrections_file::RESULT_FILES;
+use gdcm_io::files::corrections_file::RESULT_FILES;
 use gdcm_io::report::assessment_sentence;
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::leads::ChannelLeads;
@@ -13,12 +13,12 @@ use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, Pair};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::{number, s_to_ms, signed, six_digits};
-use gdcm_study::study::assessment_table::{AssessedModel, AssessmentChoice, held_out_verdict};
-use gdcm_study::study::convention_doubt::ConventionDoubt;
-use gdcm_study::study::lead_compensation::lead_limit_words;
-use gdcm_study::study::remark::{Remark, RemarkKind, Repeated, remarks};
-use gdcm_study::study::table::scatter_table;
-use gdcm_study::study::{
+use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice, held_out_verdict};
+use gdcm_study::results::convention_doubt::ConventionDoubt;
+use gdcm_study::results::remark::{Remark, RemarkKind, Repeated, remarks};
+use gdcm_study::results::table::scatter_table;
+use gdcm_study::stages::lead_compensation::lead_limit_words;
+use gdcm_study::{
     Analysis, AssessedCorrection, AssessmentTable, ConditionAnalysis, PhaseCorrection, Study, Table,
 };
 

@@ -9,8 +9,8 @@ use nalgebra::DMatrix;
 use serde_json::json;
 
 use gdcm_io::formats::npy::write_npz;
-use gdcm_io::model_files::FoundModels;
-use gdcm_io::variables::{Array, CellArray, StructArray, TextArray, Value, Variable};
+use gdcm_io::formats::variables::{Array, CellArray, StructArray, TextArray, Value, Variable};
+use gdcm_io::import::model_files::FoundModels;
 use gdcm_io::{FolderProgress, load_dataset, read_models, write_mat};
 use gdcm_model::assembly::problem::ProblemKind;
 use gdcm_model::assembly::{

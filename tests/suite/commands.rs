@@ -9,7 +9,8 @@ use std::process::{Command, Output, Stdio};
 use serde_json::{Value, json};
 
 use gdcm_io::{load_dataset, save_study};
-use gdcm_study::study::{Study, setting};
+use gdcm_study::Study;
+use gdcm_study::decisions::setting;
 
 use crate::{entries, members};
 

@@ -12,10 +12,10 @@ const FILES_IN_CYCLES: &[(&str, usize)] = &[
     ("crates/gdcm-model", 12),
     ("crates/gdcm-method", 10),
     ("crates/gdcm-sysid", 7),
-    ("crates/gdcm-study", 24),
+    ("crates/gdcm-study", 25),
     ("crates/gdcm-plot", 6),
-    ("crates/gdcm-io", 30),
-    (".", 46),
+    ("crates/gdcm-io", 23),
+    (".", 36),
 ];
 
 /// A module by its path below the root of its crate.

@@ -6,16 +6,17 @@ use std::path::Path;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-use gdcm_io::study_file::open_study;
+use gdcm_io::files::study_file::open_study;
 use gdcm_io::{DatasetOrigin, load_dataset, load_dataset_bytes, save_study};
 use gdcm_method::correction::GainBounds;
 use gdcm_model::dataset::Band;
 use gdcm_model::dataset::dataset::{GREATEST_OMEGA, LEAST_OMEGA};
 use gdcm_model::message_text::sanitized;
 use gdcm_model::units::number;
-use gdcm_study::study::setting::SETTINGS;
-use gdcm_study::study::setting_row::Kind;
-use gdcm_study::study::{Study, setting};
+use gdcm_study::Study;
+use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting::SETTINGS;
+use gdcm_study::decisions::setting_row::Kind;
 
 use crate::commands::{Desk, SMALL};
 

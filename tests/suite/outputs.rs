@@ -6,9 +6,9 @@ use std::path::Path;
 
 use egui_kittest::kittest::Queryable;
 
-use gdcm::view::state::NoticeKind;
+use gdcm::gui::state::window_state::NoticeKind;
 use gdcm_io::{load_dataset, save_study};
-use gdcm_study::study::Study;
+use gdcm_study::Study;
 
 use crate::commands::{Desk, Ended, SMALL};
 use crate::window::{Window, click, export_to, save_as, settle, state, window};

@@ -6,7 +6,7 @@ use std::path::Path;
 use nalgebra::{Complex, DMatrix};
 use serde_json::{Value, json};
 
-use gdcm_io::record_files::{example_records, records_of_bytes};
+use gdcm_io::import::record_files::{example_records, records_of_bytes};
 use gdcm_io::{embedded_example, load_dataset};
 use gdcm_model::assembly::rules::standard_patterns;
 use gdcm_model::dataset::condition::RecordKind;
@@ -28,7 +28,7 @@ fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() 
     let found = records_of_bytes(
         &archive(),
         "example-records.zip",
-        &gdcm_io::variables::ReadingBudget::new(1 << 30),
+        &gdcm_io::formats::variables::ReadingBudget::new(1 << 30),
     )
     .unwrap();
     assert_eq!((found.tables.len(), found.faults.len()), (99, 0));

@@ -8,16 +8,16 @@ use std::sync::{Arc, LazyLock};
 use roxmltree::{Document, Node, ParsingOptions};
 use serde_json::{Value, json};
 
-use gdcm_io::record_files::example_records;
+use gdcm_io::import::record_files::example_records;
 use gdcm_io::report::{ReportSource, ReportSubject, report};
 use gdcm_io::{load_dataset, save_study};
 use gdcm_method::requirements::ToleranceTable;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
-use gdcm_study::study::required_modes::KnownPoles;
-use gdcm_study::study::requirements::RequirementRole;
-use gdcm_study::study::time_histories::{HistoryRecords, time_histories_of};
-use gdcm_study::study::{Analysis, Edit, Engine, Execution, Study};
+use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::requirements::RequirementRole;
+use gdcm_study::results::time_histories::{HistoryRecords, time_histories_of};
+use gdcm_study::{Analysis, Edit, Engine, Execution, Study};
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
 

@@ -450,8 +450,8 @@ fn what_a_stick_commands_is_an_option_and_levels_are_drawn() {
 
 #[test]
 fn what_requirements_are_asked_with_comes_back_with_the_study() {
-    use gdcm_study::study::requirements::{OverviewLimits, RequirementSettings};
-    use gdcm_study::study::{Edit, Study};
+    use gdcm_study::results::requirements::{OverviewLimits, RequirementSettings};
+    use gdcm_study::{Edit, Study};
     let desk = Desk::new();
     let loaded = gdcm_io::load_dataset(&desk.path("small.json")).unwrap();
     let mut study = Study::new(loaded.dataset.clone());
@@ -477,7 +477,7 @@ fn what_requirements_are_asked_with_comes_back_with_the_study() {
         .unwrap();
     let path = desk.path("a.gdcm-study.json");
     gdcm_io::save_study(&study, &loaded, &path).unwrap();
-    let opened = gdcm_io::study_file::open_study(&path).unwrap();
+    let opened = gdcm_io::files::study_file::open_study(&path).unwrap();
     assert_eq!(opened.study.requirements, study.requirements);
     // The command takes them from the study.
     desk.gdcm(&[
@@ -499,17 +499,19 @@ fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
     use gdcm_model::progress::Unobserved;
     use gdcm_plot::figure::Mark;
     use gdcm_plot::figure::requirements::record_history_figure;
-    use gdcm_study::study::condition_answers::RecordHistoryJob;
-    use gdcm_study::study::job::Job;
-    use gdcm_study::study::requirements::RequirementRole;
-    use gdcm_study::study::time_histories::HistoryRecord;
-    use gdcm_study::study::{Engine, Study};
+    use gdcm_study::jobs::job::Job;
+    use gdcm_study::results::condition_answers::RecordHistoryJob;
+    use gdcm_study::results::requirements::RequirementRole;
+    use gdcm_study::results::time_histories::HistoryRecord;
+    use gdcm_study::{Engine, Study};
     let dataset = crate::FEW.dataset.clone();
     let analysis = Engine::default()
         .analyze(&Study::new(dataset.clone()), &Unobserved)
         .unwrap();
     let channels = gdcm_sysid::records::RecordChannels::of_dataset(&dataset).of_named_records();
-    let table = gdcm_io::record_files::example_records(3).unwrap().remove(0);
+    let table = gdcm_io::import::record_files::example_records(3)
+        .unwrap()
+        .remove(0);
     let record =
         gdcm_sysid::records::LaidOutRecord::proposed(table, &channels, &Default::default()).0;
     let flight = std::sync::Arc::clone(record.used_flight().unwrap());

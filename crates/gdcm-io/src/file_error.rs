@@ -8,11 +8,11 @@ use gdcm_model::dataset::channel::Location;
 use gdcm_model::dataset::dataset::BandError;
 use gdcm_model::dataset::unchecked_dataset::{DraftError, DraftFault};
 use gdcm_model::message_text::{quoted, sanitized, sanitized_path};
-use gdcm_study::study::edit::EditRefusal;
+use gdcm_study::decisions::edit::EditRefusal;
 
 use crate::export::ExportFault;
+use crate::formats::variables::VariableFault;
 use crate::json_text::line_of;
-use crate::variables::VariableFault;
 
 /// Reason why a file could not be read or written: one line that names the file, and the place in
 /// it.

@@ -20,8 +20,8 @@ use gdcm_model::message_text::{is_unprintable, sanitized, shortened};
 use gdcm_model::units::number;
 
 use crate::file_error::{ContentError, ContentFault, FileError};
+use crate::formats::variables::ReadingBudget;
 use crate::location::{Outline, Step, UnknownKeys, location_of};
-use crate::variables::ReadingBudget;
 
 /// Maximum memory per byte of a file of this program \[bytes\]: a number takes at least a digit and
 /// a comma, in a list that grows into twice its memory.

@@ -8,7 +8,7 @@ use gdcm_model::dataset::BundleKind;
 use gdcm_model::dataset::channel::{ConditionPlace, Location, ModelPlace};
 use gdcm_model::message_text::{quoted, sanitized, shortened};
 
-use crate::variables::ReadingBudget;
+use crate::formats::variables::ReadingBudget;
 
 /// A step on the path from the top of a JSON text to a value in it.
 #[derive(Clone, Debug, PartialEq, Eq)]

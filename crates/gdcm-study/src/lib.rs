@@ -3,9 +3,9 @@
 //! **Question answered:** given these settings, rejections and constraints, what is the correction,
 //! and why?
 //!
-//! A [`Study`](study::Study) contains a dataset and all decisions; an [`Engine`](study::Engine)
-//! computes its [`Analysis`](study::Analysis) in stages and caches each stage while its inputs stay
-//! the same. All items are in [`study`].
+//! A [`Study`] contains a dataset and all decisions ([`decisions`]); an [`Engine`] computes its
+//! [`Analysis`] in [`stages`], each cached while its inputs stay the same. The [`results`] are typed
+//! facts with numbers; [`jobs`] are computations beside the live answer.
 //!
 //! # Example
 //!
@@ -19,7 +19,7 @@
 //! use gdcm_model::dataset::{
 //!     Band, Channel, Condition, ConditionId, Dataset, Dynamics, Model, Pair, PairTable, StateSpace,
 //! };
-//! use gdcm_study::study::{Engine, Study, Unobserved};
+//! use gdcm_study::{Engine, Study, Unobserved};
 //! use nalgebra::dmatrix;
 //!
 //! let lag = |g| StateSpace::new(dmatrix![-1.0], dmatrix![g], dmatrix![1.0], dmatrix![0.0]).map(Dynamics::StateSpace);
@@ -36,4 +36,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod study;
+pub mod decisions;
+pub mod jobs;
+pub mod results;
+pub mod stages;
+
+pub use crate::decisions::study::Study;
+pub use decisions::edit::Edit;
+pub use decisions::settings::{CouplingCorrection, PhaseCorrection};
+pub use gdcm_model::progress::{Cancelled, Progress, Unobserved};
+pub use jobs::job::AcrossRole;
+pub use results::analysis::{Analysis, ConditionAnalysis};
+pub use results::assessment_table::{AssessedCorrection, AssessmentTable};
+pub use results::derivation::ExplainTarget;
+pub use results::table::Table;
+pub use stages::engine::Engine;
+pub use stages::execution::Execution;

@@ -1,6 +1,6 @@
 //! Putting models together in the window, by its controls.
 
-use gdcm::view::assembling::{AssemblingCommand, AssemblyState, COLUMNS};
+use gdcm::gui::views::assembling::{AssemblingCommand, AssemblyState, COLUMNS};
 
 use super::views::give;
 use super::*;

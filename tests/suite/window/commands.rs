@@ -1,12 +1,12 @@
 //! The table of commands: the palette, the page of keys, tables and the tour.
 
-use gdcm::view::assembling::AssemblingCommand;
-use gdcm::view::command::FormKind;
-use gdcm::view::command_table::{command_table, every_command};
-use gdcm::view::tables::{TableKind, table_of};
+use gdcm::gui::commands::command::FormKind;
+use gdcm::gui::commands::command_table::{command_table, every_command};
+use gdcm::gui::views::assembling::AssemblingCommand;
+use gdcm::gui::widgets::tables::{TableKind, table_of};
 use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::Scalar;
-use gdcm_study::study::Table;
+use gdcm_study::Table;
 
 use super::views::give;
 use super::*;

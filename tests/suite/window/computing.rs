@@ -3,14 +3,15 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, Once};
 
-use gdcm::app::threads;
-use gdcm::view::{Command, View};
+use gdcm::gui::app::threads;
+use gdcm::gui::commands::command::Command;
+use gdcm::gui::views::View;
 use gdcm_method::correction::{Outcome, ProofBudget};
 use gdcm_model::dataset::Condition;
 use gdcm_model::executor::{Executor, Task};
 use gdcm_model::progress::Unobserved;
-use gdcm_study::study::engine::LIVE_PROOF;
-use gdcm_study::study::{Engine, Study};
+use gdcm_study::stages::engine::LIVE_PROOF;
+use gdcm_study::{Engine, Study};
 
 use super::views::show;
 use super::*;

@@ -1,12 +1,13 @@
 //! Couplings by hand: looked at before they are used, offered, used, seen and undone (M16).
 
-use gdcm::view::command::Command as Action;
-use gdcm::view::cost_map::{MappedCost, cost_of};
-use gdcm::view::views::offered_couplings;
-use gdcm::view::{Sheet, View};
+use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::panels::cost_map::{MappedCost, cost_of};
+use gdcm::gui::panels::explanation::Sheet;
+use gdcm::gui::views::{View, offered_couplings};
 use gdcm_model::dataset::ConditionId;
 use gdcm_plot::figure::Mark;
-use gdcm_study::study::{CouplingCorrection, Edit, PhaseCorrection, setting};
+use gdcm_study::decisions::setting;
+use gdcm_study::{CouplingCorrection, Edit, PhaseCorrection};
 
 use super::lists::texts_in;
 use super::views::{give, show};
@@ -63,9 +64,9 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
     // The poles that move are drawn among those of the models.
     show(&mut window, View::Poles);
     wait_until(&mut window, "the poles", |window| {
-        gdcm::view::views::poles::poles(state(window)).is_some()
+        gdcm::gui::views::poles::poles(state(window)).is_some()
     });
-    let figure = gdcm::view::views::poles::poles(state(&window)).unwrap();
+    let figure = gdcm::gui::views::poles::poles(state(&window)).unwrap();
     let is_after = |mark: &Mark| matches!(mark, Mark::Dots(dots) if dots.name == "with couplings" && !dots.dots.is_empty());
     assert!(figure.plots[0].panels[0].marks.iter().any(is_after));
     // In Bode the corrected curve is the whole; couplings alone are there on wish.

@@ -1,7 +1,7 @@
 //! Hands on every curve: the plot of errors, menus, boxes, cursors, units.
 
-use gdcm::view::View;
-use gdcm::view::plot::navigation::PICK_RADIUS;
+use gdcm::gui::plot::navigation::PICK_RADIUS;
+use gdcm::gui::views::View;
 use gdcm_plot::figure::ConditionSource;
 use gdcm_plot::figure::bode::BodeOptions;
 
@@ -413,7 +413,7 @@ fn magnitudes_are_read_as_ratios_in_the_units_of_the_channels() {
     );
     assert_eq!(
         state(&window).display.curves.magnitude,
-        gdcm::view::plot::quantity::MagnitudeUnit::Ratio
+        gdcm::gui::plot::quantity::MagnitudeUnit::Ratio
     );
 }
 

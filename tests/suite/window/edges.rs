@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use gdcm::view::{Command as Action, Sheet};
+use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::panels::explanation::Sheet;
 use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 
 use super::views::give;

@@ -2,9 +2,9 @@
 
 use std::fs;
 
-use gdcm::view::View;
-use gdcm::view::figures::{figure_of, views_with_figure};
-use gdcm_io::figure_file::{csv_text, write_as};
+use gdcm::gui::state::figures::{figure_of, views_with_figure};
+use gdcm::gui::views::View;
+use gdcm_io::export::figure_file::{csv_text, write_as};
 use gdcm_plot::figure::{ColumnWidth, FigureFormat};
 
 use super::views::show;

@@ -1,6 +1,6 @@
 //! Opening and saving.
 
-use gdcm::view::command::{Command, FormKind};
+use gdcm::gui::commands::command::{Command, FormKind};
 
 use super::*;
 

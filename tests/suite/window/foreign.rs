@@ -1,7 +1,7 @@
 //! What a new user does with files of other programs, by the controls alone: what is silent, or turned, is found by the program.
 
-use gdcm::view::assembling::AssemblingCommand;
-use gdcm::view::records::{RecordsCommand, RecordsPage};
+use gdcm::gui::views::assembling::AssemblingCommand;
+use gdcm::gui::views::records::{RecordsCommand, RecordsPage};
 
 use super::assembling::{bench, type_into};
 use super::views::{give, show};
@@ -84,8 +84,8 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
     let path = folder.path().join("corrected.mat");
     window
         .state_mut()
-        .dispatch(gdcm::view::Command::ShowForm(Some(
-            gdcm::view::FormKind::ExportAs,
+        .dispatch(gdcm::gui::commands::command::Command::ShowForm(Some(
+            gdcm::gui::commands::command::FormKind::ExportAs,
         )));
     window.run_steps(2);
     let notice = exported(&mut window, &path);
@@ -160,7 +160,7 @@ fn a_unit_that_neither_a_record_nor_its_samples_say_is_chosen_in_the_page_of_col
 fn show_records(window: &mut Window) {
     window
         .state_mut()
-        .dispatch(gdcm::view::Command::ShowStart(false));
+        .dispatch(gdcm::gui::commands::command::Command::ShowStart(false));
     show(window, View::Records);
 }
 
@@ -203,7 +203,7 @@ fn reading_is_told_beside_stop_which_ends_it_and_leaves_what_was_open() {
     std::fs::write(&large, format!("{blanks}{}", crate::commands::SMALL)).unwrap();
     window
         .state_mut()
-        .dispatch(gdcm::view::Command::Open(large));
+        .dispatch(gdcm::gui::commands::command::Command::Open(large));
     window.step();
     assert!(state(&window).opening.is_some());
     window.get_by_label("Stop").click();

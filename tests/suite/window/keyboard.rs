@@ -2,8 +2,8 @@
 
 use egui::{Color32, Shape};
 
-use gdcm::view::command::{Command as Action, FormKind};
-use gdcm::view::palette::Palette;
+use gdcm::gui::commands::command::{Command as Action, FormKind};
+use gdcm::gui::widgets::palette::Palette;
 use gdcm_method::correction::GainBounds;
 
 use super::views::give;

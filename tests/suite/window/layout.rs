@@ -2,8 +2,8 @@
 
 use egui::{LayerId, Order};
 
-use gdcm::view::Sheet;
-use gdcm::view::command::FormKind;
+use gdcm::gui::commands::command::FormKind;
+use gdcm::gui::panels::explanation::Sheet;
 
 use super::views::{give, show};
 use super::*;
@@ -63,7 +63,10 @@ fn the_answer_is_on_a_small_screen_in_every_view() {
     for pixels_per_point in [1.0, 1.5] {
         let mut window = window_of(SMALL, pixels_per_point);
         for view in View::ALL {
-            give(&mut window, gdcm::view::Command::ShowView(view));
+            give(
+                &mut window,
+                gdcm::gui::commands::command::Command::ShowView(view),
+            );
             window.run_steps(2);
             assert_answered(&window, view);
         }

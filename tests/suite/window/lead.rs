@@ -1,9 +1,11 @@
 //! Leads by hand: taken, seen, and undone (M15).
 
-use gdcm::view::command::Command as Action;
-use gdcm::view::{Sheet, View};
+use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::panels::explanation::Sheet;
+use gdcm::gui::views::View;
 use gdcm_model::units::signed;
-use gdcm_study::study::{AssessedCorrection, PhaseCorrection, setting};
+use gdcm_study::decisions::setting;
+use gdcm_study::{AssessedCorrection, PhaseCorrection};
 
 use super::lists::texts_in;
 use super::views::{give, show};

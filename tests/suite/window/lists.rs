@@ -1,7 +1,8 @@
 //! What the lists say, and that it can be read.
 
-use gdcm::view::{Command as Action, Sheet};
-use gdcm_study::study::Edit;
+use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::panels::explanation::Sheet;
+use gdcm_study::Edit;
 
 use super::views::give;
 use super::*;

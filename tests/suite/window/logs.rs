@@ -1,6 +1,6 @@
 //! Logs as they come off aircraft, opened in the window: channels are proposed, and a dataset is made of them without a word typed.
 
-use gdcm::view::records::{RecordsCommand, WantedDataset};
+use gdcm::gui::views::records::{RecordsCommand, WantedDataset};
 
 use super::records::rows_shown;
 use super::views::{give, show};

@@ -40,21 +40,21 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
-use gdcm::app::{GdcmApp, Setup};
 use gdcm::executor::Pool;
-use gdcm::view::View;
-use gdcm::view::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
-use gdcm::view::plot::{BodeCurve, Pane, Role as CurveRole};
-use gdcm::view::state::{Notice, NoticeKind, State};
-use gdcm::view::views::channels::channel_plots;
-use gdcm_io::study_file::{OpenedStudy, open_study};
+use gdcm::gui::app::{GdcmApp, Setup};
+use gdcm::gui::panels::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
+use gdcm::gui::plot::{BodeCurve, Pane, Role as CurveRole};
+use gdcm::gui::state::window_state::{Notice, NoticeKind, State};
+use gdcm::gui::views::View;
+use gdcm::gui::views::channels::channel_plots;
+use gdcm_io::files::study_file::{OpenedStudy, open_study};
 use gdcm_io::{Opened, load_any};
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm_model::progress::Unobserved;
 use gdcm_plot::figure::MarkId;
 use gdcm_plot::figure::gains::{Across, Measure};
-use gdcm_study::study::engine::LIVE_PROOF;
-use gdcm_study::study::{Engine, Study};
+use gdcm_study::stages::engine::LIVE_PROOF;
+use gdcm_study::{Engine, Study};
 
 pub(crate) type Window = Harness<'static, GdcmApp>;
 
@@ -184,7 +184,7 @@ fn choose_condition_10(window: &mut Window) {
 
 /// Unfolds the settings, those that are seldom changed too, or folds them.
 pub(crate) fn unfold_settings(window: &mut Window, is_open: bool) {
-    use gdcm::view::Command::{ShowAdvanced, ShowSettings};
+    use gdcm::gui::commands::command::Command::{ShowAdvanced, ShowSettings};
     for command in [ShowSettings(is_open), ShowAdvanced(is_open)] {
         window.state_mut().dispatch(command);
     }

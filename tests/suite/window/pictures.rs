@@ -13,11 +13,11 @@ use egui::epaint::{ColorImage, ImageData, ImageDelta, Primitive};
 use egui::{TexturesDelta, ThemePreference};
 use egui_kittest::TestRenderer;
 
-use gdcm::view::View;
-use gdcm::view::assembling::AssemblingCommand;
-use gdcm::view::command::Command as Action;
-use gdcm::view::palette::Palette;
-use gdcm_study::study::Edit;
+use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::views::View;
+use gdcm::gui::views::assembling::AssemblingCommand;
+use gdcm::gui::widgets::palette::Palette;
+use gdcm_study::Edit;
 
 use super::assembling::type_into;
 use super::views::{give, show};

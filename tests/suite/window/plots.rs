@@ -1,10 +1,10 @@
 //! The plots, worked with the pointer.
 
-use gdcm::view::View;
-use gdcm::view::command::Command as Action;
+use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::views::View;
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::responses::{AirspeedCache, airspeed_curves, fitted_values};
-use gdcm_study::study::AcrossRole;
+use gdcm_study::AcrossRole;
 
 use super::lists::texts_in;
 use super::views::{give, show};

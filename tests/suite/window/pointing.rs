@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use egui::Order;
 
-use gdcm::view::plot::overview::OverviewView;
+use gdcm::gui::plot::overview::OverviewView;
 
 use super::views::{give, show};
 use super::*;
@@ -82,7 +82,7 @@ fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
         state(window).modes().is_some()
     });
     window.run_steps(2);
-    let figure = gdcm::view::views::poles::poles(state(&window)).expect("the modes are known");
+    let figure = gdcm::gui::views::poles::poles(state(&window)).expect("the modes are known");
     let fastest = figure.plots[0].panels[0]
         .dots()
         .map(|dot| [dot.x, dot.y])
@@ -100,7 +100,7 @@ fn marked_frequencies_are_named_over_the_plot_and_not_over_its_curves() {
     let marks = vec![("ω180", 4.0)];
     give(
         &mut window,
-        gdcm::view::curve_display::CurveCommand::MarkCrossings(marks),
+        gdcm::gui::state::curve_display::CurveCommand::MarkCrossings(marks),
     );
     let chip = window.get_by_label_contains("ω180 4.0").rect();
     let frame = *state(&window)
@@ -152,7 +152,7 @@ fn a_tooltip_has_a_name_and_four_rows_at_most() {
     let mut window = window();
     choose_condition_10(&mut window);
     // A model that has everything that can be said of one: trim, ratio, distance, and why it is rejected.
-    let reject = gdcm_study::study::Edit::RejectBecause {
+    let reject = gdcm_study::Edit::RejectBecause {
         model: ModelId::new(ConditionId(10), BundleKind::Physics, "V+10kt"),
         reason: "a step near this trim".to_owned(),
     };
@@ -172,8 +172,8 @@ fn a_tooltip_has_a_name_and_four_rows_at_most() {
 
 #[test]
 fn what_a_tooltip_does_not_say_is_behind_the_question() {
-    use gdcm_study::study::ExplainTarget;
-    use gdcm_study::study::derivation::derivation;
+    use gdcm_study::ExplainTarget;
+    use gdcm_study::results::derivation::derivation;
     let window = window();
     let id = ModelId::new(ConditionId(10), BundleKind::Physics, "V+10kt");
     let found = derivation(
@@ -189,7 +189,7 @@ fn what_a_tooltip_does_not_say_is_behind_the_question() {
         "{:?}",
         found.rests_on
     );
-    let text = gdcm::view::explanation::text_of(&found);
+    let text = gdcm::gui::panels::explanation::text_of(&found);
     for (symbol, meaning) in found.terms() {
         assert!(
             text.contains(&format!("{symbol}\t{meaning}")),

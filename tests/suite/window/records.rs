@@ -5,15 +5,15 @@ use std::path::{Path, PathBuf};
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
 
-use gdcm::view::View;
-use gdcm::view::command::Command as Action;
-use gdcm::view::records::{RecordsCommand, RecordsPage, condition_table};
+use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::views::View;
+use gdcm::gui::views::records::{RecordsCommand, RecordsPage, condition_table};
 use gdcm_model::dataset::Band;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::RecordKind;
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
 use gdcm_model::simulation::Signal;
-use gdcm_study::study::setting;
+use gdcm_study::decisions::setting;
 use gdcm_sysid::identification::SearchSpace;
 
 use super::assembling::{fill_in, type_into};
@@ -136,7 +136,7 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
     );
     click(&mut window, "Restore the file's models");
     assert_eq!(identified_models(&window), before);
-    give(&mut window, gdcm::view::command::Command::Undo);
+    give(&mut window, gdcm::gui::commands::command::Command::Undo);
     assert_eq!(identified_models(&window), taken);
 }
 
@@ -147,7 +147,7 @@ fn all_conditions_are_identified_one_after_the_other_and_stand_in_a_table() {
     for id in ids {
         give(
             &mut window,
-            gdcm::view::command::Command::SelectCondition(id),
+            gdcm::gui::commands::command::Command::SelectCondition(id),
         );
         wait_until(&mut window, "the records", |window| {
             state(window)

@@ -2,15 +2,14 @@
 
 use std::sync::Arc;
 
-use gdcm::view::command::Command as Action;
-use gdcm::view::views::RequirementsPage;
-use gdcm::view::{RequirementTable, View};
+use gdcm::gui::commands::command::{Command as Action, RequirementTable};
+use gdcm::gui::views::{RequirementsPage, View};
 use gdcm_method::requirements::{ModeVerdict, RecordCheck, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
-use gdcm_study::study::Edit;
-use gdcm_study::study::condition_answers::RecordHistory;
-use gdcm_study::study::required_bandwidth::BandwidthFinding;
-use gdcm_study::study::requirements::{RequirementRole, RequirementSettings};
+use gdcm_study::Edit;
+use gdcm_study::results::condition_answers::RecordHistory;
+use gdcm_study::results::required_bandwidth::BandwidthFinding;
+use gdcm_study::results::requirements::{RequirementRole, RequirementSettings};
 
 use super::assembling::type_into;
 use super::lists::texts_in;
@@ -103,7 +102,7 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
         ],
         "of the row's model"
     );
-    let figure = gdcm::view::figures::figure_of(state(&window), View::Bode).unwrap();
+    let figure = gdcm::gui::state::figures::figure_of(state(&window), View::Bode).unwrap();
     let words = format!("{figure:?}");
     assert!(
         words.contains("ω_phase") && words.contains("ω180"),
@@ -174,7 +173,7 @@ fn a_click_on_a_mark_is_of_that_model() {
 
 fn shown_requirements(
     window: &mut Window,
-) -> std::sync::Arc<gdcm_study::study::requirements::Requirements> {
+) -> std::sync::Arc<gdcm_study::results::requirements::Requirements> {
     wait_until(window, "the requirements", |window| {
         let decided = &state(window).study.requirements.attitude_command;
         state(window)

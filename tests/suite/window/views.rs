@@ -1,18 +1,17 @@
 //! The views: what each shows, by its controls.
 
-use gdcm::view::command::Command as Action;
-use gdcm::view::display::{Preferences, ViewGroup};
-use gdcm::view::views::PairSet;
-use gdcm::view::views::assessment::{AssessedPairs, assessment_sentences, assessment_text_table};
-use gdcm::view::views::net_gain::net_gain_pairs;
-use gdcm::view::views::poles::poles;
-use gdcm::view::{Arrangement, View};
+use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::state::display::{Arrangement, Preferences, ViewGroup};
+use gdcm::gui::views::assessment::{AssessedPairs, assessment_sentences, assessment_text_table};
+use gdcm::gui::views::net_gain::net_gain_pairs;
+use gdcm::gui::views::poles::poles;
+use gdcm::gui::views::{PairSet, View};
 use gdcm_method::correction::Channel;
 use gdcm_plot::figure::figure::DotShape;
 use gdcm_plot::figure::{Mark, Panel};
-use gdcm_study::study::assessment_table::AssessedModel;
-use gdcm_study::study::derivation::derivation;
-use gdcm_study::study::{AcrossRole, Analysis, AssessedCorrection, Edit, ExplainTarget};
+use gdcm_study::results::assessment_table::AssessedModel;
+use gdcm_study::results::derivation::derivation;
+use gdcm_study::{AcrossRole, Analysis, AssessedCorrection, Edit, ExplainTarget};
 
 use super::*;
 
@@ -287,7 +286,7 @@ fn error_bars_come_beside_the_answer_and_can_be_switched_off() {
     show(&mut window, View::NetGain);
     wait_for_bars(&mut window);
     let panels = |window: &Window| -> Vec<Panel> {
-        let plots = gdcm::view::views::net_gain::net_gain_plots(state(window))
+        let plots = gdcm::gui::views::net_gain::net_gain_plots(state(window))
             .figure
             .plots;
         plots.into_iter().flat_map(|plot| plot.panels).collect()
@@ -338,8 +337,8 @@ fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
         (10, 11)
     );
     show(&mut window, View::Assessment);
-    let choice = gdcm::view::views::assessment_choice(state(&window));
-    let words = gdcm_study::study::assessment_table::held_out_verdict(
+    let choice = gdcm::gui::views::assessment_choice(state(&window));
+    let words = gdcm_study::results::assessment_table::held_out_verdict(
         state(&window).analysis().unwrap(),
         choice,
     )
@@ -460,7 +459,7 @@ fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
         "{drawn_db} dB drawn, {ratio_db} dB"
     );
     let has_key = |window: &Window| {
-        let figure = gdcm::view::views::net_gain::net_gain_plots(state(window)).figure;
+        let figure = gdcm::gui::views::net_gain::net_gain_plots(state(window)).figure;
         figure.plots[0].panels[0]
             .marks
             .iter()

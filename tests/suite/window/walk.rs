@@ -1,10 +1,11 @@
 //! A long walk through the window at random: nothing panics, and what is shown is what a fresh computation gives.
 
-use gdcm::view::View;
-use gdcm::view::command::Command as Action;
-use gdcm::view::command_table::every_command;
+use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::commands::command_table::every_command;
+use gdcm::gui::views::View;
 use gdcm_model::progress::Unobserved;
-use gdcm_study::study::{Engine, setting};
+use gdcm_study::Engine;
+use gdcm_study::decisions::setting;
 
 use super::*;
 use crate::made_up::tries;

@@ -6,14 +6,14 @@ use std::collections::BTreeSet;
 use serde_json::{Value as Tree, json};
 
 use gdcm_model::dataset::{Channel, ConditionId, Dataset};
-use gdcm_study::study::Analysis;
+use gdcm_study::Analysis;
 
+use super::contents::ExportContents;
 use super::matlab_struct::{Layout, cell_of_texts};
 use super::{Export, ExportFormat, Exported};
-use crate::corrections_file::{channel_table, corrections, write_corrections};
-use crate::export_contents::ExportContents;
+use crate::files::corrections_file::{channel_table, corrections, write_corrections};
 use crate::formats::mat;
-use crate::variables::{Value, Variable};
+use crate::formats::variables::{Value, Variable};
 
 /// `corrections.json`.
 pub(super) const JSON: ExportFormat = ExportFormat {
@@ -201,10 +201,11 @@ mod tests {
     use gdcm_method::schedule::SecondVariable;
     use gdcm_model::dataset::{BundleKind, ModelId};
     use gdcm_model::progress::Unobserved;
-    use gdcm_study::study::{Edit, Engine, PhaseCorrection, Study, setting};
+    use gdcm_study::decisions::setting;
+    use gdcm_study::{Edit, Engine, PhaseCorrection, Study};
 
     use super::*;
-    use crate::dataset_file::embedded_example;
+    use crate::files::dataset_file::embedded_example;
 
     /// Collects the paths of all JSON members, without list indices and names of channels and
     /// models.

@@ -16,15 +16,17 @@ use gdcm_model::dataset::{
     BundleKind, Channel, Condition, ConditionId, Dataset, Dynamics, Model, StateSpace,
 };
 use gdcm_model::units::{number, telling};
-use gdcm_study::study::{Analysis, AssessedCorrection, ConditionAnalysis, CouplingCorrection};
+use gdcm_study::{Analysis, AssessedCorrection, ConditionAnalysis, CouplingCorrection};
 
+use super::contents::{ExportContents, LeftOutPart, PartSource};
 use super::matlab_struct::{Fields, cell_of_texts, matrix, records};
 use super::{ExportFault, ExportFormat, ExportRequest, Exported, ExportedRole};
-use crate::export_contents::{ExportContents, LeftOutPart, PartSource};
+use crate::files::model_collection::{
+    ContainingModel, bare_draft, labels, write_containing_models,
+};
 use crate::formats::mat;
 use crate::formats::npy::write_npz;
-use crate::models_file::{ContainingModel, bare_draft, labels, write_containing_models};
-use crate::variables::{TextArray, Value, Variable};
+use crate::formats::variables::{TextArray, Value, Variable};
 
 /// Corrected models, in the format of the file extension.
 pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
@@ -622,12 +624,13 @@ fn row_of_texts<T: ToString>(texts: impl Iterator<Item = T>) -> Value {
 mod tests {
     use gdcm_model::progress::Unobserved;
     use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
-    use gdcm_study::study::{Engine, PhaseCorrection, Study, setting};
+    use gdcm_study::decisions::setting;
+    use gdcm_study::{Engine, PhaseCorrection, Study};
 
     use super::*;
-    use crate::dataset_file::embedded_example;
+    use crate::files::dataset_file::embedded_example;
+    use crate::formats::variables::ReadingBudget;
     use crate::formats::zip_files::read_npz;
-    use crate::variables::ReadingBudget;
 
     #[test]
     fn a_delay_that_the_schedule_leaves_out_is_named_and_counts_as_an_error_of_phase() {

@@ -7,13 +7,13 @@ use std::iter::once;
 use gdcm_method::correction::Channel;
 use gdcm_plot::figure::all_channels;
 
+use super::contents::ExportContents;
 use super::matlab_struct::{Fields, cell_of_texts, column, matrix, row};
 use super::programs::comment;
 use super::scheduled::{Scheduled, number};
 use super::{ExportFault, ExportFormat, Exported};
-use crate::export_contents::ExportContents;
 use crate::formats::mat;
-use crate::variables::{Value, Variable};
+use crate::formats::variables::{Value, Variable};
 
 /// The lookup table as text.
 pub(super) const CSV: ExportFormat = ExportFormat {
@@ -535,13 +535,13 @@ mod tests {
     use gdcm_method::correction::ChannelCorrection;
     use gdcm_method::schedule::{DelayScheduling, SecondVariable};
     use gdcm_model::progress::Unobserved;
-    use gdcm_study::study::{Analysis, Engine, Study};
+    use gdcm_study::{Analysis, Engine, Study};
 
     use super::*;
-    use crate::dataset_file::embedded_example;
     use crate::export::ExportSource;
+    use crate::files::dataset_file::embedded_example;
     use crate::formats::text::read_table;
-    use crate::variables::{ReadingBudget, Value};
+    use crate::formats::variables::{ReadingBudget, Value};
 
     #[test]
     fn the_error_of_a_parabola_is_greatest_in_the_middle() {

@@ -2,8 +2,8 @@
 
 use serde_json::Value as Json;
 
-use crate::strides::first_index_fastest;
-use crate::variables::{Array, CellArray, ElementKind, StructArray, Value};
+use crate::formats::strides::first_index_fastest;
+use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, Value};
 
 /// Longest name that MATLAB accepts (`namelengthmax`).
 pub(super) const LONGEST_NAME: usize = 63;

@@ -3,7 +3,9 @@
 //! line, the window and the documentation use [`EXPORTERS`].
 
 mod all_results;
+pub mod contents;
 mod corrected_models;
+pub mod figure_file;
 mod lookup_table;
 mod matlab_struct;
 mod programs;
@@ -16,12 +18,12 @@ use gdcm_method::correction::Pade;
 use gdcm_method::schedule::ScheduleError;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::message_text::quoted;
-use gdcm_study::study::{Analysis, AssessedCorrection};
+use gdcm_study::{Analysis, AssessedCorrection};
 
-use crate::export_contents::ExportContents;
+use self::contents::ExportContents;
 use crate::file_error::FileError;
+use crate::formats::variables::VariableFault;
 use crate::output_set::OutputSet;
-use crate::variables::VariableFault;
 use scheduled::Scheduled;
 
 /// A format for exporting a study's corrections.

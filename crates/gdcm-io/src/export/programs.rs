@@ -12,10 +12,10 @@ use gdcm_method::couplings::CouplingMatrices;
 use gdcm_method::schedule::{Airspeeds, Regression};
 use gdcm_plot::figure::all_channels;
 
+use super::contents::ExportContents;
 use super::matlab_struct::LONGEST_NAME;
 use super::scheduled::{Curve, Scheduled, number};
 use super::{Export, ExportFault, ExportFormat, Exported};
-use crate::export_contents::ExportContents;
 
 /// A programming language: the template of a file, and its expression for the value of a curve.
 struct Language {
@@ -395,13 +395,12 @@ mod tests {
     };
     use gdcm_model::dataset::Dataset;
     use gdcm_model::progress::Unobserved;
-    use gdcm_study::study::{
-        Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, Study, setting,
-    };
+    use gdcm_study::decisions::setting;
+    use gdcm_study::{Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, Study};
 
     use super::*;
-    use crate::dataset_file::embedded_example;
     use crate::export::{EXPORTERS, ExportRequest, ExportSource};
+    use crate::files::dataset_file::embedded_example;
 
     /// The example under every form of the schedule: kind, quantity, delays.
     fn analyses() -> Vec<(String, Analysis)> {

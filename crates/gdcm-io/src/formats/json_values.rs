@@ -6,17 +6,17 @@ use std::fmt;
 
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-use crate::dataset_file::{DatasetOrigin, dataset_from};
-use crate::file_error::FileError;
-use crate::formats::{Contents, Importer, importer_of};
-use crate::location::Outline;
-use crate::models_file::found_models;
-use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
-use crate::strides::Places;
-use crate::variables::{
+use super::strides::Places;
+use super::variables::{
     Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, Variable,
     VariableFault,
 };
+use crate::file_error::FileError;
+use crate::files::dataset_file::{DatasetOrigin, dataset_from};
+use crate::files::model_collection::found_models;
+use crate::formats::{Contents, Importer, importer_of};
+use crate::location::Outline;
+use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
 
 /// JSON, and any gzip-packed file.
 pub(crate) const JSON: Importer = Importer {

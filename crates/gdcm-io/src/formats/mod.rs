@@ -15,7 +15,9 @@ pub mod mat;
 pub(crate) mod mat73;
 pub mod npy;
 pub(crate) mod octave;
+pub mod strides;
 pub mod text;
+pub mod variables;
 pub(crate) mod zip_files;
 
 use std::fs;
@@ -28,6 +30,7 @@ use gdcm_model::assembly::FoundModel;
 use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::sanitized;
 
+use self::variables::{ReadingBudget, Variable, VariableFault};
 use crate::file_error::FileError;
 use crate::formats::json_values::JSON;
 use crate::formats::logs::{BLACKBOX, DATAFLASH, DATAFLASH_TEXT, ULOG};
@@ -37,9 +40,8 @@ use crate::formats::npy::NPY;
 use crate::formats::octave::{OCTAVE_BINARY, OCTAVE_TEXT};
 use crate::formats::text::{LITERALS, TEXT};
 use crate::formats::zip_files::ZIP;
-use crate::record_files::Columns;
+use crate::import::record_files::Columns;
 use crate::source::{kind_of, read_bytes, sha256};
-use crate::variables::{ReadingBudget, Variable, VariableFault};
 
 /// Memory limit for the contents of one file \[bytes\].
 pub(crate) const MOST_MEMORY: u64 = 1 << 30;

@@ -14,9 +14,11 @@ use gdcm_plot::figure::assessment::{
 use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::decimals;
 use gdcm_plot::figure::poles::couplings_figure;
-use gdcm_study::study::assessment_table::{AssessmentChoice, held_out_verdict};
-use gdcm_study::study::table::{bar_table, difference_table, scatter_table, second_variable_table};
-use gdcm_study::study::{Analysis, AssessmentTable, Engine, Table};
+use gdcm_study::results::assessment_table::{AssessmentChoice, held_out_verdict};
+use gdcm_study::results::table::{
+    bar_table, difference_table, scatter_table, second_variable_table,
+};
+use gdcm_study::{Analysis, AssessmentTable, Engine, Table};
 
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, PAIRS_DRAWN, Page};

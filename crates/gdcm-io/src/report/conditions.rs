@@ -14,11 +14,11 @@ use gdcm_plot::figure::error::error_figure;
 use gdcm_plot::figure::gains::class_names;
 use gdcm_plot::figure::poles::poles_figure;
 use gdcm_plot::figure::{ConditionSource, Figure, Mark, Role, all_channels, decimals};
-use gdcm_study::study::condition_responses::{CURVE_POINTS, curves_band};
-use gdcm_study::study::job::ConditionModes;
-use gdcm_study::study::lead_compensation::lead_words;
-use gdcm_study::study::remark::{RemarkKind, details, remarks};
-use gdcm_study::study::{Analysis, ConditionAnalysis, Engine, Study, Table};
+use gdcm_study::jobs::job::ConditionModes;
+use gdcm_study::results::remark::{RemarkKind, details, remarks};
+use gdcm_study::stages::condition_responses::{CURVE_POINTS, curves_band};
+use gdcm_study::stages::lead_compensation::lead_words;
+use gdcm_study::{Analysis, ConditionAnalysis, Engine, Study, Table};
 
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, MODELS_SHOWN, PAIRS_DRAWN, PAIRS_LISTED, Page, names};

@@ -12,12 +12,12 @@ use std::path::Path;
 
 use gdcm_model::message_text::sanitized;
 use gdcm_model::progress::{Cancelled, Progress};
-use gdcm_study::study::required_modes::KnownPoles;
-use gdcm_study::study::time_histories::TimeHistories;
-use gdcm_study::study::{Analysis, Engine};
+use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::time_histories::TimeHistories;
+use gdcm_study::{Analysis, Engine};
 
-use crate::dataset_file::LoadedDataset;
 use crate::file_error::FileError;
+use crate::files::dataset_file::LoadedDataset;
 use crate::output_set::OutputSet;
 use page::Page;
 

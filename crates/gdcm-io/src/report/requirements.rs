@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_plot::figure::requirements::requirements_figure;
-use gdcm_study::study::required_bandwidth::BandwidthFinding;
-use gdcm_study::study::requirements::Requirements;
-use gdcm_study::study::requirements_tables::RequirementsOverview;
-use gdcm_study::study::time_histories::TimeHistories;
-use gdcm_study::study::{Engine, Study, Table};
+use gdcm_study::results::required_bandwidth::BandwidthFinding;
+use gdcm_study::results::requirements::Requirements;
+use gdcm_study::results::requirements_tables::RequirementsOverview;
+use gdcm_study::results::time_histories::TimeHistories;
+use gdcm_study::{Engine, Study, Table};
 
 use super::page::Page;
 use super::{ReportSubject, Unobtrusive};

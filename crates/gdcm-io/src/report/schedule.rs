@@ -8,7 +8,7 @@ use gdcm_plot::figure::axis::compact;
 use gdcm_plot::figure::condition_source::quantity_symbol;
 use gdcm_plot::figure::gains::{Across, Measure, channels_figure, net_gain_figure};
 use gdcm_plot::figure::{all_channels, decimals};
-use gdcm_study::study::{Analysis, Study, Table};
+use gdcm_study::{Analysis, Study, Table};
 
 use super::page::{PAIRS_DRAWN, Page, names};
 use super::study::schedule_words;

@@ -11,9 +11,10 @@ use gdcm_model::units::{number, six_digits};
 use gdcm_plot::figure::assessment::usual_choice;
 use gdcm_plot::figure::condition_source::quantity_symbol;
 use gdcm_plot::figure::decimals;
-use gdcm_study::study::caution::Caution;
-use gdcm_study::study::setting::SETTINGS;
-use gdcm_study::study::{Analysis, AssessmentTable, ConditionAnalysis, Study, Table, setting};
+use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting::SETTINGS;
+use gdcm_study::results::caution::Caution;
+use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis, Study, Table};
 
 use super::assessment::capital;
 use super::conditions::proof_word;

@@ -13,7 +13,9 @@ use nalgebra::{Complex, DMatrix, Matrix3, Matrix3x4, Matrix4, Matrix4x3};
 use serde_json::json;
 
 use gdcm_io::formats::npy::write_npz;
-use gdcm_io::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable};
+use gdcm_io::formats::variables::{
+    Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable,
+};
 use gdcm_io::{FolderProgress, read_models, write_mat};
 use gdcm_method::correction::GainBounds;
 use gdcm_model::assembly::{
@@ -22,7 +24,8 @@ use gdcm_model::assembly::{
 use gdcm_model::dataset::{Band, Dataset, Pair};
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::FrequencyGrid;
-use gdcm_study::study::{Engine, Study, setting};
+use gdcm_study::decisions::setting;
+use gdcm_study::{Engine, Study};
 
 use crate::program_folder;
 

@@ -6,9 +6,9 @@ use gdcm_method::schedule::CostChange;
 use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::units::signed;
-use gdcm_study::study::assessment_table::{AssessedModel, AssessmentChoice};
-use gdcm_study::study::uncertainty::{PairScatter, Uncertainty};
-use gdcm_study::study::{Analysis, AssessedCorrection, AssessmentTable, Table};
+use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
+use gdcm_study::stages::uncertainty::{PairScatter, Uncertainty};
+use gdcm_study::{Analysis, AssessedCorrection, AssessmentTable, Table};
 
 use super::axis::{Axis, Range};
 use super::condition_source::{schedule_words, settings_words};

@@ -8,8 +8,9 @@ use gdcm_method::uncertainty::{BandWidths, Bar, Scalar};
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_model::units::s_to_ms;
-use gdcm_study::study::uncertainty::{AirspeedDifference, Uncertainty};
-use gdcm_study::study::{Analysis, ConditionAnalysis, ConditionChoice};
+use gdcm_study::decisions::study::ConditionChoice;
+use gdcm_study::stages::uncertainty::{AirspeedDifference, Uncertainty};
+use gdcm_study::{Analysis, ConditionAnalysis};
 
 use super::axis::{Axis, Range, decimals};
 use super::condition_source::{schedule_words, settings_words};

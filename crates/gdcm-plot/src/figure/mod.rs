@@ -27,12 +27,12 @@ use std::sync::Arc;
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{ModelId, Pair};
 use gdcm_model::progress::Unobserved;
-use gdcm_study::study::assessment_table::AssessmentChoice;
-use gdcm_study::study::condition_answers::{RecordHistory, TestAnswers};
-use gdcm_study::study::couplings_assessment::CouplingsAssessment;
-use gdcm_study::study::job::ConditionModes;
-use gdcm_study::study::requirements::Requirements;
-use gdcm_study::study::{AcrossRole, Analysis, ConditionAnalysis};
+use gdcm_study::jobs::job::ConditionModes;
+use gdcm_study::results::assessment_table::AssessmentChoice;
+use gdcm_study::results::condition_answers::{RecordHistory, TestAnswers};
+use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::requirements::Requirements;
+use gdcm_study::{AcrossRole, Analysis, ConditionAnalysis};
 
 pub mod assessment;
 pub mod axis;

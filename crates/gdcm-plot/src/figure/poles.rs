@@ -6,8 +6,8 @@ use nalgebra::Complex;
 use gdcm_method::couplings::{LoopMargin, PoleShift};
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm_model::response::zeros::finite_zeros;
-use gdcm_study::study::couplings_assessment::CouplingsAssessment;
-use gdcm_study::study::job::ConditionModes;
+use gdcm_study::jobs::job::ConditionModes;
+use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 
 use super::axis::{Axis, FrequencyUnit, Range, step_above};
 use super::bode::BodeOptions;

@@ -6,9 +6,9 @@ use gdcm_method::requirements::tolerance::ToleranceCheck;
 use gdcm_method::requirements::{LevelBoundaries, RecordCheck, TestInputShape};
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_model::units::{number, s_to_ms};
-use gdcm_study::study::condition_answers::{QuantityHistory, RecordHistory, TestAnswers};
-use gdcm_study::study::required_bandwidth::BandwidthFinding;
-use gdcm_study::study::requirements::{RequirementRole, Requirements};
+use gdcm_study::results::condition_answers::{QuantityHistory, RecordHistory, TestAnswers};
+use gdcm_study::results::required_bandwidth::BandwidthFinding;
+use gdcm_study::results::requirements::{RequirementRole, Requirements};
 
 use super::axis::{Axis, Range};
 use super::drawing::{Color, Dash, Hue, Stroke};

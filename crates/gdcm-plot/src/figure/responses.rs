@@ -8,9 +8,9 @@ use gdcm_model::dataset::{Band as BandOfComparison, BundleKind, Dataset, ModelId
 use gdcm_model::response::frequency_response::{ResponseShape, wrapped_deg};
 use gdcm_model::response::{FrequencyResponse, GainDelay};
 use gdcm_model::units::signed;
-use gdcm_study::study::condition_responses::{ConditionCurves, display_band};
-use gdcm_study::study::job::AcrossCurves;
-use gdcm_study::study::{AcrossRole, Analysis};
+use gdcm_study::jobs::job::AcrossCurves;
+use gdcm_study::stages::condition_responses::{ConditionCurves, display_band};
+use gdcm_study::{AcrossRole, Analysis};
 use gdcm_sysid::identification::uncertainty::TWO_SIDED_95;
 
 use super::axis::{PhaseUnit, Range};

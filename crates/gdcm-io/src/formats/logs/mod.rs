@@ -14,7 +14,7 @@ use std::sync::Arc;
 use gdcm_sysid::records::record_table::TopicClock;
 use gdcm_sysid::records::{ModeSpan, RecordColumn};
 
-use crate::variables::{ReadingBudget, VariableFault};
+use super::variables::{ReadingBudget, VariableFault};
 
 pub(crate) use blackbox::BLACKBOX;
 pub(crate) use dataflash::{DATAFLASH, DATAFLASH_TEXT};

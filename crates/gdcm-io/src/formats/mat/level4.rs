@@ -7,8 +7,8 @@ use std::collections::HashSet;
 use crate::formats::mat::level5::{ByteOrder, Cursor, name_of};
 use crate::formats::mat::matrix::rows;
 use crate::formats::mat::{FieldPath, count};
-use crate::strides::{Entries, NumberClass, StoredNumber};
-use crate::variables::{Array, ReadingBudget, Value, Variable, VariableFault};
+use crate::formats::strides::{Entries, NumberClass, StoredNumber};
+use crate::formats::variables::{Array, ReadingBudget, Value, Variable, VariableFault};
 
 /// Header of a matrix.
 struct Header {
@@ -217,7 +217,7 @@ impl Header {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::variables::ElementKind;
+    use crate::formats::variables::ElementKind;
 
     /// A matrix in the given byte order.
     fn matrix(kind: u32, sizes: [u32; 4], order: ByteOrder, data: &[u8]) -> Vec<u8> {

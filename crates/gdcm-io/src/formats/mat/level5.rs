@@ -9,8 +9,8 @@ use flate2::read::ZlibDecoder;
 
 use crate::formats::mat::matrix::Arrays;
 use crate::formats::mat::{self, FieldPath, Header};
-use crate::strides::{NumberClass, StoredNumber};
-use crate::variables::{ReadingBudget, Variable, VariableFault};
+use crate::formats::strides::{NumberClass, StoredNumber};
+use crate::formats::variables::{ReadingBudget, Variable, VariableFault};
 
 /// Length of the file header, text and numbers \[bytes\].
 pub(super) const HEADER_BYTES: usize = 128;
@@ -514,7 +514,7 @@ fn unpack_more(
 mod level5_tests {
     use super::*;
     use crate::formats::mat::sample_tests::{chars, doubles, element, file, matrix, record};
-    use crate::variables::Value;
+    use crate::formats::variables::Value;
 
     /// The same array with a tag that counts four bytes too many.
     fn too_long(array: Vec<u8>) -> Vec<u8> {
@@ -563,7 +563,7 @@ mod level5_tests {
         };
         assert_eq!(
             records.field("b").unwrap(),
-            [Value::Array(crate::variables::Array::matrix(
+            [Value::Array(crate::formats::variables::Array::matrix(
                 1,
                 1,
                 vec![1.0]

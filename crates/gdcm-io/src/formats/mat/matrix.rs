@@ -5,8 +5,8 @@
 use crate::formats::mat::level5::{Cursor, DataKind, Element, behind, matrix};
 use crate::formats::mat::subsystem::{Reference, Subsystem};
 use crate::formats::mat::{ArrayClass, FieldPath, Header, Step, count, export_line};
-use crate::strides::Entries;
-use crate::variables::{
+use crate::formats::strides::Entries;
+use crate::formats::variables::{
     Array, CellArray, Object, RECORD, ReadingBudget, StructArray, TextArray, Value, VariableFault,
 };
 
@@ -718,7 +718,7 @@ mod text_tests {
 mod opaque_tests {
     use crate::formats::mat::read;
     use crate::formats::mat::sample_tests::{element, file, opaque, reference};
-    use crate::variables::{ReadingBudget, Value};
+    use crate::formats::variables::{ReadingBudget, Value};
 
     fn first(bytes: &[u8]) -> (String, String) {
         match read(bytes, &ReadingBudget::new(1 << 16))

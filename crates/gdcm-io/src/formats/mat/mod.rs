@@ -9,10 +9,10 @@ mod matrix;
 mod subsystem;
 mod writer;
 
+use super::variables::{ElementKind, ReadingBudget, Value, Variable, VariableFault};
 use crate::formats::mat::level5::{ByteOrder, Cursor, DataKind, Element, matrix, unpacked};
 use crate::formats::mat::matrix::{Arrays, field_names, long_words, places};
 use crate::formats::{Contents, Importer};
-use crate::variables::{ElementKind, ReadingBudget, Value, Variable, VariableFault};
 
 pub(crate) use crate::formats::mat::matrix::rows;
 pub(crate) use crate::formats::mat::subsystem::Subsystem;
@@ -37,7 +37,7 @@ pub(crate) const MAT: Importer = Importer {
 
 /// Reads the variables of a file, in file order.
 ///
-/// Parts of a variable that cannot be decoded are [`crate::variables::Value::Opaque`]; bytes that
+/// Parts of a variable that cannot be decoded are [`super::variables::Value::Opaque`]; bytes that
 /// contradict the format are a fault of the whole file.
 pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     if is_hdf5(bytes) {
@@ -315,7 +315,7 @@ impl Header {
             shape(contents, budget)?
         };
         // Products of the sides must not overflow, even if another side is zero.
-        if crate::strides::count(&shape).is_none() {
+        if super::strides::count(&shape).is_none() {
             budget.take(u64::MAX, 1, "")?;
         }
         Ok(Header {
@@ -434,7 +434,7 @@ mod mat_tests {
 
     use super::*;
     use crate::formats::mat::sample_tests::{chars, doubles, element, file, matrix};
-    use crate::variables::{Array, ElementKind, Value};
+    use crate::formats::variables::{Array, ElementKind, Value};
 
     const PLAIN: &[u8] = include_bytes!("../../../../../tests/data/mat/scipy-5.mat");
     const PACKED: &[u8] = include_bytes!("../../../../../tests/data/mat/scipy-5-packed.mat");

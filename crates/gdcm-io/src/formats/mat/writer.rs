@@ -8,7 +8,7 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
 use crate::formats::mat::level5::DataKind as Kind;
-use crate::variables::{
+use crate::formats::variables::{
     Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable, VariableFault,
 };
 
@@ -285,7 +285,7 @@ mod writer_tests {
 
     use super::*;
     use crate::formats::mat::read;
-    use crate::variables::{
+    use crate::formats::variables::{
         Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value,
     };
 

@@ -5,8 +5,8 @@ use hdf5_pure::{
 };
 
 use crate::formats::mat73::{damaged, fault};
-use crate::strides::{NumberClass, Places, StoredNumber, count, matrix_shape};
-use crate::variables::{Array, ElementKind, ReadingBudget, VariableFault};
+use crate::formats::strides::{NumberClass, Places, StoredNumber, count, matrix_shape};
+use crate::formats::variables::{Array, ElementKind, ReadingBudget, VariableFault};
 
 /// Storage order of the elements: MATLAB's or C's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -24,13 +24,13 @@ use hdf5_pure::{
     MetadataCacheConfig, Object, ReferenceType, Source, is_hdf5_bytes,
 };
 
+use super::variables::{
+    self, Array, CellArray, ElementKind, ReadingBudget, StructArray, Value, Variable, VariableFault,
+};
 use crate::formats::mat::is_hdf5;
 use crate::formats::mat73::dataset::{Elements, Order};
 use crate::formats::mat73::values::{Objects, empty, records, rows, sparse, strings};
 use crate::formats::{Contents, Importer, octave};
-use crate::variables::{
-    self, Array, CellArray, ElementKind, ReadingBudget, StructArray, Value, Variable, VariableFault,
-};
 
 /// MATLAB 7.3 and HDF5.
 pub(crate) const HDF5: Importer = Importer {
@@ -540,10 +540,10 @@ mod mat73_tests {
     use std::path::Path;
 
     use super::*;
-    use crate::variables::{Array, CellArray, ElementKind, TextArray, Value};
+    use crate::formats::variables::{Array, CellArray, ElementKind, TextArray, Value};
 
     /// Reads all variables of a MATLAB 7.3 file or a plain HDF5 file; unreadable objects of
-    /// MATLAB's classes are [`Value::Opaque`](crate::variables::Value::Opaque).
+    /// MATLAB's classes are [`Value::Opaque`](crate::formats::variables::Value::Opaque).
     fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
         let objects = Objects::Unread("objects of classes are not read".to_owned());
         Reader {

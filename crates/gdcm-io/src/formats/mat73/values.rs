@@ -7,8 +7,8 @@ use hdf5_pure::{
 use crate::formats::mat::{self, Subsystem};
 use crate::formats::mat73::dataset::{Elements, NumberType, Order};
 use crate::formats::mat73::{MatlabAttributes, Reader, damaged, fault};
-use crate::strides::{Entries, count};
-use crate::variables::{
+use crate::formats::strides::{Entries, count};
+use crate::formats::variables::{
     Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, VariableFault,
 };
 

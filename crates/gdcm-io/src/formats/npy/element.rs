@@ -2,8 +2,8 @@
 
 use serde_json::Value as Json;
 
-use crate::strides::{NumberClass, StoredNumber, count};
-use crate::variables::{ReadingBudget, VariableFault};
+use crate::formats::strides::{NumberClass, StoredNumber, count};
+use crate::formats::variables::{ReadingBudget, VariableFault};
 
 /// Returns the fault for a description that `NumPy` does not write.
 fn damaged(what: impl Into<String>) -> VariableFault {

@@ -14,13 +14,13 @@ use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use rawzip::{CompressionMethod, ZipArchiveWriter};
 
-use crate::formats::npy::element::{Element, Field, Header, MAGIC};
-use crate::formats::{Contents, Importer};
-use crate::strides::{Places, StoredNumber, count, matrix_shape};
-use crate::variables::{
+use super::strides::{Places, StoredNumber, count, matrix_shape};
+use super::variables::{
     Array, ElementKind, RECORD, ReadingBudget, StructArray, TextArray, Value, Variable,
     VariableFault,
 };
+use crate::formats::npy::element::{Element, Field, Header, MAGIC};
+use crate::formats::{Contents, Importer};
 
 /// A NumPy array.
 pub(crate) const NPY: Importer = Importer {
@@ -363,8 +363,8 @@ fn file(descr: &str, shape: &[usize], data: &[u8]) -> Vec<u8> {
 #[cfg(test)]
 mod archive_tests {
     use super::*;
+    use crate::formats::variables::Array;
     use crate::formats::zip_files::{read_archive, read_npz};
-    use crate::variables::Array;
 
     fn file(name: &str) -> Vec<u8> {
         std::fs::read(format!(
@@ -684,8 +684,8 @@ mod archive_writer_tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::formats::variables::{CellArray, ReadingBudget};
     use crate::formats::zip_files::read_npz;
-    use crate::variables::{CellArray, ReadingBudget};
 
     fn read(bytes: &[u8]) -> Vec<Variable> {
         read_npz(bytes, &ReadingBudget::new(1 << 24)).unwrap()

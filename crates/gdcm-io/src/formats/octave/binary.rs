@@ -2,9 +2,9 @@
 //! their names and parts.
 
 use super::{Element, Form, Parts, Sides, rows, texts_in_pages, value};
+use crate::formats::strides::{Entries, NumberClass, StoredNumber};
+use crate::formats::variables::{ReadingBudget, TextArray, Value, Variable, VariableFault};
 use crate::formats::{Contents, Importer};
-use crate::strides::{Entries, NumberClass, StoredNumber};
-use crate::variables::{ReadingBudget, TextArray, Value, Variable, VariableFault};
 
 /// Signature before the letter of the byte order.
 const MAGIC: &[u8] = b"Octave-1-";

@@ -4,8 +4,8 @@
 //! values they represent. Arrays are stored by columns, with their sides reversed.
 
 use super::{Form, rows};
-use crate::strides::{Entries, Places, count};
-use crate::variables::{
+use crate::formats::strides::{Entries, Places, count};
+use crate::formats::variables::{
     Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value, Variable,
     VariableFault,
 };

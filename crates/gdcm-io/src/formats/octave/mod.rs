@@ -10,8 +10,8 @@ mod binary;
 mod hdf5;
 mod text;
 
-use crate::strides::{Entries, NumberClass, Places, count};
-use crate::variables::{
+use super::strides::{Entries, NumberClass, Places, count};
+use super::variables::{
     Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value,
     VariableFault,
 };
@@ -362,8 +362,8 @@ fn records(
 mod tests {
     use std::path::Path;
 
+    use crate::formats::variables::{Array, ReadingBudget, Value, Variable};
     use crate::formats::{Contents, import_bytes};
-    use crate::variables::{Array, ReadingBudget, Value, Variable};
 
     fn bytes(name: &str) -> Vec<u8> {
         std::fs::read(format!(

@@ -6,12 +6,12 @@
 
 use std::collections::HashMap;
 
+use crate::formats::strides::first_index_fastest;
 use crate::formats::text::matlab_scanner::{
     MOST_NESTED, Position, Scanner, ValueError, begins_word, is_of_word, refused,
 };
 use crate::formats::text::separator::{excerpt, refuse_binary};
-use crate::strides::first_index_fastest;
-use crate::variables::{
+use crate::formats::variables::{
     Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, Variable,
     VariableFault,
 };

@@ -3,7 +3,7 @@
 use gdcm_io::embedded_example;
 use gdcm_model::dataset::{Band, BundleKind, ModelId};
 use gdcm_model::progress::Unobserved;
-use gdcm_study::study::job::{AcrossJob, Job};
+use gdcm_study::jobs::job::{AcrossJob, Job};
 
 #[test]
 fn models_that_are_not_there_are_left_out_and_the_others_keep_their_order() {

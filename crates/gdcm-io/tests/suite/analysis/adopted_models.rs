@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use gdcm_io::embedded_example;
 use gdcm_model::dataset::{BundleKind, ConditionId, Model, ModelId};
-use gdcm_study::study::changed_models::AdoptedModels;
-use gdcm_study::study::edit::EditRefusal;
-use gdcm_study::study::{Edit, Study};
+use gdcm_study::decisions::changed_models::AdoptedModels;
+use gdcm_study::decisions::edit::EditRefusal;
+use gdcm_study::{Edit, Study};
 
 fn study() -> Study {
     Study::new(embedded_example().unwrap().dataset)
@@ -97,8 +97,8 @@ fn models_of_another_shape_are_refused_and_nothing_is_taken() {
 
 #[test]
 fn a_saved_study_and_a_reloaded_dataset_keep_the_models_taken() {
+    use gdcm_io::files::study_file::open_study;
     use gdcm_io::save_study;
-    use gdcm_io::study_file::open_study;
     let loaded = embedded_example().unwrap();
     let mut study = Study::new(loaded.dataset.clone());
     let taken = others(&study);

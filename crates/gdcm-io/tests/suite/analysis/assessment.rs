@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::{DelayScheduling, SCHEDULE_KINDS, ScheduleKind};
-use gdcm_study::study::assessment_table::{AssessedModel, AssessmentChoice, AssessmentJob};
-use gdcm_study::study::job::Job;
-use gdcm_study::study::{AssessedCorrection, AssessmentTable};
+use gdcm_study::jobs::job::Job;
+use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice, AssessmentJob};
+use gdcm_study::{AssessedCorrection, AssessmentTable};
 
 use super::*;
 

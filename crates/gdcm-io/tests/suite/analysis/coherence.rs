@@ -9,10 +9,10 @@ use gdcm_model::dataset::dataset::DatasetHeader;
 use gdcm_model::dataset::measured_response::MeasuredResponse;
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::{Band, Channel, Condition, Dataset, Model};
-use gdcm_study::study::ConditionAnalysis;
-use gdcm_study::study::caution::{Caution, Undefined};
-use gdcm_study::study::remark::{RemarkKind, remarks};
-use gdcm_study::study::settings::{DEFAULT_COHERENCE, Settings};
+use gdcm_study::ConditionAnalysis;
+use gdcm_study::decisions::settings::{DEFAULT_COHERENCE, Settings};
+use gdcm_study::results::caution::{Caution, Undefined};
+use gdcm_study::results::remark::{RemarkKind, remarks};
 
 use super::responses::model_of;
 use super::*;

@@ -3,9 +3,9 @@
 use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::CostAverage;
 use gdcm_model::dataset::ModelId;
-use gdcm_study::study::assessment_table::{AssessedModel, AssessmentChoice};
-use gdcm_study::study::derivation::{Derivation, derivation};
-use gdcm_study::study::{AssessedCorrection, AssessmentTable, ExplainTarget};
+use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
+use gdcm_study::results::derivation::{Derivation, derivation};
+use gdcm_study::{AssessedCorrection, AssessmentTable, ExplainTarget};
 
 use super::*;
 

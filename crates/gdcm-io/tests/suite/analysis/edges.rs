@@ -10,10 +10,10 @@ use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::{DelayScheduling, ScheduleCaution, ScheduleKind};
 use gdcm_model::dataset::{BundleKind, Dataset, ModelId};
-use gdcm_study::study::analysis::ConditionFailure;
-use gdcm_study::study::caution::{BundleModel, Caution, GainOutOfRange, Undefined};
-use gdcm_study::study::comparison::cautions_of_models;
-use gdcm_study::study::{ConditionAnalysis, Execution};
+use gdcm_study::results::analysis::ConditionFailure;
+use gdcm_study::results::caution::{BundleModel, Caution, GainOutOfRange, Undefined};
+use gdcm_study::stages::comparison::cautions_of_models;
+use gdcm_study::{ConditionAnalysis, Execution};
 
 use super::*;
 use crate::made_up::two_lags;

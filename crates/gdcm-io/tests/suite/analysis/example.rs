@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use gdcm_study::study::ConditionAnalysis;
+use gdcm_study::ConditionAnalysis;
 
 use super::*;
 

@@ -12,11 +12,11 @@ use gdcm_model::dataset::measured_response::MeasuredResponse;
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::{Band, Channel, Condition, Dataset, Model, ModelId};
 use gdcm_model::response::LeadOrder;
-use gdcm_study::study::assessment_table::{AssessedModel, AssessmentChoice};
-use gdcm_study::study::lead_compensation::lead_words;
-use gdcm_study::study::remark::remarks;
-use gdcm_study::study::settings::DelayFrom;
-use gdcm_study::study::{AssessedCorrection, AssessmentTable, PhaseCorrection};
+use gdcm_study::decisions::settings::DelayFrom;
+use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
+use gdcm_study::results::remark::remarks;
+use gdcm_study::stages::lead_compensation::lead_words;
+use gdcm_study::{AssessedCorrection, AssessmentTable, PhaseCorrection};
 
 use super::*;
 
@@ -305,7 +305,7 @@ fn where_all_held_responses_want_lead_the_result_offers_it_with_what_it_buys() {
     let result = analysis.condition(ConditionId(1)).unwrap();
     let offer = result.offer.unwrap();
     let held = || result.held().marked();
-    let mean = |found: &gdcm_study::study::ConditionAnalysis| {
+    let mean = |found: &gdcm_study::ConditionAnalysis| {
         held()
             .map(|pair| found.cost[pair].unwrap().corrected.total())
             .sum::<f64>()

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_model::dataset::{Dataset, ModelId};
-use gdcm_study::study::PhaseCorrection;
+use gdcm_study::PhaseCorrection;
 
 use super::*;
 

@@ -5,11 +5,12 @@ use std::sync::LazyLock;
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
-use gdcm_io::corrections_file::corrections;
+use gdcm_io::files::corrections_file::corrections;
 use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics, Pair, PairTable, StateSpace};
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
-use gdcm_study::study::{Analysis, Edit, Engine, Study, setting};
+use gdcm_study::decisions::setting;
+use gdcm_study::{Analysis, Edit, Engine, Study};
 
 mod across;
 mod adopted_models;

@@ -1,6 +1,6 @@
 //! What the result of a condition says.
 
-use gdcm_study::study::remark::{Remark, RemarkKind, remarks};
+use gdcm_study::results::remark::{Remark, RemarkKind, remarks};
 
 use super::*;
 

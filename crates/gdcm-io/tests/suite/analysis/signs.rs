@@ -6,11 +6,11 @@ use std::sync::Arc;
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::measured_response::MeasuredResponse;
 use gdcm_model::dataset::{Condition, Dataset, Model};
-use gdcm_study::study::Execution;
-use gdcm_study::study::changed_models::SignRole;
-use gdcm_study::study::convention_doubt::{Convention, doubts_of_models};
-use gdcm_study::study::differences::Decisions;
-use gdcm_study::study::remark::remarks;
+use gdcm_study::Execution;
+use gdcm_study::decisions::changed_models::SignRole;
+use gdcm_study::decisions::differences::Decisions;
+use gdcm_study::results::convention_doubt::{Convention, doubts_of_models};
+use gdcm_study::results::remark::remarks;
 
 use super::*;
 

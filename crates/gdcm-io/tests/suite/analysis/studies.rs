@@ -6,10 +6,10 @@ use std::sync::{Arc, Mutex};
 
 use gdcm_model::dataset::{Condition, Dataset, Model, ModelId};
 use gdcm_model::progress::{Cancelled, Progress};
-use gdcm_study::study::ConditionAnalysis;
-use gdcm_study::study::analysis::ConditionFailure;
-use gdcm_study::study::condition_responses::{ConditionCurves, KnownModels};
-use gdcm_study::study::engine::WantedFirst;
+use gdcm_study::ConditionAnalysis;
+use gdcm_study::results::analysis::ConditionFailure;
+use gdcm_study::stages::condition_responses::{ConditionCurves, KnownModels};
+use gdcm_study::stages::engine::WantedFirst;
 
 use super::*;
 use crate::EveryCore;

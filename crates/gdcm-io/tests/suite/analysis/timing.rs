@@ -9,8 +9,8 @@ use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 use gdcm_model::dataset::Dataset;
 use gdcm_model::dataset::state_space::Timing;
 use gdcm_model::executor::Sequential;
-use gdcm_study::study::comparison::cautions_of_models;
-use gdcm_study::study::{ConditionAnalysis, Execution};
+use gdcm_study::stages::comparison::cautions_of_models;
+use gdcm_study::{ConditionAnalysis, Execution};
 
 use super::*;
 

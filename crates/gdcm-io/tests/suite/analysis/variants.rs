@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use gdcm_model::dataset::{Dataset, ModelId};
-use gdcm_study::study::History;
-use gdcm_study::study::differences::{Difference, decision_differences};
-use gdcm_study::study::edit::LONGEST_REASON;
-use gdcm_study::study::job::{Job, VariantJob};
+use gdcm_study::decisions::differences::{Difference, decision_differences};
+use gdcm_study::decisions::edit::LONGEST_REASON;
+use gdcm_study::decisions::study::History;
+use gdcm_study::jobs::job::{Job, VariantJob};
 
 use super::*;
 
@@ -146,7 +146,8 @@ fn words_change_no_result_and_stand_in_the_results_beside_the_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let outputs = gdcm_io::output_set::OutputSet::new(gdcm_io::Existing::Replace, Vec::new());
     let all = with.conditions.keys().copied().collect();
-    gdcm_io::corrections_file::write_results(&with, "", &all, folder.path(), outputs).unwrap();
+    gdcm_io::files::corrections_file::write_results(&with, "", &all, folder.path(), outputs)
+        .unwrap();
     let written = json(&std::fs::read_to_string(folder.path().join("corrections.json")).unwrap());
     let condition = list(&written["conditions"])
         .iter()

@@ -113,7 +113,7 @@ fn timing_valid_bands_and_how_a_response_was_estimated_are_known_and_kept() {
     assert_eq!(loaded.cautions, Vec::<String>::new());
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("again.json");
-    gdcm_io::dataset_file::save_dataset(&loaded.dataset, &path).unwrap();
+    gdcm_io::files::dataset_file::save_dataset(&loaded.dataset, &path).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     for written in [
         "\"sample_time_s\":0.01",

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-use gdcm_io::dataset_file::save_dataset;
+use gdcm_io::files::dataset_file::save_dataset;
 use gdcm_io::load_dataset;
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_model::dataset::dataset::DatasetHeader;

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use gdcm_io::dataset_file::save_dataset;
+use gdcm_io::files::dataset_file::save_dataset;
 use gdcm_model::dataset::condition::{ConditionRecord, RecordKind};
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::state_space::Timing;

@@ -6,17 +6,18 @@ use std::path::{Path, PathBuf};
 use proptest::prelude::*;
 use serde_json::{Value as Json, json};
 
-use gdcm_io::study_file::{open_study, open_study_of};
+use gdcm_io::files::study_file::{open_study, open_study_of};
 use gdcm_io::{
     FileError, LoadedDataset, Opened, embedded_example, load_any, load_dataset, save_study,
 };
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::DelayScheduling;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
-use gdcm_study::study::changed_models::SignRole;
-use gdcm_study::study::setting::SETTINGS;
-use gdcm_study::study::setting_row::{Kind, Setting, Value};
-use gdcm_study::study::{Edit, Study, setting};
+use gdcm_study::decisions::changed_models::SignRole;
+use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting::SETTINGS;
+use gdcm_study::decisions::setting_row::{Kind, Setting, Value};
+use gdcm_study::{Edit, Study};
 
 use super::SMALL;
 
@@ -489,7 +490,7 @@ fn a_model_keeps_the_file_it_was_made_from_through_saving_and_into_the_correctio
     let loaded = super::load(&serde_json::to_vec(&value).unwrap()).unwrap();
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("again.json");
-    gdcm_io::dataset_file::save_dataset(&loaded.dataset, &path).unwrap();
+    gdcm_io::files::dataset_file::save_dataset(&loaded.dataset, &path).unwrap();
     let again: Json = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
     assert_eq!(
         again["conditions"][0]["physics_models"][1]["source"],
@@ -500,10 +501,10 @@ fn a_model_keeps_the_file_it_was_made_from_through_saving_and_into_the_correctio
         None
     );
     let study = Study::new(load_dataset(&path).unwrap().dataset);
-    let analysis = gdcm_study::study::Engine::default()
+    let analysis = gdcm_study::Engine::default()
         .analyze(&study, &gdcm_model::progress::Unobserved)
         .unwrap();
-    let written = gdcm_io::corrections_file::corrections(
+    let written = gdcm_io::files::corrections_file::corrections(
         &analysis,
         "",
         &analysis.conditions.keys().copied().collect(),

@@ -6,7 +6,8 @@ use gdcm_model::dataset::ConditionId;
 use gdcm_model::progress::Unobserved;
 use gdcm_plot::figure::leads::leads_figure;
 use gdcm_plot::figure::{ConditionSource, Mark};
-use gdcm_study::study::{Engine, PhaseCorrection, Study, setting};
+use gdcm_study::decisions::setting;
+use gdcm_study::{Engine, PhaseCorrection, Study};
 
 #[test]
 fn leads_are_drawn_to_ten_times_the_band_with_the_limit_and_the_price() {

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use gdcm_io::figure_file::write_as;
+use gdcm_io::export::figure_file::write_as;
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::progress::Unobserved;
@@ -13,11 +13,11 @@ use gdcm_plot::figure::{
     Color, ColumnWidth, ConditionSource, Figure, FigureFormat, FigureKind, FigureRequest, Panel,
     Range, all_channels,
 };
-use gdcm_study::study::condition_responses::{CURVE_POINTS, ConditionCurves, curves_band};
-use gdcm_study::study::couplings_assessment::CouplingsAssessment;
-use gdcm_study::study::required_modes::KnownPoles;
-use gdcm_study::study::requirements::Requirements;
-use gdcm_study::study::{Analysis, CouplingCorrection, Edit, Engine, Study};
+use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::requirements::Requirements;
+use gdcm_study::stages::condition_responses::{CURVE_POINTS, ConditionCurves, curves_band};
+use gdcm_study::{Analysis, CouplingCorrection, Edit, Engine, Study};
 
 mod leads;
 mod numbers;

@@ -25,21 +25,21 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, LazyLock, Mutex};
 use std::time::{Duration, Instant};
 
-use gdcm_io::model_files::models_of_bytes;
+use gdcm_io::files::requirements_file::{add_tolerances, load_tolerances, read_levels};
+use gdcm_io::files::rules_file::{add_rules, load_rules};
+use gdcm_io::files::study_file::open_study_of;
+use gdcm_io::files::user_state::lost_studies;
+use gdcm_io::formats::variables::ReadingBudget;
+use gdcm_io::import::model_files::models_of_bytes;
+use gdcm_io::import::record_files::records_of_bytes;
 use gdcm_io::output_set::OutputSet;
-use gdcm_io::record_files::records_of_bytes;
-use gdcm_io::requirements_file::{add_tolerances, load_tolerances, read_levels};
-use gdcm_io::rules_file::{add_rules, load_rules};
-use gdcm_io::study_file::open_study_of;
-use gdcm_io::user_state::lost_studies;
-use gdcm_io::variables::ReadingBudget;
 use gdcm_io::{DatasetOrigin, Existing, load_dataset, load_dataset_bytes, save_study};
 use gdcm_method::correction::Channel;
 use gdcm_method::requirements::ToleranceTable;
 use gdcm_model::assembly::{FoundModel, RowRule, Rules};
 use gdcm_model::dataset::{BundleKind, ModelId};
-use gdcm_study::study::changed_models::SignRole;
-use gdcm_study::study::{Edit, Study};
+use gdcm_study::decisions::changed_models::SignRole;
+use gdcm_study::{Edit, Study};
 
 use crate::made_up::tries;
 

@@ -18,7 +18,7 @@ use gdcm_model::dataset::{
     Band, Channel, Condition, ConditionId, Dataset, Dynamics, Model, Pair, PairTable, StateSpace,
 };
 use gdcm_model::progress::{Cancelled, Progress};
-use gdcm_study::study::{Engine, Study};
+use gdcm_study::{Engine, Study};
 
 use super::instances::gain_instances;
 use super::{solved, solved_within};

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use super::{Content, Property, Reference, Subsystem, is_enumeration, packed_text};
 use crate::formats::mat::matrix::unread_because;
 use crate::formats::mat::{FieldPath, Step};
-use crate::variables::{
+use crate::formats::variables::{
     Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value,
     VariableFault,
 };

@@ -12,8 +12,8 @@ use std::collections::HashMap;
 use crate::formats::mat::FieldPath;
 use crate::formats::mat::level5::{ByteOrder, name_of};
 use crate::formats::mat::matrix::unread_because;
-use crate::strides::count;
-use crate::variables::{
+use crate::formats::strides::count;
+use crate::formats::variables::{
     ElementKind, Object, ReadingBudget, StructArray, TextArray, Value, VariableFault,
 };
 
@@ -504,7 +504,7 @@ mod subsystem_tests {
         Directory, chars, column, doubles, file_with_objects, long_words_of, opaque, record,
         reference, words_of,
     };
-    use crate::variables::{Array, StructArray, TextArray};
+    use crate::formats::variables::{Array, StructArray, TextArray};
 
     const NAMES: [&str; 12] = [
         "ss", "ssdata", "ltipack", "string", "node", "Data_", "Name_", "any", "a", "self", "Mode_",
@@ -795,7 +795,7 @@ mod packed_text_tests {
 #[cfg(test)]
 mod reference_tests {
     use super::*;
-    use crate::variables::Array;
+    use crate::formats::variables::Array;
 
     #[test]
     fn a_reference_names_its_objects_and_their_class() {

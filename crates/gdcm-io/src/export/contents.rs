@@ -1,0 +1,255 @@
+//! Contents of an export: gains, delays, leads and couplings, scheduled or a condition's own; and
+//! the parts it omits.
+
+use serde_json::{Value, json};
+
+use gdcm_method::schedule::{Schedule, ScheduleError};
+use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_study::results::schedule_losses::DelayedChannel;
+use gdcm_study::{Analysis, AssessedCorrection, PhaseCorrection};
+
+/// Source of a part of an exported correction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PartSource {
+    Scheduled,
+    /// Each condition's own correction.
+    Own,
+    /// Both, side by side.
+    OwnAndScheduled,
+    /// Not in the file.
+    None,
+}
+
+impl PartSource {
+    /// Returns its word in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Scheduled => "scheduled",
+            Self::Own => "own",
+            Self::OwnAndScheduled => "own and scheduled",
+            Self::None => "none",
+        }
+    }
+
+    fn scheduled_if(is_scheduled: bool) -> Self {
+        if is_scheduled {
+            Self::Scheduled
+        } else {
+            Self::None
+        }
+    }
+
+    fn own_if(is_own: bool) -> Self {
+        if is_own { Self::Own } else { Self::None }
+    }
+
+    /// Combines this part with the same part of the schedule.
+    fn beside(self, scheduled: Self) -> Self {
+        match (self, scheduled) {
+            (Self::Own, Self::Scheduled) => Self::OwnAndScheduled,
+            (Self::None, scheduled) => scheduled,
+            (own, _) => own,
+        }
+    }
+}
+
+/// A part of the conditions' corrections that an export does not contain.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LeftOutPart {
+    /// A channel's delays in the own corrections of some conditions that the schedule does not
+    /// have.
+    Delay(DelayedChannel),
+    /// The lead filters of the schedule.
+    Leads,
+    /// The requested couplings, and the reason why there are none.
+    Couplings(String),
+}
+
+impl LeftOutPart {
+    /// Returns its code.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Delay(_) => "delay-not-scheduled",
+            Self::Leads => "leads-left-out",
+            Self::Couplings(_) => "couplings-left-out",
+        }
+    }
+
+    /// Describes it in words: "delay of output NX: 5.3 ms in condition 4 (not scheduled)".
+    pub fn words(&self, dataset: &Dataset) -> String {
+        match self {
+            Self::Delay(of) => format!("{} (not scheduled)", of.words(dataset)),
+            Self::Leads => "the lead filters of the schedule".to_owned(),
+            Self::Couplings(why) => format!("the couplings that the study asks for: {why}"),
+        }
+    }
+}
+
+/// Contents of an export, and the parts it omits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExportContents {
+    pub gains: PartSource,
+    pub delays: PartSource,
+    pub leads: PartSource,
+    /// Mixing and feedback of the models, the same for all conditions.
+    pub couplings: PartSource,
+    /// The omitted parts.
+    pub left_out: Vec<LeftOutPart>,
+}
+
+impl ExportContents {
+    /// Returns the contents of the result files: each condition's own correction, beside the
+    /// schedule if the study has one.
+    pub fn of_results(analysis: &Analysis) -> Self {
+        let own = Self::of_own(analysis);
+        let Ok(schedule) = &analysis.schedule else {
+            return own;
+        };
+        let scheduled = Self::of_schedule(analysis, schedule);
+        let mut left_out = scheduled.left_out;
+        for part in own.left_out {
+            if !left_out.contains(&part) {
+                left_out.push(part);
+            }
+        }
+        Self {
+            gains: own.gains.beside(scheduled.gains),
+            delays: own.delays.beside(scheduled.delays),
+            leads: own.leads.beside(scheduled.leads),
+            couplings: own.couplings,
+            left_out,
+        }
+    }
+
+    /// Returns the contents of the study's schedule; empty for a study without one.
+    pub fn of_scheduled(analysis: &Analysis) -> Self {
+        match &analysis.schedule {
+            Ok(schedule) => Self::of_schedule(analysis, schedule),
+            Err(_) => Self::of_none(analysis),
+        }
+    }
+
+    /// Returns the contents of the corrected models of these conditions.
+    ///
+    /// # Errors
+    /// [`ScheduleError`] if a schedule is requested and there is none.
+    pub fn of_models(
+        analysis: &Analysis,
+        correction: AssessedCorrection,
+        conditions: &[ConditionId],
+    ) -> Result<Self, ScheduleError> {
+        let others;
+        let schedule = match (correction, conditions) {
+            (AssessedCorrection::Own, _) => return Ok(Self::of_own(analysis)),
+            (AssessedCorrection::ScheduleOfOthers, [condition]) => {
+                others = analysis.schedule_without(*condition)?;
+                &others
+            }
+            _ => analysis.schedule.as_ref().map_err(|error| *error)?,
+        };
+        let mut contents = Self::of_schedule(analysis, schedule);
+        contents
+            .left_out
+            .retain(|part| !matches!(part, LeftOutPart::Delay(_)));
+        if contents.delays == PartSource::None {
+            contents.left_out.extend(
+                analysis
+                    .delayed_channels(conditions)
+                    .into_iter()
+                    .map(LeftOutPart::Delay),
+            );
+        }
+        if correction == AssessedCorrection::ScheduledWithoutLeads
+            && contents.leads != PartSource::None
+        {
+            contents.leads = PartSource::None;
+            contents.left_out.push(LeftOutPart::Leads);
+        }
+        Ok(contents)
+    }
+
+    fn of_none(analysis: &Analysis) -> Self {
+        let (couplings, left_out) = match analysis.asked_couplings() {
+            Ok(fitted) => (PartSource::scheduled_if(fitted.is_some()), Vec::new()),
+            Err(why) => (PartSource::None, vec![LeftOutPart::Couplings(why)]),
+        };
+        Self {
+            gains: PartSource::None,
+            delays: PartSource::None,
+            leads: PartSource::None,
+            couplings,
+            left_out,
+        }
+    }
+
+    fn of_own(analysis: &Analysis) -> Self {
+        let phase = analysis.study.settings.phase;
+        Self {
+            gains: PartSource::Own,
+            delays: PartSource::own_if(phase != PhaseCorrection::None),
+            leads: PartSource::own_if(phase == PhaseCorrection::Lead),
+            ..Self::of_none(analysis)
+        }
+    }
+
+    fn of_schedule(analysis: &Analysis, schedule: &Schedule) -> Self {
+        let mut contents = Self {
+            gains: PartSource::Scheduled,
+            delays: PartSource::scheduled_if(schedule.has_delays()),
+            leads: PartSource::scheduled_if(schedule.leads.is_some()),
+            ..Self::of_none(analysis)
+        };
+        contents.left_out.extend(
+            analysis
+                .unscheduled_delays()
+                .into_iter()
+                .map(LeftOutPart::Delay),
+        );
+        contents
+    }
+
+    /// Returns each part with its name, in the order of reports.
+    pub fn parts(&self) -> [(&'static str, PartSource); 4] {
+        [
+            ("gains", self.gains),
+            ("delays", self.delays),
+            ("leads", self.leads),
+            ("couplings", self.couplings),
+        ]
+    }
+
+    /// Describes the parts: "gains scheduled, delays none, leads none, couplings none".
+    pub fn words(&self) -> String {
+        self.parts()
+            .map(|(name, source)| format!("{name} {}", source.word()))
+            .join(", ")
+    }
+
+    /// Describes the omitted parts.
+    pub fn left_out_words(&self, dataset: &Dataset) -> Vec<String> {
+        self.left_out
+            .iter()
+            .map(|part| part.words(dataset))
+            .collect()
+    }
+
+    /// Returns lines with both: "contains: …", then "left out: …" for each omitted part.
+    pub fn lines(&self, dataset: &Dataset) -> Vec<String> {
+        let mut lines = vec![format!("contains: {}", self.words())];
+        for words in self.left_out_words(dataset) {
+            lines.push(format!("left out: {words}"));
+        }
+        lines
+    }
+
+    /// Returns the block `contains` of files.
+    pub fn json(&self, dataset: &Dataset) -> Value {
+        json!({
+            "gains": self.gains.word(),
+            "delays": self.delays.word(),
+            "leads": self.leads.word(),
+            "couplings": self.couplings.word(),
+            "left_out": self.left_out_words(dataset),
+        })
+    }
+}

@@ -1,0 +1,224 @@
+//! Dataset files, `*.json` and `*.json.gz`.
+
+mod text;
+
+use std::fmt;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+
+use gdcm_model::dataset::Dataset;
+use gdcm_model::message_text::{sanitized, sanitized_path};
+
+use crate::file_error::{ContentError, FileError};
+use crate::formats::variables::ReadingBudget;
+use crate::json_text::write_compact;
+use crate::output_set::{Existing, OutputSet, make_directory};
+use crate::source::Source;
+use text::{DatasetText, FORMAT};
+
+pub(crate) use text::{LabelText, ModelText, RecordText};
+
+/// The example dataset: a synthetic UH-60A-class helicopter at the paper's eleven flight
+/// conditions.
+const EXAMPLE: &[u8] = include_bytes!("../../../../../assets/example-dataset.json.gz");
+/// Name under which the example is written.
+const EXAMPLE_NAME: &str = "example-dataset.json";
+
+/// Origin of a dataset.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum DatasetOrigin {
+    File(PathBuf),
+    /// The example inside the program.
+    EmbeddedExample,
+}
+
+impl fmt::Display for DatasetOrigin {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            DatasetOrigin::File(path) => formatter.write_str(&sanitized_path(path)),
+            DatasetOrigin::EmbeddedExample => formatter.write_str("(embedded example)"),
+        }
+    }
+}
+
+impl DatasetOrigin {
+    /// Returns the file, if it comes from one.
+    pub fn file(&self) -> Option<PathBuf> {
+        match self {
+            DatasetOrigin::File(path) => Some(path.clone()),
+            DatasetOrigin::EmbeddedExample => None,
+        }
+    }
+
+    /// Returns the path, or the name that replaces it in errors.
+    pub(crate) fn path(&self) -> PathBuf {
+        match self {
+            DatasetOrigin::File(path) => path.clone(),
+            DatasetOrigin::EmbeddedExample => PathBuf::from(self.to_string()),
+        }
+    }
+}
+
+/// A dataset with the identification and the cautions of its file.
+#[derive(Clone, Debug)]
+pub struct LoadedDataset {
+    pub dataset: Arc<Dataset>,
+    /// SHA-256 of the stored bytes of the file, in lower-case hexadecimal.
+    pub sha256: String,
+    pub origin: DatasetOrigin,
+    /// Unknown keys and other oddities, each with its place.
+    pub cautions: Vec<String>,
+}
+
+impl LoadedDataset {
+    /// Returns the dataset's file; `None` for the embedded example.
+    pub fn path(&self) -> Option<&Path> {
+        match &self.origin {
+            DatasetOrigin::File(path) => Some(path),
+            DatasetOrigin::EmbeddedExample => None,
+        }
+    }
+
+    /// Returns the name of the dataset's file, or its replacement.
+    pub fn file_name(&self) -> String {
+        let name = self.path().and_then(Path::file_name);
+        name.map_or_else(
+            || self.origin.to_string(),
+            |name| sanitized(&name.to_string_lossy()),
+        )
+    }
+}
+
+/// Loads a dataset from a file, with or without gzip compression; whole, or not at all.
+pub fn load_dataset(path: &Path) -> Result<LoadedDataset, FileError> {
+    load_dataset_within(path, &ReadingBudget::default())
+}
+
+/// Loads a dataset within a reading budget that can be stopped.
+pub fn load_dataset_within(
+    path: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Result<LoadedDataset, FileError> {
+    dataset_from(
+        &Source::read(path, budget)?,
+        DatasetOrigin::File(path.to_owned()),
+        budget,
+    )
+}
+
+/// Returns everything that is wrong in a dataset's file, each with its place; empty if it can be
+/// loaded. Text that cannot be read at all is an error.
+pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
+    let budget = ReadingBudget::default();
+    let source = Source::read(path, &budget)?;
+    let (text, _) = FORMAT.decode::<DatasetText>(source.text(), path, &budget)?;
+    let (draft, _) = text
+        .into_draft()
+        .map_err(|error| FileError::content_of(path, error, source.text()))?;
+    let told = |error| FileError::content_of(path, ContentError::from(error), source.text());
+    Ok(draft.faults().into_iter().map(told).collect())
+}
+
+/// Checks the structure of a dataset's text, as far as it goes.
+pub(crate) fn check_dataset_text(
+    text: &[u8],
+    path: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Result<(), FileError> {
+    FORMAT.decode::<DatasetText>(text, path, budget).map(drop)
+}
+
+/// Loads a dataset from bytes in memory; errors name them by `origin`.
+pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
+    let budget = ReadingBudget::default();
+    dataset_from(
+        &Source::of(bytes, &origin.path(), &budget)?,
+        origin,
+        &budget,
+    )
+}
+
+/// Returns the example dataset inside the program.
+pub fn embedded_example() -> Result<LoadedDataset, FileError> {
+    load_dataset_bytes(EXAMPLE, DatasetOrigin::EmbeddedExample)
+}
+
+/// Writes the example dataset, uncompressed, into a directory (created if missing), and returns the
+/// file's path.
+pub fn write_example(directory: &Path, existing: Existing) -> Result<PathBuf, FileError> {
+    let source = Source::of(
+        EXAMPLE,
+        &DatasetOrigin::EmbeddedExample.path(),
+        &ReadingBudget::default(),
+    )?;
+    let path = directory.join(EXAMPLE_NAME);
+    let mut outputs = OutputSet::new(existing, Vec::new());
+    outputs.check(&[&path])?;
+    make_directory(directory)?;
+    outputs.add(&path, |file| file.write_all(source.text()))?;
+    outputs.persist()?;
+    Ok(path)
+}
+
+/// Saves a dataset, replacing an existing file; compressed with gzip if the name ends in `.gz`.
+pub fn save_dataset(dataset: &Dataset, path: &Path) -> Result<(), FileError> {
+    let mut outputs = OutputSet::new(Existing::Replace, Vec::new());
+    add_dataset(dataset, path, &mut outputs)?;
+    outputs.persist()
+}
+
+/// Adds a dataset to `outputs`; compressed with gzip if the name ends in `.gz`.
+pub fn add_dataset(
+    dataset: &Dataset,
+    path: &Path,
+    outputs: &mut OutputSet,
+) -> Result<(), FileError> {
+    let text = DatasetText::of(dataset);
+    let packed = path
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
+    outputs.add(path, |file| {
+        if packed {
+            // The encoder clears a buffer of its own at each piece, and the pieces of JSON are
+            // single numbers and punctuation marks.
+            let mut pieces =
+                BufWriter::with_capacity(1 << 16, GzEncoder::new(file, Compression::default()));
+            write_compact(&text, &mut pieces)?;
+            pieces.into_inner()?.finish()?;
+            Ok(())
+        } else {
+            write_compact(&text, file)
+        }
+    })
+}
+
+/// Returns the dataset in a source.
+pub(crate) fn dataset_from(
+    source: &Source<'_>,
+    origin: DatasetOrigin,
+    budget: &ReadingBudget<'_>,
+) -> Result<LoadedDataset, FileError> {
+    let path = origin.path();
+    let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path, budget)?;
+    let (draft, misplaced) = text
+        .into_draft()
+        .map_err(|error| FileError::content_of(&path, error, source.text()))?;
+    cautions.extend(misplaced);
+    let (dataset, odd) = draft
+        .checked()
+        .map_err(|error| FileError::content_of(&path, ContentError::from(error), source.text()))?;
+    cautions.extend(
+        odd.into_iter()
+            .map(|odd| format!("{}{}", odd.place.before(), odd.words)),
+    );
+    Ok(LoadedDataset {
+        dataset: Arc::new(dataset),
+        sha256: source.sha256.clone(),
+        origin,
+        cautions,
+    })
+}

@@ -1,0 +1,10 @@
+//! The program's own file formats.
+
+pub mod beginning;
+pub mod corrections_file;
+pub mod dataset_file;
+pub mod model_collection;
+pub mod requirements_file;
+pub mod rules_file;
+pub mod study_file;
+pub mod user_state;

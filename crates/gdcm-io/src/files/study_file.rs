@@ -1,0 +1,591 @@
+//! Study files, `*.gdcm-study.json`: the decisions of a study, and a reference to its dataset.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::dataset::channel::Location;
+use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
+use gdcm_model::dataset::{Condition, ConditionId, Dataset};
+use gdcm_model::whole_number::whole;
+use gdcm_study::Study;
+use gdcm_study::decisions::changed_models::{AdoptedModels, TurnedChannel};
+use gdcm_study::decisions::differences::{Decisions, Difference, Inventory};
+use gdcm_study::decisions::settings::{ResponseNames, Settings};
+use gdcm_study::decisions::study::{BundleChoice, ConditionChoice};
+use gdcm_study::results::requirements::RequirementSettings;
+
+use super::dataset_file::{
+    DatasetOrigin, LoadedDataset, ModelText, RecordText, dataset_from, embedded_example,
+};
+use crate::file_error::{ContentError, ContentFault, FileError};
+use crate::formats::variables::ReadingBudget;
+use crate::json_text::{Format, list, write_pretty};
+use crate::location::Outline;
+use crate::output_set::{Existing, OutputSet};
+use crate::source::Source;
+
+/// Maximum number of variants in a study file.
+pub(crate) const MOST_VARIANTS: usize = 1000;
+
+/// Format and version of a study file.
+const FORMAT: Format = Format {
+    name: "gdcm-study",
+    version: 1,
+};
+
+/// Extension of a study file.
+pub const STUDY_EXTENSION: &str = "gdcm-study.json";
+/// Replaces a path if a study uses the embedded example.
+const EMBEDDED: &str = "embedded example";
+
+/// A study with its dataset, and the changes of the dataset since the study was saved.
+#[derive(Clone, Debug)]
+pub struct OpenedStudy {
+    /// The study, with every decision that still applies.
+    pub study: Study,
+    pub loaded: LoadedDataset,
+    pub path: PathBuf,
+    /// Changes of the dataset, and the decisions that no longer apply; empty if it is unchanged.
+    pub differences: Vec<Difference>,
+}
+
+/// A study file, key by key.
+#[derive(Deserialize, Serialize)]
+struct StudyText {
+    format: String,
+    #[serde(deserialize_with = "whole")]
+    version: u64,
+    software: String,
+    dataset: DatasetReference,
+    settings: Settings<ResponseNames>,
+    #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
+    conditions: Vec<ConditionText>,
+    /// Identified models that replace the dataset's own; absent if there are none.
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_CONDITIONS, _, _>"
+    )]
+    taken: Vec<TakenText>,
+    /// Channels with reversed sign in their models; absent if there are none.
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_CHANNELS, _, _>"
+    )]
+    signs: Vec<TurnedChannel>,
+    /// Inputs for the requirements; absent if nothing was decided.
+    #[serde(default, skip_serializing_if = "is_default")]
+    requirements: RequirementSettings,
+    /// Named decisions; absent in studies of older programs.
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_VARIANTS, _, _>"
+    )]
+    variants: Vec<VariantText>,
+}
+
+/// Identified models adopted in a condition, and their flight records.
+#[derive(Deserialize, Serialize)]
+struct TakenText {
+    #[serde(deserialize_with = "whole")]
+    condition: i64,
+    #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
+    identified_models: Vec<ModelText>,
+    #[serde(default, deserialize_with = "list::<MOST_RECORDS, _, _>")]
+    records: Vec<RecordText>,
+}
+
+/// Named decisions.
+#[derive(Deserialize, Serialize)]
+struct VariantText {
+    name: String,
+    settings: Settings<ResponseNames>,
+    #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
+    conditions: Vec<ConditionText>,
+}
+
+/// Reference to the dataset of a study.
+#[derive(Deserialize, Serialize)]
+struct DatasetReference {
+    /// Path relative to the study's directory, with `/` between its parts; `None` for the embedded
+    /// example.
+    path: Option<String>,
+    /// The dataset's name, for people; "embedded example" for the embedded example.
+    name: String,
+    sha256: String,
+    /// Inventory of its content; absent in studies of older programs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    holds: Option<Inventory>,
+}
+
+/// The choices for a condition.
+#[derive(Deserialize, Serialize)]
+struct ConditionText {
+    #[serde(deserialize_with = "whole")]
+    id: i64,
+    physics: BundleChoice,
+    identified: BundleChoice,
+    scheduled: bool,
+    /// Whether it is held out; absent in studies of older programs.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    held_out: bool,
+}
+
+impl ConditionText {
+    fn of(condition: &Condition, study: &Study) -> Self {
+        let ConditionChoice {
+            physics,
+            identified,
+            scheduled,
+            held_out,
+        } = study.choice(condition.id()).clone();
+        Self {
+            id: condition.id().0,
+            physics,
+            identified,
+            scheduled,
+            held_out,
+        }
+    }
+
+    fn all(study: &Study) -> Vec<Self> {
+        study
+            .dataset
+            .conditions()
+            .iter()
+            .map(|condition| Self::of(condition, study))
+            .collect()
+    }
+}
+
+impl StudyText {
+    fn of(study: &Study, dataset: DatasetReference) -> Self {
+        let variants = study.variants.iter().filter_map(|variant| {
+            let of_variant = study.of_variant(&variant.name)?;
+            let settings = variant.settings.named(&study.dataset);
+            Some(VariantText {
+                name: variant.name.clone(),
+                settings,
+                conditions: ConditionText::all(&of_variant),
+            })
+        });
+        let taken = study.taken_models().map(|(condition, taken)| TakenText {
+            condition: condition.0,
+            identified_models: taken.models.iter().map(ModelText::of_model).collect(),
+            records: taken.records.iter().map(RecordText::of).collect(),
+        });
+        Self {
+            format: FORMAT.name.to_owned(),
+            version: FORMAT.version,
+            software: concat!("gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
+            dataset,
+            settings: study.settings.named(&study.dataset),
+            conditions: ConditionText::all(study),
+            taken: taken.collect(),
+            signs: study.turned_channels(),
+            requirements: study.requirements.as_ref().clone(),
+            variants: variants.collect(),
+        }
+    }
+}
+
+fn is_default(settings: &RequirementSettings) -> bool {
+    *settings == RequirementSettings::default()
+}
+
+/// Returns the decisions in a study file about its dataset.
+fn decisions_of(
+    settings: Settings<ResponseNames>,
+    conditions: Vec<ConditionText>,
+    taken: Vec<TakenText>,
+    variants: Vec<VariantText>,
+    dataset: &Dataset,
+) -> Result<Decisions, ContentError> {
+    let mut decisions = present_decisions(settings, conditions, dataset)?;
+    decisions.taken = taken_of(taken, dataset)?;
+    for VariantText {
+        name,
+        settings,
+        conditions,
+    } in variants
+    {
+        let of_variant =
+            present_decisions(settings, conditions, dataset).map_err(|mut error| {
+                error.place.entry = format!("variant \"{name}\", {}", error.place.entry);
+                error
+            })?;
+        decisions.variants.push((name, of_variant));
+    }
+    Ok(decisions)
+}
+
+/// Returns decisions without variants; each setting must be within its range.
+fn present_decisions(
+    mut settings: Settings<ResponseNames>,
+    conditions: Vec<ConditionText>,
+    dataset: &Dataset,
+) -> Result<Decisions, ContentError> {
+    settings.complete_delay_scheduling();
+    let start = Settings::of(dataset);
+    settings
+        .with_responses(|_, _| start.ignored.clone())
+        .check()
+        .map_err(|(setting, refusal)| {
+            ContentError::new(
+                Location::entry(format!("settings, {}", setting.key.replace('.', ", "))),
+                refusal,
+            )
+        })?;
+    let mut choices = BTreeMap::new();
+    for (index, condition) in conditions.into_iter().enumerate() {
+        let ConditionText {
+            id,
+            physics,
+            identified,
+            scheduled,
+            held_out,
+        } = condition;
+        let choice = ConditionChoice {
+            physics,
+            identified,
+            scheduled,
+            held_out,
+        };
+        if choices.insert(ConditionId(id), choice).is_some() {
+            return Err(ContentError::new(
+                Location::condition(index + 1, id),
+                ContentFault::DuplicateCondition { id },
+            ));
+        }
+    }
+    Ok(Decisions {
+        settings,
+        choices,
+        taken: Vec::new(),
+        signs: Vec::new(),
+        requirements: Arc::default(),
+        variants: Vec::new(),
+    })
+}
+
+/// Returns the models adopted by a study, for its dataset.
+fn taken_of(
+    text: Vec<TakenText>,
+    dataset: &Dataset,
+) -> Result<Vec<(ConditionId, Arc<AdoptedModels>)>, ContentError> {
+    let of = |(index, text): (usize, TakenText)| {
+        let mut place = Location::condition(index + 1, text.condition);
+        place.entry = "taken".to_owned();
+        let drafts = text
+            .identified_models
+            .into_iter()
+            .map(ModelText::into_identified);
+        let models = drafts
+            .map(|draft| Ok(dataset.identified_model(draft)?.0))
+            .collect::<Result<_, ContentError>>()?;
+        let records = text.records.into_iter().enumerate();
+        let records = records
+            .map(|(index, record)| record.into_record(&place, index + 1))
+            .collect::<Result<_, _>>()?;
+        Ok((
+            ConditionId(text.condition),
+            Arc::new(AdoptedModels { models, records }),
+        ))
+    };
+    text.into_iter().enumerate().map(of).collect()
+}
+
+/// Saves a study of a loaded dataset, replacing an existing file; whole, or not at all. The dataset
+/// itself is never replaced.
+pub fn save_study(study: &Study, loaded: &LoadedDataset, path: &Path) -> Result<(), FileError> {
+    save(study, loaded, path, |dataset| path_text(dataset, path))
+}
+
+/// Saves a study with its dataset's absolute path: for a file in an unrelated place.
+pub(crate) fn save_recovery(
+    study: &Study,
+    loaded: &LoadedDataset,
+    path: &Path,
+) -> Result<(), FileError> {
+    // Its directory may be out of reach at the moment: the decisions are kept all the same.
+    let absolute = |dataset: &Path| {
+        settled(dataset).or_else(|_| Ok(std::path::absolute(dataset).unwrap_or(dataset.into())))
+    };
+    save(study, loaded, path, |dataset| {
+        slashed(&absolute(dataset)?, path)
+    })
+}
+
+fn save(
+    study: &Study,
+    loaded: &LoadedDataset,
+    path: &Path,
+    path_text: impl FnOnce(&Path) -> Result<String, FileError>,
+) -> Result<(), FileError> {
+    let sha256 = loaded.sha256.clone();
+    let holds = Some(Inventory::of(study.file_dataset()));
+    let reference = match &loaded.origin {
+        DatasetOrigin::EmbeddedExample => DatasetReference {
+            path: None,
+            name: EMBEDDED.to_owned(),
+            sha256,
+            holds,
+        },
+        DatasetOrigin::File(dataset) => DatasetReference {
+            path: Some(path_text(dataset)?),
+            name: study.dataset.name().to_owned(),
+            sha256,
+            holds,
+        },
+    };
+    let text = StudyText::of(study, reference);
+    let mut output = OutputSet::new(
+        Existing::Replace,
+        loaded.origin.file().into_iter().collect(),
+    );
+    output.add(path, |file| write_pretty(&text, file))?;
+    output.persist()
+}
+
+/// Returns the file name of the dataset in a study file. `None` if the study cannot be read.
+pub(crate) fn dataset_of_study(path: &Path) -> Option<String> {
+    let budget = ReadingBudget::default();
+    let source = Source::read(path, &budget).ok()?;
+    let (text, _) = FORMAT
+        .decode::<StudyText>(source.text(), path, &budget)
+        .ok()?;
+    Some(match text.dataset.path {
+        None => format!("the {EMBEDDED}"),
+        Some(path) => Path::new(&path).file_name()?.to_string_lossy().into_owned(),
+    })
+}
+
+/// Opens a study and its dataset: at the path in the study, otherwise beside the study.
+pub fn open_study(path: &Path) -> Result<OpenedStudy, FileError> {
+    let budget = ReadingBudget::default();
+    study_from(&Source::read(path, &budget)?, path, None, &budget)
+}
+
+/// Opens a study whose dataset has moved to `dataset`, both within one budget.
+pub fn open_study_of(
+    path: &Path,
+    dataset: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Result<OpenedStudy, FileError> {
+    study_from(&Source::read(path, budget)?, path, Some(dataset), budget)
+}
+
+/// Checks the structure of a study's text, as far as it goes.
+pub(crate) fn check_study_text(
+    text: &[u8],
+    path: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Result<(), FileError> {
+    FORMAT.decode::<StudyText>(text, path, budget).map(drop)
+}
+
+/// Returns the study in a source; its dataset is at `moved`, or at the path in the study.
+pub(crate) fn study_from(
+    source: &Source<'_>,
+    path: &Path,
+    moved: Option<&Path>,
+    budget: &ReadingBudget<'_>,
+) -> Result<OpenedStudy, FileError> {
+    let (text, unknown) = FORMAT.decode::<StudyText>(source.text(), path, budget)?;
+    let mut loaded = load_referenced(&text.dataset, path, moved, budget)?;
+    let mut decisions = decisions_of(
+        text.settings,
+        text.conditions,
+        text.taken,
+        text.variants,
+        &loaded.dataset,
+    )
+    .map_err(|error| FileError::content(path, error))?;
+    decisions.signs = text.signs;
+    decisions.requirements = Arc::new(text.requirements);
+    let (study, not_applied) = decisions.applied_to(loaded.dataset.clone());
+    let mut differences = match text.dataset.holds {
+        _ if text.dataset.sha256 == loaded.sha256 => Vec::new(),
+        Some(held) => held.differences(&loaded.dataset),
+        None => vec![Difference::AnotherFile {
+            expected: text.dataset.sha256,
+            found: loaded.sha256.clone(),
+        }],
+    };
+    differences.extend(not_applied);
+    loaded.cautions.extend(unknown);
+    Ok(OpenedStudy {
+        study,
+        loaded,
+        path: path.to_owned(),
+        differences,
+    })
+}
+
+fn load_referenced(
+    reference: &DatasetReference,
+    study: &Path,
+    moved: Option<&Path>,
+    budget: &ReadingBudget<'_>,
+) -> Result<LoadedDataset, FileError> {
+    let path = match (moved, &reference.path) {
+        (Some(moved), _) => moved.to_owned(),
+        (None, None) => return embedded_example(),
+        (None, Some(relative)) => referenced_path(study, relative),
+    };
+    let load = |path: PathBuf| {
+        dataset_from(
+            &Source::read(&path, budget)?,
+            DatasetOrigin::File(path),
+            budget,
+        )
+    };
+    let lost = |error: FileError| FileError::StudyDataset {
+        path: study.to_owned(),
+        dataset: Box::new(error),
+    };
+    // A dataset whose reading was stopped is not missing.
+    load(path).map_err(|error| {
+        if error.is_stopped() {
+            error
+        } else {
+            lost(error)
+        }
+    })
+}
+
+/// Returns the path of the dataset in the study, or beside the study if it exists only there.
+fn referenced_path(study: &Path, relative: &str) -> PathBuf {
+    let directory = study.parent().unwrap_or(Path::new(""));
+    let said = directory.join(relative);
+    let beside = said.file_name().map(|name| directory.join(name));
+    beside
+        .filter(|beside| !said.exists() && beside.exists())
+        .unwrap_or(said)
+}
+
+/// Returns the dataset's path as written in the study at `study`.
+fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
+    let dataset = settled(dataset)?;
+    let directory = settled(study)?;
+    // There is no relative path to another drive: the dataset's own path is used.
+    let relative = directory
+        .parent()
+        .and_then(|directory| pathdiff::diff_paths(&dataset, directory))
+        .unwrap_or(dataset);
+    slashed(&relative, study)
+}
+
+/// Returns the relative path from the folder of `file` to `folder`, the current one if that is
+/// empty, with `/` between its parts; the unchanged folder if there is no such path.
+pub fn relative_folder(folder: &Path, file: &Path) -> String {
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
+    let absolute = |path: &Path| std::path::absolute(path).ok();
+    let base = absolute(file).and_then(|file| file.parent().map(Path::to_owned));
+    let way = absolute(folder)
+        .zip(base)
+        .and_then(|(folder, base)| pathdiff::diff_paths(folder, base));
+    way.as_deref()
+        .unwrap_or(folder)
+        .to_string_lossy()
+        .replace(std::path::MAIN_SEPARATOR, "/")
+}
+
+/// Returns a path with `/` between its parts.
+fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
+    let unreadable = || FileError::unwritable(study, "the dataset's path is not valid Unicode");
+    let text = path.to_str().ok_or_else(unreadable)?;
+    Ok(if std::path::MAIN_SEPARATOR == '/' {
+        text.to_owned()
+    } else {
+        text.replace(std::path::MAIN_SEPARATOR, "/")
+    })
+}
+
+/// Returns the absolute path of a file, with the links of its directory resolved: `..` after a link
+/// would lead elsewhere.
+fn settled(path: &Path) -> Result<PathBuf, FileError> {
+    let failed = |error: std::io::Error| FileError::writing(path, &error);
+    let absolute = std::path::absolute(path).map_err(failed)?;
+    match (absolute.parent(), absolute.file_name()) {
+        (Some(directory), Some(name)) => {
+            Ok(fs::canonicalize(directory).map_err(failed)?.join(name))
+        }
+        _ => Err(FileError::unwritable(
+            path,
+            "this is not the name of a file",
+        )),
+    }
+}
+
+/// Content of an opened file.
+#[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one is made when a file is opened, and taken apart at once"
+)]
+pub enum Opened {
+    Dataset(LoadedDataset),
+    Study(OpenedStudy),
+}
+
+impl Opened {
+    /// Returns the study, opened or new for the dataset; the dataset; and its differences.
+    pub fn into_study(self) -> (Study, LoadedDataset, Vec<Difference>) {
+        match self {
+            Opened::Dataset(loaded) => (Study::new(loaded.dataset.clone()), loaded, Vec::new()),
+            Opened::Study(OpenedStudy {
+                study,
+                loaded,
+                differences,
+                ..
+            }) => (study, loaded, differences),
+        }
+    }
+}
+
+/// Returns whether a path is a folder, or a file that by its name and its first character can only
+/// provide models: neither a dataset nor a study.
+pub fn holds_models(path: &Path) -> bool {
+    let extension = path
+        .extension()
+        .map(|extension| extension.to_string_lossy().to_lowercase());
+    let by_name = !matches!(extension.as_deref(), Some("json" | "gz"));
+    path.is_dir() || path.is_file() && by_name && !begins_an_object(path)
+}
+
+/// Returns whether the first character of a file opens a JSON object.
+fn begins_an_object(path: &Path) -> bool {
+    let mut first = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(64).read_to_end(&mut first));
+    read.is_ok() && first.trim_ascii_start().starts_with(b"{")
+}
+
+/// Opens a dataset or a study, as identified by its content, within a budget.
+pub fn load_any(path: &Path, budget: &ReadingBudget<'_>) -> Result<Opened, FileError> {
+    let source = Source::read(path, budget)?;
+    match Outline::format_of(source.text(), budget).as_deref() {
+        Some("\"gdcm-study\"") => Ok(Opened::Study(study_from(&source, path, None, budget)?)),
+        Some("\"gdcm-dataset\"") | None => Ok(Opened::Dataset(dataset_from(
+            &source,
+            DatasetOrigin::File(path.to_owned()),
+            budget,
+        )?)),
+        Some(found) => Err(FileError::Format {
+            path: path.to_owned(),
+            expected: "gdcm-dataset\" or \"gdcm-study",
+            found: found.to_owned(),
+        }),
+    }
+}

@@ -1,0 +1,401 @@
+//! State of the user kept between starts of the program: recently opened and saved files, and
+//! whether it was started before.
+
+use std::fs::{self, File, OpenOptions, TryLockError, create_dir_all};
+use std::io::{Read, Seek, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, SystemTime};
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::whole_number::whole;
+use gdcm_study::Study;
+
+use super::dataset_file::LoadedDataset;
+use super::study_file::{STUDY_EXTENSION, dataset_of_study, save_recovery};
+use crate::file_error::FileError;
+use crate::formats::variables::ReadingBudget;
+use crate::json_text::{Format, write_pretty};
+use crate::output_set::{make_directory, write_whole};
+use crate::source::Source;
+
+/// Maximum number of listed files.
+const MOST: usize = 10;
+/// Name of the list in the program's directory.
+const NAME: &str = "recent-files.json";
+/// Format and version of the list.
+const FORMAT: Format = Format {
+    name: "gdcm-recent-files",
+    version: 1,
+};
+
+#[derive(Deserialize, Serialize)]
+struct RecentText {
+    format: String,
+    #[serde(deserialize_with = "whole")]
+    version: u64,
+    files: Vec<String>,
+}
+
+/// Returns the files listed in `directory`, the newest first; empty if there is no readable list.
+pub fn recent_files(directory: &Path) -> Vec<PathBuf> {
+    let path = directory.join(NAME);
+    let budget = ReadingBudget::default();
+    let Ok(source) = Source::read(&path, &budget) else {
+        return Vec::new();
+    };
+    let decoded = FORMAT.decode::<RecentText>(source.text(), &path, &budget);
+    decoded.map_or_else(
+        |_| Vec::new(),
+        |(text, _)| text.files.into_iter().map(PathBuf::from).collect(),
+    )
+}
+
+/// Puts a file at the front of the list, which another window may have changed in the meantime.
+///
+/// # Errors
+/// Returned if the list cannot be written.
+pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
+    let Some(file) = std::path::absolute(file)
+        .ok()
+        .and_then(|path| path.to_str().map(str::to_owned))
+    else {
+        // A name that is not valid Unicode cannot be listed.
+        return Ok(());
+    };
+    let others = recent_files(directory)
+        .into_iter()
+        .filter_map(|path| path.to_str().map(str::to_owned));
+    let others = others.filter(|other| *other != file);
+    let files = std::iter::once(file.clone())
+        .chain(others)
+        .take(MOST)
+        .collect();
+    let text = RecentText {
+        format: FORMAT.name.to_owned(),
+        version: FORMAT.version,
+        files,
+    };
+    make_directory(directory)?;
+    write_whole(&directory.join(NAME), |writer| write_pretty(&text, writer))
+}
+
+/// The marker file of an earlier start.
+const STARTED: &str = "started";
+
+/// Returns whether this is the first start, and records it in the program's directory. Also false
+/// if the record cannot be created: otherwise the content of the first start would appear at every
+/// start.
+pub fn is_first_start(directory: &Path) -> bool {
+    let kept = create_dir_all(directory).and_then(|()| {
+        OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .open(directory.join(STARTED))
+    });
+    kept.is_ok()
+}
+
+// Recovery files: unsaved decisions that survive a crash or a kill.
+
+/// Extension of the file whose lock shows whether the process lives.
+const LOCK_EXTENSION: &str = "lock";
+/// Much longer than the time between the creation of a lock file and its lock.
+const YOUNG: Duration = Duration::from_secs(60);
+
+/// The recovery file of an open window. It is a study file, `PROCESS-NUMBER.gdcm-study.json`;
+/// beside it lies a file that is locked as long as the process lives, and that contains the path of
+/// the study's own file.
+#[derive(Debug)]
+pub struct RecoveryFile {
+    path: PathBuf,
+    lock_path: PathBuf,
+    lock: File,
+}
+
+impl RecoveryFile {
+    /// Claims a unique name in `directory`, which is created if missing.
+    ///
+    /// # Errors
+    /// Returned if the directory or the lock cannot be created.
+    pub fn claim(directory: &Path) -> Result<Self, FileError> {
+        /// Two windows of the same process have different names.
+        static NUMBER: AtomicUsize = AtomicUsize::new(1);
+        make_directory(directory)?;
+        loop {
+            let name = format!(
+                "{}-{}",
+                std::process::id(),
+                NUMBER.fetch_add(1, Ordering::Relaxed)
+            );
+            let path = directory.join(format!("{name}.{STUDY_EXTENSION}"));
+            let lock_path = directory.join(format!("{name}.{LOCK_EXTENSION}"));
+            // A file of an earlier process with this number may be waiting there to be restored.
+            if path.exists() || lock_path.exists() {
+                continue;
+            }
+            let lock = File::create_new(&lock_path)
+                .map_err(|error| FileError::writing(&lock_path, &error))?;
+            lock.lock()
+                .map_err(|error| FileError::writing(&lock_path, &error))?;
+            return Ok(Self {
+                path,
+                lock_path,
+                lock,
+            });
+        }
+    }
+
+    /// Returns the path of the kept decisions.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Keeps a study, whole or not at all; `saved_as` is the study's own file.
+    ///
+    /// # Errors
+    /// Returned if it cannot be written.
+    pub fn write(
+        &mut self,
+        study: &Study,
+        loaded: &LoadedDataset,
+        saved_as: Option<&Path>,
+    ) -> Result<(), FileError> {
+        let failed = |error| FileError::writing(&self.lock_path, &error);
+        let name = saved_as
+            .and_then(|path| std::path::absolute(path).ok())
+            .unwrap_or_default();
+        self.lock
+            .set_len(0)
+            .and_then(|()| self.lock.rewind())
+            .map_err(failed)?;
+        // A name that is not valid Unicode is not kept: a replacement character would lead to
+        // another file.
+        self.lock
+            .write_all(name.to_str().unwrap_or_default().as_bytes())
+            .map_err(failed)?;
+        save_recovery(study, loaded, &self.path)
+    }
+
+    /// Removes the kept decisions, which are saved or not wanted.
+    ///
+    /// # Errors
+    /// Returned if they exist and cannot be removed.
+    pub fn clear(&mut self) -> Result<(), FileError> {
+        remove(&self.path)
+    }
+}
+
+impl Drop for RecoveryFile {
+    /// Leaves kept decisions, with their lock file, for the next start.
+    fn drop(&mut self) {
+        if !self.path.exists() {
+            // If left behind, it is removed by the next start.
+            let _ = remove(&self.lock_path);
+        }
+    }
+}
+
+/// The recovery file of a window that ended without saving; it is not offered to other windows as
+/// long as this value exists.
+#[derive(Debug)]
+pub struct LostStudy {
+    path: PathBuf,
+    lock_path: PathBuf,
+    _lock: File,
+    /// Time at which the decisions were kept.
+    pub kept_at: SystemTime,
+    /// Their dataset, in words.
+    pub dataset: String,
+    /// The study's own file, if it had one.
+    pub saved_as: Option<PathBuf>,
+}
+
+impl LostStudy {
+    /// Returns the path of the decisions.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Removes the decisions permanently.
+    ///
+    /// # Errors
+    /// Returned if they cannot be removed.
+    pub fn remove(self) -> Result<(), FileError> {
+        remove(&self.path)?;
+        remove(&self.lock_path)
+    }
+}
+
+/// Returns the recovery files in `directory` whose processes have ended, the newest first. Files
+/// without decisions are removed.
+pub fn lost_studies(directory: &Path) -> Vec<LostStudy> {
+    let Ok(entries) = fs::read_dir(directory) else {
+        return Vec::new();
+    };
+    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    let mut lost: Vec<LostStudy> = paths.filter_map(|path| lost_study(&path)).collect();
+    lost.sort_by_key(|lost| std::cmp::Reverse(lost.kept_at));
+    lost
+}
+
+/// Returns the recovery file beside a lock file, unless its process lives.
+fn lost_study(lock_path: &Path) -> Option<LostStudy> {
+    if lock_path.extension()? != LOCK_EXTENSION {
+        return None;
+    }
+    let path = lock_path.with_extension(STUDY_EXTENSION);
+    let mut lock = File::options()
+        .read(true)
+        .write(true)
+        .open(lock_path)
+        .ok()?;
+    match lock.try_lock() {
+        Ok(()) => {}
+        Err(TryLockError::WouldBlock | TryLockError::Error(_)) => return None,
+    }
+    let Ok(kept_at) = fs::metadata(&path).and_then(|there| there.modified()) else {
+        let made_at = lock.metadata().and_then(|there| there.modified()).ok();
+        // Left by a process without decisions; a young one may belong to another process that has
+        // created but not yet locked it.
+        if made_at
+            .and_then(|at| at.elapsed().ok())
+            .is_some_and(|age| age > YOUNG)
+        {
+            let _ = remove(lock_path);
+        }
+        return None;
+    };
+    let mut name = String::new();
+    // An unreadable name is treated as unknown.
+    let _ = lock.read_to_string(&mut name);
+    let saved_as = (!name.is_empty()).then(|| PathBuf::from(name));
+    let dataset =
+        dataset_of_study(&path).unwrap_or_else(|| "a dataset that cannot be told".to_owned());
+    Some(LostStudy {
+        path,
+        lock_path: lock_path.to_owned(),
+        _lock: lock,
+        kept_at,
+        dataset,
+        saved_as,
+    })
+}
+
+fn remove(path: &Path) -> Result<(), FileError> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(FileError::writing(path, &error))
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_newest_is_first_none_is_listed_twice_and_ten_are_kept() {
+        let directory = tempfile::tempdir().unwrap();
+        for number in (0..12).chain([5]) {
+            add_recent_file(directory.path(), Path::new(&format!("/data/{number}.json"))).unwrap();
+        }
+        let names: Vec<String> = recent_files(directory.path())
+            .iter()
+            .map(|path| path.file_stem().unwrap().to_str().unwrap().into())
+            .collect();
+        assert_eq!(names, ["5", "11", "10", "9", "8", "7", "6", "4", "3", "2"]);
+    }
+
+    #[test]
+    fn a_damaged_list_is_an_empty_one_and_is_mended_by_the_next_file() {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join(NAME), "{\"format\": ").unwrap();
+        assert!(recent_files(directory.path()).is_empty());
+        add_recent_file(directory.path(), Path::new("/data/a.json")).unwrap();
+        assert_eq!(recent_files(directory.path()).len(), 1);
+    }
+
+    #[test]
+    fn only_one_start_is_the_first_and_none_where_nothing_can_be_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let directory = folder.path().join("gdcm");
+        assert!(is_first_start(&directory));
+        assert!(!is_first_start(&directory));
+        let file = folder.path().join("file");
+        std::fs::write(&file, "").unwrap();
+        assert!(!is_first_start(&file.join("gdcm")));
+    }
+}
+
+#[cfg(test)]
+mod recovery_tests {
+    use super::*;
+    use crate::files::dataset_file::embedded_example;
+    use crate::files::study_file::open_study;
+
+    fn example() -> (Study, LoadedDataset) {
+        let loaded = embedded_example().unwrap();
+        (Study::new(loaded.dataset.clone()), loaded)
+    }
+
+    fn written(directory: &Path) -> RecoveryFile {
+        let (study, loaded) = example();
+        let mut file = RecoveryFile::claim(directory).unwrap();
+        file.write(
+            &study,
+            &loaded,
+            Some(Path::new("/somewhere/mine.gdcm-study.json")),
+        )
+        .unwrap();
+        file
+    }
+
+    #[test]
+    fn the_file_of_a_window_that_is_open_is_not_offered_and_that_of_one_that_is_gone_is() {
+        let directory = tempfile::tempdir().unwrap();
+        let mine = written(directory.path());
+        let other = written(directory.path());
+        assert!(lost_studies(directory.path()).is_empty());
+        drop(other);
+        let lost = lost_studies(directory.path());
+        assert_eq!(lost.len(), 1);
+        assert_eq!(lost[0].dataset, "the embedded example");
+        assert_eq!(
+            lost[0].saved_as.as_deref(),
+            Some(Path::new("/somewhere/mine.gdcm-study.json"))
+        );
+        assert_eq!(
+            open_study(lost[0].path()).unwrap().study,
+            example().0,
+            "it opens by hand too"
+        );
+        drop(mine);
+    }
+
+    #[test]
+    fn what_one_window_is_offered_no_other_is_and_later_it_is_offered_again() {
+        let directory = tempfile::tempdir().unwrap();
+        drop(written(directory.path()));
+        let offered = lost_studies(directory.path());
+        assert!(
+            lost_studies(directory.path()).is_empty(),
+            "held by the first"
+        );
+        drop(offered);
+        assert_eq!(lost_studies(directory.path()).len(), 1);
+    }
+
+    #[test]
+    fn what_is_saved_or_removed_leaves_nothing_behind() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut file = written(directory.path());
+        file.clear().unwrap();
+        drop(file);
+        drop(written(directory.path()));
+        lost_studies(directory.path()).remove(0).remove().unwrap();
+        assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,415 @@
+//! The order of an array's elements in a file.
+
+use super::variables::{Array, ElementKind, ReadingBudget, VariableFault};
+
+/// Positions of the elements of an array in a file, in the order of this program: the first index
+/// running fastest.
+pub(crate) struct Places {
+    shape: Vec<usize>,
+    strides: Vec<usize>,
+    index: Vec<usize>,
+    place: usize,
+    left: usize,
+}
+
+impl Places {
+    /// For a file in which the last index runs fastest (row by row); `None` if the number of
+    /// elements overflows.
+    pub(crate) fn row_major(shape: &[usize]) -> Option<Self> {
+        let left = count(shape)?;
+        let mut strides = vec![1; shape.len()];
+        for axis in (1..shape.len()).rev() {
+            strides[axis - 1] = strides[axis] * shape[axis].max(1);
+        }
+        Some(Self::new(shape, strides, left))
+    }
+
+    /// For a file in which the first index runs fastest (column by column); `None` if the number of
+    /// elements overflows.
+    pub(crate) fn column_major(shape: &[usize]) -> Option<Self> {
+        let left = count(shape)?;
+        let mut strides = vec![1; shape.len()];
+        for axis in 1..shape.len() {
+            strides[axis] = strides[axis - 1] * shape[axis - 1].max(1);
+        }
+        Some(Self::new(shape, strides, left))
+    }
+
+    fn new(shape: &[usize], strides: Vec<usize>, left: usize) -> Self {
+        Self {
+            shape: shape.to_vec(),
+            strides,
+            index: vec![0; shape.len()],
+            place: 0,
+            left,
+        }
+    }
+}
+
+/// Returns the number of elements of an array; `None` on overflow.
+///
+/// Lengths beside a zero are multiplied all the same: an empty array with sides whose product
+/// overflows is rejected too.
+pub(crate) fn count(shape: &[usize]) -> Option<usize> {
+    shape
+        .iter()
+        .try_fold(1usize, |product, &side| product.checked_mul(side.max(1)))?;
+    Some(shape.iter().product())
+}
+
+impl Iterator for Places {
+    type Item = usize;
+
+    fn next(&mut self) -> Option<usize> {
+        self.left = self.left.checked_sub(1)?;
+        let place = self.place;
+        for axis in 0..self.shape.len() {
+            self.index[axis] += 1;
+            self.place += self.strides[axis];
+            if self.index[axis] < self.shape[axis] {
+                break;
+            }
+            self.place -= self.strides[axis] * self.shape[axis];
+            self.index[axis] = 0;
+        }
+        Some(place)
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.left, Some(self.left))
+    }
+}
+
+impl ExactSizeIterator for Places {}
+
+/// Reorders elements from the last index running fastest to the first index running fastest.
+pub(crate) fn first_index_fastest<T>(shape: &[usize], elements: Vec<T>) -> Vec<T> {
+    let mut elements: Vec<Option<T>> = elements.into_iter().map(Some).collect();
+    let places = Places::row_major(shape).into_iter().flatten();
+    places
+        .filter_map(|place| elements.get_mut(place)?.take())
+        .collect()
+}
+
+/// Returns a shape with at least two dimensions: scalars are 1 x 1, lists are rows.
+pub(crate) fn matrix_shape(shape: &[usize]) -> Vec<usize> {
+    match *shape {
+        [] => vec![1, 1],
+        [columns] => vec![1, columns],
+        _ => shape.to_vec(),
+    }
+}
+
+// Sparse matrices, expanded.
+
+/// The nonzero elements with their places.
+pub(crate) struct Entries {
+    /// Number of rows and columns.
+    pub(crate) shape: [usize; 2],
+    /// Type of the numbers.
+    pub(crate) kind: ElementKind,
+    /// Row of each number, counted from 0.
+    pub(crate) rows: Vec<usize>,
+    /// Column of each number, counted from 0.
+    pub(crate) columns: Vec<usize>,
+    /// Real part of each number.
+    pub(crate) re: Vec<f64>,
+    /// Imaginary part of each number, if complex.
+    pub(crate) im: Option<Vec<f64>>,
+}
+
+impl Entries {
+    /// Creates the entries from numbers stored by columns, `starts` containing the index at which
+    /// each column begins and that at which the last ends; `None` if it does not match the numbers.
+    /// There may be room for further numbers after the last.
+    pub(crate) fn of_columns(
+        shape: [usize; 2],
+        kind: ElementKind,
+        mut rows: Vec<usize>,
+        starts: &[usize],
+        (re, im): (Vec<f64>, Option<Vec<f64>>),
+    ) -> Option<Self> {
+        let stored = *starts.last()?;
+        let short = stored > rows.len()
+            || stored > re.len()
+            || im.as_ref().is_some_and(|im| stored > im.len());
+        if starts.len() != shape[1].checked_add(1)?
+            || starts[0] != 0
+            || !starts.is_sorted()
+            || short
+        {
+            return None;
+        }
+        rows.truncate(stored);
+        let runs = starts.windows(2).enumerate();
+        let columns = runs
+            .flat_map(|(column, ends)| std::iter::repeat_n(column, ends[1] - ends[0]))
+            .collect();
+        Some(Self {
+            shape,
+            kind,
+            rows,
+            columns,
+            re,
+            im,
+        })
+    }
+
+    /// Returns the full matrix; entries at the same place are added.
+    ///
+    /// `outside` is the fault for a number outside the matrix.
+    pub(crate) fn filled(
+        &self,
+        variable: &str,
+        budget: &ReadingBudget<'_>,
+        outside: impl Fn() -> VariableFault,
+    ) -> Result<Array, VariableFault> {
+        let [height, width] = self.shape;
+        let count = (height as u64).saturating_mul(width as u64);
+        budget.take(count, if self.im.is_some() { 16 } else { 8 }, variable)?;
+        let fill = |values: &[f64]| {
+            let mut filled = vec![0.0; height.saturating_mul(width)];
+            for ((&row, &column), value) in self.rows.iter().zip(&self.columns).zip(values) {
+                let inside = row < height && column < width;
+                let place = if inside {
+                    filled.get_mut(column * height + row)
+                } else {
+                    None
+                };
+                *place.ok_or_else(&outside)? += value;
+            }
+            Ok(filled)
+        };
+        let im = self.im.as_deref().map(fill).transpose()?;
+        Ok(Array {
+            shape: self.shape.to_vec(),
+            kind: self.kind,
+            re: fill(&self.re)?,
+            im,
+        })
+    }
+}
+
+// Numbers in binary files.
+
+/// Interpretation of the bits of a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum NumberClass {
+    /// True where any bit is set.
+    Logical,
+    /// Two's complement.
+    Signed,
+    /// No sign.
+    Unsigned,
+    /// IEEE 754 binary interchange formats.
+    Float,
+}
+
+/// A number in a file: the interpretation of its bits, its size in bytes, and the byte order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct StoredNumber {
+    class: NumberClass,
+    size: usize,
+    big_endian: bool,
+}
+
+impl StoredNumber {
+    /// Creates a number of `size` bytes; `None` if there is no such number.
+    pub(crate) fn new(class: NumberClass, size: usize, big_endian: bool) -> Option<Self> {
+        let sizes: &[usize] = match class {
+            NumberClass::Float => &[2, 4, 8],
+            _ => &[1, 2, 4, 8],
+        };
+        sizes.contains(&size).then_some(Self {
+            class,
+            size,
+            big_endian,
+        })
+    }
+
+    /// Creates a number of a valid size, the lowest byte first.
+    pub(crate) const fn little_endian(class: NumberClass, size: usize) -> Self {
+        Self {
+            class,
+            size,
+            big_endian: false,
+        }
+    }
+
+    /// Returns the number of bytes.
+    pub(crate) fn size(self) -> usize {
+        self.size
+    }
+
+    /// Returns the element kind of an array of such numbers.
+    pub(crate) fn kind(self) -> ElementKind {
+        match self.class {
+            NumberClass::Logical => ElementKind::Logical,
+            NumberClass::Signed | NumberClass::Unsigned => ElementKind::Integer,
+            NumberClass::Float => ElementKind::Float,
+        }
+    }
+
+    /// Decodes the number at the beginning of `bytes`, with zeros for missing bytes; integers
+    /// beyond 2^53 are rounded to the nearest float.
+    pub(crate) fn decode(self, bytes: &[u8]) -> f64 {
+        let bits = self.bits(bytes);
+        match self.class {
+            NumberClass::Logical => f64::from(u8::from(bits != 0)),
+            NumberClass::Unsigned => bits as f64,
+            NumberClass::Signed => {
+                let unused = 64 - 8 * self.size as u32;
+                ((bits << unused) as i64 >> unused) as f64
+            }
+            NumberClass::Float => match self.size {
+                2 => half(bits as u16),
+                4 => f64::from(f32::from_bits(bits as u32)),
+                _ => f64::from_bits(bits),
+            },
+        }
+    }
+
+    /// Decodes the number at an offset; `None` if the bytes end too early.
+    pub(crate) fn at(self, bytes: &[u8], offset: usize) -> Option<f64> {
+        Some(self.decode(bytes.get(offset..offset.checked_add(self.size)?)?))
+    }
+
+    fn bits(self, bytes: &[u8]) -> u64 {
+        let mut eight = [0; 8];
+        let count = bytes.len().min(self.size);
+        eight[..count].copy_from_slice(&bytes[..count]);
+        if self.big_endian {
+            eight[..self.size].reverse();
+        }
+        u64::from_le_bytes(eight)
+    }
+}
+
+/// Returns the value of a 16-bit float (IEEE 754, binary16).
+fn half(bits: u16) -> f64 {
+    let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
+    let exponent = i32::from(bits >> 10 & 31);
+    let fraction = f64::from(bits & 1023);
+    sign * match exponent {
+        0 => fraction * 2f64.powi(-24),
+        31 if fraction == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        _ => (1024.0 + fraction) * 2f64.powi(exponent - 25),
+    }
+}
+
+#[cfg(test)]
+mod places_tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_turned_into_columns() {
+        let places: Vec<_> = Places::row_major(&[2, 3]).unwrap().collect();
+        assert_eq!(places, [0, 3, 1, 4, 2, 5]);
+        let places: Vec<_> = Places::row_major(&[2, 1, 2]).unwrap().collect();
+        assert_eq!(places, [0, 2, 1, 3]);
+    }
+
+    #[test]
+    fn columns_stay_as_they_are_and_a_number_alone_has_one_place() {
+        assert!(Places::column_major(&[2, 3, 4]).unwrap().eq(0..24));
+        assert!(Places::row_major(&[]).unwrap().eq(0..1));
+        assert!(Places::row_major(&[0, 5]).unwrap().eq(0..0));
+    }
+
+    #[test]
+    fn what_cannot_be_counted_is_refused() {
+        assert!(Places::row_major(&[usize::MAX, 2]).is_none());
+        assert!(Places::column_major(&[usize::MAX, 2, 0]).is_none());
+    }
+}
+
+#[cfg(test)]
+mod stored_number_tests {
+    use super::*;
+
+    #[test]
+    fn half_floats_have_the_values_of_the_standard() {
+        // IEEE 754-2008, table 3.5: largest, smallest normal and smallest subnormal number of
+        // binary16.
+        let cases = [
+            (0x7bff, 65504.0),
+            (0x0400, 2f64.powi(-14)),
+            (0x0001, 2f64.powi(-24)),
+            (0xc000, -2.0),
+            (0x3555, 0.333251953125),
+        ];
+        for (bits, value) in cases {
+            assert_eq!(half(bits), value);
+        }
+        assert_eq!(half(0xfc00), f64::NEG_INFINITY);
+        assert!(half(0x7e00).is_nan());
+    }
+
+    #[test]
+    fn signs_and_byte_orders_are_kept() {
+        let number = |class, size, big| StoredNumber::new(class, size, big).unwrap();
+        assert_eq!(
+            number(NumberClass::Signed, 2, true).decode(&[0xff, 0xfe]),
+            -2.0
+        );
+        assert_eq!(
+            number(NumberClass::Signed, 2, false).decode(&[0xfe, 0xff]),
+            -2.0
+        );
+        assert_eq!(
+            number(NumberClass::Unsigned, 4, true).decode(&[0, 0, 1, 2]),
+            258.0
+        );
+        assert_eq!(
+            number(NumberClass::Float, 4, true).decode(&[0x3f, 0x80, 0, 0]),
+            1.0
+        );
+        assert_eq!(
+            number(NumberClass::Signed, 8, false).decode(&[255; 8]),
+            -1.0
+        );
+        assert_eq!(StoredNumber::new(NumberClass::Float, 16, false), None);
+    }
+}
+
+#[cfg(test)]
+mod sparse_tests {
+    use super::*;
+
+    fn entries(shape: [usize; 2]) -> Entries {
+        let rows = vec![0, 1];
+        let columns = vec![1, 0];
+        Entries {
+            shape,
+            kind: ElementKind::Float,
+            rows,
+            columns,
+            re: vec![2.0, 3.0],
+            im: Some(vec![0.0, 1.0]),
+        }
+    }
+
+    #[test]
+    fn what_is_not_stored_is_zero() {
+        let budget = ReadingBudget::new(1000);
+        let array = entries([2, 2])
+            .filled("", &budget, || VariableFault::Stopped)
+            .unwrap();
+        assert_eq!(
+            (array.re, array.im),
+            (vec![0.0, 3.0, 2.0, 0.0], Some(vec![0.0, 1.0, 0.0, 0.0]))
+        );
+    }
+
+    #[test]
+    fn places_outside_and_sizes_beyond_the_limit_are_refused() {
+        let budget = ReadingBudget::new(1000);
+        assert_eq!(
+            entries([1, 2]).filled("", &budget, || VariableFault::Stopped),
+            Err(VariableFault::Stopped)
+        );
+        let large = entries([usize::MAX, 1]).filled("", &budget, || VariableFault::Stopped);
+        assert!(matches!(large, Err(VariableFault::TooLarge { .. })));
+    }
+}

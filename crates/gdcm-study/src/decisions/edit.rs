@@ -1,0 +1,391 @@
+//! Every decision about a study, and the only code that applies decisions.
+
+use std::sync::Arc;
+
+use gdcm_method::correction::Channel;
+use gdcm_model::dataset::dataset::BandError;
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, ModelId, Pair, PairTable};
+use gdcm_model::units::number;
+
+use super::changed_models::{AdoptedModels, SignRole};
+use super::setting_row::{Setting, Value};
+use super::study::{ConditionChoice, Study};
+use crate::results::requirements::RequirementSettings;
+
+/// One decision about a study.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Edit {
+    Reject(ModelId),
+    /// Rejects a model, with a reason.
+    RejectBecause {
+        model: ModelId,
+        reason: String,
+    },
+    /// Sets the reason of a rejection; an empty reason removes it.
+    SetReason(ModelId, String),
+    Restore(ModelId),
+    /// Restores every rejected model of a condition, in both bundles.
+    RestoreAll {
+        condition: ConditionId,
+    },
+    /// Rejects all of these models, or none.
+    RejectEach(Vec<ModelId>),
+    RestoreEach(Vec<ModelId>),
+    /// Makes a model represent its bundle instead of the medoid.
+    Pin(ModelId),
+    /// Makes the medoid represent the bundle again.
+    Unpin {
+        condition: ConditionId,
+        bundle: BundleKind,
+    },
+    SetScheduled {
+        condition: ConditionId,
+        scheduled: bool,
+    },
+    /// Holds a condition out of the schedule, to validate the schedule with it, or includes it
+    /// again.
+    SetHeldOut {
+        condition: ConditionId,
+        held_out: bool,
+    },
+    /// Constrains exactly the dataset's on-axis responses.
+    ConstrainOnAxis,
+    /// Constrains or releases a response.
+    Hold(Pair, bool),
+    /// Fits a response, or ignores it in the objective.
+    Fit(Pair, bool),
+    /// Changes a setting of the whole study ([`Setting::to`]).
+    Set(&'static Setting, Value),
+    /// Reverses the sign of a channel's models, or restores it: a decision about the data, common
+    /// to all variants.
+    SetSign {
+        channel: Channel,
+        /// The models to reverse; `None` restores all.
+        of: Option<SignRole>,
+    },
+    /// Adopts models identified from flight records, instead of the identified models of
+    /// conditions.
+    TakeModels(Vec<(ConditionId, Arc<AdoptedModels>)>),
+    ReturnModels {
+        condition: ConditionId,
+    },
+    /// Changes the requirement settings: label of the change, and the complete settings. A decision
+    /// of the study, common to all variants.
+    SetRequirements(&'static str, Arc<RequirementSettings>),
+    /// Stores the present decisions under a name.
+    KeepVariant {
+        name: String,
+    },
+    /// Replaces the present decisions with those stored under a name.
+    TakeVariant {
+        name: String,
+    },
+    RemoveVariant {
+        name: String,
+    },
+    RenameVariant {
+        from: String,
+        to: String,
+    },
+}
+
+/// Greatest length of a rejection's reason, in characters.
+pub const LONGEST_REASON: usize = 1000;
+
+/// Why a decision was refused; the study is unchanged.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EditRefusal {
+    #[error(
+        "condition {condition}: \"{model}\" is the last model kept in its bundle; at least one must stay"
+    )]
+    LastModel {
+        condition: ConditionId,
+        model: String,
+    },
+    #[error(
+        "condition {condition}: \"{model}\" is rejected; restore it before using it as representative"
+    )]
+    PinRejected {
+        condition: ConditionId,
+        model: String,
+    },
+    #[error("condition {condition}: \"{model}\" is not rejected; a reason goes with a rejection")]
+    ReasonOfKept {
+        condition: ConditionId,
+        model: String,
+    },
+    #[error("{what}: expected at most {most} characters, found {found}")]
+    TooLong {
+        what: &'static str,
+        most: usize,
+        found: usize,
+    },
+    /// The models do not fit the condition.
+    #[error("condition {condition}: {why}")]
+    Models { condition: ConditionId, why: String },
+    #[error("a variant needs a name")]
+    VariantWithoutName,
+    #[error("there is a variant \"{name}\" already")]
+    VariantExists { name: String },
+    #[error("there is no variant \"{name}\"")]
+    NoVariant { name: String },
+    #[error("{setting}: expected {expected}, found {}", number(*found))]
+    OutOfRange {
+        setting: &'static str,
+        expected: String,
+        found: f64,
+    },
+    /// The two ends of the band are invalid.
+    #[error(transparent)]
+    Band(#[from] BandError),
+    #[error("{setting}: this is not one of its values")]
+    NotAValue { setting: &'static str },
+    #[error("the dataset has no condition {condition}")]
+    NoCondition { condition: ConditionId },
+    #[error("condition {} has no {} model \"{}\"", model.condition, model.bundle, model.name)]
+    NoModel { model: ModelId },
+    #[error("the dataset has no {}", channel.name(&[], &[]))]
+    NoChannel { channel: Channel },
+    #[error("the dataset has no response of output number {} to input number {}", pair.output + 1, pair.input + 1)]
+    NoResponse { pair: Pair },
+}
+
+impl Edit {
+    /// Returns the decision that rejects physics models of a condition, by name.
+    pub fn reject_physics(condition: ConditionId, models: &[String]) -> Self {
+        Self::RejectEach(
+            models
+                .iter()
+                .map(|name| ModelId::new(condition, BundleKind::Physics, name))
+                .collect(),
+        )
+    }
+
+    /// Returns a short label for the undo list: "reject nominal (condition 10)".
+    pub fn label(&self, study: &Study) -> String {
+        let name_of = |id: &ModelId| format!("{} (condition {})", id.name, id.condition);
+        match self {
+            Edit::Reject(id) => format!("reject {}", name_of(id)),
+            Edit::RejectBecause { model, .. } => format!("reject {}", name_of(model)),
+            Edit::SetReason(id, _) => format!("reason of {}", name_of(id)),
+            Edit::Restore(id) => format!("restore {}", name_of(id)),
+            Edit::RestoreAll { condition } => format!("restore all (condition {condition})"),
+            Edit::RejectEach(models) => format!("reject {} models", models.len()),
+            Edit::RestoreEach(models) => format!("restore {} models", models.len()),
+            Edit::Pin(id) => format!("use {} as representative", name_of(id)),
+            Edit::Unpin { condition, .. } => {
+                format!("use the medoid as representative (condition {condition})")
+            }
+            Edit::SetScheduled {
+                condition,
+                scheduled: true,
+            } => format!("schedule condition {condition}"),
+            Edit::SetScheduled { condition, .. } => format!("leave condition {condition} out"),
+            Edit::SetHeldOut {
+                condition,
+                held_out: true,
+            } => format!("hold condition {condition} out"),
+            Edit::SetHeldOut { condition, .. } => {
+                format!("no longer hold condition {condition} out")
+            }
+            Edit::ConstrainOnAxis => "hold the on-axis responses".to_owned(),
+            Edit::Hold(pair, held) => {
+                format!(
+                    "{} {}",
+                    if *held { "hold" } else { "release" },
+                    study.dataset.pair_name(*pair)
+                )
+            }
+            Edit::Fit(pair, fitted) => {
+                format!(
+                    "{} {}",
+                    if *fitted { "fit" } else { "ignore" },
+                    study.dataset.pair_name(*pair)
+                )
+            }
+            Edit::Set(setting, _) => setting.name.to_owned(),
+            Edit::SetSign { channel, of } => {
+                let name = channel.name_in(&study.dataset);
+                of.map_or_else(
+                    || format!("turn {name} back"),
+                    |of| format!("turn {name} ({})", of.word()),
+                )
+            }
+            Edit::TakeModels(taken) => match taken.as_slice() {
+                [(condition, _)] => format!("use identified models (condition {condition})"),
+                _ => format!("use identified models ({} conditions)", taken.len()),
+            },
+            Edit::ReturnModels { condition } => {
+                format!("put the file's identified models back (condition {condition})")
+            }
+            Edit::SetRequirements(what, _) => format!("requirements: {what}"),
+            Edit::KeepVariant { name } => format!("keep variant {name}"),
+            Edit::TakeVariant { name } => format!("take variant {name}"),
+            Edit::RemoveVariant { name } => format!("remove variant {name}"),
+            Edit::RenameVariant { from, to } => format!("rename variant {from} to {to}"),
+        }
+    }
+
+    /// Returns whether two consecutive decisions form one undo step: two positions of the same
+    /// slider.
+    pub fn continues(&self, earlier: &Edit) -> bool {
+        match (self, earlier) {
+            (Edit::Set(later, _), Edit::Set(earlier, _)) => later == earlier,
+            (Edit::SetRequirements(later, _), Edit::SetRequirements(earlier, _)) => {
+                later == earlier
+            }
+            _ => false,
+        }
+    }
+}
+
+impl Study {
+    /// Applies one decision, or refuses it and leaves the study unchanged.
+    pub fn apply(&mut self, edit: &Edit) -> Result<(), EditRefusal> {
+        match edit {
+            Edit::Reject(id) => return self.reject(id),
+            Edit::RejectEach(models) => {
+                return self.attempt(|of| models.iter().try_for_each(|model| of.reject(model)));
+            }
+            Edit::RestoreEach(models) => {
+                return self.attempt(|of| models.iter().try_for_each(|model| of.restore(model)));
+            }
+            Edit::Pin(id) => return self.pin(id),
+            Edit::Restore(id) => return self.restore(id),
+            Edit::RestoreAll { condition } => self.condition(*condition)?.1.restore_all(),
+            Edit::RejectBecause { model, reason } => {
+                return self
+                    .attempt(|of| of.reject(model).and_then(|()| of.set_reason(model, reason)));
+            }
+            Edit::SetReason(id, reason) => return self.set_reason(id, reason),
+            Edit::Unpin { condition, bundle } => {
+                self.condition(*condition)?.1.bundle_mut(*bundle).pinned = None
+            }
+            Edit::SetScheduled {
+                condition,
+                scheduled,
+            } => self.condition(*condition)?.1.scheduled = *scheduled,
+            Edit::SetHeldOut {
+                condition,
+                held_out,
+            } => self.condition(*condition)?.1.held_out = *held_out,
+            Edit::ConstrainOnAxis => self.settings.constrained = self.dataset.on_axis().clone(),
+            Edit::Hold(pair, held) => mark(&mut self.settings.constrained, *pair, *held)?,
+            Edit::Fit(pair, fitted) => mark(&mut self.settings.ignored, *pair, !*fitted)?,
+            Edit::Set(setting, value) => return setting.set(&mut self.settings, *value),
+            Edit::SetSign { channel, of } => return self.set_sign(*channel, *of),
+            Edit::TakeModels(taken) => return self.take_models(taken),
+            Edit::ReturnModels { condition } => return self.return_models(*condition),
+            Edit::SetRequirements(_, settings) => self.requirements = Arc::clone(settings),
+            Edit::KeepVariant { name } => return self.keep_variant(name),
+            Edit::TakeVariant { name } => return self.take_variant(name),
+            Edit::RemoveVariant { name } => return self.remove_variant(name),
+            Edit::RenameVariant { from, to } => return self.rename_variant(from, to),
+        }
+        Ok(())
+    }
+
+    /// Returns a condition with its choices, mutable.
+    fn condition(
+        &mut self,
+        id: ConditionId,
+    ) -> Result<(&Condition, &mut ConditionChoice), EditRefusal> {
+        let found = self
+            .dataset
+            .condition(id)
+            .map(Arc::as_ref)
+            .zip(self.choices.get_mut(&id));
+        found.ok_or(EditRefusal::NoCondition { condition: id })
+    }
+
+    /// Works as [`Study::condition`], and checks that the model exists.
+    fn model(&mut self, id: &ModelId) -> Result<(&Condition, &mut ConditionChoice), EditRefusal> {
+        let (condition, choice) = self.condition(id.condition)?;
+        if condition.position(id.bundle, &id.name).is_none() {
+            return Err(EditRefusal::NoModel { model: id.clone() });
+        }
+        Ok((condition, choice))
+    }
+
+    fn reject(&mut self, id: &ModelId) -> Result<(), EditRefusal> {
+        let (condition, choice) = self.model(id)?;
+        let models = condition.bundle(id.bundle).len();
+        let choice = choice.bundle_mut(id.bundle);
+        if !choice.rejected.contains(&id.name) && choice.rejected.len() + 1 == models {
+            return Err(EditRefusal::LastModel {
+                condition: id.condition,
+                model: id.name.clone(),
+            });
+        }
+        choice.rejected.insert(id.name.clone());
+        if choice.pinned.as_ref() == Some(&id.name) {
+            choice.pinned = None;
+        }
+        Ok(())
+    }
+
+    fn restore(&mut self, id: &ModelId) -> Result<(), EditRefusal> {
+        self.model(id)?.1.bundle_mut(id.bundle).restore(&id.name);
+        Ok(())
+    }
+
+    /// Applies several decisions as one: all of them, or none.
+    fn attempt(
+        &mut self,
+        decide: impl FnOnce(&mut Self) -> Result<(), EditRefusal>,
+    ) -> Result<(), EditRefusal> {
+        let mut trial = self.clone();
+        decide(&mut trial)?;
+        *self = trial;
+        Ok(())
+    }
+
+    fn set_reason(&mut self, id: &ModelId, reason: &str) -> Result<(), EditRefusal> {
+        let reason = reason.trim();
+        let (_, choice) = self.model(id)?;
+        let choice = choice.bundle_mut(id.bundle);
+        if !choice.rejected.contains(&id.name) {
+            return Err(EditRefusal::ReasonOfKept {
+                condition: id.condition,
+                model: id.name.clone(),
+            });
+        }
+        check_length("reason", reason, LONGEST_REASON)?;
+        if reason.is_empty() {
+            choice.reasons.remove(&id.name);
+        } else {
+            choice.reasons.insert(id.name.clone(), reason.to_owned());
+        }
+        Ok(())
+    }
+
+    fn pin(&mut self, id: &ModelId) -> Result<(), EditRefusal> {
+        let (_, choice) = self.model(id)?;
+        let choice = choice.bundle_mut(id.bundle);
+        if choice.rejected.contains(&id.name) {
+            return Err(EditRefusal::PinRejected {
+                condition: id.condition,
+                model: id.name.clone(),
+            });
+        }
+        choice.pinned = Some(id.name.clone());
+        Ok(())
+    }
+}
+
+fn mark(table: &mut PairTable<bool>, pair: Pair, value: bool) -> Result<(), EditRefusal> {
+    if pair.output >= table.outputs() || pair.input >= table.inputs() {
+        return Err(EditRefusal::NoResponse { pair });
+    }
+    table[pair] = value;
+    Ok(())
+}
+
+pub(crate) fn check_length(what: &'static str, text: &str, most: usize) -> Result<(), EditRefusal> {
+    let found = text.chars().count();
+    if found > most {
+        Err(EditRefusal::TooLong { what, most, found })
+    } else {
+        Ok(())
+    }
+}

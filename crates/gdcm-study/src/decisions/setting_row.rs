@@ -1,0 +1,494 @@
+//! Rows of the table of settings, and their operations: setting, checking, formatting and parsing a
+//! value.
+
+use gdcm_method::correction::delta::GainSource;
+use gdcm_method::correction::{GainBounds, GainObjective};
+use gdcm_method::fidelity::CostAverage;
+use gdcm_method::schedule::{
+    DelayScheduling, SCHEDULE_KINDS, ScheduleKind, ScheduledQuantity, SecondVariable,
+};
+use gdcm_model::dataset::Band;
+use gdcm_model::response::LeadOrder;
+use gdcm_model::units::{number, six_digits};
+
+use super::edit::{Edit, EditRefusal};
+use super::setting::SETTINGS;
+use super::settings::{CouplingCorrection, DelayFrom, PhaseCorrection, Settings};
+use super::study::Study;
+
+/// One setting: a row of [`SETTINGS`].
+#[derive(Debug)]
+pub struct Setting {
+    /// Its name in running text: "α of the gains".
+    pub name: &'static str,
+    /// Its key in the settings of files; a dot separates the key of a nested object: "lead.n".
+    pub key: &'static str,
+    /// Its option of the command line: "--alpha".
+    pub option: &'static str,
+    /// Value of the option without an argument; `None` where an argument is required.
+    pub bare: Option<&'static str>,
+    /// Description in one sentence.
+    pub help: &'static str,
+    pub unit: Unit,
+    /// Type and range of the value.
+    pub kind: Kind,
+    /// Its control in the window.
+    pub control: Control,
+}
+
+/// Unit of a setting in files and on a command line, and the displayed unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Unit {
+    /// Unit in files.
+    pub file: &'static str,
+    /// Displayed unit.
+    pub shown: &'static str,
+    /// Number of displayed units in one file unit.
+    pub scale: f64,
+}
+
+/// Type and range of a setting, with access to its field of [`Settings`].
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    Number {
+        range: [f64; 2],
+        whole: bool,
+        get: fn(&Settings) -> f64,
+        set: fn(&mut Settings, f64),
+    },
+    /// A number within a range, or no value.
+    Optional {
+        range: [f64; 2],
+        /// The words for no value: on a command line, and in a sentence.
+        nothing: [&'static str; 2],
+        /// The number for the word "on", where that is accepted.
+        on: Option<f64>,
+        get: fn(&Settings) -> Option<f64>,
+        set: fn(&mut Settings, Option<f64>),
+    },
+    /// A lower and an upper number within a range, or no value.
+    Range {
+        range: [f64; 2],
+        /// The words for no value, where that is allowed.
+        nothing: Option<[&'static str; 2]>,
+        ends: [&'static str; 2],
+        get: fn(&Settings) -> Option<[f64; 2]>,
+        set: fn(&mut Settings, Option<[f64; 2]>) -> Result<(), EditRefusal>,
+    },
+    Flag {
+        /// The words for no and yes, in a sentence.
+        words: [&'static str; 2],
+        get: fn(&Settings) -> bool,
+        set: fn(&mut Settings, bool),
+    },
+    Choice {
+        /// For each choice: its word on the command line, its label in the window, and its meaning.
+        words: &'static [[&'static str; 3]],
+        get: fn(&Settings) -> usize,
+        set: fn(&mut Settings, usize),
+    },
+}
+
+/// Control of a setting in the window.
+#[derive(Clone, Copy, Debug)]
+pub struct Control {
+    pub place: Place,
+    pub caption: &'static str,
+    pub label: &'static str,
+    /// Change of the displayed value per point of dragging.
+    pub step: f64,
+    pub digits: Digits,
+    /// Whether the setting has an effect.
+    pub applies: fn(&Study) -> bool,
+}
+
+/// Number format in the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Digits {
+    /// Three significant digits.
+    Significant,
+    /// A fixed number of decimals.
+    Decimals(usize),
+    /// Format of a gain: three decimals, two where the third is zero.
+    Gain,
+}
+
+/// Place of the control of a setting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Above the table of settings, with a slider.
+    Slider,
+    /// Above the table, on its own line.
+    Top,
+    /// On its own line.
+    Line,
+    /// On the line of the setting before it.
+    Beside,
+    /// In the view of its subject.
+    Elsewhere,
+}
+
+/// The value of a setting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// A number in the unit of files.
+    Number(f64),
+    /// No value, where that is allowed.
+    Nothing,
+    Range([f64; 2]),
+    Flag(bool),
+    Choice(usize),
+}
+
+/// A type with one value for each choice of a setting.
+pub trait Choice: Copy + PartialEq + 'static {
+    /// All values, in the order of the setting's words.
+    const ALL: &'static [Self];
+
+    /// Returns its index among all values.
+    fn index(self) -> usize {
+        Self::ALL
+            .iter()
+            .position(|one| *one == self)
+            .unwrap_or_default()
+    }
+}
+
+impl Choice for PhaseCorrection {
+    const ALL: &'static [Self] = &[Self::None, Self::Delay, Self::Lead];
+}
+
+impl Choice for CouplingCorrection {
+    const ALL: &'static [Self] = &[Self::None, Self::Mixing, Self::MixingAndFeedback];
+}
+
+impl Choice for DelayFrom {
+    const ALL: &'static [Self] = &[Self::Median, Self::Band];
+}
+
+impl Choice for CostAverage {
+    const ALL: &'static [Self] = &[Self::Median, Self::Mean];
+}
+
+impl Choice for GainObjective {
+    const ALL: &'static [Self] = &[Self::Ratio, Self::Decibel];
+}
+
+impl Choice for GainSource {
+    const ALL: &'static [Self] = &[Self::Representatives, Self::MeanOfPairs];
+}
+
+impl Choice for LeadOrder {
+    const ALL: &'static [Self] = &[Self::Second, Self::First];
+}
+
+impl Choice for ScheduleKind {
+    const ALL: &'static [Self] = &SCHEDULE_KINDS;
+}
+
+impl Choice for DelayScheduling {
+    const ALL: &'static [Self] = &[Self::Automatic, Self::Always, Self::Never];
+}
+
+impl Choice for ScheduledQuantity {
+    const ALL: &'static [Self] = &[Self::LnGain, Self::Gain];
+}
+
+impl Choice for Option<SecondVariable> {
+    const ALL: &'static [Self] = &[
+        None,
+        Some(SecondVariable::Altitude),
+        Some(SecondVariable::Mass),
+    ];
+}
+
+impl<C: Choice> From<C> for Value {
+    fn from(choice: C) -> Self {
+        Self::Choice(choice.index())
+    }
+}
+
+impl From<f64> for Value {
+    fn from(value: f64) -> Self {
+        Self::Number(value)
+    }
+}
+
+impl From<usize> for Value {
+    fn from(count: usize) -> Self {
+        Self::Number(count as f64)
+    }
+}
+
+impl From<bool> for Value {
+    fn from(flag: bool) -> Self {
+        Self::Flag(flag)
+    }
+}
+
+impl From<Option<f64>> for Value {
+    fn from(value: Option<f64>) -> Self {
+        value.map_or(Self::Nothing, Self::Number)
+    }
+}
+
+impl From<Band> for Value {
+    fn from(band: Band) -> Self {
+        Self::Range([band.min(), band.max()])
+    }
+}
+
+impl From<Option<GainBounds>> for Value {
+    fn from(bounds: Option<GainBounds>) -> Self {
+        bounds.map_or(Self::Nothing, |bounds| {
+            Self::Range([bounds.lower, bounds.upper])
+        })
+    }
+}
+
+impl PartialEq for Setting {
+    fn eq(&self, other: &Self) -> bool {
+        self.key == other.key
+    }
+}
+
+impl Setting {
+    /// Returns the decision that sets this value.
+    pub fn to(&'static self, value: impl Into<Value>) -> Edit {
+        Edit::Set(self, value.into())
+    }
+
+    /// Returns the present value.
+    pub fn value(&self, settings: &Settings) -> Value {
+        match self.kind {
+            Kind::Number { get, .. } => Value::Number(get(settings)),
+            Kind::Optional { get, .. } => get(settings).into(),
+            Kind::Range { get, .. } => get(settings).map_or(Value::Nothing, Value::Range),
+            Kind::Flag { get, .. } => Value::Flag(get(settings)),
+            Kind::Choice { get, .. } => Value::Choice(get(settings)),
+        }
+    }
+
+    /// Sets a value, or refuses a value outside its range and leaves the settings unchanged.
+    pub(crate) fn set(&self, settings: &mut Settings, value: Value) -> Result<(), EditRefusal> {
+        self.check(value)?;
+        match (self.kind, value) {
+            (Kind::Number { set, .. }, Value::Number(value)) => set(settings, value),
+            (Kind::Optional { set, .. }, Value::Number(value)) => set(settings, Some(value)),
+            (Kind::Optional { set, .. }, _) => set(settings, None),
+            (Kind::Range { set, .. }, Value::Range(ends)) => set(settings, Some(ends))?,
+            (Kind::Range { set, .. }, _) => set(settings, None)?,
+            (Kind::Flag { set, .. }, Value::Flag(value)) => set(settings, value),
+            (Kind::Choice { set, .. }, Value::Choice(index)) => set(settings, index),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Refuses a value that the setting does not allow.
+    pub fn check(&self, value: Value) -> Result<(), EditRefusal> {
+        match (self.kind, value) {
+            (
+                Kind::Number {
+                    range, whole: true, ..
+                },
+                Value::Number(found),
+            ) if found.fract() == 0.0 => self.check_range("a whole number", found, range),
+            (
+                Kind::Number {
+                    range, whole: true, ..
+                },
+                Value::Number(found),
+            ) => Err(self.out_of_range("a whole number", found, range)),
+            (Kind::Number { range, .. } | Kind::Optional { range, .. }, Value::Number(found)) => {
+                self.check_range(&self.a_number(), found, range)
+            }
+            // The band, which must have a value, describes its own range.
+            (Kind::Range { nothing: None, .. }, Value::Range([min, max])) => {
+                Ok(Band::new(min, max).map(drop)?)
+            }
+            (
+                Kind::Range {
+                    range: [least, most],
+                    ..
+                },
+                Value::Range([lower, upper]),
+            ) => {
+                self.check_range("a lower end", lower, [least, most])?;
+                self.check_range("an upper end", upper, [lower, most])
+            }
+            (Kind::Choice { words, .. }, Value::Choice(index)) => self.check_range(
+                "a whole number",
+                index as f64,
+                [0.0, words.len() as f64 - 1.0],
+            ),
+            (Kind::Flag { .. }, Value::Flag(_)) | (Kind::Optional { .. }, Value::Nothing) => Ok(()),
+            (
+                Kind::Range {
+                    nothing: Some(_), ..
+                },
+                Value::Nothing,
+            ) => Ok(()),
+            _ => Err(EditRefusal::NotAValue { setting: self.name }),
+        }
+    }
+
+    fn check_range(&self, what: &str, found: f64, range: [f64; 2]) -> Result<(), EditRefusal> {
+        let is_within = (range[0]..=range[1]).contains(&found);
+        if is_within {
+            Ok(())
+        } else {
+            Err(self.out_of_range(what, found, range))
+        }
+    }
+
+    fn out_of_range(&self, what: &str, found: f64, [least, most]: [f64; 2]) -> EditRefusal {
+        let expected = format!("{what} from {} to {}", number(least), number(most));
+        EditRefusal::OutOfRange {
+            setting: self.name,
+            expected,
+            found,
+        }
+    }
+
+    fn a_number(&self) -> String {
+        if self.unit.file.is_empty() {
+            "a number".to_owned()
+        } else {
+            format!("a number of {}", self.unit.file)
+        }
+    }
+
+    /// Returns the present value in words.
+    pub fn words(&self, settings: &Settings) -> String {
+        self.text(self.value(settings))
+    }
+
+    /// Formats a value, with at most six significant digits: "20 ms", "by the quantile", "median".
+    pub fn text(&self, value: Value) -> String {
+        let Unit { shown, scale, .. } = self.unit;
+        let unit = if shown.is_empty() {
+            String::new()
+        } else {
+            format!(" {shown}")
+        };
+        match (self.kind, value) {
+            (_, Value::Number(value)) => format!("{}{unit}", six_digits(scale * value)),
+            (_, Value::Range([lower, upper])) => {
+                format!(
+                    "{} to {}{unit}",
+                    six_digits(scale * lower),
+                    six_digits(scale * upper)
+                )
+            }
+            (Kind::Flag { words, .. }, Value::Flag(flag)) => words[usize::from(flag)].to_owned(),
+            (Kind::Choice { words, .. }, Value::Choice(index)) => words[index][1].to_owned(),
+            (
+                Kind::Optional { nothing, .. }
+                | Kind::Range {
+                    nothing: Some(nothing),
+                    ..
+                },
+                _,
+            ) => nothing[1].to_owned(),
+            _ => String::new(),
+        }
+    }
+
+    /// Returns the syntax of the option's argument: "none|delay|lead", "off|on|NUMBER".
+    pub fn syntax(&self) -> String {
+        match self.kind {
+            Kind::Number { .. } => "NUMBER".to_owned(),
+            Kind::Optional { nothing, on, .. } => {
+                format!(
+                    "{}{}|NUMBER",
+                    nothing[0],
+                    if on.is_some() { "|on" } else { "" }
+                )
+            }
+            Kind::Range { .. } => "LO HI".to_owned(),
+            Kind::Flag { .. } => String::new(),
+            Kind::Choice { words, .. } => words
+                .iter()
+                .map(|words| words[0])
+                .collect::<Vec<_>>()
+                .join("|"),
+        }
+    }
+
+    /// Parses the value from the command line; a flag is set by its presence.
+    ///
+    /// # Errors
+    /// Expected and found value.
+    pub fn read(&self, said: &[&str]) -> Result<Value, String> {
+        let real = |text: &str| {
+            text.trim()
+                .parse::<f64>()
+                .map_err(|_| format!("expected a number, found {text}"))
+        };
+        match (self.kind, said) {
+            (Kind::Flag { .. }, _) => Ok(Value::Flag(true)),
+            (
+                Kind::Optional { nothing, .. }
+                | Kind::Range {
+                    nothing: Some(nothing),
+                    ..
+                },
+                [word],
+            ) if *word == nothing[0] => Ok(Value::Nothing),
+            (Kind::Optional { on: Some(on), .. }, ["on"]) => Ok(Value::Number(on)),
+            (Kind::Optional { nothing, on, .. }, [text]) => {
+                text.parse().map(Value::Number).map_err(|_| {
+                    let on = if on.is_some() { ", on" } else { "" };
+                    format!("expected {}{on} or a number, found {text}", nothing[0])
+                })
+            }
+            (
+                Kind::Number {
+                    range: [least, most],
+                    whole: true,
+                    ..
+                },
+                [text],
+            ) => {
+                let found = text.trim().parse::<usize>().ok().map(|count| count as f64);
+                let found = found.filter(|count| (least..=most).contains(count));
+                let expected =
+                    || format!("expected a whole number from {least} to {most}, found {text}");
+                found.map(Value::Number).ok_or_else(expected)
+            }
+            (Kind::Number { .. }, [text]) => real(text).map(Value::Number),
+            (Kind::Range { .. }, [lower, upper]) => Ok(Value::Range([real(lower)?, real(upper)?])),
+            (Kind::Choice { words, .. }, [text]) => {
+                let found = words.iter().position(|words| words[0] == *text);
+                found.map(Value::Choice).ok_or_else(|| {
+                    let (last, others) = words
+                        .split_last()
+                        .map_or(("", words), |(last, others)| (last[0], others));
+                    let others: Vec<&str> = others.iter().map(|words| words[0]).collect();
+                    format!("expected {} or {last}, found {text}", others.join(", "))
+                })
+            }
+            _ => Err(format!(
+                "expected {}, found {}",
+                self.syntax(),
+                said.join(" ")
+            )),
+        }
+    }
+}
+
+impl Settings {
+    /// Refuses values outside their ranges: returns the first, with its setting.
+    ///
+    /// # Errors
+    /// The setting, and why its value is refused.
+    pub fn check(&self) -> Result<(), (&'static Setting, EditRefusal)> {
+        let check = |setting: &&'static Setting| {
+            setting
+                .check(setting.value(self))
+                .map_err(|refusal| (*setting, refusal))
+        };
+        SETTINGS.iter().try_for_each(check)
+    }
+}

@@ -1,0 +1,291 @@
+//! Every setting that changes a result, with its value as stored in files. Names, ranges and
+//! controls are in [`super::setting`].
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_method::correction::delta::GainSource;
+use gdcm_method::correction::leads::LeadSettings;
+use gdcm_method::correction::{GainBounds, GainObjective};
+use gdcm_method::couplings::CouplingKind;
+use gdcm_method::fidelity::CostAverage;
+use gdcm_method::schedule::{DelayScheduling, ScheduleSettings};
+use gdcm_method::uncertainty::bar::UncertaintySettings;
+use gdcm_model::dataset::limits::MOST_PAIRS;
+use gdcm_model::dataset::{Band, Dataset, PairTable};
+use gdcm_model::whole_number::whole;
+
+/// Default mismatch of a loop of constrained gains that counts as agreement \[dB\].
+const DEFAULT_AGREEMENT_DB: f64 = 0.05;
+
+/// Default least coherence of a frequency with weight (M4a).
+pub const DEFAULT_COHERENCE: f64 = 0.6;
+
+/// Correction of the phase.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PhaseCorrection {
+    /// No correction of the phase: gains alone.
+    None,
+    /// By delays (the paper, M9).
+    #[default]
+    Delay,
+    /// By one signed delay for each channel: a delay, or a lead filter where it is negative (M15).
+    Lead,
+}
+
+/// Correction of the couplings and modes of the physics models, before their channels are corrected
+/// (M16).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CouplingCorrection {
+    /// No correction: the physics models are unchanged (the paper).
+    #[default]
+    None,
+    /// A mixing of the inputs.
+    Mixing,
+    /// A mixing of the inputs, and a feedback of outputs to inputs.
+    #[serde(rename = "feedback")]
+    MixingAndFeedback,
+}
+
+impl CouplingCorrection {
+    /// Returns the name in sentences; "no couplings" for none.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "no couplings",
+            Self::Mixing => "mixing",
+            Self::MixingAndFeedback => "mixing and feedback",
+        }
+    }
+
+    /// Returns the kind of couplings to fit; `None` without couplings.
+    pub fn kind(self) -> Option<CouplingKind> {
+        match self {
+            Self::None => None,
+            Self::Mixing => Some(CouplingKind::Mixing),
+            Self::MixingAndFeedback => Some(CouplingKind::MixingAndFeedback),
+        }
+    }
+}
+
+/// The D that the delays are fitted to. Leads are always fitted to the band delay (M15.5).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DelayFrom {
+    /// The median of `Delta phi / omega`, eq. (9) (the paper).
+    #[default]
+    Median,
+    /// The band delay: the least-squares line through `Delta phi` (M15.2).
+    Band,
+}
+
+impl fmt::Display for DelayFrom {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Median => "median of Δφ/ω, eq. (9)",
+            Self::Band => "line through Δφ over the band",
+        })
+    }
+}
+
+/// Responses by the names of their channels, output first, as stored in files.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<(String, String)>")]
+pub struct ResponseNames(pub Vec<(String, String)>);
+
+impl TryFrom<Vec<(String, String)>> for ResponseNames {
+    type Error = String;
+
+    fn try_from(names: Vec<(String, String)>) -> Result<Self, String> {
+        let found = names.len();
+        if found > MOST_PAIRS {
+            return Err(format!(
+                "expected at most {MOST_PAIRS} entries, found {found}"
+            ));
+        }
+        Ok(Self(names))
+    }
+}
+
+/// Every setting that changes a result, common to all conditions of a study. `R` represents the
+/// marked responses: a table of the dataset's responses, or their names in files. A setting absent
+/// from an older file has its initial default.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Settings<R = PairTable<bool>> {
+    #[serde(rename = "band_rad_s")]
+    pub band: Band,
+    /// Number of logarithmically spaced frequencies in the band, both ends included (M2).
+    #[serde(deserialize_with = "whole")]
+    pub points: usize,
+    /// Weight of the regularisation of the output gains, eq. (7).
+    pub alpha_gain: f64,
+    /// Weight of the regularisation of the output delays, eq. (11), or of all signed delays
+    /// (M15.4).
+    pub alpha_delay: f64,
+    /// Quantile that sets the bounds, and its complement (M7).
+    pub quantile: f64,
+    /// The responses constrained exactly; initially the on-axis pairs.
+    pub constrained: R,
+    /// The responses that the objective ignores (weight 0); it fits the others (weight 1).
+    pub ignored: R,
+    /// Average over frequency in J: the median (the paper) or the mean (Tischler) (M4).
+    pub cost_average: CostAverage,
+    /// Least coherence of a frequency with weight, where the reference is measured with coherence,
+    /// which then weights J, G and D too; `None`: coherence is not used (M4a).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coherence_threshold: Option<f64>,
+    /// Objective of the gains.
+    pub gain_objective: GainObjective,
+    /// Manual bounds of every channel gain, instead of the quantiles.
+    pub gain_bounds: Option<GainBounds>,
+    /// Manual upper bound of every channel delay \[s\], instead of the quantile.
+    pub delay_upper_s: Option<f64>,
+    /// Correction of the phase (M9, M15).
+    #[serde(default)]
+    pub phase: PhaseCorrection,
+    /// The D that the delays are fitted to (M15.2).
+    #[serde(default)]
+    pub delay_from: DelayFrom,
+    /// Common parameters of the lead filters (M15.3).
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub lead: LeadSettings,
+    /// Correction of couplings and modes (M16).
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub couplings: CouplingCorrection,
+    /// Mismatch \[dB\] up to which a loop of constrained gains counts as agreeing: each gain is
+    /// then constrained at the nearest consistent value.
+    #[serde(default = "default_agreement_db")]
+    pub agreement_db: f64,
+    /// Schedule of the channel gains with airspeed (M11).
+    #[serde(default)]
+    pub schedule: ScheduleSettings,
+    /// Whether the schedule has delays too (M11). Files of older programs have `schedule.delays`
+    /// alone ([`Settings::complete_delay_scheduling`]).
+    #[serde(default = "never_scheduled")]
+    pub schedule_delays: DelayScheduling,
+    /// The models that G is computed from.
+    #[serde(default, rename = "gain_from")]
+    pub gain_source: GainSource,
+    /// Options of the error bars (M13).
+    #[serde(default, rename = "error_bars")]
+    pub uncertainty: UncertaintySettings,
+}
+
+fn never_scheduled() -> DelayScheduling {
+    DelayScheduling::Never
+}
+
+fn default_agreement_db() -> f64 {
+    DEFAULT_AGREEMENT_DB
+}
+
+pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+impl<R> Settings<R> {
+    /// Returns the same settings with another representation of the marked responses; `of` receives
+    /// the verb, "hold" or "ignore".
+    pub fn with_responses<Q>(&self, mut of: impl FnMut(&'static str, &R) -> Q) -> Settings<Q> {
+        Settings {
+            band: self.band,
+            points: self.points,
+            alpha_gain: self.alpha_gain,
+            alpha_delay: self.alpha_delay,
+            quantile: self.quantile,
+            constrained: of("hold", &self.constrained),
+            ignored: of("ignore", &self.ignored),
+            cost_average: self.cost_average,
+            coherence_threshold: self.coherence_threshold,
+            gain_objective: self.gain_objective,
+            gain_bounds: self.gain_bounds,
+            delay_upper_s: self.delay_upper_s,
+            phase: self.phase,
+            delay_from: self.delay_from,
+            lead: self.lead,
+            couplings: self.couplings,
+            agreement_db: self.agreement_db,
+            schedule: self.schedule,
+            schedule_delays: self.schedule_delays,
+            gain_source: self.gain_source,
+            uncertainty: self.uncertainty,
+        }
+    }
+
+    /// Sets whether the schedule has delays, together with the flag that older programs read
+    /// instead.
+    pub fn set_delay_scheduling(&mut self, scheduling: DelayScheduling) {
+        self.schedule_delays = scheduling;
+        self.schedule.delays = scheduling == DelayScheduling::Always;
+    }
+
+    /// Adopts `schedule.delays` of a file without the newer setting: `true` is always, `false`
+    /// never.
+    pub fn complete_delay_scheduling(&mut self) {
+        if self.schedule_delays == DelayScheduling::Never {
+            self.set_delay_scheduling(self.schedule.delays.into());
+        }
+    }
+}
+
+impl Settings {
+    /// Returns the initial settings of a dataset.
+    pub fn of(dataset: &Dataset) -> Self {
+        let none = PairTable::filled(dataset.outputs().len(), dataset.inputs().len(), false);
+        Self {
+            band: dataset.band(),
+            points: 200,
+            alpha_gain: 1.0,
+            alpha_delay: 1.0,
+            quantile: 0.05,
+            constrained: dataset.on_axis().clone(),
+            ignored: none,
+            cost_average: CostAverage::Median,
+            coherence_threshold: dataset.has_coherence().then_some(DEFAULT_COHERENCE),
+            gain_objective: GainObjective::Ratio,
+            gain_bounds: None,
+            delay_upper_s: None,
+            phase: PhaseCorrection::default(),
+            delay_from: DelayFrom::default(),
+            lead: LeadSettings::default(),
+            couplings: CouplingCorrection::default(),
+            agreement_db: DEFAULT_AGREEMENT_DB,
+            schedule: ScheduleSettings::default(),
+            schedule_delays: DelayScheduling::default(),
+            gain_source: GainSource::default(),
+            uncertainty: UncertaintySettings::default(),
+        }
+    }
+
+    /// Returns the settings as stored in files.
+    pub fn named(&self, dataset: &Dataset) -> Settings<ResponseNames> {
+        self.with_responses(|_, table| {
+            ResponseNames(
+                table
+                    .marked()
+                    .map(|pair| dataset.channel_names(pair))
+                    .collect(),
+            )
+        })
+    }
+
+    /// Returns the responses that the objective fits.
+    pub fn fitted(&self) -> PairTable<bool> {
+        self.ignored.map(|_, ignored| !ignored)
+    }
+
+    /// Describes the models that G is computed from; and that the setting has no effect where the
+    /// gains are based on the difference left after leads, which involves the representatives alone
+    /// (M15.5).
+    pub fn gain_source_words(&self) -> String {
+        let words = self.gain_source.words();
+        if self.gain_source == GainSource::MeanOfPairs && self.phase == PhaseCorrection::Lead {
+            return format!(
+                "{words}, without effect: with leads, G is that of what they leave of the representatives"
+            );
+        }
+        words.to_owned()
+    }
+}

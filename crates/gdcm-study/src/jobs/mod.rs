@@ -1,0 +1,3 @@
+//! Units of background work.
+
+pub mod job;

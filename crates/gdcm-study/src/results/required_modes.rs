@@ -1,0 +1,313 @@
+//! The modes of the physics representative, without and with the couplings of the study, against
+//! those of the identified representative, where the matrices of both are known (M17.3).
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use gdcm_method::correction::Pade;
+use gdcm_method::requirements::mode_comparison::{
+    ComparedMode, ModeRow, ModeTolerance, ModeValues, ModelModes, compare_modes,
+};
+use gdcm_method::requirements::{ModeName, ModeVerdict, NamedBy};
+use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics, Model};
+use gdcm_model::response::Mode;
+use gdcm_model::response::eigenvalues::modes_of;
+use gdcm_model::response::pole_estimate::PoleEstimate;
+
+use super::requirements::AskedCondition;
+
+/// Identified poles of conditions with their uncertainty, which a dataset does not store.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KnownPoles(BTreeMap<ConditionId, Vec<PoleEstimate>>);
+
+impl FromIterator<(ConditionId, Vec<PoleEstimate>)> for KnownPoles {
+    fn from_iter<T: IntoIterator<Item = (ConditionId, Vec<PoleEstimate>)>>(found: T) -> Self {
+        Self(found.into_iter().collect())
+    }
+}
+
+impl KnownPoles {
+    /// Returns the poles of a condition; empty where no model was identified for it.
+    fn of(&self, condition: ConditionId) -> &[PoleEstimate] {
+        self.0.get(&condition).map_or(&[], Vec::as_slice)
+    }
+}
+
+/// A mode of one model.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModeNumbers {
+    pub model: String,
+    /// Real part of its pole \[rad/s\].
+    pub pole_real_rad_s: f64,
+    /// Imaginary part of its pole \[rad/s\], not negative.
+    pub pole_imaginary_rad_s: f64,
+    #[serde(flatten)]
+    pub values: ModeValues,
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub absent: BTreeMap<&'static str, &'static str>,
+}
+
+impl ModeNumbers {
+    fn of(mode: &ComparedMode, model: &str) -> Self {
+        let values = mode.values;
+        let reasons = [
+            ("period_s", values.period_s, "it does not oscillate"),
+            (
+                "time_to_half_s",
+                values.time_to_half_s,
+                "it neither decays nor grows",
+            ),
+            ("damping_ratio", values.damping_ratio, "its pole is at zero"),
+        ];
+        let absent = reasons.into_iter().filter(|(_, value, _)| value.is_none());
+        Self {
+            model: model.to_owned(),
+            pole_real_rad_s: mode.pole.re,
+            pole_imaginary_rad_s: mode.pole.im,
+            values,
+            absent: absent.map(|(name, _, why)| (name, why)).collect(),
+        }
+    }
+
+    /// Returns the numbers with their names.
+    pub fn quantities(&self) -> [(&'static str, Option<f64>); 5] {
+        [
+            ("pole_real_rad_s", Some(self.pole_real_rad_s)),
+            ("pole_imaginary_rad_s", Some(self.pole_imaginary_rad_s)),
+            ("period_s", self.values.period_s),
+            ("time_to_half_s", self.values.time_to_half_s),
+            ("damping_ratio", self.values.damping_ratio),
+        ]
+    }
+}
+
+/// A mode of the identified representative, and the matching modes of the physics representative.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModeFinding {
+    pub condition: ConditionId,
+    /// Its true airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// Number of the mode in this condition, from 1, by rising frequency.
+    pub number: usize,
+    /// Its name; `None` where neither states nor frequency determine it.
+    pub name: Option<ModeName>,
+    /// Basis of the name; a name by frequency and damping alone is a guess.
+    pub named_by: NamedBy,
+    /// Verdict on the physics mode.
+    pub verdict: ModeVerdict,
+    pub identified: ModeNumbers,
+    /// Standard deviations of its numbers; `None` where the source identification is unknown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub identified_deviation: Option<ModeValues>,
+    /// The matching mode of the physics representative, where there is one.
+    pub physics: Option<ModeNumbers>,
+    /// Verdict with the couplings of the study; `None` without couplings, because gains and delays
+    /// move no pole.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub corrected_verdict: Option<ModeVerdict>,
+    /// The matching mode with the couplings; `None` also without couplings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub corrected: Option<ModeNumbers>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<ModeTolerance>,
+}
+
+/// Compares the modes of a condition.
+///
+/// # Errors
+/// The reason in words why there are no modes.
+pub(crate) fn mode_findings(
+    asked: &AskedCondition<'_>,
+    known: &KnownPoles,
+) -> Result<Vec<ModeFinding>, String> {
+    let tolerances = &asked.analysis.study.requirements.mode_tolerances;
+    let [physics, identified] =
+        BundleKind::BOTH.map(|kind| asked.result.representative_model(kind));
+    let of_physics = known_modes(physics)?;
+    let of_identified = known_modes(identified)?;
+    let of_corrected = coupled_modes(asked, physics)?;
+    let flown = ModelModes {
+        modes: &of_identified,
+        states: &identified.states,
+    };
+    let models: Vec<ModelModes<'_>> = std::iter::once(&of_physics)
+        .chain(&of_corrected)
+        .map(|modes| ModelModes {
+            modes,
+            states: &physics.states,
+        })
+        .collect();
+    let rows = compare_modes(
+        flown,
+        &models,
+        known.of(asked.id()),
+        asked.analysis.study.settings.band,
+        tolerances,
+    );
+    let numbers = |row: &ModeRow, of: usize| {
+        row.models
+            .get(of)
+            .copied()
+            .flatten()
+            .map(|mode| ModeNumbers::of(&mode, &physics.name))
+    };
+    let finding = |(index, row): (usize, ModeRow)| ModeFinding {
+        condition: asked.id(),
+        airspeed_kt: asked.airspeed_kt(),
+        number: index + 1,
+        name: row.name,
+        named_by: row.named_by,
+        verdict: row
+            .verdicts
+            .first()
+            .copied()
+            .unwrap_or(ModeVerdict::NotPaired),
+        identified: ModeNumbers::of(&row.flown, &identified.name),
+        identified_deviation: row.deviation,
+        physics: numbers(&row, 0),
+        corrected_verdict: row.verdicts.get(1).copied(),
+        corrected: numbers(&row, 1),
+        tolerance: row.tolerance,
+    };
+    Ok(rows.into_iter().enumerate().map(finding).collect())
+}
+
+/// Returns the modes of a physics model with the couplings of the study; `None` without couplings.
+fn coupled_modes(asked: &AskedCondition<'_>, physics: &Model) -> Result<Option<Vec<Mode>>, String> {
+    let Some(matrices) = physics
+        .state_space()
+        .filter(|_| asked.result.coupled.is_some())
+    else {
+        return Ok(None);
+    };
+    let named =
+        |error: &dyn std::fmt::Display| format!("\"{}\" with couplings: {error}", physics.name);
+    let coupled = asked
+        .result
+        .coupled_model(matrices, Pade::default())
+        .map_err(|error| named(&error))?;
+    modes_of(&Dynamics::StateSpace(coupled.into_owned()))
+        .map(Some)
+        .map_err(|error| named(&error))
+}
+
+/// Returns the modes of a model, or why they are unknown.
+fn known_modes(model: &Model) -> Result<Vec<Mode>, String> {
+    if model.state_space().is_none() {
+        return Err(format!(
+            "\"{}\" is a measured response: it has no poles",
+            model.name
+        ));
+    }
+    modes_of(&model.dynamics).map_err(|error| format!("\"{}\": {error}", model.name))
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_method::requirements::ModeVerdict;
+    use gdcm_method::requirements::mode_pairing::LARGEST_PAIR_DISTANCE;
+
+    use super::*;
+    use crate::results::couplings_tests::EXAMPLE;
+    use crate::results::requirements::requirements_of;
+    use crate::stages::execution::Execution;
+
+    #[test]
+    fn modes_of_the_example_are_paired_and_named_once_and_within_the_distance() {
+        let found = requirements_of(
+            &EXAMPLE.analysis,
+            &KnownPoles::default(),
+            &Execution::sequential(),
+        )
+        .unwrap();
+        let least = EXAMPLE.analysis.study.settings.band.min();
+        let pole =
+            |of: &ModeNumbers| nalgebra::Complex::new(of.pole_real_rad_s, of.pole_imaginary_rad_s);
+        for condition in EXAMPLE.analysis.conditions.keys() {
+            let modes = || found.modes.iter().filter(|of| of.condition == *condition);
+            let mut names: Vec<ModeName> = modes().filter_map(|of| of.name).collect();
+            let count = names.len();
+            names.sort_unstable();
+            names.dedup();
+            assert_eq!(names.len(), count, "condition {condition}");
+            let mut partners: Vec<_> = Vec::new();
+            for mode in modes() {
+                let Some(physics) = &mode.physics else {
+                    assert_eq!(mode.verdict, ModeVerdict::NotPaired);
+                    continue;
+                };
+                let flown = pole(&mode.identified);
+                let physics = pole(physics);
+                let largest = flown.norm().max(physics.norm()).max(least);
+                assert!(
+                    (flown - physics).norm() <= LARGEST_PAIR_DISTANCE * largest,
+                    "{condition}: {flown} {physics}"
+                );
+                assert!(
+                    !partners.contains(&physics),
+                    "condition {condition}: {physics} twice"
+                );
+                partners.push(physics);
+            }
+            assert!(
+                modes().any(|of| of.name == Some(ModeName::DutchRoll) && of.physics.is_some()),
+                "{condition}"
+            );
+        }
+        assert!(
+            found.modes.iter().any(|of| of.physics.is_none()),
+            "some flown poles are no helicopter's"
+        );
+    }
+
+    #[test]
+    fn a_mode_whose_deviation_is_beyond_the_tolerance_is_not_determined() {
+        let of = |known: &KnownPoles| {
+            requirements_of(&EXAMPLE.analysis, known, &Execution::sequential()).unwrap()
+        };
+        let unknown = of(&KnownPoles::default());
+        let judged = |mode: &&ModeFinding| {
+            matches!(mode.verdict, ModeVerdict::Within | ModeVerdict::Outside)
+        };
+        let mode = unknown
+            .modes
+            .iter()
+            .find(judged)
+            .expect("a Dutch roll within the band");
+        assert_eq!(mode.identified_deviation, None);
+        assert!(
+            unknown
+                .mode_table(mode.condition)
+                .title
+                .contains("not known")
+        );
+        let verdict = |sd: f64, moved: f64| {
+            let numbers = &mode.identified;
+            let pole = nalgebra::Complex::new(
+                numbers.pole_real_rad_s * moved,
+                numbers.pole_imaginary_rad_s * moved,
+            );
+            let estimate = PoleEstimate {
+                pole,
+                sd_re: sd * pole.norm(),
+                sd_im: sd * pole.norm(),
+                determined: true,
+            };
+            let found = of(&KnownPoles::from_iter([(mode.condition, vec![estimate])]));
+            let same = found
+                .modes
+                .iter()
+                .find(|of| (of.condition, of.number) == (mode.condition, mode.number))
+                .unwrap();
+            (same.verdict, same.identified_deviation.is_some())
+        };
+        assert_eq!(verdict(1e-3, 1.0), (mode.verdict, true));
+        assert_eq!(verdict(0.4, 1.0), (ModeVerdict::NotDetermined, true));
+        assert_eq!(
+            verdict(0.4, 1.1),
+            (mode.verdict, false),
+            "an estimate of another model says nothing"
+        );
+    }
+}

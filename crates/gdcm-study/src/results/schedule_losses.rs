@@ -1,0 +1,176 @@
+//! Losses of the schedule against the conditions' own corrections: omitted delays, and J.
+
+use gdcm_method::correction::{Channel, ChannelCorrection};
+use gdcm_method::schedule::assessment::corrected_cost_on;
+use gdcm_method::schedule::{ScheduleCaution, ScheduledCost};
+use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Pair};
+use gdcm_model::units::s_to_ms;
+
+use super::analysis::{Analysis, ConditionAnalysis};
+use crate::stages::comparison::ModelMismatch;
+
+/// Delay \[s\] below which a channel counts as having none: it is displayed as 0.0 ms.
+const NO_DELAY_S: f64 = 5e-5;
+
+/// A channel that has a delay in the own corrections of some conditions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DelayedChannel {
+    pub channel: Channel,
+    /// Its delay in each of these conditions, the longest first.
+    pub delays: Vec<OwnDelay>,
+}
+
+/// The delay of a channel in a condition's own correction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OwnDelay {
+    pub condition: ConditionId,
+    /// The delay \[s\].
+    pub delay_s: f64,
+}
+
+impl DelayedChannel {
+    /// Describes the delay: "delay of output NX: 5.3 ms in condition 4".
+    pub fn words(&self, dataset: &Dataset) -> String {
+        let side = match self.channel {
+            Channel::Input(_) => "input",
+            Channel::Output(_) => "output",
+        };
+        let name = self.channel.name_in(dataset);
+        let Some(longest) = self.delays.first() else {
+            return format!("delay of {side} {name}: none");
+        };
+        let delay_ms = s_to_ms(longest.delay_s);
+        let condition = longest.condition;
+        match self.delays.len() {
+            1 => format!("delay of {side} {name}: {delay_ms:.1} ms in condition {condition}"),
+            2 => format!(
+                "delay of {side} {name}: up to {delay_ms:.1} ms, in condition {condition} and in 1 other"
+            ),
+            count => {
+                let others = count - 1;
+                format!(
+                    "delay of {side} {name}: up to {delay_ms:.1} ms, in condition {condition} and in {others} others"
+                )
+            }
+        }
+    }
+}
+
+impl Analysis {
+    /// Returns the channels with a delay in the own correction of one of these conditions.
+    pub fn delayed_channels(&self, conditions: &[ConditionId]) -> Vec<DelayedChannel> {
+        let mut found = Vec::new();
+        for channel in Channel::all_of(&self.study.dataset) {
+            let mut delays = Vec::new();
+            for &condition in conditions {
+                let Some(result) = self.condition(condition) else {
+                    continue;
+                };
+                let delay_s = result.correction.pure_delay_s(channel);
+                if delay_s >= NO_DELAY_S {
+                    delays.push(OwnDelay { condition, delay_s });
+                }
+            }
+            if !delays.is_empty() {
+                delays.sort_by(|a, b| b.delay_s.total_cmp(&a.delay_s));
+                found.push(DelayedChannel { channel, delays });
+            }
+        }
+        found
+    }
+
+    /// Returns the delays of the scheduled conditions that the schedule omits; empty where it has
+    /// delays, and where there is no schedule.
+    pub fn unscheduled_delays(&self) -> Vec<DelayedChannel> {
+        match &self.schedule {
+            Ok(schedule) if !schedule.has_delays() => self.delayed_channels(&self.scheduled()),
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// Returns cautions about the conditions with more than twice the J of their own correction under
+/// the schedule (M12).
+pub(crate) fn schedule_cost_cautions(analysis: &Analysis) -> Vec<ScheduleCaution> {
+    let mut cautions = Vec::new();
+    for result in analysis
+        .conditions
+        .values()
+        .filter_map(|outcome| outcome.as_ref().ok())
+    {
+        if let Some(cost) = scheduled_cost(analysis, result).filter(ScheduledCost::is_notable) {
+            cautions.push(ScheduleCaution::CostsMore(cost));
+        }
+    }
+    cautions
+}
+
+/// Returns J of a condition under the schedule and under its own correction: of the nominal model,
+/// or of the representative where the nominal model is rejected. `None` without a schedule, or
+/// where no on-axis response can be compared.
+fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<ScheduledCost> {
+    let schedule = analysis.schedule.as_ref().ok()?;
+    let condition = &result.condition;
+    let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()].name;
+    let is_rejected = analysis
+        .study
+        .choice(condition.id())
+        .physics
+        .rejected
+        .contains(nominal);
+    let (model, models) = if is_rejected {
+        (
+            result.representative_name(BundleKind::Physics),
+            &result.comparison.representative,
+        )
+    } else {
+        (nominal.as_str(), &result.comparison.nominal)
+    };
+    let scheduled = schedule.at_state(condition.flight_state());
+    let mut sum = CostSum::default();
+    for pair in analysis.study.dataset.measuring_pairs().marked() {
+        let scheduled = cost_of(analysis, models, &scheduled, pair);
+        let own = cost_of(analysis, models, &result.correction, pair);
+        if let (Some(scheduled), Some(own)) = (scheduled, own) {
+            sum.add(scheduled, own);
+        }
+    }
+    if sum.count == 0 {
+        return None;
+    }
+    let count = sum.count as f64;
+    Some(ScheduledCost {
+        condition: condition.id(),
+        model: model.to_owned(),
+        scheduled: sum.scheduled / count,
+        own: sum.own / count,
+    })
+}
+
+/// Returns J of a response of a model under a correction.
+fn cost_of(
+    analysis: &Analysis,
+    models: &ModelMismatch,
+    correction: &ChannelCorrection,
+    pair: Pair,
+) -> Option<f64> {
+    let mismatch = models.mismatch[pair].as_ref()?;
+    let average = analysis.study.settings.cost_average;
+    Some(corrected_cost_on(mismatch, correction, pair, &analysis.omega, average)?.total())
+}
+
+/// Sum of J over some responses.
+#[derive(Default)]
+struct CostSum {
+    scheduled: f64,
+    own: f64,
+    count: usize,
+}
+
+impl CostSum {
+    fn add(&mut self, scheduled: f64, own: f64) {
+        self.scheduled += scheduled;
+        self.own += own;
+        self.count += 1;
+    }
+}

@@ -1,0 +1,455 @@
+//! Opening and saving, the desktop's file dialogs, and the list of recent files. Slow operations
+//! run in threads, so the window never blocks.
+
+use std::path::{Path, PathBuf};
+
+use gdcm_io::files::study_file::{STUDY_EXTENSION, holds_models, open_study_of};
+use gdcm_io::files::user_state::{add_recent_file, recent_files};
+use gdcm_io::formats::variables::ReadingBudget;
+use gdcm_io::output_set::OutputSet;
+use gdcm_io::source::{at_home, file_exists};
+use gdcm_io::{Existing, FileError, LoadedDataset, Opened, embedded_example, load_any, save_study};
+use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_study::Study;
+use gdcm_study::decisions::differences::Difference;
+
+use super::GdcmApp;
+use super::threads::caught;
+use crate::gui::commands::command::{Command, FormKind, RequirementTable};
+use crate::gui::panels::bars::Bar;
+use crate::gui::state::display::Preferences;
+use crate::gui::state::window_state::{RecentFile, State};
+use crate::gui::views::assembling::AssemblingCommand;
+use crate::gui::views::records::RecordsCommand;
+
+/// The study as last saved.
+#[derive(Clone, Debug)]
+pub(super) struct SavedStudy {
+    /// Path of the file; `None` for a new study.
+    pub(super) path: Option<PathBuf>,
+    /// The saved study, or the initial state of a new one; `None` for restored decisions.
+    pub(super) study: Option<Study>,
+}
+
+/// Purpose of reading a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ReadFor {
+    /// Shown instead of the open study.
+    Opening,
+    /// Replaces the open dataset, which was read from the same file earlier.
+    Reloading,
+    /// Continues unsaved decisions; holds the number of the offer.
+    Restoring(usize),
+}
+
+/// Purpose of a file dialog.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum DialogPurpose {
+    Open,
+    SaveStudy,
+    ExportFolder,
+    ModelFolder,
+    RecordFolder,
+    RequirementTable(RequirementTable),
+}
+
+/// Action postponed until the engineer confirms that unsaved decisions may be lost.
+#[derive(Debug)]
+pub(super) enum PendingAction {
+    /// Shows a file that was read successfully.
+    Show(ReadFor, Box<Opened>),
+    /// Returns to the start page and closes everything that is open.
+    Close,
+    Quit,
+}
+
+impl GdcmApp {
+    /// Returns the initial state, dataset and saved study with which the window shows `opened`.
+    pub(super) fn parts_of(opened: Opened) -> (State, LoadedDataset, SavedStudy) {
+        let path = match &opened {
+            Opened::Dataset(_) => None,
+            Opened::Study(opened) => Some(opened.path.clone()),
+        };
+        let (study, loaded, differences) = opened.into_study();
+        let mut state = State::new(
+            study.clone(),
+            study_name(path.as_deref()),
+            loaded.cautions.clone(),
+        );
+        // Saving now would drop the decisions that do not apply.
+        state.unsaved = differences
+            .iter()
+            .any(|difference| matches!(difference, Difference::NotApplied { .. }));
+        state.forms.shown = (!differences.is_empty()).then_some(FormKind::Differences);
+        state.differences = differences;
+        state.is_example = loaded.path().is_none();
+        let saved = SavedStudy {
+            path,
+            study: (!state.unsaved).then_some(study),
+        };
+        (state, loaded, saved)
+    }
+
+    /// Replaces the open study with `opened`.
+    pub(super) fn show(&mut self, opened: Opened) {
+        let (mut state, loaded, saved) = Self::parts_of(opened);
+        let requested = self.state.results.requested;
+        let name = loaded.origin.to_string();
+        state.recent = std::mem::take(&mut self.state.recent);
+        Preferences::of(&self.state.display).apply(&mut state.display);
+        // Offers to restore lost decisions stay; the other bars concern the previous study.
+        state.bars = std::mem::take(&mut self.state.bars);
+        state.bars.retain(|bar| matches!(bar, Bar::Recovery { .. }));
+        self.state = state;
+        self.record_reader.give_up();
+        // Request numbers continue, so that late answers about the old dataset can be recognised.
+        self.state.results.requested = requested;
+        self.state.results.received = requested;
+        self.loaded = loaded;
+        self.earlier.clear();
+        self.saved = saved;
+        self.keep_unsaved();
+        self.done(format!("opened {name}"));
+    }
+
+    /// Puts the open study, or else the open dataset, first in the list of recent files.
+    pub(super) fn look_for_recent(&self) {
+        let dataset = || self.loaded.path().map(Path::to_owned);
+        self.read_recent(self.saved.path.clone().or_else(dataset));
+    }
+
+    /// Reads the list of recent files and checks which of them exist; puts `newest` first. Runs in
+    /// its own thread, because a network drive may be slow.
+    pub(super) fn read_recent(&self, newest: Option<PathBuf>) {
+        let Some(directory) = self.directory.clone() else {
+            return;
+        };
+        let read = move || -> Result<Vec<RecentFile>, FileError> {
+            newest.map_or(Ok(()), |newest| add_recent_file(&directory, &newest))?;
+            Ok(recent_files(&directory)
+                .into_iter()
+                .map(recent_file)
+                .collect())
+        };
+        self.in_thread("the reading of recent files", read, |app, read| {
+            if let Some(files) = read.and_then(|read| app.unless_error(read)) {
+                app.state.recent = files;
+            }
+        });
+    }
+
+    /// Opens a dataset or a study; the open study stays until the file is read. `moved` is the new
+    /// path of a study's dataset.
+    pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>) {
+        let path = self.at_home(path);
+        let moved = moved.map(|dataset| self.at_home(dataset));
+        if path.extension().is_some() && holds_models(&path) {
+            let path = sanitized_path(&path);
+            return self.notify_error(format!(
+                "{path}: this is neither a dataset nor a study; Import models, in the menu File, makes a dataset of model files"
+            ));
+        }
+        let lost = self
+            .offers
+            .iter()
+            .position(|lost| lost.as_ref().is_some_and(|lost| lost.path() == path));
+        let purpose = lost.map_or(ReadFor::Opening, ReadFor::Restoring);
+        self.state.forms.shown = None;
+        let name = sanitized_path(&path);
+        let read = move |budget: &ReadingBudget<'_>| match moved {
+            Some(dataset) => open_study_of(&path, &dataset, budget).map(Opened::Study),
+            None => load_any(&path, budget),
+        };
+        self.read(purpose, name, read);
+    }
+
+    /// Reads a file in its own thread, within the budget of a file; replaces a reading under way.
+    pub(super) fn read(
+        &mut self,
+        purpose: ReadFor,
+        name: String,
+        read: impl FnOnce(&ReadingBudget<'_>) -> Result<Opened, FileError> + Send + 'static,
+    ) {
+        self.state.opening = Some(name);
+        let (number, stop) = self.opener.begin();
+        let read = move || read(&ReadingBudget::default().stopped_by(stop));
+        self.in_thread("the reading of a file", read, move |app, opened| {
+            if !app.opener.is_newest(number) {
+                return;
+            }
+            app.state.opening = None;
+            opened
+                .into_iter()
+                .for_each(|opened| app.answer_opened(purpose, opened));
+        });
+    }
+
+    pub(super) fn open_example(&mut self) {
+        self.answer_opened(ReadFor::Opening, embedded_example().map(Opened::Dataset));
+    }
+
+    /// Replaces the open study with the example, behind the start page.
+    pub(super) fn close_study(&mut self) {
+        let Some(example) = self.unless_error(embedded_example()) else {
+            return;
+        };
+        self.show(Opened::Dataset(example));
+        self.state.on_start_page = true;
+        self.state.notice = None;
+        self.read_recent(None);
+    }
+
+    fn answer_opened(&mut self, purpose: ReadFor, opened: Result<Opened, FileError>) {
+        match opened {
+            Ok(opened) if purpose != ReadFor::Reloading && self.state.unsaved => {
+                self.ask_to_lose(PendingAction::Show(purpose, Box::new(opened)));
+            }
+            Ok(opened) => self.show_read(purpose, opened),
+            Err(error) => self.open_failed(error),
+        }
+    }
+
+    fn show_read(&mut self, purpose: ReadFor, opened: Opened) {
+        match purpose {
+            ReadFor::Opening => {
+                self.show(opened);
+                self.look_for_recent();
+            }
+            ReadFor::Reloading => self.show_reloaded(opened.into_study().1),
+            ReadFor::Restoring(offer) => self.show_restored(offer, opened),
+        }
+    }
+
+    /// Asks whether unsaved decisions may be lost to the postponed action.
+    pub(super) fn ask_to_lose(&mut self, postponed: PendingAction) {
+        self.postponed = Some(postponed);
+        self.goes_on_once_saved = false;
+        self.state.forms.shown = Some(FormKind::Unsaved);
+    }
+
+    /// Saves the study, then carries out the action postponed until it is saved.
+    pub(super) fn save_and_go_on(&mut self) {
+        self.state.forms.shown = None;
+        self.goes_on_once_saved = true;
+        self.save();
+    }
+
+    /// Carries out the action postponed because of unsaved decisions.
+    pub(super) fn go_on(&mut self) {
+        self.goes_on_once_saved = false;
+        match self.postponed.take() {
+            Some(PendingAction::Show(purpose, opened)) => self.show_read(purpose, *opened),
+            Some(PendingAction::Close) => self.close_study(),
+            Some(PendingAction::Quit) => self.quit(),
+            None => {}
+        }
+    }
+
+    /// Reports why nothing was opened, or asks for a study's dataset; the open study stays.
+    fn open_failed(&mut self, error: FileError) {
+        self.read_recent(None);
+        match error {
+            FileError::StudyDataset { path, dataset } => {
+                self.state.forms.lost_dataset = Some((path, dataset.to_string()));
+                self.state.forms.shown = Some(FormKind::FindDataset);
+            }
+            error => self.notify_error(error.to_string()),
+        }
+    }
+
+    /// Opens a file dialog of the desktop unless one is open; a save dialog proposes `file_name`.
+    pub(super) fn ask_path(&mut self, purpose: DialogPurpose, file_name: String) {
+        if self.dialog_open {
+            return;
+        }
+        self.dialog_open = true;
+        // A desktop without dialogs counts as a dialog closed without a choice.
+        let ask = move || caught(|| dialog(purpose, &file_name)).ok().flatten();
+        self.in_thread("the dialog", ask, move |app, chosen| {
+            app.dialog_open = false;
+            match chosen.flatten() {
+                Some(path) => app.path_chosen(purpose, path),
+                None => app.nothing_chosen(purpose),
+            }
+        });
+    }
+
+    fn path_chosen(&mut self, purpose: DialogPurpose, path: PathBuf) {
+        match purpose {
+            DialogPurpose::Open => self.open(path, None),
+            DialogPurpose::SaveStudy => {
+                // The dialog has asked only about the name as it was chosen.
+                let is_asked = with_study_extension(path.clone()) == path;
+                self.save_as(
+                    path,
+                    if is_asked {
+                        Existing::Replace
+                    } else {
+                        Existing::Keep
+                    },
+                );
+            }
+            DialogPurpose::ExportFolder => {
+                *self.state.forms.typed_in(FormKind::Export) = path.display().to_string()
+            }
+            DialogPurpose::ModelFolder => self.assemble(AssemblingCommand::Add(vec![path])),
+            DialogPurpose::RecordFolder => self.records(RecordsCommand::Add(vec![path])),
+            DialogPurpose::RequirementTable(table) => self.read_requirement_table(table, path),
+        }
+    }
+
+    /// Handles a dialog without a choice. A cancelled dialog and a desktop without dialogs look
+    /// alike, so the path can be typed instead.
+    fn nothing_chosen(&mut self, purpose: DialogPurpose) {
+        match purpose {
+            DialogPurpose::Open => self.state.forms.shown = Some(FormKind::Open),
+            DialogPurpose::SaveStudy => {
+                *self.state.forms.typed_in(FormKind::Save) = self.proposed_name();
+                self.state.forms.shown = Some(FormKind::Save);
+            }
+            DialogPurpose::RequirementTable(table) => {
+                self.state.forms.shown = Some(FormKind::ReadRequirementTable(table));
+            }
+            DialogPurpose::ExportFolder
+            | DialogPurpose::ModelFolder
+            | DialogPurpose::RecordFolder => {}
+        }
+    }
+
+    /// Saves the study to its own file, or asks for a path.
+    pub(super) fn save(&mut self) {
+        match self.saved.path.clone() {
+            Some(path) => self.save_as(path, Existing::Replace),
+            None => self.ask_path(DialogPurpose::SaveStudy, self.proposed_name()),
+        }
+    }
+
+    /// Saves the study to a file. Asks before overwriting a file other than the study's own, unless
+    /// the engineer has already agreed.
+    pub(super) fn save_as(&mut self, path: PathBuf, existing: Existing) {
+        let path = with_study_extension(self.at_home(path));
+        let is_own = self.saved.path.as_ref() == Some(&path);
+        let place = OutputSet::new(
+            if is_own { Existing::Replace } else { existing },
+            Vec::new(),
+        );
+        match place
+            .check(&[&path])
+            .and_then(|()| save_study(&self.state.study, &self.loaded, &path))
+        {
+            Ok(()) => {
+                self.state.forms.shown = None;
+                self.state.study_name = study_name(Some(&path));
+                self.state.unsaved = false;
+                self.done(format!("saved {}", sanitized_path(&path)));
+                self.saved = SavedStudy {
+                    path: Some(path),
+                    study: Some(self.state.study.clone()),
+                };
+                self.keep_unsaved();
+                self.look_for_recent();
+                if self.goes_on_once_saved {
+                    self.go_on();
+                }
+            }
+            Err(FileError::Exists { paths }) => {
+                *self.state.forms.typed_in(FormKind::Save) = path.display().to_string();
+                self.ask_to_overwrite(&paths, FormKind::Save, Command::SaveStudyAs(path));
+            }
+            Err(error) => {
+                self.goes_on_once_saved = false;
+                self.postponed = None;
+                self.notify_error(error.to_string());
+            }
+        }
+    }
+
+    /// Expands `~` in a typed path to the home directory.
+    pub(super) fn at_home(&self, typed: PathBuf) -> PathBuf {
+        at_home(&typed, self.home.as_deref())
+    }
+
+    /// Returns a proposed file name for the study.
+    pub(super) fn proposed_name(&self) -> String {
+        if let Some(path) = &self.saved.path {
+            return path.display().to_string();
+        }
+        format!("{}.{STUDY_EXTENSION}", self.stem())
+    }
+
+    /// Returns the stem of the names of files about the dataset.
+    pub(super) fn stem(&self) -> String {
+        let stem = self
+            .loaded
+            .path()
+            .and_then(Path::file_stem)
+            .map(|stem| stem.to_string_lossy().into_owned());
+        stem.unwrap_or_else(|| "example".to_owned())
+            .trim_end_matches(".json")
+            .to_owned()
+    }
+}
+
+pub(super) fn study_name(path: Option<&Path>) -> String {
+    let name = path
+        .and_then(|path| path.file_name())
+        .map(|name| sanitized(&name.to_string_lossy()));
+    name.unwrap_or_else(|| "untitled study".to_owned())
+}
+
+fn with_study_extension(path: PathBuf) -> PathBuf {
+    let name = path
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    if name.ends_with(".json") {
+        path
+    } else {
+        path.with_file_name(format!("{name}.{STUDY_EXTENSION}"))
+    }
+}
+
+fn recent_file(path: PathBuf) -> RecentFile {
+    let name = path
+        .file_name()
+        .map(|name| sanitized(&name.to_string_lossy()))
+        .unwrap_or_default();
+    let folder = path.parent().map(sanitized_path).unwrap_or_default();
+    RecentFile {
+        missing: !file_exists(&path),
+        path,
+        name,
+        folder,
+    }
+}
+
+fn dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
+    let dialog = rfd::FileDialog::new();
+    match purpose {
+        DialogPurpose::Open => dialog
+            .set_title("Open a dataset or a study")
+            .add_filter("datasets and studies", &["json", "gz"])
+            .add_filter("all files", &["*"])
+            .pick_file(),
+        DialogPurpose::SaveStudy => dialog
+            .set_title("Save the study")
+            .add_filter("studies", &["json"])
+            .set_file_name(file_name)
+            .save_file(),
+        DialogPurpose::ModelFolder => dialog.set_title("A folder of model files").pick_folder(),
+        DialogPurpose::RecordFolder => dialog.set_title("A folder of flight records").pick_folder(),
+        DialogPurpose::RequirementTable(table) => {
+            let title = match table {
+                RequirementTable::Levels => "Levels of bandwidth and phase delay",
+                RequirementTable::Tolerances => "Tolerances of time histories",
+            };
+            dialog
+                .set_title(title)
+                .add_filter("tables", &["json"])
+                .pick_file()
+        }
+        DialogPurpose::ExportFolder => dialog
+            .set_title("Export corrections to a folder")
+            .pick_folder(),
+    }
+}

@@ -1,0 +1,255 @@
+//! Command palette: finds every command by a few letters of its name.
+
+use std::cmp::Reverse;
+
+use egui::text::{CCursor, CCursorRange};
+use egui::{Key, Modifiers, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
+
+use super::command::Command;
+use super::command_table::{Entry, every_command};
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::controls::{Room, row_text, row_text_within, row_ui};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+
+/// Height of the list \[pt\].
+const HEIGHT: f32 = 340.0;
+/// Most rows drawn; further letters narrow a longer list.
+const MOST_ROWS: usize = 60;
+
+/// State of the open palette.
+#[derive(Clone, Debug, Default)]
+pub struct PaletteForm {
+    /// Search text as typed.
+    pub query: String,
+    /// Row carried out by Enter.
+    pub chosen: usize,
+}
+
+/// Draws the field and the matching commands. Up and Down select, Enter carries out.
+pub fn command_palette_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    opens: bool,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let entries = every_command(state);
+    let form = &mut state.forms.palette;
+    if opens {
+        *form = PaletteForm::default();
+    }
+    let pressed =
+        |ui: &Ui, key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
+    let down = pressed(ui, Key::ArrowDown);
+    let up = pressed(ui, Key::ArrowUp);
+    let entered = pressed(ui, Key::Enter) > 0;
+    if field_ui(ui, &mut form.query, opens) {
+        form.chosen = 0;
+    }
+    let mut found = answers(entries.iter().map(|entry| entry.name.as_str()), &form.query);
+    found.truncate(MOST_ROWS);
+    form.chosen = (form.chosen + down)
+        .saturating_sub(up)
+        .min(found.len().saturating_sub(1));
+    let chosen = form.chosen;
+    let has_moved = down + up > 0;
+    ui.add_space(4.0);
+    let mut taken = found.get(chosen).filter(|_| entered).copied();
+    // The height is fixed, so that the field does not move while letters are typed.
+    ScrollArea::vertical()
+        .max_height(HEIGHT)
+        .min_scrolled_height(HEIGHT)
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            if found.is_empty() {
+                ui.label(palette.dim("No command has these letters"));
+            }
+            for (row, &place) in found.iter().enumerate() {
+                let response = entry_ui(ui, &entries[place], row == chosen, palette);
+                if response.clicked() {
+                    taken = Some(place);
+                }
+                if row == chosen && has_moved {
+                    response.scroll_to_me(None);
+                }
+            }
+        });
+    if let Some(entry) = taken
+        .map(|place| &entries[place])
+        .filter(|entry| entry.enabled)
+    {
+        commands.push(Command::ShowForm(None));
+        commands.push(entry.command.clone());
+    }
+}
+
+/// Draws the search field; returns whether its text has changed.
+fn field_ui(ui: &mut Ui, query: &mut String, opens: bool) -> bool {
+    let shown = TextEdit::singleline(query)
+        .hint_text("what to do")
+        .desired_width(f32::INFINITY)
+        .show(ui);
+    let response = shown.response.response;
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::TextInput, true, "Command palette");
+        info.current_text_value = Some(query.clone());
+        info
+    });
+    if opens || !response.has_focus() {
+        let mut edited = shown.state;
+        edited
+            .cursor
+            .set_char_range(Some(CCursorRange::one(CCursor::new(query.chars().count()))));
+        edited.store(ui.ctx(), response.id);
+        response.request_focus();
+    }
+    response.changed()
+}
+
+fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui::Response {
+    let (row, response) = row_ui(ui, palette, chosen, false, &entry.name);
+    let color = if entry.enabled {
+        palette.text
+    } else {
+        palette.quiet_text
+    };
+    let keys = entry
+        .shortcuts
+        .first()
+        .map(|shortcut| ui.ctx().format_shortcut(shortcut))
+        .unwrap_or_default();
+    let keys = row_text(ui, row, -6.0, &keys, SMALL_SIZE, palette.dim_text);
+    let room = Room {
+        left: 8.0,
+        right: keys.left() - row.left() - 10.0,
+    };
+    row_text_within(ui, row, room, &entry.name, BODY_SIZE, color);
+    response.on_hover_text(entry.meaning)
+}
+
+/// Scores how well a name answers a query: greater is better; `None` if a word of the query is
+/// missing from it.
+///
+/// Every word of the query must occur in the name, in any order: as a whole word (4), at the
+/// beginning of a word (3), inside a word (2), or at least as letters in the same order (1). Undo
+/// and redo, which are named after the last decision, come last unless the query asks for them.
+/// Equal names are ordered by the score of the command without its arguments, then by length,
+/// shortest first.
+pub fn answer_score(name: &str, query: &str) -> Option<(bool, usize, usize, Reverse<usize>)> {
+    let name = name.to_lowercase();
+    let query = query.to_lowercase();
+    let mut score = 0;
+    let mut of_command = 0;
+    let command = name.split(['(', ':']).next().unwrap_or_default();
+    for word in query.split_whitespace() {
+        score += word_score(&name, word)?;
+        of_command += word_score(command, word).unwrap_or_default();
+    }
+    let goes_back = ["undo", "redo"]
+        .into_iter()
+        .find(|back| words_of(&name).next() == Some(back));
+    let is_asked =
+        goes_back.is_none_or(|back| query.split_whitespace().any(|word| back.starts_with(word)));
+    Some((is_asked, score, of_command, Reverse(name.chars().count())))
+}
+
+fn word_score(name: &str, word: &str) -> Option<usize> {
+    if words_of(name).any(|whole| whole == word) {
+        Some(4)
+    } else if starts_a_word(name, word) {
+        Some(3)
+    } else if name.contains(word) {
+        Some(2)
+    } else {
+        has_letters(name, word).then_some(1)
+    }
+}
+
+/// Returns the indices of the names that answer the query, best first; all of them in their own
+/// order for an empty query.
+pub fn answers<'a>(names: impl Iterator<Item = &'a str>, query: &str) -> Vec<usize> {
+    let scored = names
+        .enumerate()
+        .filter_map(|(place, name)| Some((answer_score(name, query)?, place)));
+    let mut found: Vec<_> = scored.collect();
+    if !query.trim().is_empty() {
+        found.sort_by_key(|(score, _)| Reverse(*score));
+    }
+    found.into_iter().map(|(_, place)| place).collect()
+}
+
+fn words_of(name: &str) -> impl Iterator<Item = &str> {
+    name.split(|letter: char| !letter.is_alphanumeric())
+}
+
+fn starts_a_word(name: &str, word: &str) -> bool {
+    let begins = |at: usize| {
+        name[..at]
+            .chars()
+            .next_back()
+            .is_none_or(|before| !before.is_alphanumeric())
+    };
+    name.match_indices(word).any(|(at, _)| begins(at))
+}
+
+fn has_letters(name: &str, word: &str) -> bool {
+    let mut letters = name.chars();
+    word.chars()
+        .all(|wanted| letters.any(|letter| letter == wanted))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NAMES: [&str; 5] = [
+        "Open…",
+        "Save study as…",
+        "Hold LON → Q exactly",
+        "Export corrections…",
+        "Set the lower gain bound…",
+    ];
+
+    fn found(query: &str) -> Vec<&'static str> {
+        answers(NAMES.into_iter(), query)
+            .into_iter()
+            .map(|place| NAMES[place])
+            .collect()
+    }
+
+    #[test]
+    fn words_are_found_in_any_order_and_shortened() {
+        assert_eq!(found("q lon hold"), ["Hold LON → Q exactly"]);
+        assert_eq!(found("gain low"), ["Set the lower gain bound…"]);
+        assert_eq!(found("expcor"), ["Export corrections…"]);
+        assert_eq!(found("nothing like it"), [""; 0]);
+    }
+
+    #[test]
+    fn the_beginning_of_a_word_comes_before_letters_inside_and_the_shorter_name_before_the_longer()
+    {
+        assert_eq!(found("ex"), ["Export corrections…", "Hold LON → Q exactly"]);
+        assert_eq!(
+            found("s")[..2],
+            ["Save study as…", "Set the lower gain bound…"]
+        );
+    }
+
+    #[test]
+    fn what_undoes_comes_last_unless_it_is_asked_for_and_a_command_comes_before_its_arguments() {
+        let names = [
+            "Undo reject 3 suggested (condition 10)",
+            "Reject (condition 10)",
+            "Condition 10: 60 kt, low altitude",
+        ];
+        let first = |query: &str| names[answers(names.into_iter(), query)[0]];
+        assert_eq!(first("cond 10"), names[2]);
+        assert_eq!(first("undo"), names[0]);
+        assert_eq!(answers(names.into_iter(), "cond 10"), [2, 1, 0]);
+    }
+
+    #[test]
+    fn without_a_query_every_name_is_there_in_its_order() {
+        assert_eq!(found(" "), NAMES);
+    }
+}

@@ -1,0 +1,441 @@
+//! Right side of the window: verdict, result, matrix, the response in focus, a line of settings,
+//! and the export.
+
+use egui::{
+    Align, Button, CornerRadius, Frame, Layout, Margin, Panel, Rect, RichText, Role, ScrollArea,
+    Sense, Ui, pos2, vec2,
+};
+
+use gdcm_method::correction::delta::GainSource;
+use gdcm_model::units::number;
+use gdcm_study::PhaseCorrection;
+use gdcm_study::decisions::setting;
+
+use super::explanation::Sheet;
+use super::verdict::{Step, Verdict, VerdictRow, band_words, export};
+use super::{matrix_panel, result_panel, settings_panel};
+use crate::gui::commands::command::Command;
+use crate::gui::state::focus::{Region, region_ui, take_escape};
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::controls::{Asks, elided, named, named_switch, painted_text, text_width};
+use crate::gui::widgets::palette::{
+    BODY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
+};
+
+/// Space around everything \[pt\].
+const PADDING: f32 = 12.0;
+/// Height of the line of settings \[pt\].
+const LINE: f32 = 36.0;
+/// Height of the row of the export \[pt\].
+const FOOT: f32 = 48.0;
+/// Least window height that shows the card of the response in focus \[pt\].
+const LEAST_WITH_CARD: f32 = 860.0;
+/// Least window height that shows the full result; below it the result takes a single line \[pt\].
+const LEAST_WITH_RESULT: f32 = 600.0;
+
+/// Draws the whole panel from top to bottom.
+pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let verdict = Verdict::of(state);
+    let foot = Frame::new().inner_margin(Margin::ZERO);
+    Panel::bottom("export")
+        .frame(foot)
+        .exact_size(LINE + FOOT)
+        .show(ui, |ui| {
+            region_ui(ui, Region::Settings, |ui| {
+                settings_line_ui(ui, state, palette, commands)
+            });
+            export_ui(ui, state, &verdict, palette, commands);
+        });
+    let window = ui.ctx().content_rect().height();
+    let frame = Frame::new().inner_margin(Margin {
+        left: PADDING as i8,
+        right: PADDING as i8,
+        top: 8,
+        bottom: 4,
+    });
+    frame.show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        // The width is fixed here, so that the content of a part cannot widen the next.
+        let width = ui.available_width();
+        region_ui(ui, Region::Verdict, |ui| {
+            verdict_ui(ui, &verdict, palette, commands)
+        });
+        ui.add_space(8.0);
+        if state.display.settings_open {
+            ScrollArea::vertical()
+                .id_salt("settings")
+                .auto_shrink([false, false])
+                .show(ui, |ui| {
+                    settings_panel::settings_ui(ui, state, palette, commands);
+                });
+            return;
+        }
+        ui.set_max_width(width);
+        let is_folded = window < LEAST_WITH_RESULT;
+        region_ui(ui, Region::Result, |ui| {
+            result_panel::result_ui(ui, state, is_folded, palette, commands)
+        });
+        ui.add_space(8.0);
+        let card = if window >= LEAST_WITH_CARD {
+            matrix_panel::CARD_HEIGHT + 12.0
+        } else {
+            0.0
+        };
+        matrix_panel::matrix_ui(ui, state, ui.available_height() - card, palette, commands);
+        if card > 0.0 {
+            ui.add_space(12.0);
+            matrix_panel::card_ui(ui, state, palette);
+        }
+    });
+}
+
+/// Draws the two rows of the verdict and its first step.
+fn verdict_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
+    let (ground, mark) = match verdict.is_met() {
+        true => (palette.good_ground, palette.good),
+        false if verdict.rows[0].here.is_none() && verdict.caution.is_none() => {
+            (palette.raised, palette.line)
+        }
+        false => (palette.warning_ground, palette.warning),
+    };
+    let frame = Frame::new()
+        .fill(ground)
+        .corner_radius(CornerRadius::same(8));
+    let frame = frame.inner_margin(Margin {
+        left: 16,
+        right: 12,
+        top: 6,
+        bottom: 8,
+    });
+    let shown = frame.show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        heads_ui(ui, verdict, palette);
+        for row in &verdict.rows {
+            row_ui(ui, row, verdict.is_met(), palette);
+        }
+        ui.add_space(4.0);
+        steps_ui(ui, verdict, palette, commands);
+    });
+    let edge = shown
+        .response
+        .rect
+        .with_max_x(shown.response.rect.left() + 4.0);
+    ui.painter().rect_filled(
+        edge,
+        CornerRadius {
+            nw: 8,
+            sw: 8,
+            ne: 0,
+            se: 0,
+        },
+        mark,
+    );
+}
+
+/// Left edges of the counts and of the words in the rows \[pt from the row's left edge\].
+const COLUMNS: [f32; 2] = [46.0, 106.0];
+
+fn heads_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
+    let here = format!("condition {}", verdict.condition);
+    painted_text(ui, rect, COLUMNS[0], &here, small(), palette.dim_text);
+    painted_text(ui, rect, -0.01, "all", small(), palette.dim_text);
+}
+
+fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
+    named(response.clone(), Role::Label, row.sentence());
+    painted_text(ui, rect, 0.0, row.name, body(), palette.dim_text);
+    let is_missed = row.here.is_some_and(|[met, held]| met < held);
+    let color = match (is_all_met, is_missed) {
+        (true, _) => palette.good,
+        (_, true) => palette.warning,
+        _ => palette.text,
+    };
+    painted_text(
+        ui,
+        rect,
+        COLUMNS[0],
+        &VerdictRow::count(row.here),
+        medium(TITLE_SIZE),
+        color,
+    );
+    let everywhere = VerdictRow::count(row.everywhere);
+    let all = painted_text(ui, rect, -0.01, &everywhere, body(), palette.dim_text);
+    let room = all.left() - rect.left() - COLUMNS[1] - 6.0;
+    // Without room for the band only the word is shown: "matched".
+    let fits = text_width(ui, &row.words, body()) <= room;
+    let words = if fits {
+        row.words.as_str()
+    } else {
+        row.words.split(", ").next().unwrap_or_default()
+    };
+    let words = elided(ui, words, room, BODY_SIZE);
+    painted_text(ui, rect, COLUMNS[1], &words, body(), palette.text);
+    response.on_hover_text(row.sentence());
+}
+
+fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
+    // The export is the primary button at the foot already.
+    let is_at_foot = |step: &&Step| step.command == export();
+    let primary = verdict.steps.first().filter(|step| !is_at_foot(step));
+    let links: Vec<Step> = verdict
+        .steps
+        .iter()
+        .skip(1)
+        .cloned()
+        .chain(notes_step(verdict))
+        .collect();
+    match (&verdict.caution, primary) {
+        // A caution and a decision to take: each gets its own line.
+        (Some(caution), Some(_)) => {
+            let (notes, links): (Vec<Step>, Vec<Step>) = links.into_iter().partition(is_of_reasons);
+            line_ui(ui, (Some(caution), None, &notes, ""), palette, commands);
+            line_ui(
+                ui,
+                (None, primary, &links, &verdict.note),
+                palette,
+                commands,
+            );
+        }
+        (caution, primary) => {
+            line_ui(
+                ui,
+                (caution.as_deref(), primary, &links, &verdict.note),
+                palette,
+                commands,
+            );
+        }
+    }
+}
+
+fn is_of_reasons(step: &Step) -> bool {
+    step.command == Command::ShowSheet(Some(Sheet::Reasons))
+}
+
+/// Returns the link to the list of reasons if no other step leads there.
+fn notes_step(verdict: &Verdict) -> Option<Step> {
+    let is_offered = verdict.steps.iter().any(is_of_reasons);
+    let notes = Step {
+        label: format!("{} notes", verdict.reasons),
+        command: Command::ShowSheet(Some(Sheet::Reasons)),
+    };
+    (!is_offered && verdict.reasons > 0).then_some(notes)
+}
+
+/// Draws a caution, a primary button, links, and the note in the remaining width; `⚠ +21 dB above
+/// 12 rad/s` if the caution has no note.
+fn line_ui(
+    ui: &mut Ui,
+    (caution, primary, links, note): (Option<&str>, Option<&Step>, &[Step], &str),
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(if primary.is_some() || caution.is_none() {
+            28.0
+        } else {
+            22.0
+        });
+        if let Some(caution) = caution {
+            let width: f32 = primary
+                .into_iter()
+                .chain(links)
+                .map(|of| text_width(ui, &of.label, body()) + 24.0)
+                .sum();
+            let room = ui.available_width() - width;
+            let whole = format!("⚠ {caution}");
+            let fits = text_width(ui, &whole, body()) <= room;
+            let short = format!("⚠ {}", caution.strip_prefix("Price: ").unwrap_or(caution));
+            let text = palette
+                .small_warning(if fits { whole } else { short })
+                .size(BODY_SIZE);
+            ui.scope(|ui| {
+                ui.set_max_width(room);
+                ui.add(egui::Label::new(text).truncate())
+                    .on_hover_text(caution);
+            });
+        }
+        if let Some(step) = primary {
+            step_ui(ui, step, true, palette, commands);
+        }
+        let (at_end, links): (Vec<&Step>, Vec<&Step>) = links
+            .iter()
+            .partition(|step| step.label.ends_with(" notes"));
+        for step in links {
+            step_ui(ui, step, false, palette, commands);
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            for step in at_end {
+                step_ui(ui, step, false, palette, commands);
+            }
+            if !note.is_empty() {
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    // Without room for all of it: "of 19 models".
+                    let fits = text_width(ui, note, small()) <= ui.available_width();
+                    let shown = if fits {
+                        note
+                    } else {
+                        note.split(", ").next().unwrap_or(note)
+                    };
+                    ui.add(egui::Label::new(palette.small(shown)).truncate())
+                        .on_hover_text(note);
+                });
+            }
+        });
+    });
+}
+
+/// Draws a step as a link or as the only primary button of the window; Enter on it carries it out.
+fn step_ui(
+    ui: &mut Ui,
+    step: &Step,
+    is_primary: bool,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let label = RichText::new(&step.label);
+    let button = if is_primary {
+        Button::new(label.font(medium(BODY_SIZE)).color(palette.on_accent())).fill(palette.accent)
+    } else {
+        Button::new(label.color(palette.accent)).frame(false)
+    };
+    ui.add(button.min_size(vec2(0.0, 28.0)))
+        .asks(step.command.clone(), commands);
+}
+
+/// Draws the settings in one line; a click unfolds them over matrix and card.
+fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let is_open = state.display.settings_open;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::click());
+    ui.painter().hline(
+        rect.x_range(),
+        rect.top(),
+        ui.visuals().widgets.noninteractive.bg_stroke,
+    );
+    if response.hovered() {
+        ui.painter()
+            .rect_filled(rect.shrink2(vec2(0.0, 1.0)), 0.0, palette.raised);
+    }
+    let inner = rect.shrink2(vec2(PADDING, 0.0));
+    let title = painted_text(ui, inner, 0.0, "Settings", medium(BODY_SIZE), palette.text);
+    let words = settings_words(state);
+    let shown = elided(ui, &words, inner.right() - title.right() - 32.0, SMALL_SIZE);
+    painted_text(
+        ui,
+        inner,
+        title.right() - inner.left() + 10.0,
+        &shown,
+        small(),
+        palette.dim_text,
+    );
+    chevron(
+        ui,
+        pos2(inner.right() - 5.0, inner.center().y),
+        is_open,
+        palette,
+    );
+    let response = named_switch(response, Role::Button, is_open, "Settings");
+    if response.clicked() || (is_open && take_escape(ui.ctx())) {
+        commands.push(Command::ShowSettings(!is_open));
+    }
+    response.on_hover_text(format!(
+        "{words}. Click, or Ctrl+comma: {} them",
+        if is_open { "fold" } else { "open" }
+    ));
+}
+
+/// Paints a small arrow: to the right if its section is folded, down if it is open.
+pub(crate) fn chevron(ui: &Ui, center: egui::Pos2, is_open: bool, palette: &Palette) {
+    let turn = |x: f32, y: f32| {
+        if is_open {
+            center + vec2(-y, x)
+        } else {
+            center + vec2(x, y)
+        }
+    };
+    let points = vec![turn(-2.0, -4.0), turn(2.0, 0.0), turn(-2.0, 4.0)];
+    ui.painter()
+        .line(points, egui::Stroke::new(1.3, palette.dim_text));
+}
+
+/// "α 1 · 0.5–12 rad/s · delays · representatives".
+fn settings_words(state: &State) -> String {
+    let settings = &state.study.settings;
+    let [gains, delays] = [settings.alpha_gain, settings.alpha_delay].map(number);
+    let alpha = if gains == delays {
+        format!("α {gains}")
+    } else {
+        format!("α {gains}, {delays}")
+    };
+    let phase = match settings.phase {
+        PhaseCorrection::None => "gains alone",
+        PhaseCorrection::Delay => "delays",
+        PhaseCorrection::Lead => "leads",
+    };
+    let mut words = format!("{alpha} · {} · {phase}", band_words(state));
+    if settings.gain_source == GainSource::MeanOfPairs || state.display.is_wide {
+        words.push_str(" · ");
+        words.push_str(&setting::GAIN_SOURCE.text(setting::GAIN_SOURCE.value(settings)));
+    }
+    words
+}
+
+/// Draws the export button, which is always visible; primary if nothing else is left to do.
+fn export_ui(
+    ui: &mut Ui,
+    state: &State,
+    verdict: &Verdict,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), FOOT), Sense::hover());
+    ui.painter().hline(
+        rect.x_range(),
+        rect.top(),
+        ui.visuals().widgets.noninteractive.bg_stroke,
+    );
+    let inner = rect.shrink2(vec2(PADDING, 10.0));
+    let is_ready = state.analysis().is_some();
+    let is_primary = verdict
+        .steps
+        .first()
+        .is_some_and(|step| step.command == export());
+    let color = if is_primary {
+        palette.on_accent()
+    } else {
+        palette.text
+    };
+    let button = Button::new(
+        RichText::new("Export corrections…")
+            .font(medium(BODY_SIZE))
+            .color(color),
+    );
+    let button = if is_primary {
+        button.fill(palette.accent)
+    } else {
+        button
+    };
+    let place = Rect::from_min_size(inner.min, vec2(140.0, 28.0));
+    region_ui(ui, Region::Export, |ui| {
+        ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
+            let export_button = ui.add_enabled(is_ready, button.min_size(place.size()));
+            let hint = "Write corrections.json, corrections.csv and assessment.csv (Ctrl+E)";
+            export_button.on_hover_text(hint).asks(export(), commands);
+        });
+    });
+    let schedule = state
+        .analysis()
+        .is_some_and(|analysis| analysis.schedule.is_ok());
+    let count = state.dataset().conditions().len();
+    let conditions = if count == 1 {
+        "condition"
+    } else {
+        "conditions"
+    };
+    let what = format!(
+        "{count} {conditions}{}",
+        if schedule { ", schedule" } else { "" }
+    );
+    painted_text(ui, inner, -0.01, &what, body(), palette.dim_text);
+}

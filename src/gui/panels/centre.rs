@@ -1,0 +1,476 @@
+//! Middle of the window: groups of views, the view in front with its title, and the dock below.
+
+use egui::containers::menu::MenuButton;
+use egui::{
+    Align, AsIdSalt, Button, Frame, Layout, Margin, Panel, Rect, RichText, Role, Sense, Stroke,
+    StrokeKind, Ui, UiBuilder, pos2, vec2,
+};
+
+use super::answer_panel::chevron;
+use super::start_page::example_line_ui;
+use crate::gui::commands::command::Command;
+use crate::gui::state::display::ViewGroup;
+use crate::gui::state::figures::figure_button_ui;
+use crate::gui::state::focus::{Region, region_ui};
+use crate::gui::state::window_state::State;
+use crate::gui::views::{View, ViewTitle};
+use crate::gui::widgets::controls::{
+    Asks, button_ui, entries_ui, in_line_ui, named, named_switch, restore_panel_size, text_width,
+};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, TITLE_SIZE, body, medium};
+
+/// Height of the bar of the views \[pt\].
+const BAR: f32 = 40.0;
+/// Height of a title \[pt\].
+const TITLE: f32 = 28.0;
+/// Height of the folded dock \[pt\].
+const FOLDED: f32 = 34.0;
+/// Least window height that unfolds the dock \[pt\].
+const LEAST_WITH_DOCK: f32 = 680.0;
+/// Share of the height taken by the dock.
+const DOCK_PART: f32 = 0.252;
+/// Horizontal padding \[pt\].
+const PADDING: i8 = 16;
+
+/// Draws everything between the side panels.
+pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    view_bar_ui(ui, state, palette, commands);
+    if state.is_example {
+        let frame = Frame::new().inner_margin(Margin {
+            left: PADDING,
+            right: PADDING,
+            top: 2,
+            bottom: 0,
+        });
+        frame.show(ui, |ui| example_line_ui(ui, palette, commands));
+    }
+    if let Some(dock) = state.display.arrangement.dock() {
+        dock_ui(ui, state, dock, palette, commands);
+    }
+    let view = state.display.arrangement.view();
+    let beside = state.display.arrangement.beside();
+    let area = ui.available_rect_before_wrap();
+    let Some(beside) = beside else {
+        return part_ui(ui, area, state, view, palette, commands);
+    };
+    let middle = area.center().x;
+    part_ui(ui, area.with_max_x(middle), state, view, palette, commands);
+    ui.painter()
+        .vline(middle, area.y_range(), Stroke::new(1.0, palette.line));
+    part_ui(
+        ui,
+        area.with_min_x(middle),
+        state,
+        beside,
+        palette,
+        commands,
+    );
+}
+
+/// Draws the groups at the left, the views of the group in front beside them, and the tools for the
+/// view at the right.
+fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let bar = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), BAR));
+    ui.allocate_rect(bar, Sense::hover());
+    ui.painter().rect_filled(bar, 0.0, palette.panel);
+    ui.painter()
+        .hline(bar.x_range(), bar.bottom(), Stroke::new(1.0, palette.line));
+    let inner = bar.shrink2(vec2(f32::from(PADDING), 0.0));
+    let left = in_line_ui(ui, inner, false, |ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        groups_ui(ui, state, palette, commands);
+        ui.add_space(12.0);
+        tabs_ui(ui, state, bar, palette, commands);
+    });
+    in_line_ui(
+        ui,
+        inner.with_min_x(left.response.rect.right() + 8.0),
+        true,
+        |ui| {
+            figure_button_ui(ui, state, state.display.arrangement.view(), commands);
+            let hint = "Bring every curve into view (F, or double click)";
+            button_ui(
+                ui,
+                Button::new("Fit").frame(false),
+                hint,
+                Command::FitPlots,
+                commands,
+            );
+            beside_ui(ui, state, palette, commands);
+        },
+    );
+}
+
+/// Draws a joined button for each group.
+fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let font = medium(BODY_SIZE);
+    let widths = ViewGroup::ALL.map(|group| text_width(ui, group.name(), font.clone()) + 24.0);
+    let (area, _) =
+        ui.allocate_exact_size(vec2(widths.iter().sum::<f32>() + 4.0, 30.0), Sense::hover());
+    ui.painter().rect(
+        area,
+        6.0,
+        palette.background,
+        Stroke::new(1.0, palette.line),
+        StrokeKind::Inside,
+    );
+    let mut left = area.left() + 2.0;
+    for (group, width) in ViewGroup::ALL.into_iter().zip(widths) {
+        let place = Rect::from_min_size(pos2(left, area.top() + 2.0), vec2(width, 26.0));
+        left = place.right();
+        let is_front = state.display.arrangement.group() == group;
+        let response = ui.interact(
+            place,
+            ui.scope_id().with(("group", group.name())),
+            Sense::click(),
+        );
+        if is_front || response.hovered() {
+            ui.painter().rect_filled(place, 5.0, palette.raised);
+        }
+        let color = if is_front {
+            palette.text
+        } else {
+            palette.dim_text
+        };
+        ui.painter().text(
+            place.center(),
+            egui::Align2::CENTER_CENTER,
+            group.name(),
+            font.clone(),
+            color,
+        );
+        let response = named_switch(
+            response,
+            Role::Button,
+            is_front,
+            format!("Views: {}", group.name()),
+        );
+        let names: Vec<&str> = group.views().map(View::name).collect();
+        response
+            .on_hover_text(names.join(", "))
+            .asks(Command::ShowGroup(group), commands);
+    }
+}
+
+/// Draws the views of the group in front side by side, or as a menu if there is no room.
+fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &mut Vec<Command>) {
+    /// Width of the other controls in the bar \[pt\].
+    const TOOLS: f32 = 130.0;
+    let arrangement = &state.display.arrangement;
+    let width = |view: View| text_width(ui, view.name(), medium(BODY_SIZE)) + 16.0;
+    let room = bar.right() - ui.cursor().left() - TOOLS;
+    if arrangement.group().views().map(width).sum::<f32>() <= room {
+        for view in arrangement.group().views() {
+            tab_ui(ui, bar, view, arrangement.view() == view, palette, commands);
+        }
+        return;
+    }
+    let front = arrangement.view();
+    let text = RichText::new(format!("{} ▾", front.name())).font(medium(BODY_SIZE));
+    let (button, _) = MenuButton::from_button(Button::new(text).frame(false)).ui(ui, |ui| {
+        let views = arrangement.group().views();
+        entries_ui(
+            ui,
+            views.map(|view| (view.name(), Command::ShowView(view))),
+            commands,
+        );
+    });
+    named_switch(button, Role::Tab, true, front.name()).on_hover_text("The views of this group");
+}
+
+/// Draws the name of a view, underlined in the accent colour if it is in front.
+fn tab_ui(
+    ui: &mut Ui,
+    bar: Rect,
+    view: View,
+    is_front: bool,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let font = if is_front { medium(BODY_SIZE) } else { body() };
+    let color = if is_front {
+        palette.text
+    } else {
+        palette.dim_text
+    };
+    let galley = ui.fonts_mut(|fonts| fonts.layout_no_wrap(view.name().to_owned(), font, color));
+    let (place, response) =
+        ui.allocate_exact_size(vec2(galley.size().x + 14.0, BAR), Sense::click());
+    ui.painter()
+        .galley(place.center() - 0.5 * galley.size(), galley, color);
+    if is_front || response.hovered() {
+        let line = Rect::from_x_y_ranges(
+            place.shrink2(vec2(4.0, 0.0)).x_range(),
+            bar.bottom() - 2.0..=bar.bottom(),
+        );
+        ui.painter().rect_filled(
+            line,
+            1.0,
+            if is_front {
+                palette.accent
+            } else {
+                palette.line
+            },
+        );
+    }
+    let response = named_switch(response, Role::Tab, is_front, view.name());
+    response
+        .on_hover_text(view.kind().purpose)
+        .asks(Command::ShowView(view), commands);
+}
+
+/// Draws the button that shows a second view beside the view in front, or hides it.
+fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let arrangement = &state.display.arrangement;
+    let (button, _) = MenuButton::from_button(Button::new("     ").frame(false)).ui(ui, |ui| {
+        let views = View::ALL
+            .into_iter()
+            .filter(|view| *view != arrangement.view());
+        entries_ui(
+            ui,
+            views.map(|view| {
+                (
+                    format!("{} beside it", view.name()),
+                    Command::ShowBeside(Some(view)),
+                )
+            }),
+            commands,
+        );
+        if arrangement.beside().is_some() {
+            ui.separator();
+            entries_ui(
+                ui,
+                [("One view alone", Command::ShowBeside(None))],
+                commands,
+            );
+        }
+    });
+    let symbol = Rect::from_center_size(button.rect.center(), vec2(14.0, 12.0));
+    let color = if arrangement.beside().is_some() {
+        palette.accent
+    } else {
+        palette.dim_text
+    };
+    ui.painter()
+        .rect_stroke(symbol, 2.0, Stroke::new(1.3, color), StrokeKind::Inside);
+    ui.painter()
+        .vline(symbol.center().x, symbol.y_range(), Stroke::new(1.3, color));
+    named(button, Role::Button, "Show another view beside")
+        .on_hover_text("Another view beside this one");
+}
+
+/// Draws a view with its title and its tools into an area.
+fn part_ui(
+    ui: &mut Ui,
+    area: Rect,
+    state: &mut State,
+    view: View,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let top = if state.is_example { 0 } else { 6 };
+    clipped_ui(ui, ("view", view), area, [top, 4], |ui| {
+        title_row_ui(ui, state, view, palette, commands);
+        let draw = view.kind().draw;
+        region_ui(ui, Region::Plots, |ui| draw(ui, state, palette, commands));
+    });
+}
+
+/// Draws content clipped to an area, with the given padding above and below.
+fn clipped_ui(
+    ui: &mut Ui,
+    id: impl AsIdSalt,
+    area: Rect,
+    [top, bottom]: [i8; 2],
+    add: impl FnOnce(&mut Ui),
+) {
+    ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(area), |ui| {
+        ui.set_clip_rect(area.intersect(ui.clip_rect()));
+        Frame::new()
+            .inner_margin(Margin {
+                left: PADDING,
+                right: PADDING,
+                top,
+                bottom,
+            })
+            .show(ui, add);
+    });
+    ui.advance_cursor_after_rect(area);
+}
+
+/// Draws the title of the view at the left and its tools at the right; the tools move to a line of
+/// their own if there is no room.
+fn title_row_ui(
+    ui: &mut Ui,
+    state: &State,
+    view: View,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    /// Least width of a title \[pt\].
+    const LEAST: f32 = 200.0;
+    let kind = view.kind();
+    let width = ui.available_width();
+    let is_titled = !matches!(kind.title, ViewTitle::None);
+    if is_titled && width - kind.tools_width < LEAST && kind.tools_width > 0.0 {
+        row_ui(ui, width, |ui| title_ui(ui, state, kind.title, palette));
+        row_ui(ui, width, |ui| tools_ui(ui, state, view, palette, commands));
+    } else if is_titled || kind.tools_width > 0.0 {
+        row_ui(ui, width, |ui| {
+            tools_ui(ui, state, view, palette, commands);
+            let rest = ui.available_rect_before_wrap();
+            in_line_ui(ui, rest, false, |ui| {
+                title_ui(ui, state, kind.title, palette)
+            });
+        });
+    }
+}
+
+fn row_ui(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
+    ui.allocate_ui_with_layout(
+        vec2(width, TITLE),
+        Layout::right_to_left(Align::Center).with_main_wrap(false),
+        |ui| {
+            ui.set_min_size(vec2(width, TITLE));
+            add(ui);
+        },
+    );
+}
+
+fn tools_ui(
+    ui: &mut Ui,
+    state: &State,
+    view: View,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    // The bar shows the tools of the view in front.
+    if view != state.display.arrangement.view() {
+        figure_button_ui(ui, state, view, commands);
+    }
+    (view.kind().tools)(ui, state, palette, commands);
+    if view.kind().is_of_all_conditions && state.others_are_older() {
+        let text = palette.small_warning("of older settings");
+        ui.label(text).on_hover_text(
+            "The condition shown is computed anew already; the others are on their way",
+        );
+    }
+}
+
+/// "LON → Q  condition 10: 60 kt, low altitude, high weight".
+fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
+    let condition = state.condition();
+    let of_condition = format!(
+        "condition {}: {}",
+        condition.id(),
+        condition.flight_state().name
+    );
+    let heading = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).font(medium(TITLE_SIZE)));
+    match title {
+        ViewTitle::Response => {
+            heading(ui, &state.dataset().pair_name(state.display.pair));
+            ui.add(egui::Label::new(palette.dim(of_condition)).truncate());
+        }
+        ViewTitle::Focus => drop(heading(ui, &state.dataset().pair_name(state.display.pair))),
+        ViewTitle::Condition => {
+            heading(ui, &format!("Condition {}", condition.id()));
+            ui.add(egui::Label::new(palette.dim(&condition.flight_state().name)).truncate());
+        }
+        ViewTitle::Words(words) => {
+            drop(ui.add(egui::Label::new(palette.dim(words(state))).truncate()))
+        }
+        ViewTitle::None => {}
+    }
+}
+
+/// Draws the view below the others, folded to its bar in a low window.
+fn dock_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    view: View,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let window = ui.ctx().content_rect().height();
+    let is_open = state
+        .display
+        .arrangement
+        .is_dock_open(window >= LEAST_WITH_DOCK);
+    let frame = Frame::new().fill(palette.background);
+    restore_panel_size(ui, "dock");
+    let panel = Panel::bottom(if is_open { "dock" } else { "folded dock" }).frame(frame);
+    let panel = if is_open {
+        panel
+            .resizable(true)
+            .default_size((DOCK_PART * window).round())
+            .size_range(140.0..=0.6 * window)
+    } else {
+        panel.exact_size(FOLDED)
+    };
+    panel.show(ui, |ui| {
+        let area = ui.available_rect_before_wrap();
+        clipped_ui(ui, "dock content", area, [0, 2], |ui| {
+            dock_head_ui(ui, state, (view, is_open), palette, commands);
+            if is_open {
+                let draw = view.kind().draw;
+                region_ui(ui, Region::Dock, |ui| draw(ui, state, palette, commands));
+            }
+        });
+    });
+}
+
+/// Draws the head of the dock: the name of its view, which folds it, the other views it can show,
+/// and the tools.
+fn dock_head_ui(
+    ui: &mut Ui,
+    state: &State,
+    (view, is_open): (View, bool),
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let width = ui.available_width();
+    ui.allocate_ui_with_layout(
+        vec2(width, FOLDED),
+        Layout::right_to_left(Align::Center),
+        |ui| {
+            ui.set_min_size(vec2(width, FOLDED));
+            if is_open {
+                tools_ui(ui, state, view, palette, commands);
+            }
+            let rest = ui.available_rect_before_wrap();
+            in_line_ui(ui, rest, false, |ui| {
+                let (place, response) = ui.allocate_exact_size(vec2(16.0, FOLDED), Sense::click());
+                chevron(ui, place.center(), is_open, palette);
+                let response = named_switch(response, Role::Button, is_open, "Dock");
+                let hint = if is_open {
+                    "Fold the plots below"
+                } else {
+                    "Unfold the plots below"
+                };
+                response
+                    .on_hover_text(hint)
+                    .asks(Command::OpenDock(!is_open), commands);
+                let others: Vec<View> = View::docked(state).collect();
+                for docked in &others {
+                    let is_front = *docked == view;
+                    let text = RichText::new(docked.kind().long_name.unwrap_or(docked.name()))
+                        .font(medium(BODY_SIZE));
+                    if others.len() == 1 {
+                        ui.label(text);
+                    } else {
+                        let button = ui.add(Button::selectable(is_front, text));
+                        let button = named_switch(
+                            button,
+                            Role::Tab,
+                            is_front,
+                            format!("{} in the dock", docked.name()),
+                        );
+                        button.asks(Command::ShowInDock(*docked), commands);
+                    }
+                }
+                ui.add_space(4.0);
+                title_ui(ui, state, view.kind().title, palette);
+            });
+        },
+    );
+}

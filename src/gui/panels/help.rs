@@ -1,0 +1,295 @@
+//! Help on the window: the page of keys and gestures, and the guided tour.
+
+use egui::{
+    Align2, Area, Button, Context, Frame, Grid, Id, Order, Rect, RichText, ScrollArea, Stroke,
+    StrokeKind, Ui, Vec2, vec2,
+};
+
+use crate::gui::commands::command::Command;
+use crate::gui::commands::command_table::{Reach, command_table};
+use crate::gui::state::focus::{Region, region_place, take_escape};
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::controls::Asks;
+use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+
+/// Width of the note \[pt\].
+const WIDTH: f32 = 300.0;
+
+/// Step of the tour: region of the window, title, and text.
+struct Step {
+    region: Region,
+    title: &'static str,
+    words: &'static str,
+}
+
+const STEPS: [Step; 5] = [
+    Step {
+        region: Region::Conditions,
+        title: "Flight conditions",
+        words: "A click, or Up and Down, shows a condition. The map beside them says what the correction leaves of each held \
+                response: left magnitude, right phase, pale is matched. ⚠: models are suggested as outliers.",
+    },
+    Step {
+        region: Region::Models,
+        title: "The bundle of models",
+        words: "Each physics model is one perturbed trim; its bar says how far it lies from what the perturbation explains. \
+                The box rejects or restores it, the star makes it the representative.",
+    },
+    Step {
+        region: Region::Plots,
+        title: "The curves",
+        words: "Red is the nominal model, blue the perturbed ones, amber what was identified from flight, green the corrected \
+                model. A click on a curve rejects or restores its model.",
+    },
+    Step {
+        region: Region::Matrix,
+        title: "What is held",
+        words: "Each cell is a response: the gain and the delay that would match it, over its J of magnitude and of phase. In \
+                filled cells the gain is held exactly; the box, or the space bar, holds or releases one.",
+    },
+    Step {
+        region: Region::Verdict,
+        title: "The verdict",
+        words: "Whether gain and phase of the held responses are met, here and in all conditions, and the one thing to do next. \
+                Green: both are. Ctrl+Z takes any decision back; Ctrl+K finds every command.",
+    },
+];
+
+/// Draws the current step, if any: a ring around its region, and a note beside it.
+pub fn tour_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some((number, step)) = state
+        .tour
+        .and_then(|number| Some((number, STEPS.get(number)?)))
+    else {
+        return;
+    };
+    // The notes refer to the panels: the tour waits while these are hidden.
+    if state.forms.shown.is_some() || state.assembling.is_some() || state.on_start_page {
+        return;
+    }
+    let window = ctx.content_rect();
+    let place = region_place(ctx, step.region)
+        .unwrap_or(window)
+        .intersect(window.shrink(3.0));
+    let id = Id::unique("guided tour");
+    let painter = ctx.layer_painter(egui::LayerId::new(Order::Middle, id));
+    painter.rect_stroke(
+        place,
+        4.0,
+        Stroke::new(2.0, palette.warning),
+        StrokeKind::Outside,
+    );
+    let (pivot, corner) = beside(place, window);
+    Area::new(id.with("note"))
+        .order(Order::Foreground)
+        .pivot(pivot)
+        .fixed_pos(corner)
+        .show(ctx, |ui| {
+            Frame::popup(ui.style()).show(ui, |ui| {
+                ui.set_width(WIDTH);
+                note_ui(ui, number, step, palette, commands);
+            });
+        });
+    if take_escape(ctx) {
+        commands.push(Command::ShowTourStep(None));
+    }
+}
+
+fn note_ui(
+    ui: &mut Ui,
+    number: usize,
+    step: &Step,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(step.title).strong());
+        let count = format!("{} of {}", number + 1, STEPS.len());
+        ui.label(
+            RichText::new(count)
+                .size(SMALL_SIZE)
+                .color(palette.dim_text),
+        );
+    });
+    ui.label(step.words);
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        let is_last = number + 1 == STEPS.len();
+        if ui
+            .button(if is_last { "End the tour" } else { "Next step" })
+            .clicked()
+        {
+            commands.push(Command::ShowTourStep((!is_last).then_some(number + 1)));
+        }
+        ui.add_enabled(number > 0, Button::new("Previous step"))
+            .asks(
+                Command::ShowTourStep(Some(number.saturating_sub(1))),
+                commands,
+            );
+        if !is_last && ui.button("Skip the tour").clicked() {
+            commands.push(Command::ShowTourStep(None));
+        }
+    });
+}
+
+/// Places the note right of the region, left of it, or over it if the region takes the whole width;
+/// returns the note's corner and its position.
+fn beside(place: Rect, window: Rect) -> (Align2, egui::Pos2) {
+    const GAP: Vec2 = vec2(12.0, 0.0);
+    let room = WIDTH + 40.0;
+    if window.right() - place.right() > room {
+        (Align2::LEFT_TOP, place.right_top() + GAP)
+    } else if place.left() - window.left() > room {
+        // Growing upwards, because a region at the foot of the window leaves no room below.
+        let low = place.top() > window.center().y;
+        if low {
+            (Align2::RIGHT_BOTTOM, place.left_bottom() - GAP)
+        } else {
+            (Align2::RIGHT_TOP, place.left_top() - GAP)
+        }
+    } else {
+        (Align2::CENTER_CENTER, place.center())
+    }
+}
+
+/// Pointer gestures, except clicks on named controls.
+const GESTURES: &[(&str, &str)] = &[
+    ("click on a curve", "reject or restore its model"),
+    ("Alt+click on a curve", "show it alone; again: show all"),
+    (
+        "drag, wheel",
+        "move, zoom a plot; on an axis: that axis alone",
+    ),
+    ("right-drag", "zoom to a box"),
+    (
+        "Shift+drag",
+        "select the curves that a box touches, to reject or restore them at once",
+    ),
+    (
+        "double click in a plot",
+        "beside the curves: fit it; on an axis: type its limits",
+    ),
+    (
+        "pointing in a plot",
+        "the status line says what is under the pointer",
+    ),
+    (
+        "right-click in a plot",
+        "what can be done with the curve, or with the frequency there",
+    ),
+    (
+        "click on a chip",
+        "hide the curves of a role, or show them; Alt: show it alone; Shift: in front",
+    ),
+    (
+        "1 to 9",
+        "in a plot that has the focus: the same as a click on a chip",
+    ),
+    (
+        "Arrows, + −, Home",
+        "in a plot that has the focus: move, zoom (Shift: frequencies only), fit",
+    ),
+    ("Escape", "end the isolation of a model, and a selection"),
+    ("drag an end of the band", "move the band of comparison"),
+    (
+        "click on a cell",
+        "show its response; on its box, or twice: hold or release it: its net gain exactly, its delay where one can",
+    ),
+    (
+        "click on a star",
+        "use this model as representative; again: use the medoid",
+    ),
+    (
+        "right-click",
+        "on a heading: copy or save its table; on a cell or a condition: more",
+    ),
+];
+
+/// Marks in the list of conditions.
+const MARKS: &[(&str, &str)] = &[
+    (
+        "⚠",
+        "models are suggested as outliers, a held gain is not matched, or a held delay though a delay could; pointing at the row \
+         counts them",
+    ),
+    (
+        "dot or square",
+        "its altitude and weight: the same mark as in Net gain",
+    ),
+    (
+        "cells",
+        "J of each held response: left magnitude, right phase, pale is matched",
+    ),
+    (
+        "number struck out",
+        "the condition does not enter the schedule",
+    ),
+    (
+        "bar at the left",
+        "it is held out: the schedule is judged by it",
+    ),
+];
+
+/// Draws every key of the command table, the gestures, and the marks.
+pub fn keys_page_ui(ui: &mut Ui, state: &State, palette: &Palette) {
+    let room = ui.ctx().content_rect().height() - 120.0;
+    ScrollArea::vertical()
+        .max_height(room)
+        .min_scrolled_height(room)
+        .auto_shrink([false, true])
+        .show(ui, |ui| {
+            let keys: Vec<(String, String)> = command_table(state)
+                .into_iter()
+                .filter(|entry| !entry.shortcuts.is_empty())
+                .map(|entry| {
+                    let keys: Vec<String> = entry
+                        .shortcuts
+                        .iter()
+                        .map(|keys| ui.ctx().format_shortcut(keys))
+                        .collect();
+                    let without_focus = if entry.reach == Reach::WithoutFocus {
+                        " *"
+                    } else {
+                        ""
+                    };
+                    (format!("{}{without_focus}", keys.join(", ")), entry.name)
+                })
+                .collect();
+            let others = [
+                ("Tab, Shift+Tab", "next, previous control"),
+                ("Escape", "close a form, leave a field as it was"),
+            ];
+            let keys = keys
+                .iter()
+                .map(|(keys, name)| (keys.as_str(), name.as_str()));
+            rows_ui(ui, "keys", keys.chain(others), palette);
+            ui.label(RichText::new("* while nothing has the focus").color(palette.dim_text));
+            ui.separator();
+            rows_ui(ui, "gestures", GESTURES.iter().copied(), palette);
+            ui.separator();
+            rows_ui(ui, "marks", MARKS.iter().copied(), palette);
+        });
+}
+
+fn rows_ui<'a>(
+    ui: &mut Ui,
+    name: &str,
+    rows: impl Iterator<Item = (&'a str, &'a str)>,
+    palette: &Palette,
+) {
+    let left = 170.0;
+    Grid::new(name)
+        .num_columns(2)
+        .spacing([16.0, 4.0])
+        .min_col_width(left)
+        .show(ui, |ui| {
+            for (keys, meaning) in rows {
+                ui.label(RichText::new(keys).strong());
+                ui.scope(|ui| {
+                    ui.set_max_width(270.0);
+                    ui.add(egui::Label::new(RichText::new(meaning).color(palette.dim_text)).wrap());
+                });
+                ui.end_row();
+            }
+        });
+}

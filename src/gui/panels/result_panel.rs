@@ -1,0 +1,287 @@
+//! Correction of the displayed condition: gains and delays of inputs and outputs, side by side.
+
+use egui::{Color32, CursorIcon, FontId, Rect, Role, Sense, Ui, pos2, vec2};
+
+use gdcm_method::correction::{Channel, Outcome};
+use gdcm_method::uncertainty::Scalar;
+use gdcm_model::units::s_to_ms;
+use gdcm_plot::figure::decimals;
+use gdcm_study::stages::lead_compensation::servo_words;
+use gdcm_study::{ConditionAnalysis, ExplainTarget};
+
+use super::explanation::{QUESTION, Sheet};
+use crate::gui::commands::command::Command;
+use crate::gui::state::window_state::State;
+use crate::gui::views::channels::bar_words;
+use crate::gui::widgets::controls::{Asks, named, painted_text, table_menu_ui};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
+use crate::gui::widgets::tables::TableKind;
+
+/// Height of a row \[pt\].
+const ROW: f32 = 18.0;
+/// Right edges of gains and delays, as shares of the width of a side.
+const ENDS: [f32; 2] = [0.5, 0.85];
+
+/// Draws gains and delays of every channel; in a low window only the range of the gains.
+pub fn result_ui(
+    ui: &mut Ui,
+    state: &State,
+    is_folded: bool,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let (rect, heading) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
+    painted_text(ui, rect, 0.0, "Result", medium(BODY_SIZE), palette.text);
+    table_menu_ui(ui, &heading, TableKind::Channels, commands);
+    let Some(Ok(shown)) = state.outcome() else {
+        let words = if state.outcome().is_some() {
+            "none"
+        } else {
+            state.results.absence()
+        };
+        painted_text(ui, rect, -0.01, words, small(), palette.dim_text);
+        return;
+    };
+    proof_ui(ui, rect, state.is_proving(shown), shown, palette, commands);
+    if is_folded {
+        let gains = || shown.gains.inputs.iter().chain(&shown.gains.outputs);
+        let (least, most) = gains().fold((f64::INFINITY, 0.0_f64), |(a, b), gain| {
+            (a.min(*gain), b.max(*gain))
+        });
+        let words = format!("k {} to {}", decimals(least, 3), decimals(most, 3));
+        painted_text(ui, rect, 56.0, &words, body(), palette.dim_text);
+        return;
+    }
+    let dataset = state.dataset();
+    let rows = dataset.inputs().len().max(dataset.outputs().len());
+    let (area, _) = ui.allocate_exact_size(
+        vec2(ui.available_width(), ROW * (rows + 1) as f32),
+        Sense::hover(),
+    );
+    let width = 0.5 * (area.width() - 12.0);
+    for (of_inputs, left) in [(true, area.left()), (false, area.right() - width)] {
+        let side = Rect::from_min_size(pos2(left, area.top()), vec2(width, area.height()));
+        Side {
+            of_inputs,
+            side,
+            state,
+            shown,
+            palette,
+        }
+        .ui(ui, commands);
+    }
+}
+
+/// Draws whether better gains exist, in small text because it is the usual case; a click opens the
+/// proof.
+fn proof_ui(
+    ui: &mut Ui,
+    row: Rect,
+    is_proving: bool,
+    shown: &ConditionAnalysis,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let outcome = shown.gains.proof.outcome;
+    let (words, color) = match outcome {
+        Outcome::Proven { .. } => ("global optimum ✓", palette.dim_text),
+        Outcome::NotProven { .. } if is_proving => ("proof runs", palette.dim_text),
+        Outcome::NotProven { .. } => ("not proven", palette.warning),
+    };
+    let place = painted_text(ui, row, -0.01, words, small(), color);
+    let response = ui.interact(
+        place.expand(3.0),
+        ui.scope_id().with("proof"),
+        Sense::click(),
+    );
+    let response = named(response, Role::Button, words);
+    response
+        .on_hover_cursor(CursorIcon::PointingHand)
+        .on_hover_text(outcome.words())
+        .asks(Command::ShowSheet(Some(Sheet::Reasons)), commands);
+}
+
+/// Channels of a side.
+struct Side<'a> {
+    of_inputs: bool,
+    side: Rect,
+    state: &'a State,
+    shown: &'a ConditionAnalysis,
+    palette: &'a Palette,
+}
+
+/// Value of a channel: its right edge, its painting with the half-width of its error bar, and its
+/// tooltip.
+struct ChannelValue {
+    end: f32,
+    text: String,
+    font: FontId,
+    color: Color32,
+    half: Option<String>,
+    name: String,
+    exact: String,
+    scalar: Scalar,
+    asked: ExplainTarget,
+}
+
+impl Side<'_> {
+    fn row(&self, number: usize) -> Rect {
+        Rect::from_min_size(
+            self.side.min + vec2(0.0, ROW * number as f32),
+            vec2(self.side.width(), ROW),
+        )
+    }
+
+    fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let dataset = self.state.dataset();
+        let palette = self.palette;
+        let (title, channels) = if self.of_inputs {
+            ("input", dataset.inputs())
+        } else {
+            ("output", dataset.outputs())
+        };
+        let head = self.row(0);
+        painted_text(ui, head, 0.0, title, small(), palette.dim_text);
+        for (end, words, unit) in [(ENDS[0], "k", "±%"), (ENDS[1], "τ ms", "±")] {
+            let place = painted_upto(ui, head, end, words, small(), palette.dim_text);
+            painted_text(
+                ui,
+                head,
+                place.right() - head.left() + 3.0,
+                unit,
+                small(),
+                palette.dim_text,
+            );
+        }
+        for (index, channel) in channels.iter().enumerate() {
+            let row = self.row(index + 1);
+            painted_text(ui, row, 0.0, &channel.name, body(), palette.text);
+            let of = if self.of_inputs {
+                Channel::Input(index)
+            } else {
+                Channel::Output(index)
+            };
+            self.value_ui(ui, row, self.gain(of, index, &channel.name), commands);
+            self.value_ui(ui, row, self.delay(of, index, &channel.name), commands);
+        }
+    }
+
+    fn gain(&self, channel: Channel, index: usize, name: &str) -> ChannelValue {
+        let gains = if self.of_inputs {
+            &self.shown.gains.inputs
+        } else {
+            &self.shown.gains.outputs
+        };
+        let scalar = Scalar::ChannelGain(channel);
+        ChannelValue {
+            end: ENDS[0],
+            text: decimals(gains[index], 3),
+            font: medium(BODY_SIZE),
+            color: self.palette.text,
+            half: self
+                .state
+                .sureness()
+                .half(scalar)
+                .map(|half| format!("±{:.0}", 100.0 * half)),
+            name: format!("Gain of {name}"),
+            exact: gains[index].to_string(),
+            scalar,
+            asked: ExplainTarget::Gain(self.shown.condition.id(), channel),
+        }
+    }
+
+    fn delay(&self, channel: Channel, index: usize, name: &str) -> ChannelValue {
+        let delays = if self.of_inputs {
+            &self.shown.delays.inputs
+        } else {
+            &self.shown.delays.outputs
+        };
+        let delay_ms = s_to_ms(delays[index]);
+        let is_delayed = delay_ms != 0.0;
+        let scalar = Scalar::ChannelDelay(channel);
+        let half = self.state.sureness().half(scalar).filter(|_| is_delayed);
+        let digits = if delay_ms.abs() < 10.0 { 1 } else { 0 };
+        let filter = self
+            .shown
+            .compensated
+            .as_ref()
+            .and_then(|led| led.leads.filters()[channel]);
+        let filter = filter
+            .map(|filter| format!("\nlead: {}", servo_words(filter)))
+            .unwrap_or_default();
+        ChannelValue {
+            end: ENDS[1],
+            text: if is_delayed {
+                decimals(delay_ms, digits)
+            } else {
+                "0".to_owned()
+            },
+            font: body(),
+            color: if is_delayed {
+                self.palette.text
+            } else {
+                self.palette.quiet_text
+            },
+            half: half.map(|half| format!("±{:.0}", s_to_ms(half))),
+            name: format!("Delay of {name}"),
+            exact: format!("{delay_ms} ms{filter}"),
+            scalar,
+            asked: ExplainTarget::Delay(self.shown.condition.id(), channel),
+        }
+    }
+
+    /// Draws a value with the half-width of its error bar; a click opens its derivation.
+    fn value_ui(&self, ui: &mut Ui, row: Rect, value: ChannelValue, commands: &mut Vec<Command>) {
+        let ChannelValue {
+            text,
+            half,
+            name,
+            exact,
+            scalar,
+            ..
+        } = value;
+        let place = painted_upto(ui, row, value.end, &text, value.font, value.color);
+        if let Some(half) = &half {
+            painted_text(
+                ui,
+                row,
+                place.right() - row.left() + 3.0,
+                half,
+                small(),
+                self.palette.dim_text,
+            );
+        }
+        let area = row
+            .with_min_x(place.left() - 4.0)
+            .with_max_x(place.right() + 3.0)
+            .shrink2(vec2(0.0, 0.5));
+        let response = ui.interact(area, ui.scope_id().with(&name), Sense::click());
+        let response = named(
+            response,
+            Role::Button,
+            format!("{name}: {text} {}", half.unwrap_or_default()).trim_end(),
+        );
+        let words = self
+            .state
+            .sureness()
+            .bar(scalar)
+            .map(|(bar, level)| format!("\n{}", bar_words(bar, scalar, level)));
+        let hint = format!("{exact}{}\nclick: {QUESTION}", words.unwrap_or_default());
+        let response = response
+            .on_hover_cursor(CursorIcon::Help)
+            .on_hover_text(hint);
+        response.asks(Command::Explain(Some(value.asked)), commands);
+    }
+}
+
+/// Paints text that ends at a share of its row's width.
+fn painted_upto(ui: &Ui, row: Rect, end: f32, words: &str, font: FontId, color: Color32) -> Rect {
+    painted_text(
+        ui,
+        row.with_max_x(row.left() + end * row.width()),
+        -0.01,
+        words,
+        font,
+        color,
+    )
+}

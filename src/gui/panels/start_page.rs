@@ -1,0 +1,557 @@
+//! Start page without panels: three ways in, each named after the engineer's data, and the study
+//! behind the page.
+
+use egui::{
+    Align, Align2, Button, Color32, Frame, Layout, Margin, Pos2, Rect, RichText, Role, ScrollArea,
+    Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
+};
+use serde::{Deserialize, Serialize};
+
+use gdcm_plot::figure::axis::compact;
+
+use super::conditions_panel::cost_picture_ui;
+use crate::gui::commands::command::Command;
+use crate::gui::plot::{BodeCurve, Pane, Role as CurveRole};
+use crate::gui::state::window_state::State;
+use crate::gui::views::assembling::AssemblingCommand;
+use crate::gui::views::frequency::bode_curves;
+use crate::gui::views::records::RecordsCommand;
+use crate::gui::widgets::controls::{Asks, button_ui, elided, named, painted_text};
+use crate::gui::widgets::palette::{
+    BODY_SIZE, DISPLAY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
+};
+
+/// Content of the window when the program is started without a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum OpensWith {
+    /// The embedded example.
+    #[default]
+    Example,
+    /// The start page.
+    StartPage,
+    /// The study or dataset that was open last.
+    LastStudy,
+}
+
+impl OpensWith {
+    /// Every choice, in the order of the menu.
+    pub const ALL: [Self; 3] = [Self::Example, Self::StartPage, Self::LastStudy];
+
+    /// Returns the text of the menu entry.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Example => "Begin with the example",
+            Self::StartPage => "Begin with the start page",
+            Self::LastStudy => "Begin with the last study",
+        }
+    }
+}
+
+/// Widths of the ways in, of the open study, and of the gap between them \[pt\].
+const WIDTHS: [f32; 3] = [600.0, 460.0, 64.0];
+/// Line height of multi-line text \[pt\].
+const LINE: f32 = 20.0;
+/// Height of a way in \[pt\].
+const WAY: f32 = 72.0;
+
+/// Way to begin.
+struct Way {
+    title: &'static str,
+    words: &'static str,
+    button: &'static str,
+    command: Command,
+    icon: fn(&Ui, Rect, Color32),
+}
+
+fn ways() -> [Way; 3] {
+    [
+        Way {
+            title: "I have a dataset or a study",
+            words: "Written by this program or a script: .json, .json.gz",
+            button: "Open dataset…",
+            command: Command::AskOpen,
+            icon: sheet_icon,
+        },
+        Way {
+            title: "I have model files",
+            words: "A folder of linear models: MATLAB, NumPy, JSON or text",
+            button: "Import models…",
+            command: AssemblingCommand::Open.into(),
+            icon: folder_icon,
+        },
+        Way {
+            title: "I have flight records",
+            words: "Sweeps as CSV, MATLAB or logs; models are identified here",
+            button: "Import records…",
+            command: RecordsCommand::AskFiles.into(),
+            icon: wave_icon,
+        },
+    ]
+}
+
+/// Draws the line above the example's plots that offers the same three ways.
+pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
+    let size = vec2(ui.available_width(), 18.0);
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        ui.spacing_mut().button_padding = egui::Vec2::ZERO;
+        ui.spacing_mut().interact_size.y = 16.0;
+        ui.label(palette.small("The example, simulated. Your own:"));
+        for (place, way) in ways().into_iter().enumerate() {
+            if place > 0 {
+                ui.label(palette.small("·"));
+            }
+            let text = RichText::new(way.button)
+                .size(SMALL_SIZE)
+                .color(palette.accent);
+            button_ui(
+                ui,
+                Button::new(text).frame(false),
+                way.words,
+                way.command,
+                commands,
+            );
+        }
+    });
+}
+
+/// Draws the whole page.
+pub fn start_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let area = ui.available_rect_before_wrap().shrink(24.0);
+    let [left, right, gap] = WIDTHS;
+    let has_both = area.width() >= left + right + gap;
+    let width = if has_both {
+        left + right + gap
+    } else {
+        left.min(area.width())
+    };
+    let height = 450.0_f32.min(area.height());
+    let page = Rect::from_center_size(area.center(), vec2(width, height));
+    let column = page.with_max_x(page.left() + left.min(width));
+    ui.scope_builder(UiBuilder::new().max_rect(column), |ui| {
+        ScrollArea::vertical()
+            .id_salt("start")
+            .auto_shrink([false, true])
+            .show(ui, |ui| {
+                ways_ui(ui, palette, commands);
+                ui.add_space(20.0);
+                if state.recent.is_empty() {
+                    steps_ui(ui, palette)
+                } else {
+                    recent_ui(ui, state, palette, commands)
+                }
+            });
+    });
+    if has_both {
+        let card = page.with_min_x(page.right() - right);
+        ui.scope_builder(UiBuilder::new().max_rect(card), |ui| {
+            open_ui(ui, state, palette, commands)
+        });
+    }
+    ui.advance_cursor_after_rect(area);
+}
+
+fn ways_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
+    ui.label(RichText::new("Match a physics model to flight").font(medium(DISPLAY_SIZE)));
+    ui.label(
+        palette.dim("One gain and one delay a channel, scheduled with airspeed. Every figure says how sure it is."),
+    );
+    ui.add_space(16.0);
+    for (place, way) in ways().into_iter().enumerate() {
+        way_ui(ui, way, place == 0, palette, commands);
+        ui.add_space(4.0);
+    }
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 40.0), Sense::hover());
+    let corners = [
+        rect.left_top(),
+        rect.right_top(),
+        rect.right_bottom(),
+        rect.left_bottom(),
+        rect.left_top(),
+    ];
+    let stroke = Stroke::new(1.0, palette.line);
+    ui.painter().extend(
+        corners
+            .windows(2)
+            .flat_map(|ends| Shape::dashed_line(ends, stroke, 4.0, 3.0)),
+    );
+    let words = "or drop files, or a folder, anywhere in this window";
+    ui.painter().text(
+        rect.center(),
+        Align2::CENTER_CENTER,
+        words,
+        body(),
+        palette.dim_text,
+    );
+}
+
+fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: &mut Vec<Command>) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), WAY), Sense::hover());
+    ui.painter().rect(
+        rect,
+        8.0,
+        palette.panel,
+        Stroke::new(1.0, palette.line),
+        StrokeKind::Inside,
+    );
+    let icon = Rect::from_center_size(pos2(rect.left() + 30.0, rect.center().y), vec2(22.0, 22.0));
+    (way.icon)(
+        ui,
+        icon,
+        if is_primary {
+            palette.accent
+        } else {
+            palette.dim_text
+        },
+    );
+    let text = rect.with_min_x(rect.left() + 58.0);
+    let [upper, lower] = [
+        text.with_max_y(rect.center().y + 2.0)
+            .with_min_y(rect.top() + 12.0),
+        text.with_min_y(rect.center().y)
+            .with_max_y(rect.bottom() - 12.0),
+    ];
+    painted_text(ui, upper, 0.0, way.title, medium(TITLE_SIZE), palette.text);
+    painted_text(ui, lower, 0.0, way.words, body(), palette.dim_text);
+    let place = Rect::from_center_size(
+        pos2(rect.right() - 84.0, rect.center().y),
+        vec2(132.0, 28.0),
+    );
+    let color = if is_primary {
+        palette.on_accent()
+    } else {
+        palette.text
+    };
+    let button = Button::new(
+        RichText::new(way.button)
+            .font(medium(BODY_SIZE))
+            .color(color),
+    )
+    .min_size(place.size());
+    let button = if is_primary {
+        button.fill(palette.accent)
+    } else {
+        button
+    };
+    ui.put(place, button).asks(way.command, commands);
+    ui.advance_cursor_after_rect(rect);
+}
+
+/// Draws the steps of the work with data, if no file has been open before.
+fn steps_ui(ui: &mut Ui, palette: &Palette) {
+    let steps = [
+        (
+            "1  Judge",
+            "which physics models disagree with their bundle",
+        ),
+        ("2  Match", "gains and delays, held where it matters"),
+        (
+            "3  Schedule",
+            "one correction over airspeed, with its error bars",
+        ),
+    ];
+    ui.columns(3, |columns| {
+        for (ui, (title, words)) in columns.iter_mut().zip(steps) {
+            let (line, _) = ui.allocate_exact_size(vec2(ui.available_width(), 6.0), Sense::hover());
+            ui.painter()
+                .hline(line.x_range(), line.top(), Stroke::new(2.0, palette.line));
+            ui.label(RichText::new(title).font(medium(BODY_SIZE)));
+            ui.with_layout(Layout::top_down(Align::Min), |ui| {
+                ui.label(palette.dim(words).line_height(Some(LINE)))
+            });
+        }
+    });
+}
+
+/// Draws the recent files; missing files are disabled.
+fn recent_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    const SHOWN: usize = 5;
+    ui.label(RichText::new("Open again").font(medium(BODY_SIZE)));
+    for file in state.recent.iter().take(SHOWN) {
+        let (row, response) =
+            ui.allocate_exact_size(vec2(ui.available_width(), 22.0), Sense::click());
+        let is_meant = !file.missing && (response.hovered() || response.has_focus());
+        if is_meant {
+            ui.painter().rect_filled(row, 4.0, palette.raised);
+        }
+        let color = if file.missing {
+            palette.quiet_text
+        } else {
+            palette.accent
+        };
+        let name = painted_text(ui, row, 4.0, &file.name, body(), color);
+        let folder = if file.missing {
+            format!("{}, missing", file.folder)
+        } else {
+            file.folder.clone()
+        };
+        let room = row.right() - name.right() - 16.0;
+        let folder = elided(ui, &folder, room, SMALL_SIZE);
+        painted_text(
+            ui,
+            row,
+            name.right() - row.left() + 10.0,
+            &folder,
+            small(),
+            palette.dim_text,
+        );
+        let response = named(
+            response,
+            Role::Button,
+            format!("Open again: {} in {}", file.name, file.folder),
+        );
+        if response.clicked() && !file.missing {
+            commands.push(Command::Open(file.path.clone()));
+        }
+    }
+}
+
+/// Draws a picture of the study behind the page, and the way back to it.
+fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let frame = Frame::new()
+        .fill(palette.panel)
+        .stroke(Stroke::new(1.0, palette.line))
+        .corner_radius(8.0);
+    frame.inner_margin(Margin::same(24)).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        let conditions = state.dataset().conditions();
+        let models: usize = conditions.iter().map(|of| of.bundle(gdcm_model::dataset::BundleKind::Physics).len()).sum();
+        let (title, words, back) = if state.is_example {
+            let words = format!(
+                "The example is simulated: {} conditions of a UH-60A-class helicopter, {models} physics models, flight records, and \
+                 deficits that were put in on purpose.",
+                conditions.len()
+            );
+            ("No data at hand?".to_owned(), words, "Explore the example")
+        } else {
+            let words = format!("{}: {} conditions, {models} physics models.", state.study_name, conditions.len());
+            (state.dataset().name().to_owned(), words, "Go on with it")
+        };
+        ui.label(RichText::new(title).font(medium(TITLE_SIZE)));
+        ui.label(palette.dim(words).line_height(Some(LINE)));
+        ui.add_space(12.0);
+        picture_ui(ui, state, palette);
+        ui.add_space(8.0);
+        ui.label(palette.small(
+            "Left: what the correction leaves in each condition, magnitude and phase of the held responses, pale is matched. Right: \
+             flight, and the corrected model.",
+        ));
+        ui.add_space(12.0);
+        ui.horizontal(|ui| {
+            ui.add(Button::new(back).min_size(vec2(0.0, 28.0))).asks(Command::ShowStart(false), commands);
+            if state.is_example {
+                let tour = Button::new(RichText::new("Guided tour, five notes").color(palette.accent)).frame(false);
+                if ui.add(tour).clicked() {
+                    commands.extend([Command::ShowStart(false), Command::StartTour]);
+                }
+            }
+        });
+    });
+}
+
+fn picture_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
+    let rows = state.dataset().conditions().len().min(12);
+    let (area, _) = ui.allocate_exact_size(
+        vec2(ui.available_width(), 18.0 + 17.0 * rows as f32),
+        Sense::hover(),
+    );
+    let map = area.with_max_x(area.left() + 0.44 * area.width());
+    cost_picture_ui(ui, map, state, palette);
+    let pair = state.display.pair;
+    let curves = bode_curves(state, pair);
+    let plot = area.with_min_x(area.left() + 0.52 * area.width());
+    let title = format!(
+        "{}, phase, condition {}",
+        state.dataset().pair_name(pair),
+        state.condition().id()
+    );
+    let head = plot.with_max_y(plot.top() + 18.0);
+    painted_text(ui, head, 0.0, &title, small(), palette.dim_text);
+    let band = state.study.settings.band;
+    phases_ui(
+        ui,
+        plot.with_min_y(head.bottom()),
+        &curves,
+        (band.min(), band.max()),
+        palette,
+    );
+}
+
+/// Returns the grid frequencies and phases of a small plot \[rad/s, deg\].
+fn grid_of((min, max): (f64, f64), (least, most): (f64, f64)) -> [Vec<f64>; 2] {
+    let decades = (min.log10().floor() as i32)..=(max.log10().ceil() as i32);
+    let omegas = decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(decade)));
+    let inside = omegas.filter(|omega| (min..=max).contains(omega)).collect();
+    let [first, last] = [(least / 90.0).ceil() as i32, (most / 90.0).floor() as i32];
+    [
+        inside,
+        (first..=last).map(|line| 90.0 * f64::from(line)).collect(),
+    ]
+}
+
+/// Paints the phases of the identified and of the corrected model over the band, and the gap
+/// between them.
+fn phases_ui(ui: &Ui, plot: Rect, curves: &[BodeCurve], (min, max): (f64, f64), palette: &Palette) {
+    let plot = plot
+        .with_min_x(plot.left() + 28.0)
+        .with_max_y(plot.bottom() - 14.0);
+    ui.painter().rect(
+        plot,
+        0.0,
+        palette.background,
+        Stroke::new(1.0, palette.line),
+        StrokeKind::Inside,
+    );
+    let of_role = |role: CurveRole| curves.iter().find(|curve| curve.role == role);
+    let Some((corrected, identified)) =
+        of_role(CurveRole::Corrected).zip(of_role(CurveRole::IdentifiedRepresentative))
+    else {
+        return;
+    };
+    const STEPS: usize = 60;
+    let omega = |step: usize| min * (max / min).powf(step as f64 / STEPS as f64);
+    let phases = |curve: &BodeCurve| -> Vec<f64> {
+        (0..=STEPS)
+            .filter_map(|step| curve.value_at(Pane::Phase, omega(step)))
+            .collect()
+    };
+    let [after, flight] = [phases(corrected), phases(identified)];
+    let ends = || after.iter().chain(&flight).copied();
+    let (least, most) = ends().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| {
+        (a.min(at), b.max(at))
+    });
+    if after.len() <= STEPS || flight.len() <= STEPS || most <= least {
+        return;
+    }
+    let at = |step: usize, phase: f64| -> Pos2 {
+        let part = ((phase - least) / (most - least)) as f32;
+        let inner = plot.shrink2(vec2(0.0, 8.0));
+        pos2(
+            plot.left() + plot.width() * step as f32 / STEPS as f32,
+            inner.bottom() - part * inner.height(),
+        )
+    };
+    let [omegas, lines] = grid_of((min, max), (least, most));
+    for tick in omegas {
+        let x = plot.left() + plot.width() * ((tick / min).ln() / (max / min).ln()) as f32;
+        ui.painter()
+            .vline(x, plot.y_range(), Stroke::new(1.0, palette.grid));
+        let under = pos2(x, plot.bottom() + 2.0);
+        ui.painter().text(
+            under,
+            Align2::CENTER_TOP,
+            compact(tick),
+            small(),
+            palette.dim_text,
+        );
+    }
+    for line in lines {
+        let y = at(0, line).y;
+        ui.painter()
+            .hline(plot.x_range(), y, Stroke::new(1.0, palette.grid));
+        let beside = pos2(plot.left() - 4.0, y);
+        ui.painter().text(
+            beside,
+            Align2::RIGHT_CENTER,
+            compact(line),
+            small(),
+            palette.dim_text,
+        );
+    }
+    let path = |phases: &[f64]| -> Vec<Pos2> {
+        phases
+            .iter()
+            .enumerate()
+            .map(|(step, phase)| at(step, *phase))
+            .collect()
+    };
+    let mut mesh = egui::Mesh::default();
+    for (step, (a, b)) in path(&after).into_iter().zip(path(&flight)).enumerate() {
+        mesh.colored_vertex(a, palette.identified.gamma_multiply(0.22));
+        mesh.colored_vertex(b, palette.identified.gamma_multiply(0.22));
+        if step > 0 {
+            let corner = 2 * step as u32;
+            mesh.add_triangle(corner - 2, corner - 1, corner);
+            mesh.add_triangle(corner - 1, corner, corner + 1);
+        }
+    }
+    let mut shapes = vec![Shape::mesh(mesh)];
+    palette
+        .role_style(CurveRole::IdentifiedRepresentative, false)
+        .add_shapes(path(&flight), &mut shapes);
+    palette
+        .role_style(CurveRole::Corrected, false)
+        .add_shapes(path(&after), &mut shapes);
+    ui.painter().extend(shapes);
+    let named = [
+        (&flight, "flight", palette.identified, 10.0),
+        (&after, "corrected", palette.corrected, -8.0),
+    ];
+    for (phases, name, color, aside) in named {
+        let middle = at(STEPS / 2, phases[STEPS / 2]) + vec2(aside, 0.0);
+        let align = if aside > 0.0 {
+            Align2::LEFT_BOTTOM
+        } else {
+            Align2::RIGHT_TOP
+        };
+        ui.painter()
+            .text(middle, align, name, small(), palette.name_of(color));
+    }
+}
+
+fn sheet_icon(ui: &Ui, place: Rect, color: Color32) {
+    let left = place.left() + 4.0;
+    let right = place.right() - 4.0;
+    let top = place.top() + 1.0;
+    let bottom = place.bottom() - 1.0;
+    let fold = right - 6.0;
+    let outline = [
+        pos2(fold, top),
+        pos2(left, top),
+        pos2(left, bottom),
+        pos2(right, bottom),
+        pos2(right, top + 6.0),
+        pos2(fold, top),
+    ];
+    ui.painter().line(outline.to_vec(), Stroke::new(1.8, color));
+    ui.painter().line(
+        vec![
+            pos2(fold, top),
+            pos2(fold, top + 6.0),
+            pos2(right, top + 6.0),
+        ],
+        Stroke::new(1.8, color),
+    );
+}
+
+fn folder_icon(ui: &Ui, place: Rect, color: Color32) {
+    let left = place.left() + 1.0;
+    let right = place.right() - 1.0;
+    let top = place.top() + 3.0;
+    let bottom = place.bottom() - 3.0;
+    let outline = [
+        (left, top),
+        (left + 7.0, top),
+        (left + 10.0, top + 3.0),
+        (right, top + 3.0),
+        (right, bottom),
+        (left, bottom),
+        (left, top),
+    ];
+    ui.painter().line(
+        outline.map(|(x, y)| pos2(x, y)).to_vec(),
+        Stroke::new(1.8, color),
+    );
+}
+
+fn wave_icon(ui: &Ui, place: Rect, color: Color32) {
+    let path = (0..=24).map(|step| {
+        let part = step as f32 / 24.0;
+        let height = (part * 2.0 * std::f32::consts::TAU).sin() * 0.35 * place.height();
+        pos2(
+            place.left() + part * place.width(),
+            place.center().y - height,
+        )
+    });
+    ui.painter().line(path.collect(), Stroke::new(1.8, color));
+}

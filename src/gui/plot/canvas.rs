@@ -1,0 +1,225 @@
+//! Screen canvas for the shapes of printed figures, enlarged and in the colours of the theme; and
+//! the legend line above the plots of a figure.
+
+use egui::epaint::TextShape;
+use egui::{FontId, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+
+use gdcm_plot::figure::Figure;
+use gdcm_plot::figure::drawing::{Area, Shape as Drawn, Stroke as Line, Text};
+use gdcm_plot::figure::paint::dot_shapes;
+use gdcm_plot::figure::role::Sample;
+
+use crate::gui::widgets::palette::Palette;
+
+/// Screen points per paper point: printed lines are finer by this factor.
+pub(super) const SCALE: f32 = 1.8;
+/// Font size, in points of paper.
+pub(super) const LETTERS_PT: f64 = 10.5 / SCALE as f64;
+
+/// Part of the screen on which shapes are drawn.
+pub(super) struct Canvas<'a> {
+    pub(super) painter: &'a Painter,
+    /// Screen position of the origin.
+    pub(super) origin: Pos2,
+    pub(super) palette: &'a Palette,
+}
+
+/// Converts a rectangle of the screen to an area of paper with its origin at the corner.
+pub(super) fn area(rect: Rect) -> Area {
+    Area::new(
+        0.0,
+        0.0,
+        (rect.width() / SCALE).into(),
+        (rect.height() / SCALE).into(),
+    )
+}
+
+impl Canvas<'_> {
+    /// Converts a place on paper to the screen.
+    pub(super) fn at(&self, [x, y]: [f64; 2]) -> Pos2 {
+        self.origin + SCALE * vec2(x as f32, y as f32)
+    }
+
+    /// Converts a screen position to paper.
+    pub(super) fn from(&self, at: Pos2) -> [f64; 2] {
+        let offset = (at - self.origin) / SCALE;
+        [offset.x.into(), offset.y.into()]
+    }
+
+    /// Draws shapes, later shapes over earlier ones.
+    pub(super) fn paint(&self, shapes: &[Drawn]) {
+        for shape in shapes {
+            match shape {
+                Drawn::Path {
+                    points,
+                    closed,
+                    fill,
+                    stroke,
+                } => {
+                    let points: Vec<Pos2> = points.iter().map(|point| self.at(*point)).collect();
+                    match (fill, stroke) {
+                        (Some(color), _) if points.len() > 4 => {
+                            self.fill_between(&points, self.palette.color(*color))
+                        }
+                        (Some(color), stroke) if *closed => {
+                            let stroke = stroke.map_or(Stroke::NONE, |line| self.stroke(line));
+                            let bounds = Rect::from_points(&points);
+                            // A closed outline without area has no direction at its ends: it is
+                            // drawn as the line it looks like.
+                            match bounds.is_positive() {
+                                true => self.painter.add(Shape::convex_polygon(
+                                    points,
+                                    self.palette.color(*color),
+                                    stroke,
+                                )),
+                                false => {
+                                    self.painter.line_segment([bounds.min, bounds.max], stroke)
+                                }
+                            };
+                        }
+                        (_, Some(line)) => self.line(points, *line),
+                        _ => {}
+                    }
+                }
+                Drawn::Circle {
+                    center,
+                    radius,
+                    fill,
+                    stroke,
+                } => {
+                    let fill = fill.map_or(egui::Color32::TRANSPARENT, |color| {
+                        self.palette.color(color)
+                    });
+                    let stroke = stroke.map_or(Stroke::NONE, |line| self.stroke(line));
+                    self.painter
+                        .circle(self.at(*center), SCALE * *radius as f32, fill, stroke);
+                }
+                Drawn::Text(text) => self.text(text),
+                Drawn::Clipped { area, shapes } => {
+                    let [upper_left, _, lower_right, _] =
+                        area.corners().map(|corner| self.at(corner));
+                    let seen = Rect::from_min_max(upper_left, lower_right)
+                        .intersect(self.painter.clip_rect());
+                    Canvas {
+                        painter: &self.painter.with_clip_rect(seen),
+                        ..*self
+                    }
+                    .paint(shapes);
+                }
+            }
+        }
+    }
+
+    fn stroke(&self, line: Line) -> Stroke {
+        Stroke::new(SCALE * line.width_pt as f32, self.palette.color(line.color))
+    }
+
+    fn line(&self, points: Vec<Pos2>, line: Line) {
+        let mut shapes = Vec::new();
+        let line = Line {
+            width_pt: f64::from(SCALE) * line.width_pt,
+            ..line
+        };
+        self.palette
+            .curve_style(line)
+            .add_shapes(points, &mut shapes);
+        self.painter.extend(shapes);
+    }
+
+    /// Fills the area between two lines over the same places; the second returns from the end of
+    /// the first.
+    fn fill_between(&self, outline: &[Pos2], color: egui::Color32) {
+        let mut mesh = Mesh::default();
+        for (place, (lower, upper)) in outline
+            .iter()
+            .zip(outline.iter().rev())
+            .take(outline.len() / 2)
+            .enumerate()
+        {
+            mesh.colored_vertex(*lower, color);
+            mesh.colored_vertex(*upper, color);
+            if place > 0 {
+                let corner = 2 * place as u32;
+                mesh.add_triangle(corner - 2, corner - 1, corner);
+                mesh.add_triangle(corner - 1, corner, corner + 1);
+            }
+        }
+        self.painter.add(Shape::mesh(mesh));
+    }
+
+    fn text(
+        &self,
+        Text {
+            at,
+            words,
+            size_pt,
+            anchor,
+            upright,
+            color,
+        }: &Text,
+    ) {
+        let color = self.palette.color(*color);
+        let galley = self.painter.layout_no_wrap(
+            words.clone(),
+            FontId::proportional(SCALE * *size_pt as f32),
+            color,
+        );
+        let base = galley
+            .rows
+            .first()
+            .and_then(|row| row.glyphs.first())
+            .map_or(0.0, |glyph| glyph.pos.y);
+        let before = anchor.before() as f32 * galley.size().x;
+        let at = self.at(*at);
+        if *upright {
+            let text = TextShape::new(pos2(at.x - base, at.y + before), galley, color);
+            self.painter
+                .add(text.with_angle(-std::f32::consts::FRAC_PI_2));
+        } else {
+            self.painter.galley(at - vec2(before, base), galley, color);
+        }
+    }
+}
+
+/// Size of a sample \[pt\].
+const SAMPLE: egui::Vec2 = vec2(18.0, 14.0);
+
+/// Draws a sample and a name for each key among the marks of a figure, as in the printed legend.
+pub fn figure_legend_ui(ui: &mut Ui, figure: &Figure, palette: &Palette) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(4.0, 0.0);
+        for entry in figure.legend() {
+            let (rect, _) = ui.allocate_exact_size(SAMPLE, Sense::hover());
+            match entry.sample {
+                Sample::Dot {
+                    shape,
+                    color,
+                    filled,
+                } => {
+                    let canvas = Canvas {
+                        painter: ui.painter(),
+                        origin: rect.center(),
+                        palette,
+                    };
+                    canvas.paint(&dot_shapes([0.0, 0.0], (shape, 1.0), color, filled));
+                }
+                Sample::Line(stroke) => {
+                    let ends = [rect.left(), rect.right()].map(|x| pos2(x, rect.center().y));
+                    let mut shapes = Vec::new();
+                    palette
+                        .curve_style(stroke)
+                        .in_miniature()
+                        .add_shapes(ends.to_vec(), &mut shapes);
+                    ui.painter().extend(shapes);
+                }
+                Sample::Ground(color) => drop(ui.painter().rect_filled(
+                    rect.shrink(2.0),
+                    2.0,
+                    palette.color(color),
+                )),
+            }
+            ui.label(palette.small(entry.text));
+            ui.add_space(10.0);
+        }
+    });
+}

@@ -1,0 +1,97 @@
+use egui::vec2;
+use egui_kittest::kittest::Queryable;
+
+use gdcm_model::dataset::Pair;
+
+use super::*;
+use crate::gui::plot::overview::{
+    OverviewCell, OverviewEvent, OverviewScene, OverviewView, overview_ui,
+};
+use crate::gui::widgets::palette::{self, Palette};
+
+#[derive(Default)]
+struct Model {
+    curves: Vec<BodeCurve>,
+    overview: OverviewView,
+    pairs: Vec<OverviewEvent>,
+}
+
+fn overview_harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
+    let model = Model {
+        curves,
+        ..Model::default()
+    };
+    let mut harness = Harness::builder()
+        .with_size(vec2(800.0, 600.0))
+        .with_context_setup(palette::apply)
+        .build_ui_state(
+            |ui, model: &mut Model| {
+                let inputs = ["LON", "LAT", "PED", "COL"].map(String::from);
+                let outputs = ["P", "Q", "R", "NX", "NY", "NZ"].map(String::from);
+                let cell = |k: usize| OverviewCell {
+                    pair: Pair::new(k / 4, k % 4),
+                    curves: &model.curves,
+                    constrained: k == 1,
+                    selected: k == 4,
+                    note: "J 75".to_owned(),
+                };
+                let cells: Vec<_> = (0..24).map(cell).collect();
+                let scene = OverviewScene {
+                    inputs: &inputs,
+                    outputs: &outputs,
+                    cells: &cells,
+                    band: (0.5, 12.0),
+                    message: None,
+                };
+                let palette = Palette::of(ui.visuals());
+                let events = overview_ui(ui, &scene, &mut model.overview, &palette);
+                model.pairs.extend(events);
+            },
+            model,
+        );
+    harness.run();
+    harness
+}
+
+#[test]
+fn a_click_on_a_small_plot_names_its_pair() {
+    let mut harness = overview_harness(vec![lag(1, 0.0, 1.0, Role::Nominal)]);
+    let at = harness
+        .state()
+        .overview
+        .screen_position(Pair::new(4, 2))
+        .unwrap();
+    click(&mut harness, at);
+    assert!(
+        harness
+            .state()
+            .pairs
+            .contains(&OverviewEvent::PairClicked(Pair::new(4, 2)))
+    );
+}
+
+#[test]
+fn a_small_plot_is_found_by_its_name() {
+    let mut harness = overview_harness(vec![lag(1, 0.0, 1.0, Role::Nominal)]);
+    harness.get_by_label("LON → Q: J 75").click();
+    harness.run();
+    assert!(
+        harness
+            .state()
+            .pairs
+            .contains(&OverviewEvent::PairClicked(Pair::new(1, 0)))
+    );
+}
+
+#[test]
+fn phases_are_shown_when_asked_for() {
+    let mut harness = overview_harness(vec![lag(1, 0.0, 1.0, Role::Nominal)]);
+    harness.get_by_label("phase").click();
+    harness.run();
+    assert!(harness.state().overview.show_phase);
+}
+
+#[test]
+fn an_overview_without_curves_has_a_message() {
+    overview_harness(Vec::new()).get_by_label("Nothing to draw");
+}

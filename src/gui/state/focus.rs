@@ -1,0 +1,233 @@
+//! Keyboard focus: the regions of the window that F6 visits, and the focus ring.
+
+use std::collections::BTreeMap;
+
+use egui::{Context, Id, Key, Modifiers, Rect, Stroke, StrokeKind, Ui, pos2};
+
+use crate::gui::widgets::palette::Palette;
+
+/// Region of the window, in the order of the F6 key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Region {
+    /// Plots of the view in front.
+    Plots,
+    /// Plots in the dock.
+    Dock,
+    /// Verdict and its steps.
+    Verdict,
+    Result,
+    /// Constraint matrix.
+    Matrix,
+    Settings,
+    /// The export button.
+    Export,
+    /// List of conditions.
+    Conditions,
+    /// Bundles of the displayed condition.
+    Models,
+}
+
+/// Content of the regions as they were drawn.
+#[derive(Clone, Default)]
+struct Regions {
+    parts: BTreeMap<Region, Part>,
+    /// Selected rows, and the pass in which they were drawn: the focus enters an unvisited region
+    /// at its selected row.
+    selected: (u64, Vec<Id>),
+}
+
+#[derive(Clone, Default)]
+struct Part {
+    /// Pass in which the region was last drawn.
+    pass: u64,
+    /// Focusable controls, in the order of the Tab key.
+    controls: Vec<Id>,
+    /// Control that had the focus last.
+    visited: Option<Id>,
+    /// Visible place of the region.
+    place: Option<Rect>,
+}
+
+fn key() -> Id {
+    Id::unique("regions")
+}
+
+/// Draws a region, or a further piece of it, and records its focusable controls. Scrolls to a
+/// control focused by the keyboard.
+pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let layer = ui.layer_id();
+    let ctx = ui.ctx().clone();
+    let before = ctx.viewport(|viewport| viewport.this_pass.widgets.get_layer(layer).count());
+    let top = ui.cursor().top();
+    let inner = add(ui);
+    let drawn = ui.min_rect();
+    let place = Rect::from_min_max(pos2(drawn.left(), top), drawn.max).intersect(ui.clip_rect());
+    let controls: Vec<Id> = ctx.viewport(|viewport| {
+        let drawn = viewport.this_pass.widgets.get_layer(layer).skip(before);
+        drawn
+            .filter(|widget| widget.enabled && widget.sense.is_focusable())
+            .map(|widget| widget.id)
+            .collect()
+    });
+    let focused = ctx
+        .memory(|memory| memory.focused())
+        .filter(|focused| controls.contains(focused));
+    let pass = ctx.cumulative_pass_nr();
+    ctx.data_mut(|data| {
+        let part = data
+            .get_temp_mut_or_default::<Regions>(key())
+            .parts
+            .entry(region)
+            .or_default();
+        if part.pass != pass {
+            part.controls.clear();
+            part.place = None;
+        }
+        part.pass = pass;
+        part.controls.extend(controls);
+        part.place = part
+            .place
+            .map_or(Some(place), |others| Some(others.union(place)));
+        part.visited = focused.or(part.visited);
+    });
+    let arrived = focused
+        .and_then(|focused| ctx.read_response(focused))
+        .filter(|response| response.gained_focus());
+    if let Some(response) = arrived {
+        ui.scroll_to_rect(response.rect, None);
+    }
+    inner
+}
+
+/// Marks a row as the selected row of its list, in each frame that draws it.
+pub fn begin_with(ctx: &Context, row: Id) {
+    let pass = ctx.cumulative_pass_nr();
+    ctx.data_mut(|data| {
+        let (last, rows) = &mut data.get_temp_mut_or_default::<Regions>(key()).selected;
+        if std::mem::replace(last, pass) != pass {
+            rows.clear();
+        }
+        rows.push(row);
+    });
+}
+
+/// Returns the visible place of a region in the window.
+pub fn region_place(ctx: &Context, region: Region) -> Option<Rect> {
+    let place = ctx.data_mut(|data| {
+        data.get_temp_mut_or_default::<Regions>(key())
+            .parts
+            .get(&region)?
+            .place
+    });
+    place.filter(|place| place.is_positive())
+}
+
+/// Focuses the next or previous region that has a control: its last focused control, else its
+/// selected row, else its first control.
+pub fn leave_region(ctx: &Context, forward: bool) {
+    let focused = ctx.memory(|memory| memory.focused());
+    let regions = ctx.data_mut(|data| data.get_temp_mut_or_default::<Regions>(key()).clone());
+    let parts: Vec<&Part> = regions
+        .parts
+        .values()
+        .filter(|part| !part.controls.is_empty())
+        .collect();
+    let Some(last) = parts.len().checked_sub(1) else {
+        return;
+    };
+    let here = parts
+        .iter()
+        .position(|part| focused.is_some_and(|focused| part.controls.contains(&focused)));
+    let next = match (here, forward) {
+        (None, true) => 0,
+        (None, false) => last,
+        (Some(here), true) => (here + 1) % parts.len(),
+        (Some(here), false) => (here + last) % parts.len(),
+    };
+    let part = parts[next];
+    let visited = part
+        .visited
+        .filter(|visited| part.controls.contains(visited));
+    let selected = part
+        .controls
+        .iter()
+        .find(|control| regions.selected.1.contains(control));
+    if let Some(id) = visited
+        .or(selected.copied())
+        .or(part.controls.first().copied())
+    {
+        ctx.memory_mut(|memory| memory.request_focus(id));
+    }
+}
+
+fn had_focus() -> Id {
+    Id::unique("had anything the focus")
+}
+
+/// Returns whether a control had the focus at the end of the last frame: Escape was meant for it
+/// and has removed its focus by now.
+pub fn was_focused(ctx: &Context) -> bool {
+    ctx.data(|data| data.get_temp(had_focus()).unwrap_or(false))
+}
+
+/// Consumes Escape to close something, unless it was meant for a control.
+pub fn take_escape(ctx: &Context) -> bool {
+    !was_focused(ctx) && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
+}
+
+/// Width of the ring \[pt\].
+const WIDTH: f32 = 2.0;
+/// Gap between the ring and its control \[pt\].
+const GAP: f32 = 1.0;
+
+/// Draws the focus ring on top of everything, alike around every control, list row, cell and plot.
+pub fn focus_ring_ui(ctx: &Context, palette: &Palette) {
+    let focused = ctx.memory(|memory| memory.focused());
+    ctx.data_mut(|data| data.insert_temp(had_focus(), focused.is_some()));
+    let Some(focused) = focused.and_then(|id| ctx.read_response(id)) else {
+        return;
+    };
+    let in_view = focused.interact_rect;
+    if !in_view.is_positive() {
+        return;
+    }
+    let painter = ctx
+        .layer_painter(focused.layer_id)
+        .with_clip_rect(in_view.expand(GAP + WIDTH));
+    painter.rect_stroke(
+        focused.rect.expand(GAP),
+        3.0,
+        Stroke::new(WIDTH, palette.accent),
+        StrokeKind::Outside,
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::Color32;
+
+    use super::*;
+
+    /// Computes the relative luminance defined by the Web Content Accessibility Guidelines 2.2.
+    fn luminance(color: Color32) -> f32 {
+        let [r, g, b, _] = egui::Rgba::from(color).to_array();
+        0.2126 * r + 0.7152 * g + 0.0722 * b
+    }
+
+    #[test]
+    fn the_ring_stands_out_from_every_surface_by_three_to_one() {
+        for palette in [Palette::dark(), Palette::light()] {
+            let ring = luminance(palette.accent);
+            for surface in [
+                palette.background,
+                palette.panel,
+                palette.raised,
+                palette.selected,
+            ] {
+                let surface = luminance(surface);
+                let contrast = (ring.max(surface) + 0.05) / (ring.min(surface) + 0.05);
+                assert!(contrast >= 3.0, "{contrast} in {palette:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! State of an import: the models found, their rules, and the displayed parts of both.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use gdcm_io::formats::text::UnsaidUnit;
+use gdcm_model::assembly::{Assembly, FoundModel, Headings, RowRule, Rules, proposed_rules};
+
+use super::COLUMNS;
+use super::details::Preview;
+use crate::gui::commands::command::Command;
+use crate::gui::widgets::tables::Sorting;
+
+/// Maximum number of undo steps.
+const MOST_STEPS: usize = 200;
+
+/// A command of the import view.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AssemblingCommand {
+    /// Start, or continue.
+    Open,
+    /// Choose a folder with the desktop's dialog.
+    AskFolder,
+    /// Read files, and folders with all their files.
+    Add(Vec<PathBuf>),
+    /// Stop reading.
+    StopReading,
+    /// Change the rules.
+    Change(Box<Rules>),
+    /// Undo the last change.
+    Undo,
+    /// Redo the last undone change.
+    Redo,
+    Select(usize),
+    /// Sort the table by the column with this index; the same column again reverses the order.
+    Sort(usize),
+    /// Show the response with this index in the preview.
+    ShowResponse(usize),
+    LoadRules(PathBuf),
+    SaveRules(PathBuf),
+    /// Write the dataset and its rules, and open the dataset.
+    MakeDataset(PathBuf),
+    /// Leave the import and discard it.
+    Close,
+}
+
+/// Progress of reading files.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Reading {
+    /// Number of the current file, from 1.
+    pub number: usize,
+    /// Total number of files.
+    pub of: usize,
+    /// Name of the current file.
+    pub name: String,
+    /// Bytes of the current file's values read so far.
+    pub taken: u64,
+}
+
+/// Models being imported.
+#[derive(Debug, Default)]
+pub struct AssemblyState {
+    assembly: Assembly,
+    earlier: Vec<Rules>,
+    later: Vec<Rules>,
+    /// Whether the engineer changed the rules; otherwise they are proposed.
+    are_said: bool,
+    /// The requested files and folders.
+    pub sources: Vec<PathBuf>,
+    /// Messages about content that could not be read.
+    pub faults: Vec<String>,
+    /// Messages about content that is no model.
+    pub ignored: Vec<String>,
+    /// Unused content of files with models, one line each.
+    pub unused: Vec<String>,
+    /// The tables among the files, with the headings used to read them.
+    pub tables: Headings,
+    /// Units needed to interpret these tables as frequency responses.
+    pub unsaid: BTreeMap<String, Vec<UnsaidUnit>>,
+    /// Progress of a running read.
+    pub reading: Option<Reading>,
+    /// Index of the displayed model.
+    pub selected: usize,
+    pub sorting: Sorting,
+    /// Response of the displayed model.
+    pub preview: Preview,
+    /// Path of a folder or a file, as typed.
+    pub source_path: String,
+    /// Path of the rules, as typed.
+    pub rules_path: String,
+    /// Path of the dataset, as typed.
+    pub dataset_path: String,
+}
+
+impl AssemblyState {
+    /// Returns the models with the rules applied.
+    pub fn assembly(&self) -> &Assembly {
+        &self.assembly
+    }
+
+    /// Adds models; rules that the engineer has not changed are proposed again. A model found
+    /// before replaces its earlier version.
+    pub fn add(&mut self, name: &str, found: Vec<FoundModel>) {
+        let mut models: Vec<FoundModel> = self
+            .assembly
+            .parts()
+            .iter()
+            .map(|part| part.found.clone())
+            .collect();
+        models.retain(|model| !found.iter().any(|new| new.key() == model.key()));
+        models.extend(found);
+        let rules = match self.are_said {
+            true => self.assembly.rules().clone(),
+            false => proposed_rules(name, &models),
+        };
+        self.assembly = Assembly::new(models, rules);
+        self.selected = self
+            .selected
+            .min(self.assembly.parts().len().saturating_sub(1));
+    }
+
+    /// Removes all models and the messages about their files; the rules stay.
+    pub fn forget_models(&mut self) {
+        self.assembly = Assembly::new(Vec::new(), self.assembly.rules().clone());
+        self.faults.clear();
+        self.ignored.clear();
+        self.unused.clear();
+        self.tables.clear();
+        self.unsaid.clear();
+    }
+
+    /// Replaces the rules as an undoable step.
+    pub fn change(&mut self, rules: Rules) {
+        if rules == *self.assembly.rules() {
+            return;
+        }
+        self.earlier.push(self.assembly.rules().clone());
+        if self.earlier.len() > MOST_STEPS {
+            self.earlier.remove(0);
+        }
+        self.later.clear();
+        self.put(rules);
+    }
+
+    /// Undoes the last change.
+    pub fn undo(&mut self) {
+        if let Some(rules) = self.earlier.pop() {
+            self.later.push(self.assembly.rules().clone());
+            self.put(rules);
+        }
+    }
+
+    /// Redoes the last undone change.
+    pub fn redo(&mut self) {
+        if let Some(rules) = self.later.pop() {
+            self.earlier.push(self.assembly.rules().clone());
+            self.put(rules);
+        }
+    }
+
+    /// Returns whether undo and redo are possible.
+    pub fn steps(&self) -> (bool, bool) {
+        (!self.earlier.is_empty(), !self.later.is_empty())
+    }
+
+    fn put(&mut self, rules: Rules) {
+        self.are_said = true;
+        self.assembly = self.assembly.with_rules(rules);
+    }
+
+    /// Returns the command that changes the rules with `change`.
+    pub fn changed(&self, change: impl FnOnce(&mut Rules)) -> Command {
+        let mut rules = self.assembly.rules().clone();
+        change(&mut rules);
+        AssemblingCommand::Change(Box::new(rules)).into()
+    }
+
+    /// Returns the command that changes the rule of one model.
+    pub fn said_of(&self, part: usize, say: impl FnOnce(&mut RowRule)) -> Command {
+        self.changed(|rules| {
+            if let Some(part) = self.assembly.parts().get(part) {
+                say(rules.rows.entry(part.found.key()).or_default());
+            }
+        })
+    }
+
+    /// Returns the command that changes the heading of a table's column; the file's own headings
+    /// apply where none are given.
+    pub fn with_heading(&self, file: &str, column: usize, heading: &str) -> Command {
+        self.changed(|rules| {
+            let Some(headings) = self.tables.get(file) else {
+                return;
+            };
+            let said = rules
+                .headings
+                .entry(file.to_owned())
+                .or_insert_with(|| headings.clone());
+            if let Some(place) = said.get_mut(column) {
+                heading.trim().clone_into(place);
+            }
+        })
+    }
+
+    /// Returns the command that sets the unit of a column in a table, and in all tables with the
+    /// same headings.
+    pub fn with_unit(&self, file: &str, column: usize, unit: &str) -> Command {
+        self.changed(|rules| {
+            for file in self.tables_alike(file) {
+                let said = rules
+                    .headings
+                    .entry(file.clone())
+                    .or_insert_with(|| self.tables[file].clone());
+                if let Some(heading) = said.get_mut(column) {
+                    *heading = format!("{heading} [{unit}]");
+                }
+            }
+        })
+    }
+
+    /// Returns the tables, including this one, that need the same units under the same headings.
+    pub fn tables_alike(&self, file: &str) -> Vec<&String> {
+        let of = |file: &str| (self.tables.get(file), self.unsaid.get(file));
+        self.tables
+            .keys()
+            .filter(|other| of(other.as_str()) == of(file))
+            .collect()
+    }
+
+    /// Returns the command that copies a setting to every model below `part`, in table order, in
+    /// the same folder.
+    pub fn filled_down(&self, part: usize, say: impl Fn(&mut RowRule)) -> Command {
+        let parts = self.assembly.parts();
+        let folder = |part: usize| {
+            parts.get(part).map(|part| {
+                part.found
+                    .file()
+                    .rsplit_once('/')
+                    .map_or("", |(folder, _)| folder)
+            })
+        };
+        let order = self.order();
+        let below = order.iter().skip_while(|index| **index != part);
+        self.changed(|rules| {
+            for index in below.filter(|index| folder(**index) == folder(part)) {
+                say(rules.rows.entry(parts[*index].found.key()).or_default());
+            }
+        })
+    }
+
+    /// Returns the indices of the models in table order.
+    pub fn order(&self) -> Vec<usize> {
+        let parts = self.assembly.parts();
+        self.sorting
+            .order_of(parts.len(), |row, column| COLUMNS[column].text(&parts[row]))
+    }
+}

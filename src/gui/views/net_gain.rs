@@ -1,0 +1,321 @@
+//! Net gains over airspeed, and the form of the schedule.
+
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{Button, Grid, Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::dataset::Pair;
+use gdcm_plot::figure::MarkId;
+use gdcm_plot::figure::condition_source::schedule_words;
+use gdcm_plot::figure::gains::{Across, GainQuantity, add_variant, net_gain_figure, quieten};
+use gdcm_study::decisions::setting;
+
+use super::View;
+use super::channels::{GainPlots, gain_command, shown_uncertainty};
+use super::compare::overlaid_analysis;
+use super::evidence::{coefficient_table, forms_ui, lead_evidence_table, residual_table};
+use crate::gui::commands::command::Command;
+use crate::gui::panels::settings_panel::{choice_ui, setting_ui};
+use crate::gui::plot::{FigureScene, figure_ui};
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::controls::{named, restore_panel_size, toggle_ui};
+use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
+
+/// Width of this view's controls in a single line \[pt\].
+pub const NET_GAIN_CONTROLS: f32 = 410.0;
+
+/// Describes the content of the plots.
+pub fn net_gain_words(state: &State) -> String {
+    let level = 100.0 * state.study.settings.uncertainty.level;
+    let bars = if state.display.hide_bars {
+        String::new()
+    } else {
+        format!(", bars of {level:.0} %")
+    };
+    format!(
+        "k of output times k of input, {} responses{bars}",
+        state.display.net_gain_pairs.name()
+    )
+}
+
+/// Draws the selection of the responses and of the form of the schedule, from right to left.
+pub fn net_gain_header_ui(
+    ui: &mut Ui,
+    state: &State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let shown = state.display.show_evidence;
+    let hint = "Which pairs at one airspeed differ significantly, and what each form of the schedule misses, so that a degree is \
+                chosen on evidence";
+    if toggle_ui(ui, ("evidence", "evidence"), shown, hint) {
+        commands.push(Command::ShowEvidence(!shown));
+    }
+    bars_switch_ui(ui, state, ("bars", "error bars"), commands);
+    if let Some((variant, _)) = overlaid_analysis(state) {
+        let button = ui.small_button(
+            RichText::new(format!("□ {variant} ×")).color(palette.name_of(palette.corrected)),
+        );
+        let name = format!("Variant {variant} laid over");
+        let hint = "Hollow squares: the net gains of this variant. Click: take them away";
+        if named(button, Role::Button, &name)
+            .on_hover_text(hint)
+            .clicked()
+        {
+            commands.push(Command::Overlay(None));
+        }
+    }
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let form = schedule_words(&state.study.settings.schedule);
+    let text = format!(
+        "{} \u{25be}",
+        form.strip_prefix("polynomial of ").unwrap_or(&form)
+    );
+    let button = MenuButton::from_button(Button::new(text).frame(false)).config(config);
+    let (button, _) = button.ui(ui, |ui| schedule_ui(ui, state, palette, commands));
+    named(button, Role::Button, "Form of the schedule")
+        .on_hover_text("The form of the schedule over airspeed");
+    pair_set_ui(ui, state, commands);
+}
+
+/// Draws the switch of error bars and bands.
+pub(super) fn bars_switch_ui(
+    ui: &mut Ui,
+    state: &State,
+    names: (&str, &str),
+    commands: &mut Vec<Command>,
+) {
+    let shown = !state.display.hide_bars;
+    let level = 100.0 * state.study.settings.uncertainty.level;
+    let hint = format!(
+        "Bars of {level:.0} %: thick for the physics model chosen (identification), thin with not knowing the trim flown. Bands of the \
+         schedule: where it may lie, and where another condition would fall"
+    );
+    if toggle_ui(ui, names, shown, &hint) {
+        commands.push(Command::ShowBars(!shown));
+    }
+}
+
+/// Draws the selection of the displayed responses, from right to left.
+fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let pair = state.display.pair;
+    if state.display.net_gain_pairs == PairSet::Picked {
+        let picked = state.display.picked_pairs.contains(&pair);
+        let (text, verb) = if picked {
+            ("−", "Let go")
+        } else {
+            ("+", "Pick")
+        };
+        let name = format!("{verb} {}", state.dataset().pair_name(pair));
+        let button = ui.small_button(text);
+        button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+        if button
+            .on_hover_text(format!("{name}, the response in focus"))
+            .clicked()
+        {
+            commands.push(Command::PickPair(pair));
+        }
+    }
+    let mut chosen = state.display.net_gain_pairs;
+    let sets = PairSet::ALL.map(|set| (set, set.name(), set.purpose()));
+    choice_ui(ui, "Responses of the net-gain plots", &mut chosen, &sets);
+    if chosen != state.display.net_gain_pairs {
+        commands.push(Command::ShowNetGains(chosen));
+    }
+}
+
+/// Draws the net gain of the selected responses over airspeed.
+pub fn net_gain_view_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let message = if state.analysis().is_none() {
+        state.results.absence()
+    } else {
+        match state.display.net_gain_pairs {
+            PairSet::Picked => "No response is picked: choose one in the matrix, then + above",
+            _ => "No response is held: hold one in the matrix",
+        }
+    };
+    if state.display.show_evidence {
+        let width = ui.available_width();
+        restore_panel_size(ui, "evidence");
+        let panel = Panel::right("evidence")
+            .resizable(true)
+            .default_size(0.36 * width)
+            .min_size(120.0);
+        panel.show(ui, |ui| evidence_ui(ui, state, palette, commands));
+    }
+    let mut view = state
+        .display
+        .figures
+        .remove(&View::NetGain)
+        .unwrap_or_default();
+    let mut plots = net_gain_plots(state);
+    let selected = MarkId::Condition(state.condition().id());
+    quieten(&mut plots.figure, &selected, state.display.show_evidence);
+    let accented = net_gain_pairs(state)
+        .iter()
+        .position(|pair| *pair == state.display.pair);
+    let scene = FigureScene {
+        is_compact: true,
+        accented,
+        ..plots.scene("net gain", &plots.figure, message)
+    };
+    let events = figure_ui(ui, &scene, &mut view, palette);
+    commands.extend(
+        events
+            .into_iter()
+            .filter_map(|event| gain_command(state, event)),
+    );
+    state.display.figures.insert(View::NetGain, view);
+}
+
+/// Draws the evidence for each form of the schedule; a click on a form selects it.
+fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let mut cached = std::mem::take(&mut state.display.evidence);
+    cached.refresh(state);
+    let mut sorting = state.display.evidence_sorting;
+    ScrollArea::vertical().show(ui, |ui| match cached.found() {
+        None => {
+            ui.label(palette.dim(state.results.absence()));
+        }
+        Some((conditions, evidence)) => {
+            let hint = "fit: residuals of the conditions that the schedule is made of; unseen: of each condition under the \
+                        schedule that is made without it (root mean square of ln of the net gain)";
+            ui.label(RichText::new("Error of each form [% of the net gain]").size(SMALL_SIZE).strong()).on_hover_text(hint);
+            forms_ui(ui, state, evidence, (&mut sorting, palette), commands);
+            let leads = lead_evidence_table(state, cached.leads());
+            let residuals = residual_table(state, conditions, evidence);
+            for table in leads.into_iter().chain(residuals).chain(coefficient_table(state)) {
+                ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
+                table_ui(ui, &table, &mut Sorting::default(), &TableLook::PLAIN, palette, commands);
+            }
+        }
+    });
+    state.display.evidence = cached;
+    state.display.evidence_sorting = sorting;
+}
+
+/// Draws the parameters of the schedule's form, line by line.
+fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let rows = [
+        &setting::SCHEDULE,
+        &setting::SCHEDULED_QUANTITY,
+        &setting::SECOND_VARIABLE,
+        &setting::SCHEDULE_DELAYS,
+        &setting::TAU_DEGREE,
+        &setting::AIRSPEED_TOLERANCE,
+    ];
+    Grid::new("form of the schedule")
+        .num_columns(2)
+        .spacing([12.0, 6.0])
+        .show(ui, |ui| {
+            for setting in rows
+                .into_iter()
+                .filter(|setting| (setting.control.applies)(&state.study))
+            {
+                ui.label(palette.dim(setting.control.label));
+                setting_ui(ui, state, setting, palette, commands);
+                ui.end_row();
+            }
+        });
+}
+
+/// Set of responses in the net-gain plots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PairSet {
+    /// Responses constrained now or at any time since the window was opened: releasing a response
+    /// keeps its plot.
+    #[default]
+    Held,
+    /// Response in focus.
+    Focused,
+    /// On-axis responses of the dataset.
+    OnAxis,
+    All,
+    /// Responses picked by the engineer.
+    Picked,
+}
+
+impl PairSet {
+    /// Every set, in the order of the list.
+    pub const ALL: [Self; 5] = [
+        Self::Held,
+        Self::Focused,
+        Self::OnAxis,
+        Self::All,
+        Self::Picked,
+    ];
+
+    /// Returns the name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Held => "held",
+            Self::Focused => "in focus",
+            Self::OnAxis => "on-axis",
+            Self::All => "all",
+            Self::Picked => "picked",
+        }
+    }
+
+    /// Describes the content of the set in a sentence.
+    pub fn purpose(self) -> &'static str {
+        match self {
+            Self::Held => "The responses held, and those held before",
+            Self::Focused => "The response chosen in the matrix",
+            Self::OnAxis => "The on-axis responses of the dataset",
+            Self::All => "Every response that has a gain",
+            Self::Picked => "Those picked with the button beside this list",
+        }
+    }
+}
+
+/// Returns the responses of the net-gain plots, in the order of the matrix.
+pub fn net_gain_pairs(state: &State) -> Vec<Pair> {
+    let display = &state.display;
+    let constrained = &state.study.settings.constrained;
+    let is_in = |pair: &Pair| match display.net_gain_pairs {
+        PairSet::Held => constrained[*pair] || display.once_held.contains(pair),
+        PairSet::Focused => display.pair == *pair,
+        PairSet::OnAxis => state.dataset().measuring_pairs()[*pair],
+        PairSet::All => true,
+        PairSet::Picked => display.picked_pairs.contains(pair),
+    };
+    constrained.pairs().filter(is_in).collect()
+}
+
+/// Builds a plot for each response of the displayed set: the net gain of each condition's optimum,
+/// and the schedule.
+pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
+    let pairs = if state.analysis().is_some() {
+        net_gain_pairs(state)
+    } else {
+        Vec::new()
+    };
+    let figure = state
+        .analysis()
+        .map(|analysis| net_gain_figure(analysis, shown_uncertainty(state), &pairs));
+    let mut figure = figure.unwrap_or_default();
+    let quantities: Vec<GainQuantity> = pairs.iter().copied().map(GainQuantity::NetGain).collect();
+    if let Some((name, analysis)) = overlaid_analysis(state) {
+        add_variant(&mut figure, &quantities, analysis, name);
+    }
+    for (plot, pair) in figure
+        .plots
+        .iter_mut()
+        .zip(&pairs)
+        .filter(|(_, pair)| !state.study.settings.constrained[**pair])
+    {
+        plot.title = format!("{} (free)", state.dataset().pair_name(*pair));
+    }
+    GainPlots {
+        state,
+        figure: figure.with_ranges(),
+        quantities,
+        across: Across::Airspeed,
+    }
+}

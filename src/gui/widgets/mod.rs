@@ -1,0 +1,5 @@
+//! Widgets, tables, colours.
+
+pub mod controls;
+pub mod palette;
+pub mod tables;

@@ -26,7 +26,7 @@ use clap::error::{ContextKind, ContextValue};
 
 use gdcm_io::files::dataset_file::write_example;
 use gdcm_io::files::study_file::{holds_models, open_study_of};
-use gdcm_io::formats::variables::ReadingBudget;
+use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_io::{Existing, Opened, load_any};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_study::decisions::setting::SETTINGS;

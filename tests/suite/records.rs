@@ -28,7 +28,7 @@ fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() 
     let found = records_of_bytes(
         &archive(),
         "example-records.zip",
-        &gdcm_io::formats::variables::ReadingBudget::new(1 << 30),
+        &gdcm_io::reading_budget::ReadingBudget::new(1 << 30),
     )
     .unwrap();
     assert_eq!((found.tables.len(), found.faults.len()), (99, 0));

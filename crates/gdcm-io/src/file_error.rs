@@ -10,9 +10,9 @@ use gdcm_model::dataset::unchecked_dataset::{DraftError, DraftFault};
 use gdcm_model::message_text::{quoted, sanitized, sanitized_path};
 use gdcm_study::decisions::edit::EditRefusal;
 
-use crate::export::ExportFault;
-use crate::formats::variables::VariableFault;
-use crate::json_text::line_of;
+use crate::export_fault::ExportFault;
+use crate::location::line_of;
+use crate::reading_budget::VariableFault;
 
 /// Reason why a file could not be read or written: one line that names the file, and the place in
 /// it.

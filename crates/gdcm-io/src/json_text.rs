@@ -11,17 +11,15 @@ use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, Seq
 use serde::ser::{SerializeSeq, Serializer};
 use serde::{Deserialize, Serialize};
 use serde_json::error::Category;
-use serde_json::value::RawValue;
 
-use gdcm_model::dataset::BundleKind;
 use gdcm_model::dataset::channel::Location;
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_FREQUENCIES, MOST_STATES};
 use gdcm_model::message_text::{is_unprintable, sanitized, shortened};
 use gdcm_model::units::number;
 
 use crate::file_error::{ContentError, ContentFault, FileError};
-use crate::formats::variables::ReadingBudget;
 use crate::location::{Outline, Step, UnknownKeys, location_of};
+use crate::reading_budget::ReadingBudget;
 
 /// Maximum memory per byte of a file of this program \[bytes\]: a number takes at least a digit and
 /// a comma, in a list that grows into twice its memory.
@@ -334,31 +332,6 @@ fn expected_words(expected: &str) -> String {
         _ if expected.starts_with("struct ") => "an object".to_owned(),
         _ => expected.to_owned(),
     }
-}
-
-/// Returns the line at which the condition or the model of a place begins, counted from 1.
-pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
-    let mut value = entry(
-        serde_json::from_slice(text).ok()?,
-        "conditions",
-        place.condition.as_ref()?.position,
-    )?;
-    if let Some(model) = &place.model {
-        let key = match model.bundle {
-            BundleKind::Physics => "physics_models",
-            BundleKind::Identified => "identified_models",
-        };
-        value = entry(value, key, model.position)?;
-    }
-    let offset = value.get().as_ptr() as usize - text.as_ptr() as usize;
-    Some(1 + text[..offset].iter().filter(|byte| **byte == b'\n').count())
-}
-
-/// Returns an entry of a list in an object, counted from 1: a part of the text, not a copy.
-fn entry<'t>(object: &'t RawValue, key: &str, position: usize) -> Option<&'t RawValue> {
-    let object: BTreeMap<String, &RawValue> = serde_json::from_str(object.get()).ok()?;
-    let list: Vec<&RawValue> = serde_json::from_str(object.get(key)?.get()).ok()?;
-    list.get(position.checked_sub(1)?).copied()
 }
 
 /// Returns the bare word around a column (counted from 1) of a line (counted from 1): `NaN`,

@@ -1,6 +1,8 @@
 //! Files: datasets, studies and results. The only place that touches the file system.
 
+pub mod csv_text;
 pub mod export;
+pub mod export_fault;
 pub mod file_error;
 pub mod files;
 pub mod formats;
@@ -8,6 +10,7 @@ pub mod import;
 pub mod json_text;
 mod location;
 pub mod output_set;
+pub mod reading_budget;
 pub mod report;
 pub mod source;
 

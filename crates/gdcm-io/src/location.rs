@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 
 use json_event_parser::{JsonEvent, SliceJsonParser};
+use serde_json::value::RawValue;
 
 use gdcm_model::dataset::BundleKind;
 use gdcm_model::dataset::channel::{ConditionPlace, Location, ModelPlace};
 use gdcm_model::message_text::{quoted, sanitized, shortened};
 
-use crate::formats::variables::ReadingBudget;
+use crate::reading_budget::ReadingBudget;
 
 /// A step on the path from the top of a JSON text to a value in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,7 +58,7 @@ fn bundle_of(key: &str) -> Option<BundleKind> {
 
 /// Describes steps: `A[2][0]` is "matrix A, row 3, column 1", `re[0][1][4]` is "re, output 1, input
 /// 2, entry 5".
-fn entry_words(steps: &[Step]) -> String {
+pub(super) fn entry_words(steps: &[Step]) -> String {
     let mut words: Vec<String> = Vec::new();
     let mut indices: &[&str] = &[];
     for step in steps {
@@ -380,4 +381,29 @@ mod outline_tests {
         );
         assert_eq!(format_of(b"[1, 2]"), None);
     }
+}
+
+/// Returns the line at which the condition or the model of a place begins, counted from 1.
+pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
+    let mut value = entry(
+        serde_json::from_slice(text).ok()?,
+        "conditions",
+        place.condition.as_ref()?.position,
+    )?;
+    if let Some(model) = &place.model {
+        let key = match model.bundle {
+            BundleKind::Physics => "physics_models",
+            BundleKind::Identified => "identified_models",
+        };
+        value = entry(value, key, model.position)?;
+    }
+    let offset = value.get().as_ptr() as usize - text.as_ptr() as usize;
+    Some(1 + text[..offset].iter().filter(|byte| **byte == b'\n').count())
+}
+
+/// Returns an entry of a list in an object, counted from 1: a part of the text, not a copy.
+pub(super) fn entry<'t>(object: &'t RawValue, key: &str, position: usize) -> Option<&'t RawValue> {
+    let object: BTreeMap<String, &RawValue> = serde_json::from_str(object.get()).ok()?;
+    let list: Vec<&RawValue> = serde_json::from_str(object.get(key)?.get()).ok()?;
+    list.get(position.checked_sub(1)?).copied()
 }

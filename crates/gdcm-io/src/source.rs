@@ -13,7 +13,7 @@ use sha2::{Digest, Sha256};
 use gdcm_model::dataset::limits::LARGEST_TEXT;
 
 use crate::file_error::FileError;
-use crate::formats::variables::ReadingBudget;
+use crate::reading_budget::ReadingBudget;
 
 /// The two bytes that every gzip file starts with (RFC 1952).
 pub(super) const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];

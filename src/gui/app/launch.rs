@@ -13,7 +13,7 @@ use egui::ViewportBuilder;
 
 use gdcm_io::files::study_file::holds_models;
 use gdcm_io::files::user_state::recent_files;
-use gdcm_io::formats::variables::ReadingBudget;
+use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_io::source::file_exists;
 use gdcm_io::{FileError, Opened, embedded_example, load_any};
 use gdcm_model::message_text::{sanitized, sanitized_path, shortened_message};

@@ -5,7 +5,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use gdcm_io::export::figure_file::{csv_text, figure_format, save_tables, write_figure};
+use gdcm_io::csv_text::{csv_text, save_tables};
+use gdcm_io::export::figure_file::{figure_format, write_figure};
 use gdcm_io::export::{ExportFormat, ExportRequest, ExportSource, export_contents, write_export};
 use gdcm_io::files::corrections_file::write_results;
 use gdcm_io::files::requirements_file::{add_tolerances, load_tolerances, read_levels};

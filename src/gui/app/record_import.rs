@@ -7,8 +7,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use gdcm_io::files::dataset_file::add_dataset;
-use gdcm_io::formats::variables::ReadingBudget;
 use gdcm_io::import::record_files::{example_records, load_records, read_records, relative_entry};
+use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_io::{DatasetOrigin, FileError, FolderProgress};
 use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord};

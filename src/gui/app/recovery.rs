@@ -10,7 +10,7 @@ use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
 use gdcm_io::files::user_state::{LostStudy, RecoveryFile, lost_studies};
-use gdcm_io::formats::variables::ReadingBudget;
+use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_io::{FileError, LoadedDataset, Opened, load_any};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_study::Study;

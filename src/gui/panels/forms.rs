@@ -9,8 +9,8 @@ use egui::{
     vec2,
 };
 
-use gdcm_io::export::contents::ExportContents;
 use gdcm_io::export::{EXPORTERS, ExportRequest, export_contents};
+use gdcm_io::files::export_contents::ExportContents;
 use gdcm_model::dataset::ConditionId;
 use gdcm_plot::figure::ColumnWidth;
 use gdcm_study::decisions::differences::Difference;

@@ -4,7 +4,8 @@ use std::fs;
 
 use gdcm::gui::state::figures::{figure_of, views_with_figure};
 use gdcm::gui::views::View;
-use gdcm_io::export::figure_file::{csv_text, write_as};
+use gdcm_io::csv_text::csv_text;
+use gdcm_io::export::figure_file::write_as;
 use gdcm_plot::figure::{ColumnWidth, FigureFormat};
 
 use super::views::show;

@@ -8,10 +8,10 @@ use serde_json::{Value as Tree, json};
 use gdcm_model::dataset::{Channel, ConditionId, Dataset};
 use gdcm_study::Analysis;
 
-use super::contents::ExportContents;
 use super::matlab_struct::{Layout, cell_of_texts};
 use super::{Export, ExportFormat, Exported};
 use crate::files::corrections_file::{channel_table, corrections, write_corrections};
+use crate::files::export_contents::ExportContents;
 use crate::formats::mat;
 use crate::formats::variables::{Value, Variable};
 

@@ -18,9 +18,10 @@ use gdcm_model::dataset::{
 use gdcm_model::units::{number, telling};
 use gdcm_study::{Analysis, AssessedCorrection, ConditionAnalysis, CouplingCorrection};
 
-use super::contents::{ExportContents, LeftOutPart, PartSource};
 use super::matlab_struct::{Fields, cell_of_texts, matrix, records};
-use super::{ExportFault, ExportFormat, ExportRequest, Exported, ExportedRole};
+use super::{ExportFormat, ExportRequest, Exported, ExportedRole};
+use crate::export_fault::ExportFault;
+use crate::files::export_contents::{ExportContents, LeftOutPart, PartSource};
 use crate::files::model_collection::{
     ContainingModel, bare_draft, labels, write_containing_models,
 };
@@ -629,8 +630,8 @@ mod tests {
 
     use super::*;
     use crate::files::dataset_file::embedded_example;
-    use crate::formats::variables::ReadingBudget;
     use crate::formats::zip_files::read_npz;
+    use crate::reading_budget::ReadingBudget;
 
     #[test]
     fn a_delay_that_the_schedule_leaves_out_is_named_and_counts_as_an_error_of_phase() {

@@ -7,11 +7,12 @@ use std::iter::once;
 use gdcm_method::correction::Channel;
 use gdcm_plot::figure::all_channels;
 
-use super::contents::ExportContents;
 use super::matlab_struct::{Fields, cell_of_texts, column, matrix, row};
 use super::programs::comment;
 use super::scheduled::{Scheduled, number};
-use super::{ExportFault, ExportFormat, Exported};
+use super::{ExportFormat, Exported};
+use crate::export_fault::ExportFault;
+use crate::files::export_contents::ExportContents;
 use crate::formats::mat;
 use crate::formats::variables::{Value, Variable};
 
@@ -541,7 +542,8 @@ mod tests {
     use crate::export::ExportSource;
     use crate::files::dataset_file::embedded_example;
     use crate::formats::text::read_table;
-    use crate::formats::variables::{ReadingBudget, Value};
+    use crate::formats::variables::Value;
+    use crate::reading_budget::ReadingBudget;
 
     #[test]
     fn the_error_of_a_parabola_is_greatest_in_the_middle() {

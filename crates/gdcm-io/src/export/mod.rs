@@ -3,7 +3,6 @@
 //! line, the window and the documentation use [`EXPORTERS`].
 
 mod all_results;
-pub mod contents;
 mod corrected_models;
 pub mod figure_file;
 mod lookup_table;
@@ -15,14 +14,12 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use gdcm_method::correction::Pade;
-use gdcm_method::schedule::ScheduleError;
 use gdcm_model::dataset::ConditionId;
-use gdcm_model::message_text::quoted;
 use gdcm_study::{Analysis, AssessedCorrection};
 
-use self::contents::ExportContents;
+use crate::export_fault::ExportFault;
 use crate::file_error::FileError;
-use crate::formats::variables::VariableFault;
+use crate::files::export_contents::ExportContents;
 use crate::output_set::OutputSet;
 use scheduled::Scheduled;
 
@@ -226,83 +223,4 @@ pub fn write_export(
     outputs.add(path, write)?;
     outputs.persist()?;
     Ok(remarks)
-}
-
-/// Reason why an export is impossible.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ExportFault {
-    /// A curve cannot be computed.
-    #[error(
-        "the {curve} of {channel} has a number that is not finite; correct it before it is exported"
-    )]
-    Curve {
-        channel: String,
-        /// "gain" or "delay".
-        curve: &'static str,
-    },
-    /// The requested airspeeds do not form a table.
-    #[error("the airspeeds of the table must be finite, increase, and be at least one")]
-    Breakpoints,
-    /// A MATLAB file has a name that no function can have.
-    #[error(
-        "MATLAB calls a function by the name of its file: a letter, then letters, digits and _, 63 at most, and neither a \
-         keyword nor a name that the file uses itself; found {}",
-        quoted(found)
-    )]
-    FunctionName { found: String },
-    /// The file extension is none of the model formats.
-    #[error("models are written to a name that ends in .mat, .json or .npz")]
-    ModelsFormat,
-    /// The values cannot be written.
-    #[error(transparent)]
-    Variables(#[from] VariableFault),
-    /// There is no schedule to export.
-    #[error(transparent)]
-    Schedule(#[from] ScheduleError),
-    /// The study requests couplings and has none: the export would not be the requested one.
-    #[error(
-        "the study asks for couplings, and there are none: {why}; mend that, or set couplings to none"
-    )]
-    NoCouplings { why: String },
-    /// A condition has no result of its own.
-    #[error("condition {condition}: {why}")]
-    NoResult { condition: ConditionId, why: String },
-    /// The dataset has no such condition.
-    #[error("the dataset has no condition {condition}")]
-    NoCondition { condition: ConditionId },
-    /// A condition has no physics model with this name.
-    #[error(
-        "condition {condition} has no physics model \"{model}\"; name the condition that has it"
-    )]
-    NoModel {
-        condition: ConditionId,
-        model: String,
-    },
-    /// A model is known only by its response.
-    #[error(
-        "condition {condition}, model \"{model}\": it is a measured response and has no matrices to be exported"
-    )]
-    NoMatrices {
-        condition: ConditionId,
-        model: String,
-    },
-    /// A corrected model cannot be written as matrices.
-    #[error("condition {condition}, model \"{model}\": {words}")]
-    Model {
-        condition: ConditionId,
-        model: String,
-        /// For the reasons see
-        /// [`CorrectedModelError`](gdcm_method::correction::corrected_model::CorrectedModelError).
-        words: String,
-    },
-}
-
-impl ExportFault {
-    /// Returns whether the analysis lacks the requested content; otherwise the request must change.
-    pub fn is_of_analysis(&self) -> bool {
-        matches!(
-            self,
-            Self::Schedule(_) | Self::NoResult { .. } | Self::Curve { .. }
-        )
-    }
 }

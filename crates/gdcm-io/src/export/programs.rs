@@ -12,10 +12,11 @@ use gdcm_method::couplings::CouplingMatrices;
 use gdcm_method::schedule::{Airspeeds, Regression};
 use gdcm_plot::figure::all_channels;
 
-use super::contents::ExportContents;
 use super::matlab_struct::LONGEST_NAME;
 use super::scheduled::{Curve, Scheduled, number};
-use super::{Export, ExportFault, ExportFormat, Exported};
+use super::{Export, ExportFormat, Exported};
+use crate::export_fault::ExportFault;
+use crate::files::export_contents::ExportContents;
 
 /// A programming language: the template of a file, and its expression for the value of a curve.
 struct Language {

@@ -8,9 +8,10 @@ use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::shortened;
 use gdcm_plot::figure::all_channels;
 
-use super::contents::ExportContents;
+use super::ExportSource;
 use super::programs::comment;
-use super::{ExportFault, ExportSource};
+use crate::export_fault::ExportFault;
+use crate::files::export_contents::ExportContents;
 
 /// A schedule with its dataset and study.
 #[derive(Clone)]

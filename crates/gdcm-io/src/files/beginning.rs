@@ -16,8 +16,8 @@ use std::path::Path;
 use super::dataset_file::check_dataset_text;
 use super::study_file::check_study_text;
 use crate::file_error::FileError;
-use crate::formats::variables::ReadingBudget;
 use crate::location::Outline;
+use crate::reading_budget::ReadingBudget;
 use crate::source::{text_reader, without_mark};
 
 /// Length of the first beginning \[bytes\].

@@ -26,9 +26,9 @@ use gdcm_sysid::records::RecordChannels;
 use super::corrections_file::without_empty;
 use super::dataset_file::{LabelText, ModelText};
 use crate::file_error::FileError;
-use crate::formats::variables::ReadingBudget;
 use crate::json_text::{Format, Limited, Nested, list, write_compact};
 use crate::output_set::OutputSet;
+use crate::reading_budget::ReadingBudget;
 
 /// Format and version of a file of models.
 pub(crate) const MODELS: Format = Format {
@@ -734,7 +734,7 @@ mod identified_tests {
         let again = models_of_bytes(
             &written(&[]),
             "identified.json",
-            &crate::formats::variables::ReadingBudget::new(1 << 24),
+            &crate::reading_budget::ReadingBudget::new(1 << 24),
         )
         .unwrap();
         let gains: Vec<f64> = again

@@ -15,11 +15,11 @@ use gdcm_study::results::required_modes::{ModeFinding, ModeNumbers};
 use gdcm_study::results::requirements::{Requirements, SummaryFinding};
 use gdcm_study::results::time_histories::{HistoryFinding, TimeHistories, ToleranceFinding};
 
-use crate::export::figure_file::write_records;
+use crate::csv_text::write_records;
 use crate::file_error::{ContentError, ContentFault, FileError};
-use crate::formats::variables::ReadingBudget;
 use crate::json_text::{Format, json_error, write_pretty};
 use crate::output_set::{OutputSet, make_directory};
+use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 
 const NAME: &str = "gdcm-requirements";

@@ -14,9 +14,9 @@ use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
 use gdcm_model::whole_number::whole;
 
 use crate::file_error::{ContentError, ContentFault, FileError};
-use crate::formats::variables::ReadingBudget;
 use crate::json_text::{Format, list, write_pretty};
 use crate::output_set::OutputSet;
+use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 
 /// Extension of a rules file.

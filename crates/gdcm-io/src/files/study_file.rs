@@ -23,10 +23,10 @@ use super::dataset_file::{
     DatasetOrigin, LoadedDataset, ModelText, RecordText, dataset_from, embedded_example,
 };
 use crate::file_error::{ContentError, ContentFault, FileError};
-use crate::formats::variables::ReadingBudget;
 use crate::json_text::{Format, list, write_pretty};
 use crate::location::Outline;
 use crate::output_set::{Existing, OutputSet};
+use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 
 /// Maximum number of variants in a study file.

@@ -15,9 +15,9 @@ use gdcm_study::Study;
 use super::dataset_file::LoadedDataset;
 use super::study_file::{STUDY_EXTENSION, dataset_of_study, save_recovery};
 use crate::file_error::FileError;
-use crate::formats::variables::ReadingBudget;
 use crate::json_text::{Format, write_pretty};
 use crate::output_set::{make_directory, write_whole};
+use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 
 /// Maximum number of listed files.

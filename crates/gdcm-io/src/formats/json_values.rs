@@ -7,15 +7,13 @@ use std::fmt;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
 use super::strides::Places;
-use super::variables::{
-    Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, Variable,
-    VariableFault,
-};
+use super::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable};
 use crate::file_error::FileError;
 use crate::files::dataset_file::{DatasetOrigin, dataset_from};
 use crate::files::model_collection::found_models;
 use crate::formats::{Contents, Importer, importer_of};
 use crate::location::Outline;
+use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
 
 /// JSON, and any gzip-packed file.

@@ -15,6 +15,7 @@ pub mod mat;
 pub(crate) mod mat73;
 pub mod npy;
 pub(crate) mod octave;
+pub(crate) mod recorded_columns;
 pub mod strides;
 pub mod text;
 pub mod variables;
@@ -30,7 +31,7 @@ use gdcm_model::assembly::FoundModel;
 use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::sanitized;
 
-use self::variables::{ReadingBudget, Variable, VariableFault};
+use self::variables::Variable;
 use crate::file_error::FileError;
 use crate::formats::json_values::JSON;
 use crate::formats::logs::{BLACKBOX, DATAFLASH, DATAFLASH_TEXT, ULOG};
@@ -38,13 +39,12 @@ use crate::formats::mat::MAT;
 use crate::formats::mat73::HDF5;
 use crate::formats::npy::NPY;
 use crate::formats::octave::{OCTAVE_BINARY, OCTAVE_TEXT};
+use crate::formats::recorded_columns::Columns;
 use crate::formats::text::{LITERALS, TEXT};
 use crate::formats::zip_files::ZIP;
-use crate::import::record_files::Columns;
+use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::source::{kind_of, read_bytes, sha256};
 
-/// Memory limit for the contents of one file \[bytes\].
-pub(crate) const MOST_MEMORY: u64 = 1 << 30;
 /// Largest file \[bytes\].
 pub(crate) const LARGEST_FILE: u64 = 512 << 20;
 /// Largest number of files examined, and deepest nesting of folders.

@@ -1,6 +1,7 @@
 //! The order of an array's elements in a file.
 
-use super::variables::{Array, ElementKind, ReadingBudget, VariableFault};
+use super::variables::{Array, ElementKind};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Positions of the elements of an array in a file, in the order of this program: the first index
 /// running fastest.

@@ -7,10 +7,11 @@ use std::path::Path;
 use flate2::bufread::DeflateDecoder;
 use rawzip::{CompressionMethod, ZipArchive, ZipFileHeaderRecord, ZipSliceArchive};
 
-use super::variables::{ReadingBudget, Variable, VariableFault};
+use super::variables::Variable;
 use crate::file_error::FileError;
 use crate::formats::npy::read_npy;
 use crate::formats::{Contents, Importer, importer_of, is_known};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Largest ratio of unpacked to packed bytes in deflate (RFC 1951).
 const LARGEST_RATIO: u64 = 1032;

@@ -18,8 +18,9 @@ use crate::formats::text::{
     FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, Unrecognised, UnsaidUnit,
     read_matrices, read_matrix, read_table, split_complex,
 };
-use crate::formats::variables::{ReadingBudget, Value, Variable, VariableFault};
+use crate::formats::variables::{Value, Variable};
 use crate::formats::{Contents, FolderProgress, ImportedFile, import, import_bytes, of_file};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Key for the headings of every table with the same number of columns, among the keys of single
 /// files.

@@ -5,9 +5,9 @@ use std::io::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use gdcm_io::formats::variables::ReadingBudget;
 use gdcm_io::import::model_files::models_of_bytes;
 use gdcm_io::import::record_files::records_of_bytes;
+use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_io::{FileError, FolderProgress, load_any, load_dataset, read_models};
 
 /// Memory that the variables of a file may take here.

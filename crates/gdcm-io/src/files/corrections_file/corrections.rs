@@ -24,7 +24,7 @@ use gdcm_study::{Analysis, ConditionAnalysis};
 
 use super::uncertainty::{bars, net_gain_bar, uncertainty};
 use super::{NAME, VERSION};
-use crate::export::contents::ExportContents;
+use crate::files::export_contents::ExportContents;
 
 /// Returns all results of the chosen conditions, with the schedule of the whole study, as
 /// `corrections.json` contains them. The documentation of file formats describes each key.

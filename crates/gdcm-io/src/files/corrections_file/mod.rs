@@ -15,8 +15,8 @@ use gdcm_model::response::LeadFilter;
 use gdcm_plot::figure::all_channels;
 use gdcm_study::{Analysis, ConditionAnalysis};
 
-use crate::export::contents::ExportContents;
-use crate::export::figure_file::write_records;
+use super::export_contents::ExportContents;
+use crate::csv_text::write_records;
 use crate::file_error::FileError;
 use crate::json_text::write_pretty;
 use crate::output_set::{OutputSet, make_directory};

@@ -14,9 +14,9 @@ use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::{sanitized, sanitized_path};
 
 use crate::file_error::{ContentError, FileError};
-use crate::formats::variables::ReadingBudget;
 use crate::json_text::write_compact;
 use crate::output_set::{Existing, OutputSet, make_directory};
+use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 use text::{DatasetText, FORMAT};
 

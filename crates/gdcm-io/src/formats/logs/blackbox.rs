@@ -16,9 +16,9 @@ use gdcm_sysid::records::RecordColumn;
 
 use crate::file_error::FileError;
 use crate::formats::logs::{BETAFLIGHT, give_meanings, mode_spans, modes_note};
-use crate::formats::variables::{ReadingBudget, VariableFault};
+use crate::formats::recorded_columns::{Columns, MOST_RECORDS};
 use crate::formats::{Contents, Importer};
-use crate::import::record_files::{Columns, MOST_RECORDS};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const MARK: &[u8] = b"H Product:Blackbox";
 /// A larger time step is damage \[µs\].

@@ -12,10 +12,10 @@ use std::collections::BTreeMap;
 
 use crate::file_error::FileError;
 use crate::formats::logs::{ARDUPILOT, TopicSamples, array, give_meanings, mode_spans, modes_note};
+use crate::formats::recorded_columns::Columns;
 use crate::formats::strides::{NumberClass, StoredNumber};
-use crate::formats::variables::{ReadingBudget, VariableFault};
 use crate::formats::{Contents, Importer};
-use crate::import::record_files::Columns;
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const MARK: [u8; 2] = [0xa3, 0x95];
 /// Type and length of the messages that describe other messages.

@@ -14,7 +14,7 @@ use std::sync::Arc;
 use gdcm_sysid::records::record_table::TopicClock;
 use gdcm_sysid::records::{ModeSpan, RecordColumn};
 
-use super::variables::{ReadingBudget, VariableFault};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 pub(crate) use blackbox::BLACKBOX;
 pub(crate) use dataflash::{DATAFLASH, DATAFLASH_TEXT};

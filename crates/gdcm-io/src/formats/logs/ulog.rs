@@ -16,10 +16,10 @@ use gdcm_sysid::records::ModeSpan;
 
 use crate::file_error::FileError;
 use crate::formats::logs::{PX4, TopicSamples, array, give_meanings, mode_spans, modes_note};
+use crate::formats::recorded_columns::Columns;
 use crate::formats::strides::{NumberClass, StoredNumber};
-use crate::formats::variables::{ReadingBudget, VariableFault};
 use crate::formats::{Contents, Importer};
-use crate::import::record_files::Columns;
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const MAGIC: &[u8] = b"ULog\x01\x12\x35";
 const HEADER: usize = 16;

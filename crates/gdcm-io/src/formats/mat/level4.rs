@@ -8,7 +8,8 @@ use crate::formats::mat::level5::{ByteOrder, Cursor, name_of};
 use crate::formats::mat::matrix::rows;
 use crate::formats::mat::{FieldPath, count};
 use crate::formats::strides::{Entries, NumberClass, StoredNumber};
-use crate::formats::variables::{Array, ReadingBudget, Value, Variable, VariableFault};
+use crate::formats::variables::{Array, Value, Variable};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Header of a matrix.
 struct Header {

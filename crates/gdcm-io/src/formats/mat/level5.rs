@@ -10,7 +10,8 @@ use flate2::read::ZlibDecoder;
 use crate::formats::mat::matrix::Arrays;
 use crate::formats::mat::{self, FieldPath, Header};
 use crate::formats::strides::{NumberClass, StoredNumber};
-use crate::formats::variables::{ReadingBudget, Variable, VariableFault};
+use crate::formats::variables::Variable;
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Length of the file header, text and numbers \[bytes\].
 pub(super) const HEADER_BYTES: usize = 128;

@@ -6,9 +6,8 @@ use crate::formats::mat::level5::{Cursor, DataKind, Element, behind, matrix};
 use crate::formats::mat::subsystem::{Reference, Subsystem};
 use crate::formats::mat::{ArrayClass, FieldPath, Header, Step, count, export_line};
 use crate::formats::strides::Entries;
-use crate::formats::variables::{
-    Array, CellArray, Object, RECORD, ReadingBudget, StructArray, TextArray, Value, VariableFault,
-};
+use crate::formats::variables::{Array, CellArray, Object, RECORD, StructArray, TextArray, Value};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Shared state for reading arrays.
 #[derive(Clone, Copy)]
@@ -718,7 +717,8 @@ mod text_tests {
 mod opaque_tests {
     use crate::formats::mat::read;
     use crate::formats::mat::sample_tests::{element, file, opaque, reference};
-    use crate::formats::variables::{ReadingBudget, Value};
+    use crate::formats::variables::Value;
+    use crate::reading_budget::ReadingBudget;
 
     fn first(bytes: &[u8]) -> (String, String) {
         match read(bytes, &ReadingBudget::new(1 << 16))

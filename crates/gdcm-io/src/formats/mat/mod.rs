@@ -9,10 +9,11 @@ mod matrix;
 mod subsystem;
 mod writer;
 
-use super::variables::{ElementKind, ReadingBudget, Value, Variable, VariableFault};
+use super::variables::{ElementKind, Value, Variable};
 use crate::formats::mat::level5::{ByteOrder, Cursor, DataKind, Element, matrix, unpacked};
 use crate::formats::mat::matrix::{Arrays, field_names, long_words, places};
 use crate::formats::{Contents, Importer};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 pub(crate) use crate::formats::mat::matrix::rows;
 pub(crate) use crate::formats::mat::subsystem::Subsystem;

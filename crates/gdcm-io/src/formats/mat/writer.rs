@@ -9,8 +9,9 @@ use flate2::write::ZlibEncoder;
 
 use crate::formats::mat::level5::DataKind as Kind;
 use crate::formats::variables::{
-    Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable, VariableFault,
+    Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable,
 };
+use crate::reading_budget::VariableFault;
 
 /// Header text, padded with blanks: MATLAB checks the first words.
 const HEADER_TEXT: &str = "MATLAB 5.0 MAT-file, written by gdcm";
@@ -286,8 +287,9 @@ mod writer_tests {
     use super::*;
     use crate::formats::mat::read;
     use crate::formats::variables::{
-        Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value,
+        Array, CellArray, ElementKind, Object, StructArray, TextArray, Value,
     };
+    use crate::reading_budget::ReadingBudget;
 
     fn back(bytes: &[u8]) -> Vec<Variable> {
         read(bytes, &ReadingBudget::new(1 << 24)).unwrap()

@@ -6,7 +6,8 @@ use hdf5_pure::{
 
 use crate::formats::mat73::{damaged, fault};
 use crate::formats::strides::{NumberClass, Places, StoredNumber, count, matrix_shape};
-use crate::formats::variables::{Array, ElementKind, ReadingBudget, VariableFault};
+use crate::formats::variables::{Array, ElementKind};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Storage order of the elements: MATLAB's or C's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -24,13 +24,12 @@ use hdf5_pure::{
     MetadataCacheConfig, Object, ReferenceType, Source, is_hdf5_bytes,
 };
 
-use super::variables::{
-    self, Array, CellArray, ElementKind, ReadingBudget, StructArray, Value, Variable, VariableFault,
-};
+use super::variables::{self, Array, CellArray, ElementKind, StructArray, Value, Variable};
 use crate::formats::mat::is_hdf5;
 use crate::formats::mat73::dataset::{Elements, Order};
 use crate::formats::mat73::values::{Objects, empty, records, rows, sparse, strings};
 use crate::formats::{Contents, Importer, octave};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// MATLAB 7.3 and HDF5.
 pub(crate) const HDF5: Importer = Importer {

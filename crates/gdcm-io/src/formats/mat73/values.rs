@@ -8,9 +8,8 @@ use crate::formats::mat::{self, Subsystem};
 use crate::formats::mat73::dataset::{Elements, NumberType, Order};
 use crate::formats::mat73::{MatlabAttributes, Reader, damaged, fault};
 use crate::formats::strides::{Entries, count};
-use crate::formats::variables::{
-    Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, VariableFault,
-};
+use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Returns the texts in the rows of an array of UTF-16 codes.
 pub(super) fn rows(

@@ -3,7 +3,7 @@
 use serde_json::Value as Json;
 
 use crate::formats::strides::{NumberClass, StoredNumber, count};
-use crate::formats::variables::{ReadingBudget, VariableFault};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Returns the fault for a description that `NumPy` does not write.
 fn damaged(what: impl Into<String>) -> VariableFault {

@@ -15,12 +15,10 @@ use flate2::write::DeflateEncoder;
 use rawzip::{CompressionMethod, ZipArchiveWriter};
 
 use super::strides::{Places, StoredNumber, count, matrix_shape};
-use super::variables::{
-    Array, ElementKind, RECORD, ReadingBudget, StructArray, TextArray, Value, Variable,
-    VariableFault,
-};
+use super::variables::{Array, ElementKind, RECORD, StructArray, TextArray, Value, Variable};
 use crate::formats::npy::element::{Element, Field, Header, MAGIC};
 use crate::formats::{Contents, Importer};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// A NumPy array.
 pub(crate) const NPY: Importer = Importer {
@@ -684,8 +682,9 @@ mod archive_writer_tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::formats::variables::{CellArray, ReadingBudget};
+    use crate::formats::variables::CellArray;
     use crate::formats::zip_files::read_npz;
+    use crate::reading_budget::ReadingBudget;
 
     fn read(bytes: &[u8]) -> Vec<Variable> {
         read_npz(bytes, &ReadingBudget::new(1 << 24)).unwrap()

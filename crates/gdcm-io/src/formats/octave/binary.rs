@@ -3,8 +3,9 @@
 
 use super::{Element, Form, Parts, Sides, rows, texts_in_pages, value};
 use crate::formats::strides::{Entries, NumberClass, StoredNumber};
-use crate::formats::variables::{ReadingBudget, TextArray, Value, Variable, VariableFault};
+use crate::formats::variables::{TextArray, Value, Variable};
 use crate::formats::{Contents, Importer};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Signature before the letter of the byte order.
 const MAGIC: &[u8] = b"Octave-1-";

@@ -6,9 +6,9 @@
 use super::{Form, rows};
 use crate::formats::strides::{Entries, Places, count};
 use crate::formats::variables::{
-    Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value, Variable,
-    VariableFault,
+    Array, CellArray, ElementKind, Object, StructArray, TextArray, Value, Variable,
 };
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Converts the values of a file written by Octave; returns the values of other files unchanged.
 pub(crate) fn unwrapped(

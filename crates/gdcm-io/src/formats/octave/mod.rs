@@ -11,10 +11,8 @@ mod hdf5;
 mod text;
 
 use super::strides::{Entries, NumberClass, Places, count};
-use super::variables::{
-    Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value,
-    VariableFault,
-};
+use super::variables::{Array, CellArray, ElementKind, Object, StructArray, TextArray, Value};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 pub(crate) use binary::OCTAVE_BINARY;
 pub(crate) use hdf5::unwrapped;
@@ -362,8 +360,9 @@ fn records(
 mod tests {
     use std::path::Path;
 
-    use crate::formats::variables::{Array, ReadingBudget, Value, Variable};
+    use crate::formats::variables::{Array, Value, Variable};
     use crate::formats::{Contents, import_bytes};
+    use crate::reading_budget::ReadingBudget;
 
     fn bytes(name: &str) -> Vec<u8> {
         std::fs::read(format!(

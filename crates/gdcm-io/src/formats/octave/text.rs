@@ -4,8 +4,9 @@ use super::{Element, Form, Parts, Sides, texts_in_pages, value};
 use crate::file_error::FileError;
 use crate::formats::strides::Entries;
 use crate::formats::text::separator::decode;
-use crate::formats::variables::{ReadingBudget, TextArray, Value, Variable, VariableFault};
+use crate::formats::variables::{TextArray, Value, Variable};
 use crate::formats::{Contents, Importer};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Largest offset of the first variable in a file \[bytes\].
 const HEAD: usize = 2000;

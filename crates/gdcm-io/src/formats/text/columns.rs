@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::formats::text::heading::{Heading, name_and_unit, names_one_more, numbers_mostly};
 use crate::formats::text::separator::{Separator, cell_number, excerpt, lines, refuse_binary};
-use crate::formats::variables::{ReadingBudget, VariableFault};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const EXPECTED: &str = "a table of numbers in columns";
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::formats::text::column_meaning::{ColumnMeaning, KnownUnit, Quantity, ResponseLabel};
 use crate::formats::text::columns::TextTable;
-use crate::formats::variables::VariableFault;
+use crate::reading_budget::VariableFault;
 
 /// Meaning of the columns of a table.
 #[derive(Clone, Debug, PartialEq)]
@@ -580,7 +580,7 @@ impl ResponseParts {
 mod frequency_columns_tests {
     use super::*;
     use crate::formats::text::columns::read_table;
-    use crate::formats::variables::ReadingBudget;
+    use crate::reading_budget::ReadingBudget;
 
     fn recognise(text: &str) -> FrequencyColumns {
         let table = read_table(text, &ReadingBudget::new(1 << 20)).unwrap();
@@ -795,7 +795,7 @@ mod frequency_values_tests {
 
     use super::*;
     use crate::formats::text::columns::read_table;
-    use crate::formats::variables::ReadingBudget;
+    use crate::reading_budget::ReadingBudget;
 
     fn values(text: &str) -> Result<Vec<ResponsePoints>, VariableFault> {
         let table = read_table(text, &ReadingBudget::new(1 << 20)).unwrap();

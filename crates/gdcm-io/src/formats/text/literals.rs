@@ -12,9 +12,9 @@ use crate::formats::text::matlab_scanner::{
 };
 use crate::formats::text::separator::{excerpt, refuse_binary};
 use crate::formats::variables::{
-    Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, Variable,
-    VariableFault,
+    Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable,
 };
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Remedy for unsupported statements.
 const REMEDY: &str = "write its numbers, or save the workspace in MATLAB: save -v7 workspace.mat";

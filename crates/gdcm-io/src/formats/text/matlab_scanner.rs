@@ -1,7 +1,7 @@
 //! Scanner for MATLAB or Octave statements: blanks and comments, names, texts and numbers.
 
 use crate::formats::text::separator::excerpt;
-use crate::formats::variables::{ReadingBudget, VariableFault};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Deepest nesting of values; each level takes stack space.
 pub(super) const MOST_NESTED: usize = 64;

@@ -2,7 +2,8 @@
 
 use crate::formats::text::columns::{TextTable, comment, is_rule, read_table};
 use crate::formats::text::separator::{cell_number, excerpt, is_number, lines, refuse_binary};
-use crate::formats::variables::{Array, ReadingBudget, Value, Variable, VariableFault};
+use crate::formats::variables::{Array, Value, Variable};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Matrices read from a text.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::formats::text::columns::{comment, is_rule};
-use crate::formats::variables::{ReadingBudget, VariableFault};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Separator between the cells of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::formats::text::columns::comment;
 use crate::formats::text::separator::{Separator, cell_number, clock_s, is_number, lines};
-use crate::formats::variables::{ReadingBudget, VariableFault};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Number of lines examined to recognise the columns.
 const SAMPLE: usize = 200;

@@ -26,9 +26,8 @@ use self::record::{
 };
 use self::state_space::{is_state_space, is_transfer_function, state_spaces, transfer_function};
 use crate::files::model_collection::bare_draft;
-use crate::formats::variables::{
-    Array, ReadingBudget, StructArray, Value, Variable, VariableFault,
-};
+use crate::formats::variables::{Array, StructArray, Value, Variable};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Deepest nesting of the search.
 pub(crate) const DEEPEST: usize = 16;

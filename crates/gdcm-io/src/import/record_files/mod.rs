@@ -17,7 +17,7 @@ use gdcm_model::assembly::rules::standard_patterns;
 use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_sysid::records::laid_out_record::RecordGuess;
 use gdcm_sysid::records::record_table::Separation;
-use gdcm_sysid::records::{ModeSpan, RecordColumn, RecordSource, RecordTable};
+use gdcm_sysid::records::{RecordColumn, RecordSource, RecordTable};
 
 use self::record_columns::{
     columns_of, experiments, is_iddata, simulink_columns, timetable_columns,
@@ -25,15 +25,15 @@ use self::record_columns::{
 use super::recognise::{Found, search};
 use crate::file_error::FileError;
 use crate::files::study_file::relative_folder;
+use crate::formats::recorded_columns::{Columns, MOST_RECORDS};
 use crate::formats::text::separator::sections;
 use crate::formats::text::{NumberedText, TextTable, numbered_words, read_table};
-use crate::formats::variables::{ReadingBudget, Variable, VariableFault};
+use crate::formats::variables::Variable;
 use crate::formats::{
-    Contents, FolderProgress, ImportedFile, MOST_MEMORY, import, import_bytes, import_file, of_file,
+    Contents, FolderProgress, ImportedFile, import, import_bytes, import_file, of_file,
 };
+use crate::reading_budget::{MOST_MEMORY, ReadingBudget, VariableFault};
 
-/// Largest number of records in one file.
-pub(crate) const MOST_RECORDS: usize = 1000;
 /// Results of reading record files.
 #[derive(Clone, Debug, Default)]
 pub struct FoundRecords {
@@ -172,12 +172,12 @@ impl FoundRecords {
             }
             Contents::Text(text) => {
                 for columns in of_text(&text, budget).map_err(wrong)? {
-                    self.add(columns.of_file(name, &sha256));
+                    self.add(columns.in_file(name, &sha256));
                 }
             }
             Contents::Logs(logs) => logs
                 .into_iter()
-                .for_each(|log| self.add(log.of_file(name, &sha256))),
+                .for_each(|log| self.add(log.in_file(name, &sha256))),
             Contents::Dataset(..) | Contents::Models(..) => {
                 self.ignored
                     .push(format!("{name}: a dataset or models, not a record"));
@@ -248,7 +248,7 @@ impl FoundRecords {
     fn add_found(&mut self, found: Found<Columns>, notes: &[String], (name, sha256): (&str, &str)) {
         for mut columns in found.items {
             columns.notes.extend(notes.iter().cloned());
-            self.add(columns.of_file(name, sha256));
+            self.add(columns.in_file(name, sha256));
         }
         self.faults.extend(of_file(name, found.faults));
         self.ignored.extend(of_file(name, found.ignored));
@@ -259,66 +259,6 @@ impl FoundRecords {
         let table = table.side_by_side();
         let separation = Separation::proposed(&table);
         self.tables.extend(table.separated(separation));
-    }
-}
-
-/// Columns that belong together, before their file is known.
-pub(crate) struct Columns {
-    /// Their place in the file ("rec(2)"); empty if they are the whole file.
-    pub(crate) variable: String,
-    pub(crate) columns: Vec<RecordColumn>,
-    /// Whether the columns have names in the file.
-    pub(crate) named: bool,
-    /// Sample time \[s\], if the file gives it.
-    pub(crate) sample_time_s: Option<f64>,
-    /// Remarks on the reading.
-    pub(crate) notes: Vec<String>,
-    /// Modes of the logging system over time.
-    pub(crate) modes: Vec<ModeSpan>,
-}
-
-impl Columns {
-    /// Creates named columns without further information.
-    pub(crate) fn new(variable: String, columns: Vec<RecordColumn>) -> Self {
-        Self {
-            variable,
-            columns,
-            named: true,
-            sample_time_s: None,
-            notes: Vec::new(),
-            modes: Vec::new(),
-        }
-    }
-
-    /// Returns the record of these columns in a file.
-    fn of_file(self, name: &str, sha256: &str) -> RecordTable {
-        let file = name.rsplit('/').next().unwrap_or(name);
-        let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
-        let stem = stem.strip_suffix(".csv").unwrap_or(stem);
-        let Self {
-            variable,
-            columns,
-            named,
-            sample_time_s,
-            notes,
-            modes,
-        } = self;
-        let variable = Some(variable).filter(|variable| !variable.is_empty());
-        let name_of_record = variable
-            .as_ref()
-            .map_or_else(|| stem.to_owned(), |variable| format!("{stem}, {variable}"));
-        RecordTable {
-            named,
-            sample_time_s,
-            source: RecordSource {
-                file: name.to_owned(),
-                sha256: sha256.to_owned(),
-                variable,
-            },
-            notes,
-            modes,
-            ..RecordTable::new(name_of_record, columns)
-        }
     }
 }
 

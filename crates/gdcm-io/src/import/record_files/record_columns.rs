@@ -6,7 +6,7 @@ use gdcm_model::assembly::channel_match::{SAMPLE_TIME_NAMES, folded_name, time_n
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_sysid::records::RecordColumn;
 
-use super::Columns;
+use crate::formats::recorded_columns::Columns;
 use crate::formats::variables::{Array, StructArray, Value};
 use crate::import::recognise::record::{Record, label_of, texts_of};
 

@@ -29,10 +29,10 @@ use gdcm_io::files::requirements_file::{add_tolerances, load_tolerances, read_le
 use gdcm_io::files::rules_file::{add_rules, load_rules};
 use gdcm_io::files::study_file::open_study_of;
 use gdcm_io::files::user_state::lost_studies;
-use gdcm_io::formats::variables::ReadingBudget;
 use gdcm_io::import::model_files::models_of_bytes;
 use gdcm_io::import::record_files::records_of_bytes;
 use gdcm_io::output_set::OutputSet;
+use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_io::{DatasetOrigin, Existing, load_dataset, load_dataset_bytes, save_study};
 use gdcm_method::correction::Channel;
 use gdcm_method::requirements::ToleranceTable;

@@ -2,8 +2,8 @@
 
 use std::sync::LazyLock;
 
-use gdcm_io::formats::variables::ReadingBudget;
 use gdcm_io::import::record_files::records_of_bytes;
+use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_model::dataset::{BundleKind, ConditionId, Model, Pair};
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::Unobserved;

@@ -6,9 +6,9 @@ use super::{Content, Property, Reference, Subsystem, is_enumeration, packed_text
 use crate::formats::mat::matrix::unread_because;
 use crate::formats::mat::{FieldPath, Step};
 use crate::formats::variables::{
-    Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value,
-    VariableFault,
+    Array, CellArray, ElementKind, Object, StructArray, TextArray, Value,
 };
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Property with the value that a class creates when saving its objects.
 const MADE: &str = "any";

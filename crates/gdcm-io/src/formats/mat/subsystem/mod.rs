@@ -13,9 +13,8 @@ use crate::formats::mat::FieldPath;
 use crate::formats::mat::level5::{ByteOrder, name_of};
 use crate::formats::mat::matrix::unread_because;
 use crate::formats::strides::count;
-use crate::formats::variables::{
-    ElementKind, Object, ReadingBudget, StructArray, TextArray, Value, VariableFault,
-};
+use crate::formats::variables::{ElementKind, Object, StructArray, TextArray, Value};
+use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// The objects of a file.
 #[derive(Clone, Debug)]

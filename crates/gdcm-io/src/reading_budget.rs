@@ -1,0 +1,366 @@
+//! Limits of memory and work of a reader, its cancellation, and the reasons why a reader gives up.
+
+use std::cell::Cell;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use gdcm_model::message_text::shortened_name;
+
+/// Reason why variables could not be read, and the variable (a path such as "sys.A" or
+/// "models{3}.B"; empty if none was begun).
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum VariableFault {
+    /// The file has another format.
+    #[error("expected {expected}, found {found}")]
+    Format {
+        expected: &'static str,
+        /// Beginning of the file, in words.
+        found: String,
+    },
+    /// The file ends prematurely.
+    #[error("{}the file is cut off (byte {offset}); copy it again", at(variable))]
+    CutOff {
+        variable: String,
+        /// Position in the file \[bytes\].
+        offset: u64,
+    },
+    /// The bytes contradict the format.
+    #[error(
+        "{}{what} (byte {offset}): the file is damaged; write it again",
+        at(variable)
+    )]
+    Damaged {
+        variable: String,
+        what: String,
+        /// Position in the file \[bytes\].
+        offset: u64,
+    },
+    /// A line of a text is invalid.
+    #[error("{}line {line}: {what}", at(variable))]
+    Line {
+        variable: String,
+        /// Line number, from 1.
+        line: usize,
+        /// The fault and its remedy.
+        what: String,
+    },
+    /// The format permits the content, but this program does not read it.
+    #[error("{}{what} cannot be read; {remedy}", at(variable))]
+    Unsupported {
+        variable: String,
+        what: String,
+        /// How to obtain the data all the same; `{file}` and `{stem}` represent the file's name
+        /// with and without its extension.
+        remedy: String,
+    },
+    /// The file contains, or claims to contain, more than the limit.
+    #[error(
+        "{}this would take more than {most_mib} MiB of memory, which is the most that is read; split the file",
+        at(variable)
+    )]
+    TooLarge {
+        variable: String,
+        /// The limit \[MiB\].
+        most_mib: u64,
+    },
+    /// Reading the file would take longer than for any file of data.
+    #[error(
+        "{}this would take more than {most_millions} million steps of work, which is the most that is read; split the file",
+        at(variable)
+    )]
+    TooMuchWork {
+        variable: String,
+        /// The limit \[million steps\].
+        most_millions: u64,
+    },
+    /// Values are nested more deeply than the limit, or in a cycle.
+    #[error("{}values are nested too deeply, or contain themselves", at(variable))]
+    TooDeep { variable: String },
+    /// Duplicate name.
+    #[error("the name \"{name}\" stands twice; rename one")]
+    Duplicate { name: String },
+    /// The reader was stopped.
+    #[error("stopped")]
+    Stopped,
+}
+
+impl VariableFault {
+    /// Creates the error for a file with another format.
+    pub(crate) fn format(expected: &'static str, found: impl Into<String>) -> Self {
+        Self::Format {
+            expected,
+            found: found.into(),
+        }
+    }
+
+    /// Creates the error for a file with another format, from its bytes.
+    pub(crate) fn other_bytes(expected: &'static str, bytes: &[u8]) -> Self {
+        Self::format(
+            expected,
+            if bytes.is_empty() {
+                "nothing"
+            } else {
+                "other bytes"
+            },
+        )
+    }
+
+    /// Creates the error for a file that ends prematurely.
+    pub(crate) fn cut_off(variable: &str, offset: usize) -> Self {
+        Self::CutOff {
+            variable: variable.to_owned(),
+            offset: offset as u64,
+        }
+    }
+
+    /// Creates the error for bytes that contradict the format.
+    pub(crate) fn damaged(variable: &str, what: impl Into<String>, offset: u64) -> Self {
+        Self::Damaged {
+            variable: variable.to_owned(),
+            what: what.into(),
+            offset,
+        }
+    }
+
+    /// Creates the error for an invalid line of a text.
+    pub(crate) fn line(variable: &str, line: usize, what: impl Into<String>) -> Self {
+        Self::Line {
+            variable: variable.to_owned(),
+            line,
+            what: what.into(),
+        }
+    }
+
+    /// Creates the error for content that the format permits but this program does not read.
+    pub(crate) fn unsupported(
+        variable: &str,
+        what: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self::Unsupported {
+            variable: variable.to_owned(),
+            what: what.into(),
+            remedy: remedy.into(),
+        }
+    }
+
+    /// Creates the error for values nested more deeply than the limit.
+    pub(crate) fn too_deep(variable: &str) -> Self {
+        Self::TooDeep {
+            variable: variable.to_owned(),
+        }
+    }
+
+    /// Adds the affected value, unless the error names one already.
+    #[must_use]
+    pub(crate) fn of(mut self, name: impl FnOnce() -> String) -> Self {
+        match &mut self {
+            Self::CutOff { variable, .. }
+            | Self::Damaged { variable, .. }
+            | Self::Unsupported { variable, .. }
+            | Self::TooLarge { variable, .. }
+            | Self::TooMuchWork { variable, .. }
+            | Self::Line { variable, .. }
+            | Self::TooDeep { variable } => {
+                if variable.is_empty() {
+                    *variable = name();
+                }
+            }
+            Self::Format { .. } | Self::Duplicate { .. } | Self::Stopped => {}
+        }
+        self
+    }
+
+    /// Returns whether the budget ends the reading: no other attempt with the file should follow.
+    pub fn is_of_the_budget(&self) -> bool {
+        matches!(
+            self,
+            Self::TooLarge { .. } | Self::TooMuchWork { .. } | Self::Stopped
+        )
+    }
+}
+
+fn at(variable: &str) -> String {
+    if variable.is_empty() {
+        String::new()
+    } else {
+        format!("variable {}: ", shortened_name(variable))
+    }
+}
+
+/// Memory limit for the contents of one file \[bytes\].
+pub(crate) const MOST_MEMORY: u64 = 1 << 30;
+
+/// Maximum work for reading one file \[steps\]: bytes of a text, elements of an array, values,
+/// comparisons of names.
+pub(crate) const MOST_WORK: u64 = 4_000_000_000;
+
+/// Counts the memory and the work of a reader: anything beyond the limits is rejected before it is
+/// allocated, and a cancelled reader stops. Every reader asks in its inner loops, even for elements
+/// without content: a file of a few bytes may claim 10^18 of them.
+pub struct ReadingBudget<'p> {
+    most_memory: u64,
+    most_work: u64,
+    memory: Cell<u64>,
+    work: Cell<u64>,
+    stop: Arc<AtomicBool>,
+    tell: &'p dyn Fn(u64),
+}
+
+impl ReadingBudget<'static> {
+    /// Creates a budget for at most `most` bytes of memory.
+    pub fn new(most: u64) -> Self {
+        let zero = || Cell::new(0);
+        let stop = Arc::default();
+        Self {
+            most_memory: most,
+            most_work: MOST_WORK,
+            memory: zero(),
+            work: zero(),
+            stop,
+            tell: &|_| (),
+        }
+    }
+}
+
+impl Default for ReadingBudget<'static> {
+    /// Creates the budget of a single file, without cancellation.
+    fn default() -> Self {
+        Self::new(MOST_MEMORY)
+    }
+}
+
+impl<'p> ReadingBudget<'p> {
+    /// Returns the budget with another limit of work \[steps\].
+    pub fn with_work(self, most: u64) -> Self {
+        Self {
+            most_work: most,
+            ..self
+        }
+    }
+
+    /// Returns the budget with a flag that stops the reader when set.
+    pub fn stopped_by(self, stop: Arc<AtomicBool>) -> Self {
+        Self { stop, ..self }
+    }
+
+    /// Returns the budget with a callback that receives the number of bytes whenever memory is
+    /// taken.
+    pub fn telling<'q>(self, tell: &'q dyn Fn(u64)) -> ReadingBudget<'q> {
+        let Self {
+            most_memory,
+            most_work,
+            memory,
+            work,
+            stop,
+            ..
+        } = self;
+        ReadingBudget {
+            most_memory,
+            most_work,
+            memory,
+            work,
+            stop,
+            tell,
+        }
+    }
+
+    /// Returns the flag that stops the reader when set.
+    pub fn stop(&self) -> &Arc<AtomicBool> {
+        &self.stop
+    }
+
+    /// Counts `count` elements of `size` bytes that `variable` is about to take; each is also a
+    /// step of work.
+    pub fn take(&self, count: u64, size: u64, variable: &str) -> Result<(), VariableFault> {
+        let memory = self.memory.get().saturating_add(count.saturating_mul(size));
+        if memory > self.most_memory {
+            self.work(0, variable)?;
+            return Err(VariableFault::TooLarge {
+                variable: variable.to_owned(),
+                most_mib: self.most_memory >> 20,
+            });
+        }
+        self.work(count, variable)?;
+        self.memory.set(memory);
+        (self.tell)(memory);
+        Ok(())
+    }
+
+    /// Stops a cancelled reader among elements that are already counted; called for each element,
+    /// it checks now and then.
+    pub fn go_on(&self, element: usize) -> Result<(), VariableFault> {
+        /// Elements that take less than a hundredth of a second.
+        const BETWEEN: usize = 1 << 14;
+        let stops = element.is_multiple_of(BETWEEN) && self.stop.load(Ordering::Relaxed);
+        if stops {
+            Err(VariableFault::Stopped)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Counts steps of work that `variable` is about to take.
+    pub fn work(&self, steps: u64, variable: &str) -> Result<(), VariableFault> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(VariableFault::Stopped);
+        }
+        // The caller has done some work since its last call.
+        let work = self.work.get().saturating_add(steps.max(1));
+        if work > self.most_work {
+            let most_millions = self.most_work / 1_000_000;
+            return Err(VariableFault::TooMuchWork {
+                variable: variable.to_owned(),
+                most_millions,
+            });
+        }
+        self.work.set(work);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_and_work_are_refused_beyond_their_limits_and_not_before() {
+        let budget = ReadingBudget::new(2 << 20).with_work(5_000_000);
+        assert_eq!(budget.take(1 << 20, 2, "x"), Ok(()));
+        let memory = budget.take(1, 1, "x").unwrap_err();
+        let words = "variable x: this would take more than 2 MiB of memory, which is the most that is read; split the file";
+        assert_eq!(memory.to_string(), words);
+        assert_eq!(budget.work(3_000_000, ""), Ok(()));
+        let work = budget.work(1_000_000, "").unwrap_err();
+        let words = "this would take more than 5 million steps of work, which is the most that is read; split the file";
+        assert_eq!(work.to_string(), words);
+        assert!(memory.is_of_the_budget() && work.is_of_the_budget());
+    }
+
+    #[test]
+    fn a_number_beyond_what_can_be_counted_is_beyond_the_limit() {
+        let budget = ReadingBudget::new(1 << 20);
+        assert!(matches!(
+            budget.take(u64::MAX, 8, ""),
+            Err(VariableFault::TooLarge { .. })
+        ));
+        assert!(matches!(
+            budget.take(u64::MAX, 0, ""),
+            Err(VariableFault::TooMuchWork { .. })
+        ));
+    }
+
+    #[test]
+    fn whoever_holds_the_flag_stops_the_reader_and_the_listener_hears_what_is_taken() {
+        let stop = Arc::new(AtomicBool::new(false));
+        let heard = Cell::new(0);
+        let tell = |taken| heard.set(taken);
+        let budget = ReadingBudget::new(1 << 20)
+            .stopped_by(Arc::clone(&stop))
+            .telling(&tell);
+        assert_eq!((budget.take(3, 8, ""), heard.get()), (Ok(()), 24));
+        stop.store(true, Ordering::Relaxed);
+        assert_eq!(budget.take(u64::MAX, 1, ""), Err(VariableFault::Stopped));
+        assert_eq!(budget.work(0, ""), Err(VariableFault::Stopped));
+    }
+}

@@ -25,7 +25,7 @@ use gdcm_sysid::identification::{
     CautionNote, ChannelPreparation, Hold, Identification, IdentificationCaution,
     IdentificationError, Preparation,
 };
-use gdcm_sysid::records::record_table::median_step;
+use gdcm_sysid::records::time_base::median_step;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
 
 use super::existing;

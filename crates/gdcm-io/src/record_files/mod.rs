@@ -15,8 +15,8 @@ use std::sync::atomic::AtomicBool;
 
 use gdcm_model::assembly::rules::standard_patterns;
 use gdcm_model::dataset::condition::ConditionRecord;
-use gdcm_sysid::records::laid_out_record::RecordGuess;
-use gdcm_sysid::records::record_table::Separation;
+use gdcm_sysid::records::record_guess::RecordGuess;
+use gdcm_sysid::records::separation::Separation;
 use gdcm_sysid::records::{ModeSpan, RecordColumn, RecordSource, RecordTable};
 
 use crate::file_error::FileError;

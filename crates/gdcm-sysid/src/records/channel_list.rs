@@ -22,10 +22,10 @@ pub struct SaidChannel {
     pub column: Option<String>,
 }
 
-/// Reasons why a text is not a list of channels.
+/// Reasons why a text is not a channel list.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ChannelListError {
-    /// A part of the text is not a channel.
+    /// Text between commas that is not a channel.
     #[error("expected CHANNEL or CHANNEL=COLUMN, as P or P [deg/s]=roll_rate, found \"{0}\"")]
     NoChannel(String),
     /// Duplicate channel.
@@ -34,7 +34,7 @@ pub enum ChannelListError {
 }
 
 impl SaidChannel {
-    /// Returns the rule for the column and unit of the channel.
+    /// Returns the rule for this channel, column and unit.
     pub fn rule(&self) -> ChannelRule {
         ChannelRule {
             unit: self.unit.clone(),

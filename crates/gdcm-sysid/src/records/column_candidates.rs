@@ -1,4 +1,4 @@
-//! Columns of a table that can be a channel, by name, documentation and unit.
+//! Search for the columns that can be a channel, by name, documentation and unit.
 //!
 //! ```text
 //! 1  names: the exact name; else the name with a sign mark; else synonyms of the field
@@ -17,7 +17,7 @@ use gdcm_model::dataset::channel::ChannelSide;
 
 use super::record_table::{RecordColumn, RecordTable};
 
-/// Returns the columns that can be a channel of this side.
+/// Returns the columns that can be this channel.
 pub(super) fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec<usize> {
     let search = ColumnSearch { table, rule, side };
     let names = search.wanted_names();
@@ -49,7 +49,7 @@ pub(super) fn without_sign_mark(name: &str) -> String {
     SignedName::of(name).name
 }
 
-/// Searches the column of a channel.
+/// Search for a channel's column.
 struct ColumnSearch<'r> {
     table: &'r RecordTable,
     rule: &'r ChannelRule,
@@ -149,7 +149,7 @@ impl ColumnSearch<'_> {
         })
     }
 
-    /// Whether a field of a topic with the channel's name is the channel. In logs with documented
+    /// Whether a topic's field with the channel's name is the channel. In logs with documented
     /// columns it is something else, unless the user names it: "PIDR.P" is not a roll rate.
     fn may_be_field(&self) -> bool {
         let is_documented = self
@@ -177,18 +177,18 @@ impl ColumnSearch<'_> {
     }
 }
 
-/// Names of a latitude and of a longitude, folded.
+/// Folded names for latitude and longitude.
 const LATITUDE: [&str; 1] = ["lat"];
 const LONGITUDE: [&str; 3] = ["lon", "long", "lng"];
-/// Largest change of a position in a record \[deg\]: a minute at 140 kt is 0.04 degrees.
+/// Largest position change in a record \[deg\]: a minute at 140 kt is 0.04 degrees.
 const LARGEST_POSITION_CHANGE_DEG: f64 = 0.5;
-/// Largest change of a position without a unit, over its largest absolute value.
+/// Largest position change without a unit, over its largest absolute value.
 const LARGEST_RELATIVE_CHANGE: f64 = 0.02;
-/// The same for a column with the exact name of the channel: less than the motion of any stick in
+/// The same for a column with the channel's exact name: less than any stick moves in
 /// flight.
 const LARGEST_RELATIVE_CHANGE_OF_NAMESAKE: f64 = 0.002;
 
-/// Whether a column is a latitude or a longitude, whose names resemble those of inputs: an angle
+/// Whether a column is a latitude or a longitude, whose names resemble input names: an angle
 /// that hardly changes. Without a unit in the file, the table must have a latitude and a longitude
 /// that are both nearly constant.
 fn is_position(table: &RecordTable, column: usize, rule: &ChannelRule) -> bool {

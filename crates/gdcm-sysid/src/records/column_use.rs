@@ -1,4 +1,4 @@
-//! A column of a record, used as a channel.
+//! A record's column, used as a channel.
 
 use gdcm_model::assembly::ChannelRule;
 use gdcm_model::assembly::channel_match::sign_between;
@@ -8,10 +8,10 @@ use gdcm_model::dataset::condition::ChannelRemedy;
 use super::plausible_units::possible_units;
 use super::record_table::{RecordColumn, RecordTable};
 
-/// A column of a record, used as a channel.
+/// A record's column, used as a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColumnUse {
-    /// Index of the column.
+    /// Column index.
     pub column: usize,
     /// Channel units per column unit; negative for the opposite sign.
     pub factor: f64,
@@ -38,7 +38,7 @@ impl ColumnUse {
     }
 
     /// Uses a column for a channel with this unit, converted from the unit in the file, or else
-    /// from the only possible unit of its samples; the unit is open if several are possible.
+    /// from the only unit that fits its samples; the unit is open if several fit.
     pub fn by_unit(table: &RecordTable, column: usize, unit: &str) -> Self {
         let Some(samples) = table.columns.get(column) else {
             return Self::as_it_is(column);
@@ -57,7 +57,7 @@ impl ColumnUse {
         }
     }
 
-    /// Returns the possible units of an open column, for a channel with this unit; empty if nothing
+    /// Returns the units that fit an open column, for a channel with this unit; empty if nothing
     /// is open.
     pub fn open_units<'u>(&self, table: &RecordTable, unit: &'u str) -> Vec<&'u str> {
         match table.columns.get(self.column) {
@@ -76,7 +76,7 @@ impl ColumnUse {
         }
     }
 
-    /// Returns the use without the remedy of this record.
+    /// Returns the use without its remedy.
     pub(super) fn without_remedy(self) -> Self {
         Self {
             remedy: ChannelRemedy::NONE,
@@ -84,7 +84,7 @@ impl ColumnUse {
         }
     }
 
-    /// Returns the use with its unit taken to be the unit of the channel.
+    /// Returns the use with its unit taken to be the channel's.
     pub(super) fn in_unit_of_channel(self) -> Self {
         Self {
             is_unit_open: false,
@@ -92,12 +92,12 @@ impl ColumnUse {
         }
     }
 
-    /// Returns the total factor of the samples.
+    /// Returns the total factor, remedy included.
     pub(super) fn gain(&self) -> f64 {
         self.factor * self.remedy.factor
     }
 
-    /// Returns the remedy to store with the dataset: the remedy of this record, times the part of
+    /// Returns the remedy to store with the dataset: the record's remedy, times the part of
     /// the factor that cannot be derived from the file (its unit, or the dataset's unit if it has
     /// none, and its sign mark). A later reading with the dataset has no other information.
     pub(super) fn kept_remedy(&self, table: &RecordTable, rule: &ChannelRule) -> ChannelRemedy {
@@ -117,7 +117,7 @@ impl ColumnUse {
     }
 }
 
-/// Returns the factor from the file's unit and sign mark to those of the channel.
+/// Returns the factor from the file's unit and sign mark to the channel's.
 fn factor_from_file(column: &RecordColumn, rule: &ChannelRule) -> f64 {
     let mut factor = 1.0;
     if let Some(unit) = column.said_unit()

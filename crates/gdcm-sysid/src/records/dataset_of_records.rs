@@ -20,7 +20,7 @@ const UNKNOWN_UNIT: &str = "?";
 /// Creates a dataset with these records in one condition. Its physics model is a placeholder with
 /// zero response, `y = 0 u`; analyses have no result until a real model is added.
 ///
-/// The usual responses of a helicopter are marked as on-axis for the channels found, otherwise each
+/// A helicopter's usual responses are marked as on-axis for the channels found, otherwise each
 /// output to the input with the same index.
 ///
 /// # Errors
@@ -53,7 +53,7 @@ pub fn dataset_of_records(
     Ok(Dataset::new(header, conditions)?)
 }
 
-/// Creates a channel with the unit of its rule, or the placeholder for an unknown unit.
+/// Creates a channel with its rule's unit, or the placeholder for an unknown unit.
 fn channel(rule: &ChannelRule) -> Channel {
     let unit = if rule.unit.is_empty() {
         UNKNOWN_UNIT
@@ -78,7 +78,7 @@ fn zero_model(inputs: usize, outputs: usize) -> Result<Model, DraftFault> {
     ))
 }
 
-/// Marks the usual on-axis responses of a helicopter, or else the diagonal.
+/// Marks a helicopter's usual on-axis responses, or else the diagonal.
 fn on_axis(inputs: &[Channel], outputs: &[Channel]) -> PairTable<bool> {
     let standard = PairTable::from_fn(outputs.len(), inputs.len(), |pair| {
         standard_on_axis(&outputs[pair.output].name, &inputs[pair.input].name)

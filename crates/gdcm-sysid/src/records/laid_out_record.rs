@@ -1,4 +1,4 @@
-//! A record with the columns of its channels, and the information in its name.
+//! A record with its channels' columns, and the information in its name.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -18,15 +18,15 @@ use super::record_layout::RecordLayout;
 use super::record_table::RecordTable;
 use crate::identification::preparation::RecordUse;
 
-/// Endings of the names of recorded references: pilot and position references, setpoints, injected
-/// signals. Endings of up to two letters must be whole words.
+/// Name endings for recorded references: pilot and position references, setpoints, injected
+/// signals. Endings up to two letters long must be whole words.
 const REFERENCES: &str =
     "ref reference cmd command sp setpoint des desired targ target chirp excitation x0";
 
-/// A record as it was read, with the columns of its channels.
+/// A record as it was read, with its channels' columns.
 #[derive(Clone, Debug)]
 pub struct LaidOutRecord {
-    /// Contents of its file.
+    /// The file's columns.
     pub table: Arc<RecordTable>,
     pub layout: RecordLayout,
     /// Information from its name, or from the user instead.
@@ -36,7 +36,7 @@ pub struct LaidOutRecord {
     pub problems: Vec<LayoutProblem>,
     /// Unusual features that may be correct.
     pub cautions: Vec<LayoutCaution>,
-    /// Samples in the units of the channels; `None` while there are problems.
+    /// Samples in channel units; `None` while there are problems.
     pub flight: Option<Arc<FlightRecord>>,
 }
 
@@ -90,7 +90,7 @@ impl LaidOutRecord {
 
     /// Creates a record with its channels. A record named by the dataset follows the dataset: in
     /// its units if the file gives none, with the factors and delays stored there. A user-defined
-    /// conversion of a channel replaces the stored factor.
+    /// conversion replaces the stored factor.
     pub fn as_dataset_says(
         table: RecordTable,
         channels: &RecordChannels,
@@ -123,7 +123,7 @@ impl LaidOutRecord {
         (record.as_said(&entry, &channels), notes)
     }
 
-    /// Returns the first and last time \[s\] of its samples, on its own clock; `None` while there
+    /// Returns its first and last time \[s\], on its own clock; `None` while there
     /// are problems, or without finite stamps.
     pub fn span_s(&self) -> Option<[f64; 2]> {
         let flight = self.flight.as_ref()?;
@@ -143,7 +143,7 @@ impl LaidOutRecord {
         }
     }
 
-    /// Applies the dataset entry of the record: its remedies, whether it is reserved for
+    /// Applies the record's dataset entry: its remedies, whether it is reserved for
     /// validation, and whether it is used.
     #[must_use]
     pub fn as_said(self, entry: &ConditionRecord, channels: &RecordChannels) -> Self {
@@ -172,7 +172,7 @@ impl LaidOutRecord {
             if taken.contains(&index) || !column.varies() {
                 continue;
             }
-            // A column that the system's documentation identifies as a signal of the aircraft is
+            // A column that the system's documentation identifies as an aircraft signal is
             // not a reference.
             let may_be_reference = column.meaning.is_none_or(|meaning| meaning == "TARG");
             let is_reference = may_be_reference && is_reference_name(&column.name);

@@ -1,4 +1,4 @@
-//! Flight records of a layout: cautions, remedies, copies, and transfer to other records.
+//! A layout's flight record: cautions, remedies, copies, and transfer to other records.
 
 use std::collections::BTreeMap;
 
@@ -71,7 +71,7 @@ fn constant_and_equal_channels_are_cautions() {
     );
 }
 
-/// The record under another name, with another first sample of LAT.
+/// The record under another name, with another first LAT sample.
 fn named_record(name: &str, first: f64) -> LaidOutRecord {
     let mut table = record();
     table.name = name.to_owned();

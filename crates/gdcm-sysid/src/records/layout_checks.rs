@@ -1,4 +1,4 @@
-//! Checks of the columns chosen from a record: problems that prevent their use, and cautions.
+//! Checks on the columns chosen from a record: problems that prevent their use, and cautions.
 
 use gdcm_model::assembly::physical_unit::Dimension;
 use gdcm_model::assembly::{ChannelRule, PhysicalUnit};
@@ -12,11 +12,11 @@ use super::record_table::{RecordTable, same_samples};
 use super::resampling::{Resampling, has_holes};
 use super::time_base::{LONGEST_STEP_S, TimeBase};
 
-/// Longest plausible delay of a sensor or a bus \[s\].
+/// Longest plausible sensor or bus delay \[s\].
 const LONGEST_DELAY_S: f64 = 10.0;
 
 impl RecordLayout {
-    /// Returns all problems of the chosen columns; empty if [`RecordLayout::flight_record`] returns
+    /// Returns all problems with the chosen columns; empty if [`RecordLayout::flight_record`] returns
     /// a record.
     pub fn problems(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutProblem> {
         let mut problems = self.time_problems(table);
@@ -83,7 +83,7 @@ impl RecordLayout {
         problems
     }
 
-    /// Returns unusual features of the chosen columns, which may be correct.
+    /// Returns unusual features, which may be correct.
     pub fn cautions(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutCaution> {
         let mut cautions = Vec::new();
         cautions.extend(self.missing_stamps(table));
@@ -127,7 +127,7 @@ impl RecordLayout {
     }
 }
 
-/// Returns the problems of a column of stamps: order and length of steps.
+/// Returns the problems with a stamp column: order and step length.
 fn stamp_problems(time: TimeBase, table: &RecordTable, column: usize) -> Vec<LayoutProblem> {
     let quoted = table.quoted(column);
     let mut problems = Vec::new();
@@ -143,7 +143,7 @@ fn stamp_problems(time: TimeBase, table: &RecordTable, column: usize) -> Vec<Lay
     problems
 }
 
-/// Returns the problem of stamps that repeat or decrease, with their count and the first of them.
+/// Returns the problem that stamps repeat or decrease, with their count and the first.
 fn order_problem(times_s: &[f64], column: &str) -> Option<LayoutProblem> {
     let mut previous: Option<f64> = None;
     let mut problem: Option<LayoutProblem> = None;
@@ -172,7 +172,7 @@ fn order_problem(times_s: &[f64], column: &str) -> Option<LayoutProblem> {
     problem
 }
 
-/// Returns the first problem of a channel's factor, delay, samples or unit.
+/// Returns the first problem with a channel's factor, delay, samples or unit.
 fn channel_problem(
     table: &RecordTable,
     rule: &ChannelRule,
@@ -197,7 +197,7 @@ fn channel_problem(
     open_unit(table, rule, used).or_else(|| implausible_magnitude(table, rule, used))
 }
 
-/// Returns the problem of a channel whose unit is determined by neither its file nor its samples.
+/// Returns the problem that neither file nor samples determine the unit.
 fn open_unit(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
     let units = used.open_units(table, &rule.unit);
     let (last, rest) = units.split_last()?;
@@ -209,7 +209,7 @@ fn open_unit(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option
     })
 }
 
-/// Returns the problem of a channel whose samples are implausible in its unit. Columns identified
+/// Returns the problem that samples are implausible in the channel's unit. Columns identified
 /// by a system's documentation are not checked: they are not guesses, and quadrotors turn faster
 /// than helicopters.
 fn implausible_magnitude(
@@ -243,7 +243,7 @@ fn implausible_magnitude(
     })
 }
 
-/// Returns the caution of a channel with some, but not only, missing samples.
+/// Returns the caution that some, but not all, samples are missing.
 fn missing_samples(
     table: &RecordTable,
     channel: &ChosenColumn,
@@ -261,7 +261,7 @@ fn missing_samples(
     })
 }
 
-/// Returns the first of the earlier channels with equal samples in another column.
+/// Returns the first earlier channel with equal samples in another column.
 fn channel_with_same_samples<'c, 'r>(
     table: &RecordTable,
     channel: &ChosenColumn,

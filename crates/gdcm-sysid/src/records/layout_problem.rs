@@ -27,7 +27,7 @@ pub enum LayoutProblem {
     TimeOrder {
         /// In quotation marks.
         column: String,
-        /// Count of such stamps.
+        /// Their count.
         count: usize,
         /// Sample count.
         samples: usize,
@@ -65,7 +65,7 @@ pub enum LayoutProblem {
     SeveralColumns {
         side: ChannelSide,
         channel: String,
-        /// Names of these columns.
+        /// Their names.
         found: String,
     },
     /// The columns have no names.
@@ -98,9 +98,9 @@ pub enum LayoutProblem {
         channel: String,
         /// In quotation marks.
         column: String,
-        /// Unit of the channel.
+        /// The channel's unit.
         unit: String,
-        /// Possible units of the samples, as a list.
+        /// Units that fit the samples, as a list.
         units: String,
     },
     /// The file's unit has another dimension than the channel's.
@@ -148,7 +148,7 @@ pub enum LayoutProblem {
         /// The delay \[s\].
         delay_s: f64,
     },
-    /// Samples exceed the range of helicopters in this unit.
+    /// Samples exceed a helicopter's range in this unit.
     #[error(
         "{channel} (column {column}) reaches {} {unit}, above the limit of {} {unit} for a helicopter: the column or its unit is wrong{hint}",
         telling(*value, 0), number(*most)
@@ -161,7 +161,7 @@ pub enum LayoutProblem {
         value: f64,
         /// The largest plausible value.
         most: f64,
-        /// Unit of the channel.
+        /// The channel's unit.
         unit: String,
         /// A guess at the cause; empty without one.
         hint: String,
@@ -178,7 +178,7 @@ impl LayoutProblem {
     }
 }
 
-/// Unusual features of the chosen columns, which may be correct.
+/// Unusual features in the chosen columns, which may be correct.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LayoutCaution {
     /// A channel is constant.
@@ -191,10 +191,10 @@ pub enum LayoutCaution {
     /// Two channels have the same samples.
     #[error("{first} and {second} have the same samples")]
     Same { first: String, second: String },
-    /// The record is a copy of another under a different name.
+    /// The record repeats another record under a different name.
     #[error("same samples as {first}: left out, because evidence counts once")]
     Copy {
-        /// Name of the other record.
+        /// The other record's name.
         first: String,
     },
     /// Samples are missing.
@@ -203,7 +203,7 @@ pub enum LayoutCaution {
         channel: String,
         /// In quotation marks.
         column: String,
-        /// Count of missing samples.
+        /// Missing sample count.
         count: usize,
         /// Sample count.
         samples: usize,
@@ -211,7 +211,7 @@ pub enum LayoutCaution {
     /// Stamps are missing.
     #[error("{count} of {samples} time stamps are missing")]
     MissingTime {
-        /// Count of missing stamps.
+        /// Missing stamp count.
         count: usize,
         /// Sample count.
         samples: usize,

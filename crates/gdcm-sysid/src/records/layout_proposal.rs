@@ -1,4 +1,4 @@
-//! Proposed columns for the time and the channels of a record.
+//! Proposed columns for a record's time and channels.
 
 use gdcm_model::assembly::ChannelRule;
 use gdcm_model::assembly::channel_match::sign_between;
@@ -16,12 +16,12 @@ use super::record_table::RecordTable;
 use super::resampling::Resampling;
 use super::time_base::TimeBase;
 
-/// User settings for the time of records.
+/// User settings for the time in records.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TimeWish {
     /// Time column; `None` selects the most likely column.
     pub column: Option<String>,
-    /// Sample time \[s\], used instead of a column.
+    /// Sample time \[s\]; replaces a column.
     pub sample_time_s: Option<f64>,
 }
 
@@ -32,7 +32,7 @@ pub struct LayoutProposal {
     pub layout: RecordLayout,
     /// Choices with their reasons.
     pub notes: Vec<String>,
-    /// Problems that prevent the use of the layout.
+    /// Problems that make the layout unusable.
     pub problems: Vec<LayoutProblem>,
     /// Unusual features that may be correct.
     pub cautions: Vec<LayoutCaution>,
@@ -42,14 +42,14 @@ impl RecordLayout {
     /// Proposes columns for the time and for each channel.
     ///
     /// ```text
-    /// 1  time     stamps of the topics; the user's sample time or column; the column with the name
-    ///             of a time; the file's sample time
+    /// 1  time     topic stamps; the user's sample time or column; the column named like
+    ///             a time; the file's sample time
     /// 2  channel  by name, or by aliases if it has some (column_candidates); if no input has a
     ///             candidate and the file marks as many inputs, those in order (outputs likewise)
     /// 3  factor   the user's; from the file's unit; from the rule's unit for files without units;
     ///             from the only unit that fits the samples; else open
     /// 4  sign     by the mark in the alias or in the column name: -R, az (down); a channel NZ from
-    ///             a column az needs a decision of the user
+    ///             a column az needs the user's decision
     /// ```
     pub fn proposed(
         table: &RecordTable,
@@ -92,7 +92,7 @@ impl RecordLayout {
     }
 }
 
-/// Proposes columns of a table for channels, and collects the notes.
+/// Proposes columns for channels, and collects the notes.
 struct Proposer<'r> {
     table: &'r RecordTable,
     channels: &'r RecordChannels,
@@ -100,7 +100,7 @@ struct Proposer<'r> {
     problems: Vec<LayoutProblem>,
 }
 
-/// Origin of the unit in which a column is read.
+/// Origin of a column's unit.
 enum UnitSource {
     /// The file or the user.
     Known,
@@ -176,7 +176,7 @@ impl Proposer<'_> {
         None
     }
 
-    /// Proposes the columns of a side (step 2).
+    /// Proposes a side's columns (step 2).
     fn columns_of_side(
         &mut self,
         side: ChannelSide,
@@ -272,7 +272,7 @@ impl Proposer<'_> {
         })
     }
 
-    /// Returns the sign of a column for a channel (step 4); `None` if its name leaves it open. A
+    /// Returns a column's sign for a channel (step 4); `None` if its name leaves it open. A
     /// user-defined factor includes the sign, and so does an alias without a mark for a column
     /// without a mark.
     fn sign(&self, rule: &ChannelRule, column: &str, marked_alias: Option<&str>) -> Option<f64> {
@@ -347,7 +347,7 @@ impl Proposer<'_> {
         Some(ColumnUse::times(column, factor))
     }
 
-    /// Returns the column of a file without a unit; adds a note unless its unit stays open.
+    /// Returns a column without a unit in the file; adds a note unless its unit stays open.
     fn by_samples(&mut self, rule: &ChannelRule, column: usize) -> ColumnUse {
         let table = self.table;
         let used = ColumnUse::by_unit(table, column, &rule.unit);

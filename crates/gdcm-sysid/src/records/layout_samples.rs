@@ -1,4 +1,4 @@
-//! The flight record of the chosen columns: samples times their factor, delays removed.
+//! The flight record from the chosen columns: samples times their factor, delays removed.
 
 use nalgebra::DMatrix;
 
@@ -12,16 +12,16 @@ use super::record_table::RecordTable;
 use super::resampling::Resampling;
 use super::time_base::{TimeBase, median_step};
 
-/// Longest interpolation interval, in median steps: gaps of three samples, as in the preparation of
+/// Longest interpolation interval, in median steps: three missing samples, as in preparing
 /// records (M14.1).
 const LONGEST_LINE: f64 = 4.5;
 
 impl RecordLayout {
-    /// Returns the flight record of the chosen columns: each sample times its factor, otherwise
+    /// Returns the flight record from the chosen columns: each sample times its factor, otherwise
     /// unchanged.
     ///
     /// # Errors
-    /// All problems of the columns.
+    /// All problems with the columns.
     pub fn flight_record(
         &self,
         table: &RecordTable,
@@ -40,7 +40,7 @@ impl RecordLayout {
         }
     }
 
-    /// Returns the samples on their common clock, restricted to the record's part of the file.
+    /// Returns the samples on their common clock, restricted to the record's part.
     fn as_logged(&self, table: &RecordTable, time: TimeBase) -> FlightRecord {
         let time_s = if time == TimeBase::Topics {
             self.stamps_of_first_topic(table).unwrap_or_default()
@@ -67,7 +67,7 @@ impl RecordLayout {
         }
     }
 
-    /// Returns the stamps of the first channel's topic \[s\].
+    /// Returns the stamps from the first channel's topic \[s\].
     fn stamps_of_first_topic(&self, table: &RecordTable) -> Option<Vec<f64>> {
         let used = self.inputs.iter().chain(&self.outputs).flatten().next()?;
         let topic = table.columns.get(used.column)?.topic.as_ref()?;
@@ -75,10 +75,10 @@ impl RecordLayout {
     }
 }
 
-/// Reads the samples in chosen rows of a table.
+/// Reads samples in chosen rows.
 struct RowSamples<'r> {
     table: &'r RecordTable,
-    /// Stamp of each row of the table \[s\].
+    /// Stamp by table row \[s\].
     time_s: &'r [f64],
     rows: &'r [usize],
 }
@@ -117,7 +117,7 @@ impl RowSamples<'_> {
 
 /// Removes a logging delay \[s\] from a channel: the value at t becomes the linear interpolation at
 /// t + delay between two adjacent samples; NaN beyond the ends, beside a missing sample, and in a
-/// gap of the stamps.
+/// stamp gap.
 fn advanced(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
     let lines = SampleLines {
         time_s,
@@ -141,7 +141,7 @@ fn advanced(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
     advanced
 }
 
-/// Lines between adjacent samples of a channel.
+/// Lines between a channel's adjacent samples.
 struct SampleLines<'r> {
     /// Stamps \[s\].
     time_s: &'r [f64],

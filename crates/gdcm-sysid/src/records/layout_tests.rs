@@ -48,7 +48,7 @@ fn table(columns: Vec<RecordColumn>) -> RecordTable {
     }
 }
 
-/// A record with the column names and order of another tool.
+/// A record with another tool's column names and order.
 pub(super) fn record() -> RecordTable {
     table(vec![
         column("nz", "g", |k| 0.1 * (0.3 * k).sin()),
@@ -156,7 +156,7 @@ fn with_roll_rate(unit_in_file: &str, peak: f64, unit: &str) -> LayoutProposal {
 
 #[test]
 fn a_unit_that_fits_only_one_way_is_taken_and_an_ambiguous_unit_is_a_problem() {
-    // 6.9 rad/s are 395 deg/s, within the range of helicopters; 7.1 rad/s are 407.
+    // 6.9 rad/s are 395 deg/s, within a helicopter's range; 7.1 rad/s are 407.
     assert_eq!(
         with_roll_rate("", 6.9, "deg/s").problems,
         [LayoutProblem::UnsaidUnit {
@@ -220,7 +220,7 @@ fn the_user_s_unit_of_a_channel_applies_to_files_without_units() {
     );
 }
 
-/// Problems of the record with another time column.
+/// Problems with another time column.
 fn problems_with_time(time: RecordColumn) -> Vec<LayoutProblem> {
     let mut table = record();
     table.columns[1] = time;

@@ -1,8 +1,8 @@
-//! From the columns of record files to flight records: time, channels, units.
+//! From record files' columns to flight records: time, channels, units.
 //!
 //! | stage | files |
 //! |---|---|
-//! | columns of a file, from the reader | [`record_table`], [`time_base`] |
+//! | a file's columns, from the reader | [`record_table`], [`time_base`] |
 //! | several records in a table | [`separation`] |
 //! | topics with separate clocks | [`topic_tables`], `topic_names`, `side_by_side` |
 //! | channels to read | [`record_channels`], [`channel_list`], [`dataset_of_records`] |
@@ -10,7 +10,7 @@
 //! | checks | `layout_checks`, `plausible_units`, [`layout_problem`] |
 //! | flight record | `layout_samples`, `resampling`, [`laid_out_record`] |
 //!
-//! Samples are those of the file, times a factor, without filtering or detrending. Channels with
+//! Samples are the file's, times a factor, without filtering or detrending. Channels with
 //! separate clocks are resampled to a common clock (M14.11), and this is reported.
 
 pub mod channel_list;

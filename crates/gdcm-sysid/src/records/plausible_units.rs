@@ -5,7 +5,7 @@ use gdcm_model::assembly::physical_unit::{Dimension, conversion_factor};
 
 use super::record_table::RecordColumn;
 
-/// Largest plausible value of a dimension.
+/// Largest plausible value in a dimension.
 struct PlausibleLimit {
     dimension: Dimension,
     value: f64,
@@ -46,8 +46,8 @@ pub(super) fn largest_plausible(unit: &str) -> Option<f64> {
     Some(limit.value * conversion_factor(limit.unit, unit)?)
 }
 
-/// Returns the possible units of a column's samples for a channel with this unit, which comes
-/// first: units of its dimension whose largest plausible value is not below the largest sample.
+/// Returns the units that fit a column's samples for a channel with this unit, which comes
+/// first: units in its dimension whose largest plausible value is not below the largest sample.
 /// Empty if all samples are zero or the unit is unknown.
 pub(super) fn possible_units<'u>(column: &RecordColumn, unit: &'u str) -> Vec<&'u str> {
     let Some(peak) = column.peak() else {

@@ -5,28 +5,28 @@ use std::collections::{BTreeMap, BTreeSet};
 use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::{Channel, Dataset};
 
-/// User-defined conversion of a channel's samples; overrides the file.
+/// User-defined sample conversion; overrides the file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SaidConversion {
-    /// Unit of the samples.
+    /// Sample unit.
     Unit(String),
     /// Channel units per column unit; negative for the opposite sign.
     Factor(f64),
 }
 
-/// Settings for the combination of topics with separate clocks into one record.
+/// Settings for combining topics with separate clocks into a record.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ResamplingWish {
-    /// Upper end of the record's band of interest \[rad/s\]; `None` if unknown.
+    /// Upper band end \[rad/s\]; `None` if unknown.
     pub band_end: Option<f64>,
     /// Sample rate \[Hz\], also applied to records with one clock; `None` leaves those unchanged
     /// and resamples topics by the rule.
     pub rate_hz: Option<f64>,
-    /// Inputs treated as constant between logged samples, regardless of their samples.
+    /// Inputs treated as constant between logged samples, even if they never repeat a sample.
     pub held: BTreeSet<String>,
 }
 
-/// Inputs and outputs to read from records. A channel without a unit takes the unit of the file; a
+/// Inputs and outputs to read from records. A channel without a unit takes the file's unit; a
 /// channel with aliases is searched only by its aliases.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordChannels {
@@ -36,12 +36,12 @@ pub struct RecordChannels {
     pub outputs: Vec<ChannelRule>,
     /// User-defined conversions by channel.
     pub said: BTreeMap<String, SaidConversion>,
-    /// Combination of topics with separate clocks into one record.
+    /// Settings for topics with separate clocks.
     pub resampling: ResamplingWish,
 }
 
 impl RecordChannels {
-    /// Returns the channels of a dataset, in its units.
+    /// Returns a dataset's channels, in its units.
     pub fn of_dataset(dataset: &Dataset) -> Self {
         Self {
             inputs: dataset.inputs().iter().map(rule_of_channel).collect(),

@@ -1,4 +1,4 @@
-//! Information in the folder and file names of a record: manoeuvre, validation, condition.
+//! Information in a record's folder and file names: manoeuvre, validation, condition.
 
 use gdcm_model::assembly::channel_match::folded_name;
 use gdcm_model::assembly::found_model::Row;
@@ -8,7 +8,7 @@ use gdcm_model::dataset::{ConditionId, Dataset};
 
 use super::record_table::RecordTable;
 
-/// Information from the folder and file names of a record.
+/// Information from a record's folder and file names.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordGuess {
     /// The manoeuvre.
@@ -20,7 +20,7 @@ pub struct RecordGuess {
     pub airspeed_kt: Option<f64>,
 }
 
-/// Manoeuvres with the parts of names that denote them.
+/// Manoeuvres with the name parts that denote them.
 const MANOEUVRES: [(RecordKind, &[&str]); 3] = [
     (RecordKind::Sweep, &["sweep", "chirp", "swp"]),
     (RecordKind::Multisine, &["multisine", "schroeder", "msine"]),
@@ -29,7 +29,7 @@ const MANOEUVRES: [(RecordKind, &[&str]); 3] = [
         &["3211", "doublet", "dblt", "step"],
     ),
 ];
-/// Parts of the names of validation records.
+/// Name parts for validation records.
 const VALIDATION: [&str; 5] = [
     "validation",
     "validate",
@@ -42,7 +42,7 @@ const VALIDATION: [&str; 5] = [
 const VALIDATION_WORDS: [&str; 4] = ["val", "valid", "check", "verif"];
 
 impl RecordGuess {
-    /// Reads the names of a record, of its file, and of its variable or file in an archive.
+    /// Reads the names of a record, its file, and its variable or file in an archive.
     pub fn of_table(table: &RecordTable, patterns: &[NamePattern]) -> Self {
         let mut names = vec![table.source.file.as_str()];
         names.extend(table.source.variable.as_deref());

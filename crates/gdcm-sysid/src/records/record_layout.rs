@@ -1,4 +1,4 @@
-//! Assignment of a record's columns to its time and channels.
+//! A record's columns, assigned to its time and channels.
 
 use std::collections::BTreeMap;
 
@@ -12,15 +12,15 @@ use super::record_guess::RecordGuess;
 use super::record_table::RecordTable;
 use super::time_base::TimeBase;
 
-/// Assignment of a record's columns to its time and channels, proposed by
+/// A record's columns, assigned to its time and channels; proposed by
 /// [`RecordLayout::proposed`] and editable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordLayout {
-    /// Source of the sample times; `None` while open.
+    /// Sample times; `None` while open.
     pub time: Option<TimeBase>,
-    /// Column of each input; `None` while open.
+    /// Column by input; `None` while open.
     pub inputs: Vec<Option<ColumnUse>>,
-    /// Column of each output; `None` while open.
+    /// Column by output; `None` while open.
     pub outputs: Vec<Option<ColumnUse>>,
 }
 
@@ -63,7 +63,7 @@ impl RecordLayout {
         chosen
     }
 
-    /// Returns the column of stamps, if the time comes from a column.
+    /// Returns the stamp column, if the time comes from a column.
     pub(super) fn time_column(&self) -> Option<usize> {
         match self.time {
             Some(TimeBase::Column { column, .. }) => Some(column),
@@ -71,7 +71,7 @@ impl RecordLayout {
         }
     }
 
-    /// Copies the remedy of each channel from `other`.
+    /// Copies each channel's remedy from `other`.
     #[must_use]
     pub fn with_remedies_of(mut self, other: &Self) -> Self {
         copy_remedies(&mut self.inputs, &other.inputs);
@@ -89,7 +89,7 @@ impl RecordLayout {
         add_remedies(&mut self.outputs, &channels.outputs, remedies);
     }
 
-    /// Returns the editable use of a channel.
+    /// Returns a channel's use for editing.
     pub fn channel_mut(&mut self, role: ChannelSide, index: usize) -> Option<&mut ColumnUse> {
         role.of(&mut self.inputs, &mut self.outputs)
             .get_mut(index)?
@@ -97,7 +97,7 @@ impl RecordLayout {
     }
 
     /// Applies the changes between two layouts of `from` to this layout of `table`, channel by
-    /// channel: transfers the user's edits of one record to another with columns of the same names.
+    /// channel: transfers the user's edits to another record with the same column names.
     /// Remedies, which belong to one record, stay as they are.
     #[must_use]
     pub fn following(
@@ -140,7 +140,7 @@ impl RecordLayout {
         layout
     }
 
-    /// Takes every open unit to be the unit of the channel.
+    /// Takes every open unit to be the channel's.
     #[must_use]
     pub fn in_units_of_channels(&self) -> Self {
         let mut layout = self.clone();
@@ -164,7 +164,7 @@ impl RecordLayout {
         Some(layout)
     }
 
-    /// Creates the dataset entry of this record: its location, and the information in its name.
+    /// Creates the record's dataset entry: its location, and the information in its name.
     pub fn condition_record(
         &self,
         table: &RecordTable,
@@ -193,7 +193,7 @@ impl RecordLayout {
 }
 
 impl RecordChannels {
-    /// Gives channels without a unit the unit of their column in this layout, so that further
+    /// Gives channels without a unit their column's unit in this layout, so that further
     /// records are converted.
     pub fn take_units(&mut self, layout: &RecordLayout, table: &RecordTable) {
         for side in [ChannelSide::Input, ChannelSide::Output] {
@@ -209,7 +209,7 @@ impl RecordChannels {
     }
 }
 
-/// Returns the unit of a channel's samples: the user's, else the file's; `None` if it is unknown, as
+/// Returns the unit for a channel's samples: the user's, else the file's; `None` if unknown, as
 /// after a user-defined factor other than ±1.
 fn unit_of_samples(
     conversion: Option<&SaidConversion>,
@@ -255,7 +255,7 @@ fn time_in_other(time: TimeBase, from: &RecordTable, other: &RecordTable) -> Opt
     }
 }
 
-/// Returns the index in another record of a column, by name; the same index if the names agree.
+/// Returns a column's index in another record, by name; the same index if the names agree.
 fn column_in_other(column: usize, from: &RecordTable, other: &RecordTable) -> Option<usize> {
     let name = &from.columns.get(column)?.name;
     match other.columns.get(column) {

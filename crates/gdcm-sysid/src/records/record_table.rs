@@ -1,4 +1,4 @@
-//! A record in the form of its file: columns of samples.
+//! A record as in its file: sample columns.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::units::number;
 
-/// A column of samples.
+/// A sample column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordColumn {
     /// Name in the file; "column 3" if the file has none.
@@ -20,16 +20,16 @@ pub struct RecordColumn {
     pub values: Vec<f64>,
     /// Topic with a separate clock; `None` on the table's clock.
     pub topic: Option<Arc<TopicClock>>,
-    /// The channel by the documentation of the logging system: "P", "LON".
+    /// The channel by the logging system's documentation: "P", "LON".
     pub meaning: Option<&'static str>,
 }
 
-/// Sample times shared by the columns of a topic.
+/// Sample times shared by a topic's columns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TopicClock {
-    /// Name of the topic.
+    /// The topic's name.
     pub name: String,
-    /// Stamp of each sample \[s\].
+    /// Stamp by sample \[s\].
     pub time_s: Vec<f64>,
 }
 
@@ -96,47 +96,47 @@ impl RecordColumn {
     }
 }
 
-/// Origin of a record.
+/// A record's origin.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordSource {
     pub file: String,
-    /// SHA-256 of the file, in hexadecimal.
+    /// The file's SHA-256, in hexadecimal.
     pub sha256: String,
     /// The record or variable within the file; `None` if the file has only one.
     pub variable: Option<String>,
 }
 
-/// A record in the form of its file.
+/// A record as in its file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordTable {
     /// Displayed name.
     pub name: String,
-    /// Columns, of equal length except for topics with separate clocks.
+    /// Columns, equally long except for topics with separate clocks.
     pub columns: Vec<RecordColumn>,
     /// Whether the file names the columns.
     pub named: bool,
     /// Sample time \[s\], if the file gives it outside its columns.
     pub sample_time_s: Option<f64>,
     pub source: RecordSource,
-    /// Notes on the reading of the file.
+    /// Notes from reading the file.
     pub notes: Vec<String>,
-    /// Mode intervals of the logging system.
+    /// Mode intervals from the logging system.
     pub modes: Vec<ModeSpan>,
-    /// First and last time \[s\] of the part used as the record; `None` for the whole file.
+    /// First and last time used \[s\]; `None` for the whole file.
     pub part_s: Option<[f64; 2]>,
 }
 
 /// Interval in which the logging system was armed, or in a flight mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeSpan {
-    /// "armed", or the name of the mode.
+    /// "armed", or the mode's name.
     pub name: String,
     /// First and last time \[s\], on the record's clock.
     pub ends_s: [f64; 2],
 }
 
 impl RecordTable {
-    /// Creates a table of columns without further information.
+    /// Creates a table without further information.
     pub fn new(name: impl Into<String>, columns: Vec<RecordColumn>) -> Self {
         Self {
             name: name.into(),
@@ -146,7 +146,7 @@ impl RecordTable {
         }
     }
 
-    /// Returns the sample count of the longest column.
+    /// Returns the longest column's sample count.
     pub fn rows(&self) -> usize {
         self.columns
             .iter()
@@ -178,7 +178,7 @@ impl RecordTable {
             .position(|column| column.name.eq_ignore_ascii_case(name))
     }
 
-    /// Returns the index of `#30`, the thirtieth column.
+    /// Returns the index for `#30`, the thirtieth column.
     fn position_by_number(&self, name: &str) -> Option<usize> {
         let number: usize = name.strip_prefix('#')?.parse().ok()?;
         let column = number.checked_sub(1)?;
@@ -189,7 +189,7 @@ impl RecordTable {
         }
     }
 
-    /// Returns the index of a matrix column, counted from 0 as in Python (`xyz[0]`) or from 1 as in
+    /// Returns a matrix column's index, counted from 0 as in Python (`xyz[0]`) or from 1 as in
     /// MATLAB (`xyz(1)`); readers name it `xyz_1`.
     fn position_in_matrix(&self, name: &str) -> Option<usize> {
         let (matrix, index, first) = if let Some(rest) = name.strip_suffix(']') {
@@ -204,8 +204,8 @@ impl RecordTable {
         self.position_ignoring_case(&format!("{matrix}_{number}"))
     }
 
-    /// Returns the dataset entry of the record and its condition. The entry names the same variable
-    /// in a file of the same name, or the same record of an archive with another name.
+    /// Returns the record's dataset entry and its condition. The entry names the same variable
+    /// in a file with the same name, or the same record in an archive with another name.
     pub fn entry_of_dataset<'d>(
         &self,
         dataset: &'d Dataset,
@@ -226,7 +226,7 @@ impl RecordTable {
         None
     }
 
-    /// Whether both are the same record: the same part of the same variable in a file, or equal
+    /// Whether both are the same record: the same variable and part in a file, or equal
     /// samples under the same name. Equal samples under another name are a copy
     /// ([`leave_out_copies`](super::leave_out_copies)).
     pub fn is_same_record(&self, other: &Self) -> bool {
@@ -247,7 +247,7 @@ impl RecordTable {
                 .all(|(column, other)| column.is_same(other))
     }
 
-    /// Returns the part of the record between two times on its own clock \[s\].
+    /// Returns the part between two times on the record's own clock \[s\].
     #[must_use]
     pub fn part_of_time(&self, part_s: [f64; 2]) -> RecordTable {
         let mut part = self.clone();
@@ -269,7 +269,7 @@ impl RecordTable {
         }
     }
 
-    /// Returns the names of all columns, shortened to fit a message.
+    /// Returns all column names, shortened to fit a message.
     pub(super) fn column_names(&self) -> String {
         let names: Vec<&str> = self
             .columns
@@ -280,7 +280,7 @@ impl RecordTable {
     }
 }
 
-/// Returns the last part of a path.
+/// Returns a path's last part.
 fn file_name(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
 }

@@ -1,4 +1,4 @@
-//! Resampling of chosen columns with separate clocks to a common clock (M14.11).
+//! Resampling to a common clock, for columns with separate clocks (M14.11).
 
 use nalgebra::DMatrix;
 
@@ -17,16 +17,16 @@ use crate::identification::topics::{CommonClock, Topic, TopicError, is_held};
 const SHARE_OF_HOLES: f64 = 0.1;
 /// Largest deviation of an even step from a multiple of the median step, over the median step.
 const JITTER: f64 = 0.2;
-/// Share of even steps in an even clock.
+/// Least share of even steps in an even clock.
 const SHARE_OF_EVEN_STEPS: f64 = 0.95;
 
-/// The chosen columns of a table, and their common clock.
+/// Chosen columns, and their common clock.
 pub(super) struct Resampling {
     /// Inputs, then outputs.
     topics: Vec<Topic>,
     /// Input count.
     inputs: usize,
-    /// Names of the held inputs.
+    /// Names, held inputs only.
     held: Vec<String>,
     clock: CommonClock,
 }
@@ -34,7 +34,7 @@ pub(super) struct Resampling {
 /// A channel with its column.
 struct ChannelColumn<'r> {
     channel: ChannelUse<'r>,
-    /// Total factor of the samples.
+    /// Total factor.
     gain: f64,
     /// Logging delay to remove \[s\].
     delay_s: f64,
@@ -50,7 +50,7 @@ impl RecordLayout {
 }
 
 impl Resampling {
-    /// Prepares the resampling of the chosen columns to a common clock; `None` if they already have
+    /// Chooses a common clock for the chosen columns; `None` if they already have
     /// a common clock, or if a column or the time is still open.
     ///
     /// # Errors
@@ -98,7 +98,7 @@ impl Resampling {
         }))
     }
 
-    /// Returns a description of the resampling.
+    /// Returns notes on rates, low-pass and held inputs.
     pub(super) fn notes(&self) -> Vec<String> {
         let rates: Vec<String> = self
             .topics
@@ -120,7 +120,7 @@ impl Resampling {
         notes
     }
 
-    /// Returns the record on the common clock; NaN in the gaps of each topic.
+    /// Returns the record on the common clock; NaN in each topic's gaps.
     pub(super) fn flight_record(&self, name: String) -> FlightRecord {
         let time_s = self.clock.times_s();
         let (inputs, outputs) = self.topics.split_at(self.inputs);
@@ -143,7 +143,7 @@ impl Resampling {
 }
 
 impl ChannelColumn<'_> {
-    /// Returns the stamps of its topic, or else of the table, less the delay \[s\].
+    /// Returns its topic's stamps, or else the table's, less the delay \[s\].
     fn stamps(&self, table_time_s: &[f64]) -> Vec<f64> {
         let stamps = match &self.column.topic {
             Some(topic) => topic.time_s.as_slice(),
@@ -168,7 +168,7 @@ impl ChannelColumn<'_> {
     }
 }
 
-/// Returns the column of every channel; `None` if a channel has no column.
+/// Returns every channel with its column; `None` if a channel has no column.
 fn channel_columns<'r>(
     layout: &RecordLayout,
     table: &'r RecordTable,
@@ -210,7 +210,7 @@ pub(super) fn has_holes(values: &[f64]) -> bool {
     holes as f64 > SHARE_OF_HOLES * values.len() as f64
 }
 
-/// Whether 95 % of the steps are within 20 % of the median step or of a multiple of it (M14.1).
+/// Whether 95 % of the steps differ from multiples of the median step by at most 20 % (M14.1).
 fn is_even(time_s: &[f64]) -> bool {
     let Some(median) = median_step(time_s) else {
         return false;

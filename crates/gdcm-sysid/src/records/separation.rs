@@ -1,4 +1,4 @@
-//! Separation of a table that holds several records.
+//! Splitting a table that holds several records.
 
 use std::ops::Range;
 
@@ -8,26 +8,26 @@ use gdcm_model::units::number;
 use super::record_table::{RecordColumn, RecordSource, RecordTable};
 use super::time_base::TimeBase;
 
-/// Separation of several records in a table.
+/// How a table with several records is split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separation {
     /// The table is one record.
     None,
     /// By a column with a number for each record.
     ByColumn(usize),
-    /// By a column of stamps that restarts.
+    /// By a stamp column that restarts.
     ByTime(usize),
 }
 
-/// Names of columns with record numbers.
+/// Names for columns with record numbers.
 const NUMBERS: &str = "record records recordid recordno recordnumber run runid runno runnumber manoeuvre maneuver segment event \
                        testpoint experiment";
 
 impl Separation {
-    /// Fewest samples of a record in a table with several.
+    /// Fewest samples in a record, for a table with several.
     pub const FEWEST: usize = 20;
 
-    /// Proposes the separation of a table from its column names and stamps.
+    /// Proposes a split by column names and stamps.
     pub fn proposed(table: &RecordTable) -> Self {
         if table.has_topics() {
             return Self::None;
@@ -42,7 +42,7 @@ impl Separation {
     }
 }
 
-/// Whether a column has the name of a record number and several long runs of whole numbers.
+/// Whether a column is named like a record number and has several long, constant, whole runs.
 fn numbers_records(column: &RecordColumn) -> bool {
     let name = folded_name(&column.name);
     if !NUMBERS.split(' ').any(|word| word == name) {
@@ -61,7 +61,7 @@ fn restarts(stamps: &[f64]) -> bool {
     parts.len() > 1 && parts.iter().all(|part| part.len() >= Separation::FEWEST)
 }
 
-/// Rows of a table that are a record.
+/// Table rows that are a record.
 struct RecordPart {
     rows: Range<usize>,
     /// Name within the table.
@@ -126,7 +126,7 @@ impl RecordTable {
     }
 }
 
-/// Returns a part for each run of a record number; later runs of a number are "part 2", "part 3".
+/// Returns a part for each run; later runs with the same number are "part 2", "part 3".
 fn parts_by_number(numbers: &RecordColumn) -> Vec<RecordPart> {
     let mut seen: Vec<f64> = Vec::new();
     let mut parts = Vec::new();
@@ -143,7 +143,7 @@ fn parts_by_number(numbers: &RecordColumn) -> Vec<RecordPart> {
     parts
 }
 
-/// Returns a part for each restart of the stamps.
+/// Returns a part from each restart to the next.
 fn parts_by_time(stamps: &[f64]) -> Vec<RecordPart> {
     let mut parts = Vec::new();
     for (index, rows) in rising_parts(stamps).into_iter().enumerate() {
@@ -153,7 +153,7 @@ fn parts_by_time(stamps: &[f64]) -> Vec<RecordPart> {
     parts
 }
 
-/// Returns ranges of samples with equal numbers; samples without a number are skipped.
+/// Returns sample ranges with equal numbers; samples without a number are skipped.
 fn constant_runs(numbers: &[f64]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for (sample, value) in numbers.iter().enumerate() {
@@ -168,7 +168,7 @@ fn constant_runs(numbers: &[f64]) -> Vec<Range<usize>> {
     runs
 }
 
-/// Returns ranges of samples between restarts. Stamps restart where they decrease and stay below
+/// Returns sample ranges between restarts. Stamps restart where they decrease and stay below
 /// the earlier stamp for half of [`Separation::FEWEST`] samples; a shorter decrease is a slip.
 fn rising_parts(stamps: &[f64]) -> Vec<Range<usize>> {
     let mut parts = Vec::new();

@@ -1,4 +1,4 @@
-//! Tables side by side in one table, each behind its own column of stamps.
+//! Tables side by side in one table, each behind its own stamp column.
 
 use std::sync::Arc;
 
@@ -8,14 +8,14 @@ use super::record_table::{RecordColumn, RecordTable, TopicClock, same_samples};
 use super::separation::Separation;
 use super::time_base::TimeBase;
 
-/// Least common time of two topics, over the shorter of their durations.
+/// Least common time for two topics, over the shorter duration.
 const LEAST_OVERLAP: f64 = 0.5;
 
 impl RecordTable {
-    /// Splits a table with several columns of stamps, each followed by its samples, into topics;
+    /// Splits a table with several stamp columns, each followed by its samples, into topics;
     /// returns any other table unchanged.
     ///
-    /// The stamps of each topic rise, and their times overlap: a second clock with another origin
+    /// All stamps rise, and all clocks overlap: a second clock with another origin
     /// is an ordinary column.
     #[must_use]
     pub fn side_by_side(mut self) -> RecordTable {
@@ -51,7 +51,7 @@ impl RecordTable {
         self
     }
 
-    /// Returns the columns with the name of a time (`time`, `time.1`) and rising values.
+    /// Returns the columns named like a time (`time`, `time.1`) with rising values.
     fn stamp_columns(&self) -> Vec<usize> {
         let mut found = Vec::new();
         for (index, column) in self.columns.iter().enumerate() {
@@ -65,8 +65,8 @@ impl RecordTable {
         found
     }
 
-    /// Whether there are several columns of stamps, the first column among them, each followed by a
-    /// column of samples.
+    /// Whether there are several stamp columns, the first column among them, each followed by a
+    /// sample column.
     fn has_samples_behind(&self, stamp_columns: &[usize]) -> bool {
         let [0, .., last] = stamp_columns else {
             return false;
@@ -75,7 +75,7 @@ impl RecordTable {
     }
 }
 
-/// Whether the clocks differ and all of them overlap with the first.
+/// Whether the clocks differ and all overlap with the first.
 fn are_clocks_of_topics(clocks: &[Vec<f64>]) -> bool {
     let Some(first) = clocks.first().and_then(|clock| TimeSpan::new(clock)) else {
         return false;
@@ -89,7 +89,7 @@ fn are_clocks_of_topics(clocks: &[Vec<f64>]) -> bool {
     !clocks.iter().all(|clock| same_samples(clock, &clocks[0]))
 }
 
-/// First and last time of a clock \[s\].
+/// A clock's first and last time \[s\].
 struct TimeSpan {
     start_s: f64,
     end_s: f64,
@@ -153,7 +153,7 @@ mod tests {
         stamps
     }
 
-    /// A table of M, at 100 Hz, beside q with these stamps.
+    /// A table with M, at 100 Hz, beside q with these stamps.
     fn table(second: Vec<f64>) -> RecordTable {
         let columns = vec![
             RecordColumn::new("time", stamps(60, 0.01, 0.0)),

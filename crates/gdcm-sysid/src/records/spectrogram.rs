@@ -1,4 +1,4 @@
-//! Power of a channel over time and frequency, which shows a sweep in a long record.
+//! A channel's power over time and frequency, which shows a sweep in a long record.
 
 use std::f64::consts::TAU;
 
@@ -11,22 +11,22 @@ use gdcm_model::simulation::Segment;
 use crate::identification::spectra;
 use crate::identification::spectrum::Spectrum;
 
-/// Power of a channel over time and frequency.
+/// A channel's power over time and frequency.
 ///
 /// ```text
-/// windows  Hann, 0.15 of the record long, within 4 s and 20 s; an eighth of their length apart,
+/// windows  Hann, 0.15 times the record, within 4 s and 20 s; an eighth of their length apart,
 ///          or farther for at most 400 windows
-/// power    |U(omega_k)|^2 of the samples in the window less their mean (M14.2); missing samples
+/// power    |U(omega_k)|^2, from the samples in the window less their mean (M14.2); missing samples
 ///          count as the mean
 /// rows     frequencies evenly in ln(omega), from two periods a window to the highest: the greatest
 ///          line within half a row
-/// level    10 log10 of the power over the greatest power, not less than FLOOR
+/// level    10 log10(power / greatest power), not less than FLOOR
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrogram {
-    /// Centres of the first and of the last window \[s\].
+    /// First and last window centre \[s\].
     pub time_s: [f64; 2],
-    /// Frequencies of the first and of the last row \[rad/s\].
+    /// First and last row's frequency \[rad/s\].
     pub omega: [f64; 2],
     /// Level by window and row \[dB\].
     pub levels: Vec<Vec<f64>>,
@@ -45,12 +45,12 @@ const MOST_WINDOWS: usize = 400;
 const HIGHEST_OF_RATE: f64 = 0.9;
 
 impl Spectrogram {
-    /// Row count of every window.
+    /// Row count.
     pub const ROWS: usize = 64;
     /// Lowest reported level \[dB\].
     pub const FLOOR: f64 = -40.0;
 
-    /// Computes the spectrogram of samples at these times up to `highest` \[rad/s\]; `None` if the
+    /// Computes the spectrogram up to `highest` \[rad/s\]; `None` if the
     /// record is shorter than a window, or no frequency is resolved by a window.
     #[must_use]
     pub fn of(time_s: &[f64], samples: &[f64], highest: f64) -> Option<Self> {
@@ -82,11 +82,11 @@ impl Spectrogram {
 struct Windows {
     /// Sample time \[s\].
     step_s: f64,
-    /// Length of a window \[s\].
+    /// Window length \[s\].
     seconds: f64,
     /// Length in samples.
     length: usize,
-    /// First sample of each window.
+    /// First sample by window.
     starts: Vec<usize>,
 }
 
@@ -121,13 +121,13 @@ impl Windows {
     }
 }
 
-/// Frequencies of the rows, evenly in ln(omega).
+/// Row frequencies, evenly in ln(omega).
 struct FrequencyRows {
-    /// Frequency of the first row \[rad/s\].
+    /// First row \[rad/s\].
     lowest: f64,
-    /// Frequency of the last row \[rad/s\].
+    /// Last row \[rad/s\].
     highest: f64,
-    /// Ratio of neighbouring frequencies.
+    /// Ratio between neighbouring rows.
     ratio: f64,
 }
 
@@ -148,7 +148,7 @@ impl FrequencyRows {
         })
     }
 
-    /// Returns the power of a window in each row.
+    /// Returns a window's power by row.
     fn powers(&self, spectrum: &Spectrum) -> Vec<f64> {
         let mut powers = Vec::with_capacity(Spectrogram::ROWS);
         for row in 0..Spectrogram::ROWS {
@@ -188,7 +188,7 @@ fn levels(powers: &[Vec<f64>]) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Returns the level of a power below `greatest` \[dB\].
+/// Returns a power's level below `greatest` \[dB\].
 fn level(power: f64, greatest: f64) -> f64 {
     let ratio = (power / greatest).max(f64::MIN_POSITIVE);
     (10.0 * ratio.log10()).max(Spectrogram::FLOOR)
@@ -241,8 +241,8 @@ mod tests {
                 .max_by(|a, b| levels[*a].total_cmp(&levels[*b]))
                 .unwrap();
             let omega = found.omega[0] * ratio.powi(ridge as i32);
-            // Within the resolution of a window of 15 s, whose lines are 0.42 rad/s apart, and half
-            // of the change of the sweep within it.
+            // Within a 15 s window's resolution, whose lines are 0.42 rad/s apart, and half
+            // the sweep's change within it.
             assert!(
                 (omega - (2.0 + 0.1 * time)).abs() < 0.42 + 0.75,
                 "{time} s: {omega}"

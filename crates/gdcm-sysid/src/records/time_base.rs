@@ -1,4 +1,4 @@
-//! Source of a record's sample times: a column of stamps, a sample time, or topics.
+//! Source of a record's sample times: a stamp column, a sample time, or topics.
 
 use gdcm_model::assembly::PhysicalUnit;
 use gdcm_model::assembly::channel_match::time_name_rank;
@@ -10,24 +10,24 @@ use super::record_table::{RecordColumn, RecordTable};
 /// Source of the sample times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeBase {
-    /// A column of stamps.
+    /// A stamp column.
     Column {
-        /// Index of the column.
+        /// Column index.
         column: usize,
-        /// Seconds per unit of the column.
+        /// Seconds per column unit.
         seconds: f64,
     },
     /// Equidistant samples with this sample time \[s\].
     SampleTime(f64),
-    /// The separate stamps of each topic.
+    /// Each topic's own stamps.
     Topics,
 }
 
-/// Longest plausible step of a manoeuvre \[s\].
+/// Longest plausible step in a manoeuvre \[s\].
 pub(super) const LONGEST_STEP_S: f64 = 1.5;
-/// Shortest plausible step of a flight recorder \[s\].
+/// Shortest plausible step in a flight recorder \[s\].
 const SHORTEST_STEP_S: f64 = 5e-5;
-/// Shortest step accepted after a guess of the unit \[s\].
+/// Shortest step accepted for a guessed unit \[s\].
 const SHORTEST_GUESSED_STEP_S: f64 = 2e-4;
 const SECONDS_A_DAY: f64 = 86_400.0;
 
@@ -41,7 +41,7 @@ struct TimeRank {
 }
 
 impl TimeRank {
-    /// Ranks a column; `None` if its name is not the name of a time. Without names only the first
+    /// Ranks a column; `None` if it is not named like a time. Without names only the first
     /// column can be the time.
     fn new(table: &RecordTable, column: usize) -> Option<Self> {
         let candidate = &table.columns[column];
@@ -90,7 +90,7 @@ impl TimeBase {
         }
     }
 
-    /// Returns the time base of a column of stamps.
+    /// Returns a stamp column as time base.
     pub(super) fn from_column(table: &RecordTable, column: usize) -> Self {
         TimeBase::Column {
             column,
@@ -98,14 +98,14 @@ impl TimeBase {
         }
     }
 
-    /// Describes the choice of a column of stamps, with the reason for its unit.
+    /// Describes a stamp column, with the reason for its unit.
     pub(super) fn column_note(table: &RecordTable, column: usize) -> String {
         let unit = StampUnit::new(&table.columns[column]);
         let quoted = table.quoted(column);
         format!("time from column {quoted}, in {}{}", unit.name, unit.reason)
     }
 
-    /// Finds the time column by its name, or as the first, rising column of a table without names.
+    /// Finds the time column by its name, or as the first, rising column in a table without names.
     pub(super) fn find(table: &RecordTable) -> Option<usize> {
         let best = (0..table.columns.len())
             .filter_map(|column| TimeRank::new(table, column))
@@ -127,7 +127,7 @@ fn finite_product(stamp: f64, seconds: f64) -> f64 {
     }
 }
 
-/// Unit of a column of stamps.
+/// A stamp column's unit.
 struct StampUnit {
     name: &'static str,
     seconds: f64,
@@ -139,7 +139,7 @@ impl StampUnit {
     /// Units shorter than a second; steps too short for milliseconds are microseconds, and so on.
     const SHORT: [(&str, f64); 3] = [("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
 
-    /// Determines the unit: the file's, else the last word of the column's name (`time_ms`), else a
+    /// Determines the unit: the file's, else the last word in the column's name (`time_ms`), else a
     /// unit that makes the median step plausible, else the second.
     fn new(stamps: &RecordColumn) -> Self {
         if let Some(unit) = stamps.unit.as_deref().and_then(Self::from_name) {
@@ -163,7 +163,7 @@ impl StampUnit {
         Self::seconds(" (the file does not say the unit)".to_owned())
     }
 
-    /// Returns a unit of time by its name, in its usual spelling.
+    /// Returns a time unit by its name, in its usual spelling.
     fn from_name(name: &str) -> Option<Self> {
         let unit = PhysicalUnit::of(name)?;
         if unit.dimension != Dimension::Time {
@@ -176,7 +176,7 @@ impl StampUnit {
         })
     }
 
-    /// Returns a unit chosen because steps of `step` seconds are implausible.
+    /// Returns a unit chosen because `step` seconds are implausible.
     fn from_steps(name: &'static str, seconds: f64, step: f64) -> Self {
         let fault = if step > 1.0 { "long" } else { "short" };
         let step = telling(step, 3);
@@ -196,7 +196,7 @@ impl StampUnit {
     }
 }
 
-/// Returns the last word of a name with several words.
+/// Returns the last word in a name with several words.
 fn last_word(name: &str) -> Option<&str> {
     name.rsplit(|c: char| !c.is_alphanumeric())
         .next()

@@ -1,15 +1,15 @@
-//! Names of topics and of their logs, from the names of files and variables.
+//! Names for topics and their logs, from file and variable names.
 
 use std::collections::BTreeMap;
 
 use super::record_table::{RecordSource, RecordTable};
 
-/// Separators between the words of a name.
+/// Separators between words in a name.
 const SEPARATORS: [char; 4] = ['_', '-', '.', ' '];
 /// File extensions. An ending with digits only is not an extension: "motor.1".
 const EXTENSIONS: [&str; 7] = ["csv", "txt", "tsv", "dat", "mat", "npz", "json"];
 
-/// Returns the common key of a log's topics: their file, or else the folder of their files.
+/// Returns the common key for a log's topics: their file, or else their folder.
 pub(super) fn log_key(source: &RecordSource) -> String {
     if source.variable.is_some() {
         return source.file.clone();
@@ -20,7 +20,7 @@ pub(super) fn log_key(source: &RecordSource) -> String {
     }
 }
 
-/// Returns the name of each topic: the variable if all come from one file, else the file's name
+/// Returns a name by topic: the variable if all come from one file, else the file's name
 /// without its extension.
 pub(super) fn topic_names(tables: &[RecordTable]) -> Vec<String> {
     let is_one_file = are_from_one_file(tables);
@@ -30,7 +30,7 @@ pub(super) fn topic_names(tables: &[RecordTable]) -> Vec<String> {
         .collect()
 }
 
-/// Whether all tables come from the file of the first.
+/// Whether all tables come from the first table's file.
 pub(super) fn are_from_one_file(tables: &[RecordTable]) -> bool {
     tables
         .iter()
@@ -51,13 +51,13 @@ fn topic_name(source: &RecordSource, is_one_file: bool) -> String {
     }
 }
 
-/// Returns the log of each topic: "log_7" for "log_7_rates" beside "log_8_rates"; empty without a
+/// Returns a log by topic: "log_7" for "log_7_rates" beside "log_8_rates"; empty without a
 /// log.
 ///
 /// ```text
 /// 1  a topic begins at the first separator after which another name is the same;
 ///    the text before it is the log
-/// 2  several topics of a log confirm it
+/// 2  several topics confirm a log
 /// 3  a topic without a confirmed log belongs to the longest confirmed log that its name begins with
 /// ```
 pub(super) fn logs_of_topics(names: &[String]) -> Vec<String> {
@@ -75,7 +75,7 @@ pub(super) fn logs_of_topics(names: &[String]) -> Vec<String> {
     found
 }
 
-/// Returns the text before the shared ending of each name (step 1).
+/// Returns the text before each name's shared ending (step 1).
 fn logs_by_shared_endings(names: &[String]) -> Vec<String> {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     for name in names {
@@ -113,7 +113,7 @@ fn longest_log_of(name: &str, logs: &[&String]) -> String {
     longest.to_owned()
 }
 
-/// Returns the byte count of the common prefix of all names, up to and with its last separator:
+/// Returns the byte count of the names' common prefix, up to and with its last separator:
 /// "log_3_2024_" for "log_3_2024_q" and "log_3_2024_M".
 pub(super) fn common_prefix(names: &[String]) -> usize {
     let Some((first, rest)) = names.split_first() else {
@@ -136,7 +136,7 @@ pub(super) fn common_prefix(names: &[String]) -> usize {
     }
 }
 
-/// Returns the count of equal bytes at the beginning of two names.
+/// Returns how many bytes two names share at the beginning.
 fn common_bytes(first: &str, second: &str) -> usize {
     let pairs = first.bytes().zip(second.bytes());
     pairs.take_while(|(a, b)| a == b).count()

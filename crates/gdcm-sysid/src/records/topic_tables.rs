@@ -1,7 +1,7 @@
-//! Tables that are topics of one record: one file or struct per topic.
+//! Tables that are topics in one record: a file or struct per topic.
 //!
 //! A table with a column for every channel is a record. Tables that lack some channels may have all
-//! of them together: these are the topics of a log, each with separate stamps. The name of a table
+//! of them together: these are a log's topics, each with separate stamps. A table's name
 //! names its columns.
 
 use std::collections::BTreeMap;
@@ -15,17 +15,17 @@ use super::record_table::{RecordColumn, RecordSource, RecordTable, TopicClock, s
 use super::time_base::{TimeBase, median_step};
 use super::topic_names::{are_from_one_file, common_prefix, log_key, logs_of_topics, topic_names};
 
-/// Uninformative names of the only column beside the stamps of a topic.
+/// Uninformative names for a topic's only column beside its stamps.
 const PLAIN: [&str; 8] = [
     "value", "values", "data", "signal", "signals", "x", "y", "val",
 ];
 
 impl RecordTable {
-    /// Name of the record that the topics of a file or folder form together.
+    /// Name for the record that all topics in a file or folder form together.
     pub const TOPICS: &'static str = "its topics";
 
     /// Returns the record that topics form under this name: all of them as [`Self::TOPICS`], or
-    /// those of one of several logs as "its topics, log_7".
+    /// the topics in one log as "its topics, log_7".
     pub fn of_topics_called(tables: &[RecordTable], variable: &str) -> Option<RecordTable> {
         if variable == Self::TOPICS {
             return Some(join_topics(tables));
@@ -44,7 +44,7 @@ impl RecordTable {
     }
 }
 
-/// Combines the topics of one of several logs, side by side.
+/// Combines a log's topics side by side.
 fn join_topics_of_log(tables: &[RecordTable], log: &str) -> RecordTable {
     let mut joined = join_topics(tables);
     joined.name = log.to_owned();
@@ -52,7 +52,7 @@ fn join_topics_of_log(tables: &[RecordTable], log: &str) -> RecordTable {
     joined
 }
 
-/// Combines the topics of a record, side by side; tables without a time are left out and reported.
+/// Combines a record's topics side by side; tables without a time are left out and reported.
 fn join_topics(tables: &[RecordTable]) -> RecordTable {
     let source = common_source(tables);
     let mut joined = RecordTable {
@@ -89,7 +89,7 @@ fn join_topics(tables: &[RecordTable]) -> RecordTable {
     joined
 }
 
-/// Returns the file of the topics, or the folder of their files, as the source of their record.
+/// Returns the topics' file, or their folder, as their record's source.
 fn common_source(tables: &[RecordTable]) -> RecordSource {
     let mut source = RecordSource {
         variable: Some(RecordTable::TOPICS.to_owned()),
@@ -104,7 +104,7 @@ fn common_source(tables: &[RecordTable]) -> RecordSource {
     source
 }
 
-/// Returns the path of the topics' file, or of the folder of their files.
+/// Returns the path to the topics' file, or to their folder.
 fn common_file(tables: &[RecordTable]) -> &str {
     let Some(first) = tables.first() else {
         return "";
@@ -131,8 +131,8 @@ fn common_name(tables: &[RecordTable]) -> &str {
     if name.is_empty() { "topics" } else { name }
 }
 
-/// Combines tables that are topics of one record: in each file or folder, tables that lack a
-/// channel and have all channels together. If they are topics of several logs, so that channels
+/// Combines tables that are topics in one record: in each file or folder, tables that lack a
+/// channel and have all channels together. If they come from several logs, so that channels
 /// have several columns, each log is combined separately. Other tables are unchanged.
 pub fn with_topics_joined(
     tables: Vec<RecordTable>,
@@ -170,14 +170,14 @@ struct TopicJoiner<'r> {
     tables: &'r [RecordTable],
     channels: &'r RecordChannels,
     time: &'r TimeWish,
-    /// Whether each table is part of a joined record.
+    /// Whether each table is in a joined record.
     is_joined: Vec<bool>,
-    /// Joined records, at the index of their first topic.
+    /// Joined records, by their first topic's index.
     joined: BTreeMap<usize, RecordTable>,
 }
 
 impl TopicJoiner<'_> {
-    /// Returns the indices of tables that lack a channel, by file or folder; single tables are left
+    /// Returns the tables that lack a channel, by file or folder; single tables are left
     /// out.
     fn groups_of_topics(&self) -> Vec<Vec<usize>> {
         let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
@@ -206,7 +206,7 @@ impl TopicJoiner<'_> {
         })
     }
 
-    /// Joins a group to one record, or else each of its logs to a record.
+    /// Joins a group to one record, or else each log to a record.
     fn join_group(&mut self, group: &[usize]) {
         let topics = self.tables_at(group);
         if self.keep_if_complete(group, join_topics(&topics)) {
@@ -232,7 +232,7 @@ impl TopicJoiner<'_> {
         tables
     }
 
-    /// Keeps the record of a group if it has all channels; returns whether it has.
+    /// Keeps a group's record if it has all channels; returns whether it has.
     fn keep_if_complete(&mut self, group: &[usize], joined: RecordTable) -> bool {
         if joined.columns.is_empty() || self.lacks_channels(&joined) {
             return false;
@@ -245,7 +245,7 @@ impl TopicJoiner<'_> {
     }
 }
 
-/// Returns the seconds per unit of the stamps, by the name of their column: topics of one log share
+/// Returns the seconds per stamp unit, by column name: topics in one log share
 /// the unit, and only fast topics reveal it by their steps.
 fn seconds_by_name(tables: &[RecordTable]) -> BTreeMap<String, f64> {
     struct Fastest {
@@ -277,7 +277,7 @@ fn seconds_by_name(tables: &[RecordTable]) -> BTreeMap<String, f64> {
         .collect()
 }
 
-/// Returns the columns of a topic with its stamps; `None` without a source of sample times.
+/// Returns a topic's columns with its stamps; `None` without sample times.
 fn topic_columns(
     table: &RecordTable,
     name: &str,
@@ -309,7 +309,7 @@ fn topic_columns(
     Some(columns)
 }
 
-/// Returns the name of a topic's column: "acc.1" for "value_1", the topic itself for a single
+/// Returns the name for a topic's column: "acc.1" for "value_1", the topic itself for a single
 /// "value", else "acc.x".
 fn column_name(topic: &str, column: &str, is_single: bool) -> String {
     if let Some((stem, number)) = column.rsplit_once('_')

@@ -19,14 +19,14 @@ use gdcm_model::simulation::Signal;
 use gdcm_study::study::changed_models::AdoptedModels;
 use gdcm_study::study::channel_time_skew::ChannelTimeSkew;
 use gdcm_study::study::job::IdentificationRequest;
-use gdcm_sysid::identification::preparation::RecordUse;
-use gdcm_sysid::identification::topics::is_held;
 use gdcm_sysid::identification::{
     CautionNote, ChannelPreparation, Hold, Identification, IdentificationCaution,
     IdentificationError, Preparation,
 };
 use gdcm_sysid::records::time_base::median_step;
+use gdcm_sysid::records::topics::is_held;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
+use gdcm_sysid::spectra::preparation::RecordUse;
 
 use super::existing;
 use super::identify_arguments::{IdentifyArguments, has_channel, of_one_record, unknown};

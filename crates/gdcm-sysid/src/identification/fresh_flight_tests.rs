@@ -10,11 +10,12 @@ use gdcm_model::dataset::{Band, Dynamics, Pair, StateSpace};
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
+use gdcm_model::simulation::{FirstOrderHold, FlightRecord};
 
+use super::identify::identify;
 use super::real_flight_tests::{Flown, Generator, codes, known, options};
-use super::*;
-use crate::identification::identify::identify;
-use crate::identification::preparation::{RecordUse, prepare};
+use super::{Options, Preparation};
+use crate::spectra::preparation::{RecordUse, prepare};
 
 /// Records, and the options of their identification.
 struct Flights {
@@ -197,7 +198,7 @@ const TRAPS: [Trap; 11] = [
         code: "collinear-inputs",
         follows: &["not-identified", "not-swept"],
         flown: |seed| {
-            let mut random = super::real_flight_tests::Generator::new(seed);
+            let mut random = crate::identification::real_flight_tests::Generator::new(seed);
             let together = |record: FlightRecord| {
                 let first = record.inputs.column(0).into_owned();
                 let second = first.map(|u| u + 0.02 * random.normal());

@@ -12,23 +12,23 @@ use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::response::pole_estimate::PoleEstimate;
 use gdcm_model::simulation::{FlightRecord, Validation, ValidationSettings, validate};
 
-use super::blocks::BlockModel;
-use super::bundle::{ModelWithoutRecord, without_each_record};
-use super::cautions::IdentificationCaution;
-use super::diagnostics::Diagnostics;
-use super::feedback::{Feedback, FeedbackLevel, FeedbackRecords};
-use super::identification_error::IdentificationError;
 use super::model_selection::{Refinement, propose, refine};
-use super::normal_system::NormalSystem;
-use super::options::Options;
 use super::order::fast_unstable_pole;
-use super::preparation::RecordUse;
 use super::prepared_data::PreparedData;
-use super::record_contrast::{RecordContrast, RecordContrasts};
-use super::record_fits::{RecordFit, RecordFits};
-use super::response_estimate::ResponseEstimate;
-use super::subspace::StabilisationPoint;
-use super::uncertainty::{BandModels, ParameterCovariance};
+use crate::diagnostics::cautions::IdentificationCaution;
+use crate::diagnostics::feedback::{Feedback, FeedbackLevel, FeedbackRecords};
+use crate::diagnostics::model_doubts::Diagnostics;
+use crate::diagnostics::record_contrast::{RecordContrast, RecordContrasts};
+use crate::diagnostics::record_fits::{RecordFit, RecordFits};
+use crate::identification_error::IdentificationError;
+use crate::likelihood::blocks::BlockModel;
+use crate::likelihood::models_without_record::{ModelWithoutRecord, without_each_record};
+use crate::likelihood::normal_system::NormalSystem;
+use crate::likelihood::uncertainty::{BandModels, ParameterCovariance};
+use crate::options::Options;
+use crate::spectra::preparation::RecordUse;
+use crate::spectra::response_estimate::ResponseEstimate;
+use crate::subspace::ct_pbsid::StabilisationPoint;
 
 /// Method name with refinement, in models and at the beginning of their names (M14).
 const REFINED: &str = "CT-PBSID, refined";

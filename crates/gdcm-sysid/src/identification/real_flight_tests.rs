@@ -7,27 +7,30 @@ use serde_json::Value;
 use gdcm_model::dataset::channel::Pair;
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Shares, Unobserved};
+use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::response::median;
+use gdcm_model::simulation::{FlightRecord, Segment};
 
-use super::*;
-use crate::identification::blocks::BlockModel;
-use crate::identification::channel_quality::Clipping;
-use crate::identification::diagnostics::{Departure, Diagnostics, predict_points};
-use crate::identification::feedback::{Feedback, FeedbackRecords};
-use crate::identification::identify::identify;
-use crate::identification::known_answers_tests::{matrix, number, numbers, response_at};
-use crate::identification::local_polynomial::local_polynomial;
-use crate::identification::model_selection::{propose, refine};
-use crate::identification::preparation::prepare;
-use crate::identification::prepared_data::PreparedData;
-use crate::identification::record_contrast::RecordContrasts;
-use crate::identification::record_fault::RecordFault;
-use crate::identification::response_estimate::EstimatePoint;
-use crate::identification::scales::Scales;
-use crate::identification::uncertainty::{BandModels, ParameterCovariance};
+use super::identify::identify;
+use super::known_answers_tests::{matrix, number, numbers, response_at};
+use super::model_selection::{propose, refine};
+use super::prepared_data::PreparedData;
+use super::{Identification, IdentificationCaution, Options, Preparation, TRUSTED_COHERENCE};
+use crate::diagnostics::feedback::{Feedback, FeedbackRecords};
+use crate::diagnostics::model_doubts::{Departure, Diagnostics, predict_points};
+use crate::diagnostics::record_contrast::RecordContrasts;
+use crate::diagnostics::record_fault::RecordFault;
+use crate::likelihood::blocks::BlockModel;
+use crate::likelihood::uncertainty::{BandModels, ParameterCovariance};
+use crate::spectra::channel_quality::Clipping;
+use crate::spectra::local_polynomial::local_polynomial;
+use crate::spectra::preparation::prepare;
+use crate::spectra::response_estimate::EstimatePoint;
+use crate::spectra::scales::Scales;
+use crate::spectra::spectrum::spectra;
 
 /// Reads the file of known answers.
-pub(super) fn known() -> Value {
+pub(crate) fn known() -> Value {
     serde_json::from_str(include_str!(
         "../../../../tests/data/identification-real-known-answers.json"
     ))
@@ -35,10 +38,10 @@ pub(super) fn known() -> Value {
 }
 
 /// The random generator of the file.
-pub(super) struct Generator(u32);
+pub(crate) struct Generator(u32);
 
 impl Generator {
-    pub(super) fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(seed as u32)
     }
 
@@ -47,22 +50,22 @@ impl Generator {
         f64::from(self.0) / f64::from(u32::MAX).mul_add(1.0, 1.0)
     }
 
-    pub(super) fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }
 }
 
 /// One flight of the file.
 #[derive(Clone, Copy)]
-pub(super) struct Flown {
-    pub(super) seed: u64,
-    pub(super) seconds: f64,
-    pub(super) gust: f64,
-    pub(super) amp: f64,
-    pub(super) noise: f64,
-    pub(super) feedback: f64,
-    pub(super) remnant: f64,
-    pub(super) late: usize,
+pub(crate) struct Flown {
+    pub(crate) seed: u64,
+    pub(crate) seconds: f64,
+    pub(crate) gust: f64,
+    pub(crate) amp: f64,
+    pub(crate) noise: f64,
+    pub(crate) feedback: f64,
+    pub(crate) remnant: f64,
+    pub(crate) late: usize,
 }
 
 impl Flown {
@@ -80,7 +83,7 @@ impl Flown {
     }
 
     /// A sweep with a little remnant, seen through noise.
-    pub(super) fn calm(seed: u64, late: usize) -> Self {
+    pub(crate) fn calm(seed: u64, late: usize) -> Self {
         Self {
             seed,
             seconds: 60.0,
@@ -94,7 +97,7 @@ impl Flown {
     }
 
     /// Returns the record, and the sweep that drove it from outside.
-    pub(super) fn record(self, file: &Value) -> (FlightRecord, Vec<f64>) {
+    pub(crate) fn record(self, file: &Value) -> (FlightRecord, Vec<f64>) {
         let generator = &file["generator"];
         let f = matrix(&generator["F"]);
         let g = matrix(&generator["G"]);
@@ -143,7 +146,7 @@ impl Flown {
     }
 }
 
-pub(super) fn options() -> Options {
+pub(crate) fn options() -> Options {
     Options::new([1.0, 12.0], Preparation::of(&["LON"], &["Q"]))
 }
 
@@ -292,7 +295,7 @@ fn the_measured_response_of_a_short_record_is_that_of_independent_code() {
 }
 
 /// Returns the codes of the cautions.
-pub(super) fn codes(found: &Identification) -> Vec<&'static str> {
+pub(crate) fn codes(found: &Identification) -> Vec<&'static str> {
     found
         .cautions
         .iter()

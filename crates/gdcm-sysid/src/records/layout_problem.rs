@@ -3,7 +3,7 @@
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::units::{number, telling};
 
-use crate::identification::topics::TopicError;
+use super::topics::TopicError;
 
 /// Reasons why the chosen columns cannot be used as they are.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

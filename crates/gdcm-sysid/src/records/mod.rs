@@ -38,6 +38,7 @@ pub mod spectrogram;
 pub mod time_base;
 mod topic_names;
 pub mod topic_tables;
+pub mod topics;
 
 pub use column_use::ColumnUse;
 pub use laid_out_record::{LaidOutRecord, leave_out_copies};

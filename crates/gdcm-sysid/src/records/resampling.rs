@@ -10,7 +10,7 @@ use super::record_channels::{RecordChannels, ResamplingWish};
 use super::record_layout::{ChannelUse, RecordLayout};
 use super::record_table::{RecordColumn, RecordTable};
 use super::time_base::median_step;
-use crate::identification::topics::{CommonClock, Topic, TopicError, is_held};
+use super::topics::{CommonClock, Topic, TopicError, is_held};
 
 /// Fraction of a column's samples followed by a hole, above which the table counts as a join of
 /// several clocks.

@@ -8,8 +8,8 @@ use gdcm_model::executor::Sequential;
 use gdcm_model::response::median;
 use gdcm_model::simulation::Segment;
 
-use crate::identification::spectra;
-use crate::identification::spectrum::Spectrum;
+use crate::spectra::spectrum::Spectrum;
+use crate::spectra::spectrum::spectra;
 
 /// A channel's power over time and frequency.
 ///

@@ -4,11 +4,12 @@ use nalgebra::DMatrix;
 use proptest::prelude::*;
 
 use gdcm_model::executor::Sequential;
-use gdcm_sysid::identification::gaps::{Cause, Treatment};
-use gdcm_sysid::identification::preparation::{Prepared, prepare};
-use gdcm_sysid::identification::preparation_settings::PreparationError;
-use gdcm_sysid::identification::record_cautions::RecordCaution;
-use gdcm_sysid::identification::*;
+use gdcm_model::simulation::FlightRecord;
+use gdcm_sysid::identification::{Hold, Preparation};
+use gdcm_sysid::spectra::gaps::{Cause, Treatment};
+use gdcm_sysid::spectra::preparation::{Prepared, prepare};
+use gdcm_sysid::spectra::preparation_settings::PreparationError;
+use gdcm_sysid::spectra::record_cautions::RecordCaution;
 
 use super::common::{known, list, matrix, noise};
 use crate::made_up::tries;

@@ -13,8 +13,8 @@ use gdcm_model::dataset::{Pair, StateSpace};
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 use gdcm_model::simulation::FlightRecord;
+use gdcm_sysid::diagnostics::record_fault::{ContradictingRecord, RecordFault};
 use gdcm_sysid::identification::identify::identify;
-use gdcm_sysid::identification::record_fault::{ContradictingRecord, RecordFault};
 use gdcm_sysid::identification::{
     Identification, IdentificationCaution, IdentificationError, Options, Preparation,
 };

@@ -43,7 +43,26 @@ const CRATES: &[(&str, ModuleTable)] = &[
     ),
     (
         "gdcm-sysid",
-        &[("identification", &[]), ("records", &["identification"])],
+        &[
+            ("spectra", &[]),
+            ("records", &["spectra"]),
+            ("identification_error", &["spectra"]),
+            ("options", &["identification_error", "spectra"]),
+            ("subspace", &[]),
+            ("likelihood", &["spectra", "subspace"]),
+            ("diagnostics", &["spectra", "likelihood", "options"]),
+            (
+                "identification",
+                &[
+                    "spectra",
+                    "subspace",
+                    "likelihood",
+                    "diagnostics",
+                    "identification_error",
+                    "options",
+                ],
+            ),
+        ],
     ),
     ("gdcm-study", &[("study", &[])]),
     ("gdcm-plot", &[("figure", &[]), ("paper", &["figure"])]),

@@ -3,11 +3,11 @@
 use nalgebra::{Complex, DMatrix};
 
 use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::executor::Executor;
 use gdcm_model::simulation::FlightRecord;
 
 use super::cautions::IdentificationCaution;
 use super::record_fits::{RecordFit, RecordFits};
-use crate::identification::prepared_data::PreparedData;
 use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::refinement::Fit;
 use crate::options::Options;
@@ -35,9 +35,18 @@ const RELEVANT: f64 = 0.12;
 pub(crate) struct Diagnostics<'a> {
     pub(crate) records: &'a [FlightRecord],
     pub(crate) options: &'a Options,
-    /// The data that the model was fitted to.
-    pub(crate) data: &'a PreparedData<'a>,
+    pub(crate) data: MeasuredData<'a>,
     pub(crate) fit: &'a Fit,
+}
+
+/// The data that the model was fitted to.
+#[derive(Clone, Copy)]
+pub(crate) struct MeasuredData<'a> {
+    /// Spectral lines of the fitted records.
+    pub(crate) spectra: &'a [Spectrum],
+    /// The response without a model.
+    pub(crate) measured: &'a ResponseEstimate,
+    pub(crate) executor: &'a dyn Executor,
 }
 
 impl Diagnostics<'_> {
@@ -110,13 +119,13 @@ impl Diagnostics<'_> {
     /// Reports the responses that leave their measured points.
     pub(crate) fn departures(&self) -> Vec<IdentificationCaution> {
         let (outputs, inputs) = self.fit.model.d.shape();
-        let predicted = predict_points(&self.fit.model, self.data, self.options);
+        let predicted = predict_points(&self.fit.model, &self.data, self.options);
         let mut cautions = Vec::new();
         for input in 0..inputs {
             for output in 0..outputs {
                 let departure = Departure::measure(
                     &predicted,
-                    &self.data.measured,
+                    self.data.measured,
                     self.options.band,
                     (output, input),
                 );
@@ -146,7 +155,7 @@ fn place_of_greatest(values: &[f64]) -> usize {
 /// a peak within a window is flattened alike.
 pub(crate) fn predict_points(
     model: &BlockModel,
-    data: &PreparedData<'_>,
+    data: &MeasuredData<'_>,
     options: &Options,
 ) -> Vec<DMatrix<Complex<f64>>> {
     let omegas: Vec<f64> = data
@@ -161,7 +170,7 @@ pub(crate) fn predict_points(
             .iter()
             .map(|lines| predict_lines(model, lines))
             .collect();
-        if let Ok(seen) = local_polynomial(&predicted, &omegas, data.likelihood.executor) {
+        if let Ok(seen) = local_polynomial(&predicted, &omegas, data.executor) {
             return seen
                 .points
                 .into_iter()

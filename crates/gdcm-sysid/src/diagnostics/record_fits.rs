@@ -2,10 +2,9 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use crate::identification::prepared_data::PreparedData;
 use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::{Likelihood, SegmentCost};
-use crate::likelihood::uncertainty::ParameterCovariance;
+use crate::likelihood::covariance::ParameterCovariance;
 use crate::subspace::search_extent::parameters_of_order;
 
 /// How well the recommended model fits a record.
@@ -46,30 +45,31 @@ impl RecordFits {
     /// Computes a model's fits; `None` if a cost is not finite or nothing has degrees of
     /// freedom.
     pub(crate) fn new(
-        data: &PreparedData,
+        fitted: &Likelihood,
+        held_out_records: &Likelihood,
         model: &BlockModel,
         covariance: &ParameterCovariance,
     ) -> Option<Self> {
-        let parts = data.likelihood.parts(model)?;
-        let held_out_parts = data.held_out.parts(model)?;
-        let freedom = data.likelihood.freedom(model.order());
+        let parts = fitted.parts(model)?;
+        let held_out_parts = held_out_records.parts(model)?;
+        let freedom = fitted.freedom(model.order());
         let parameters = parameters_of_order(model.order(), model.b.ncols(), model.c.nrows());
         let spare = freedom.checked_sub(parameters)?;
         if spare == 0 {
             return None;
         }
         let correction = freedom as f64 / spare as f64;
-        let mut outputs = output_costs(&data.likelihood, model, &parts);
+        let mut outputs = output_costs(fitted, model, &parts);
         for cost in &mut outputs {
             *cost *= correction;
         }
-        let mut records = fits_of_records(&data.likelihood, model, &parts, false);
+        let mut records = fits_of_records(fitted, model, &parts, false);
         for fit in &mut records {
             fit.cost *= correction;
         }
         let cost = mean_cost(&records)?;
-        let held_out = fits_of_records(&data.held_out, model, &held_out_parts, true);
-        let moved = covariance.moved_cost(&data.held_out, model, &held_out_parts);
+        let held_out = fits_of_records(held_out_records, model, &held_out_parts, true);
+        let moved = covariance.moved_cost(held_out_records, model, &held_out_parts);
         let held_out_cost = held_out_cost(&held_out, moved);
         records.extend(held_out);
         records.sort_by_key(|fit| fit.record);

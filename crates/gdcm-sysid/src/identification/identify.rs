@@ -15,6 +15,7 @@ use gdcm_model::simulation::{FlightRecord, Validation, ValidationSettings, valid
 use super::model_selection::{Refinement, propose, refine};
 use super::order::fast_unstable_pole;
 use super::prepared_data::PreparedData;
+use crate::diagnostics::bands::BandModels;
 use crate::diagnostics::cautions::IdentificationCaution;
 use crate::diagnostics::feedback::{Feedback, FeedbackLevel, FeedbackRecords};
 use crate::diagnostics::model_doubts::Diagnostics;
@@ -22,13 +23,13 @@ use crate::diagnostics::record_contrast::{RecordContrast, RecordContrasts};
 use crate::diagnostics::record_fits::{RecordFit, RecordFits};
 use crate::identification_error::IdentificationError;
 use crate::likelihood::blocks::BlockModel;
+use crate::likelihood::covariance::ParameterCovariance;
 use crate::likelihood::models_without_record::{ModelWithoutRecord, without_each_record};
 use crate::likelihood::normal_system::NormalSystem;
-use crate::likelihood::uncertainty::{BandModels, ParameterCovariance};
 use crate::options::Options;
 use crate::spectra::preparation::RecordUse;
 use crate::spectra::response_estimate::ResponseEstimate;
-use crate::subspace::ct_pbsid::StabilisationPoint;
+use crate::subspace::stabilisation::StabilisationPoint;
 
 /// Method name with refinement, in models and at the beginning of their names (M14).
 const REFINED: &str = "CT-PBSID, refined";
@@ -135,8 +136,13 @@ pub fn identify(
     progress.next(0.88, "models without each record")?;
     let without = without_each_record(&refinement.likelihood, &refinement.fit, &systems);
     progress.next(0.93, "validation")?;
-    let fits = RecordFits::new(&data, &refinement.fit.model, &uncertainty.covariance)
-        .ok_or_else(|| data.no_model())?;
+    let fits = RecordFits::new(
+        &data.likelihood,
+        &data.held_out,
+        &refinement.fit.model,
+        &uncertainty.covariance,
+    )
+    .ok_or_else(|| data.no_model())?;
     let contrasts = assessment.contrasts()?;
     let mut cautions = assessment.cautions(&uncertainty, &fits, contrasts.as_ref());
     let validation = assessment.validate(&mut cautions)?;
@@ -239,10 +245,8 @@ impl Assessment<'_> {
             neighbours: &search.neighbours(),
             feedback: feedback.as_ref(),
         };
-        let mut bands = logged
-            .as_ref()
-            .unwrap_or(&covariance)
-            .bands(&models, &omegas, executor)
+        let mut bands = models
+            .bands(logged.as_ref().unwrap_or(&covariance), &omegas, executor)
             .ok_or_else(|| self.data.no_model())?;
         if !self.is_direct() {
             bands = self
@@ -307,7 +311,7 @@ impl Assessment<'_> {
         let diagnostics = Diagnostics {
             records: self.records,
             options: self.options,
-            data: self.data,
+            data: self.data.measured_data(),
             fit,
         };
         let mut cautions = self.data.cautions.clone();

@@ -12,7 +12,7 @@ use crate::identification_error::IdentificationError;
 use crate::likelihood::cost::Likelihood;
 use crate::likelihood::refinement::{Fit, LEAST_GAIN};
 use crate::options::Options;
-use crate::subspace::ct_pbsid::{StabilisationPoint, stabilisation};
+use crate::subspace::stabilisation::{StabilisationPoint, stabilisation};
 
 /// Most further steps for the chosen order, after the comparison.
 const FURTHER_STEPS: usize = 15;

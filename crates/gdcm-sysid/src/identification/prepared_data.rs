@@ -11,7 +11,9 @@ use gdcm_model::progress::Shares;
 use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::simulation::{FlightRecord, Segment, centred};
 
+use super::candidates::SubspaceSettings;
 use crate::diagnostics::cautions::IdentificationCaution;
+use crate::diagnostics::model_doubts::MeasuredData;
 use crate::identification_error::IdentificationError;
 use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::{Likelihood, SpectralLines};
@@ -25,7 +27,6 @@ use crate::spectra::record_cautions::RecordCaution;
 use crate::spectra::response_estimate::ResponseEstimate;
 use crate::spectra::scales::{Scales, ScalingError};
 use crate::spectra::spectrum::{LineRange, Spectrum};
-use crate::subspace::ct_pbsid::SubspaceSettings;
 use crate::subspace::search_extent::{Extent, FIGURES_AN_UNKNOWN, parameters_of_order};
 
 /// Frequencies in the measured response.
@@ -195,6 +196,15 @@ impl<'a> PreparedData<'a> {
             scaled.d.row_mut(output).scale_mut(*scale);
         }
         scaled.state_space()
+    }
+
+    /// Returns the data to examine a model with.
+    pub(crate) fn measured_data(&self) -> MeasuredData<'_> {
+        MeasuredData {
+            spectra: &self.spectra,
+            measured: &self.measured,
+            executor: self.likelihood.executor,
+        }
     }
 
     /// The error that no model was found.

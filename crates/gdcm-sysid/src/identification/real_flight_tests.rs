@@ -16,12 +16,13 @@ use super::known_answers_tests::{matrix, number, numbers, response_at};
 use super::model_selection::{propose, refine};
 use super::prepared_data::PreparedData;
 use super::{Identification, IdentificationCaution, Options, Preparation, TRUSTED_COHERENCE};
+use crate::diagnostics::bands::BandModels;
 use crate::diagnostics::feedback::{Feedback, FeedbackRecords};
 use crate::diagnostics::model_doubts::{Departure, Diagnostics, predict_points};
 use crate::diagnostics::record_contrast::RecordContrasts;
 use crate::diagnostics::record_fault::RecordFault;
 use crate::likelihood::blocks::BlockModel;
-use crate::likelihood::uncertainty::{BandModels, ParameterCovariance};
+use crate::likelihood::covariance::ParameterCovariance;
 use crate::spectra::channel_quality::Clipping;
 use crate::spectra::local_polynomial::local_polynomial;
 use crate::spectra::preparation::prepare;
@@ -322,7 +323,7 @@ fn a_model_of_too_low_an_order_leaves_its_points() {
         .unwrap();
         let proposal = propose(&data, &options, &progress).unwrap();
         let refinement = refine(&data, &proposal, &progress).unwrap();
-        let predicted = predict_points(&refinement.fit.model, &data, &options);
+        let predicted = predict_points(&refinement.fit.model, &data.measured_data(), &options);
         Departure::measure(&predicted, &data.measured, options.band, (0, 0))
     };
     let good = with_orders(None);
@@ -416,7 +417,7 @@ fn bands_are_widened_from_a_fed_back_share_of_0_04_on() {
                 neighbours: &[],
                 feedback,
             };
-            covariance.bands(&models, &omegas, &Sequential).unwrap()
+            models.bands(&covariance, &omegas, &Sequential).unwrap()
         };
         let plain = bands(None);
         let widened = bands(Some(&feedback));
@@ -483,7 +484,7 @@ fn the_late_record_is_named_with_its_delay() {
         let diagnostics = Diagnostics {
             records: &records,
             options: &options(),
-            data: &data,
+            data: data.measured_data(),
             fit,
         };
         let named = match contrasts.caution(false, &diagnostics) {

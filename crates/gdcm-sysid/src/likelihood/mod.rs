@@ -6,14 +6,14 @@
 //! | cost over the spectral lines | `cost`, [`noise_covariance`] |
 //! | normal equations | `normal_system`, `gram_matrix` |
 //! | Levenberg-Marquardt | `refinement`, `models_without_record` |
-//! | covariance and error bars | [`uncertainty`] |
+//! | covariance of parameters and poles | `covariance` |
 
 pub(crate) mod blocks;
 pub(crate) mod cost;
+pub(crate) mod covariance;
 pub(crate) mod gram_matrix;
 mod mode_removal;
 pub(crate) mod models_without_record;
 pub mod noise_covariance;
 pub(crate) mod normal_system;
 pub(crate) mod refinement;
-pub mod uncertainty;

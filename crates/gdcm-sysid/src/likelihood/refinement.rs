@@ -10,12 +10,11 @@
 //! D. W. Marquardt, "An algorithm for least-squares estimation of nonlinear parameters", SIAM J.
 //! Appl. Math. 11, 1963. lambda also controls the blocks' free scales.
 
-use gdcm_model::progress::Shares;
+use gdcm_model::progress::{Cancelled, Shares};
 
 use super::blocks::BlockModel;
 use super::cost::{Likelihood, SegmentCost};
 use super::normal_system::{NormalSystem, normal_systems};
-use crate::identification_error::IdentificationError;
 use crate::subspace::search_extent::parameters_of_order;
 
 /// Relative gain below which the refinement ends, unless large models' orders are compared.
@@ -66,7 +65,7 @@ impl Fit {
         count: usize,
         least_gain: f64,
         progress: &Shares,
-    ) -> Result<Self, IdentificationError> {
+    ) -> Result<Self, Cancelled> {
         for step in 1..=count {
             if self.gain < least_gain {
                 break;

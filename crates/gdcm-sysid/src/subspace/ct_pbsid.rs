@@ -12,37 +12,12 @@
 //! A. Chiuso, "The role of vector autoregressive modeling in predictor-based subspace
 //! identification", Automatica 43, 2007.
 
-use std::collections::BTreeMap;
-
-use nalgebra::{Complex, DMatrix, DMatrixView};
+use nalgebra::{DMatrix, DMatrixView};
 
 use gdcm_model::dataset::StateSpace;
-use gdcm_model::executor::{Executor, each};
-use gdcm_model::progress::Shares;
-use gdcm_model::response::eigenvalues::poles;
-use gdcm_model::simulation::Segment;
 
-use super::fast_modes::without_fast_modes;
-use super::laguerre::{Projections, continuous};
-use super::search_extent::SPACING;
+use super::laguerre::continuous;
 use super::triangular_factor::{TriangularFactor, least_squares, ridge_solution};
-use crate::identification_error::IdentificationError;
-use crate::likelihood::blocks::BlockModel;
-use crate::likelihood::cost::Likelihood;
-use crate::likelihood::refinement::Fit;
-
-/// Highest order at which poles and past windows are compared.
-const RANKING_ORDER: usize = 18;
-/// Poles and past windows that propose models for all orders.
-const KEPT: usize = 2;
-/// Modes beyond this many times the upper band end are images of z near -1.
-const FASTEST: f64 = 8.0;
-/// Share of the whole work that the candidates take.
-const SHARE: f64 = 0.2;
-/// Ridge of the predictor over unit columns.
-const RIDGE: f64 = 1e-8;
-/// Relative distance up to which a pole is stable between orders.
-const STABLE: f64 = 0.05;
 
 /// Dimensions for a data matrix and its map to the future.
 #[derive(Clone, Copy, Debug)]
@@ -171,242 +146,15 @@ fn side_by_side(parts: &[DMatrixView<'_, f64>]) -> DMatrix<f64> {
     DMatrix::from_fn(rows, columns.len(), |row, column| columns[column][row])
 }
 
-/// CT-PBSID settings.
-#[derive(Clone, Debug)]
-pub(crate) struct SubspaceSettings {
-    /// Upper band end \[rad/s\].
-    pub(crate) highest: f64,
-    /// Laguerre poles \[rad/s\].
-    pub(crate) poles: Vec<f64>,
-    /// Past windows.
-    pub(crate) pasts: Vec<usize>,
-    /// Ascending.
-    pub(crate) orders: Vec<usize>,
-    /// Most block rows in the map to the future.
-    pub(crate) longest_future: usize,
-}
-
-/// The states that a Laguerre pole and a past window propose.
-#[derive(Clone, Debug)]
-pub(crate) struct Candidate {
-    /// Laguerre pole \[rad/s\].
-    pub(crate) pole: f64,
-    /// Past window.
-    pub(crate) past: usize,
-    /// Cost at the compared order.
-    cost: f64,
-    subspace: Subspace,
-}
-
-/// The poles of an order's model.
-pub(crate) struct PolesOfOrder {
-    pub(crate) order: usize,
-    /// \[rad/s\].
-    pub(crate) poles: Vec<Complex<f64>>,
-}
-
-impl SubspaceSettings {
-    /// Returns the two cheapest poles and past windows, the cheaper first.
-    ///
-    /// ```text
-    /// 1  R for each Laguerre pole a
-    /// 2  for each a and past window p: the model of order 18, its cost
-    /// 3  the two cheapest (a, p)
-    /// ```
-    pub(crate) fn candidates(
-        &self,
-        segments: &[Segment],
-        likelihood: &Likelihood,
-        progress: &Shares,
-    ) -> Result<Vec<Candidate>, IdentificationError> {
-        let Some(ranking) = Ranking::new(self, segments, likelihood, progress) else {
-            return Ok(Vec::new());
-        };
-        let numbers = 0..self.poles.len();
-        let mut candidates = Vec::new();
-        for of_pole in each(likelihood.executor, numbers, |k| ranking.rank_pole(k)) {
-            candidates.extend(of_pole?);
-        }
-        candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        candidates.truncate(KEPT);
-        Ok(candidates)
-    }
-
-    /// Returns each order's cheapest model from `candidates`, with its cost.
-    pub(crate) fn starts(
-        &self,
-        candidates: &[Candidate],
-        likelihood: &Likelihood,
-    ) -> BTreeMap<usize, Fit> {
-        let cheapest = each(likelihood.executor, &self.orders, |&order| {
-            candidates
-                .iter()
-                .filter_map(|candidate| self.block_model(&candidate.subspace, order))
-                .filter_map(|model| Fit::start(likelihood, model))
-                .min_by(|a, b| a.cost.total_cmp(&b.cost))
-        });
-        let mut starts = BTreeMap::new();
-        for (order, fit) in self.orders.iter().zip(cheapest) {
-            if let Some(fit) = fit {
-                starts.insert(*order, fit);
-            }
-        }
-        starts
-    }
-
-    /// Returns the poles that a candidate proposes, for all orders.
-    pub(crate) fn poles_by_order(
-        &self,
-        candidate: &Candidate,
-        executor: &dyn Executor,
-    ) -> Vec<PolesOfOrder> {
-        each(executor, &self.orders, |&order| {
-            let model = self.slow_model(&candidate.subspace, order)?;
-            let poles = poles(&model)?;
-            Some(PolesOfOrder { order, poles })
-        })
-        .into_iter()
-        .flatten()
-        .collect()
-    }
-
-    /// Returns an order's model without modes far above the band.
-    fn slow_model(&self, subspace: &Subspace, order: usize) -> Option<StateSpace> {
-        without_fast_modes(&subspace.model(order)?, FASTEST * self.highest)
-    }
-
-    /// Returns the same in blocks; `None` if all its modes are far above the band.
-    fn block_model(&self, subspace: &Subspace, order: usize) -> Option<BlockModel> {
-        BlockModel::from_state_space(&self.slow_model(subspace, order)?)
-    }
-}
-
-/// Compares Laguerre poles and past windows.
-struct Ranking<'r> {
-    settings: &'r SubspaceSettings,
-    segments: &'r [Segment],
-    likelihood: &'r Likelihood<'r>,
-    progress: &'r Shares<'r>,
-    inputs: usize,
-    outputs: usize,
-    longest_past: usize,
-    /// Order at which models are compared.
-    order: usize,
-    /// Share of the whole work that is reported for a step.
-    share: f64,
-}
-
-impl<'r> Ranking<'r> {
-    /// Chooses an order for which the shortest past window has states; `None` without orders, past
-    /// windows or segments.
-    fn new(
-        settings: &'r SubspaceSettings,
-        segments: &'r [Segment],
-        likelihood: &'r Likelihood<'r>,
-        progress: &'r Shares<'r>,
-    ) -> Option<Self> {
-        let segment = segments.first()?;
-        let outputs = segment.outputs.ncols();
-        let future = settings.pasts.iter().min()?.min(&settings.longest_future);
-        let steps = settings.poles.len() * (settings.pasts.len() + 1);
-        Some(Self {
-            settings,
-            segments,
-            likelihood,
-            progress,
-            inputs: segment.inputs.ncols(),
-            outputs,
-            longest_past: *settings.pasts.iter().max()?,
-            order: RANKING_ORDER
-                .min(*settings.orders.last()?)
-                .min(future * outputs),
-            share: SHARE / steps as f64,
-        })
-    }
-
-    /// Computes a pole's candidates, by its number.
-    fn rank_pole(&self, number: usize) -> Result<Vec<Candidate>, IdentificationError> {
-        let executor = self.likelihood.executor;
-        let poles = &self.settings.poles;
-        let step = format!("pole {} of {}", number + 1, poles.len());
-        self.progress
-            .advance(self.share, &format!("{step}, projections"))?;
-        let projections = Projections {
-            pole: poles[number],
-            past: self.longest_past,
-            spacing_s: SPACING / self.settings.highest,
-        };
-        let factor = projections.factor(self.segments, executor);
-        let mut candidates = Vec::new();
-        let of_pasts = each(executor, &self.settings.pasts, |&past| {
-            self.progress
-                .advance(self.share, &format!("{step}, past {past}"))?;
-            Ok::<_, IdentificationError>(self.candidate(&factor, poles[number], past))
-        });
-        for candidate in of_pasts {
-            candidates.extend(candidate?);
-        }
-        Ok(candidates)
-    }
-
-    /// Computes the candidate for a pole and a past window; `None` if it proposes no model.
-    fn candidate(&self, factor: &TriangularFactor, pole: f64, past: usize) -> Option<Candidate> {
-        let shape = SubspaceShape {
-            inputs: self.inputs,
-            outputs: self.outputs,
-            past,
-            longest_future: self.settings.longest_future,
-        };
-        let subspace = Subspace::new(factor, pole, shape, RIDGE)?;
-        let model = self.settings.block_model(&subspace, self.order)?;
-        let cost = self.likelihood.cost(&model)?;
-        Some(Candidate {
-            pole,
-            past,
-            cost,
-            subspace,
-        })
-    }
-}
-
-/// An unrefined model's pole, for the stabilisation diagram.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StabilisationPoint {
-    /// Model order.
-    pub order: usize,
-    /// Pole \[rad/s\] with a non-negative imaginary part: the upper pole in a pair.
-    pub pole: Complex<f64>,
-    /// Whether the model with two states less has a pole within 5 %, relative to its modulus.
-    pub stable: bool,
-}
-
-/// Finds the poles that stay in place while the order rises; `orders` are ascending.
-pub(crate) fn stabilisation(orders: &[PolesOfOrder]) -> Vec<StabilisationPoint> {
-    let mut points = Vec::new();
-    for own in orders {
-        let before = orders
-            .iter()
-            .find(|other| other.order + 2 == own.order)
-            .map_or(&[][..], |other| other.poles.as_slice());
-        for &pole in own.poles.iter().filter(|pole| pole.im >= 0.0) {
-            points.push(StabilisationPoint {
-                order: own.order,
-                pole,
-                stable: before
-                    .iter()
-                    .any(|other| (other - pole).norm() < STABLE * pole.norm()),
-            });
-        }
-    }
-    points
-}
-
 #[cfg(test)]
 mod tests {
+    use gdcm_model::simulation::Segment;
+
     use super::*;
     use crate::identification::known_answers_tests::{
         answers, matrix, number, numbers, response, response_at,
     };
+    use crate::subspace::laguerre::Projections;
 
     #[test]
     fn a_system_without_noise_comes_back() {
@@ -448,38 +196,5 @@ mod tests {
         for (omega, expected) in numbers(&known["w"]).into_iter().zip(response(&known["H"])) {
             assert!((response_at(&model, omega) - expected).camax() < 1e-6);
         }
-    }
-
-    #[test]
-    fn a_pole_is_stable_when_the_order_before_has_it() {
-        let orders = [
-            PolesOfOrder {
-                order: 2,
-                poles: vec![Complex::new(-1.0, 2.0), Complex::new(-1.0, -2.0)],
-            },
-            PolesOfOrder {
-                order: 4,
-                poles: vec![
-                    Complex::new(-1.0, 2.05),
-                    Complex::new(-1.0, -2.05),
-                    Complex::new(-3.0, 0.0),
-                    Complex::new(-8.0, 0.0),
-                ],
-            },
-        ];
-        let diagram = stabilisation(&orders);
-        let stable: Vec<_> = diagram
-            .iter()
-            .map(|point| (point.order, point.pole.re, point.stable))
-            .collect();
-        assert_eq!(
-            stable,
-            [
-                (2, -1.0, false),
-                (4, -1.0, true),
-                (4, -3.0, false),
-                (4, -8.0, false)
-            ]
-        );
     }
 }

@@ -52,7 +52,7 @@ fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() 
                 .chain(record.inputs.iter())
                 .all(|sample| sample.is_finite())
         );
-        let guess = RecordGuess::of_table(table, patterns);
+        let guess = RecordGuess::from_table(table, patterns);
         assert_eq!(guess.held_out, table.name.contains("validation"));
         sweeps[guess.condition.unwrap() as usize] += usize::from(guess.kind == RecordKind::Sweep);
     }

@@ -44,7 +44,7 @@ pub enum IdentificationError {
     /// Fewer real values than a first-order model needs.
     #[error(
         "the lines of the records in the band hold {figures} real values, and {needed} are needed, 5 for each of the {unknowns} \
-         unknowns of a model of order 1: log longer or more records, widen the band, or leave out channels"
+         unknowns in a first-order model: log longer or more records, widen the band, or leave out channels"
     )]
     TooFewFigures {
         /// Real values in the lines.
@@ -77,7 +77,7 @@ pub enum IdentificationError {
          and Laguerre poles greater than 0"
     )]
     Settings,
-    #[error("every input is given as a reference: at least one input of the model has to be left")]
+    #[error("every input is given as a reference: the model needs at least one input")]
     OnlyReferences,
     #[error("record {} is to be held out, but there are only {records}", record + 1)]
     HeldOutMissing {
@@ -87,14 +87,14 @@ pub enum IdentificationError {
         records: usize,
     },
     /// All records are held out or unusable.
-    #[error("no record is left to fit a model to: hold out fewer")]
+    #[error("no record remains to fit a model to: hold out fewer")]
     NothingToFit,
     /// Inputs that copy each other.
-    #[error("{} move as one in every record: leave out all but one, or move them independently", names(.0))]
+    #[error("{} move together in every record: leave out all but one, or move them independently", names(.0))]
     InputsDepend(Vec<Signal>),
     /// The covariance of the noise of the outputs is singular.
     #[error(
-        "the outputs depend on each other so closely that their noise cannot be weighed: leave out the copies"
+        "the outputs depend on each other so closely that their noise covariance is singular: leave out the copies"
     )]
     OutputsDepend,
     #[error(

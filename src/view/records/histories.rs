@@ -291,7 +291,7 @@ fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>) {
     let source: Source = Arc::clone(flight) as _;
     let found = kept(ui, "spectrogram", &[source], key, || {
         let samples: Vec<f64> = flight.inputs.column(index).iter().copied().collect();
-        let found = Spectrogram::of(&flight.time_s, &samples, highest)?;
+        let found = Spectrogram::new(&flight.time_s, &samples, highest)?;
         let picture = picture_of(&found, palette);
         Some((
             ui.ctx()

@@ -439,8 +439,9 @@ pub fn example_records(condition: i64) -> Result<Vec<RecordTable>, FileError> {
     }
     let patterns = standard_patterns();
     let found = records_of_bytes(ARCHIVE, NAME, &ReadingBudget::default())?;
-    let is_of =
-        |table: &RecordTable| RecordGuess::of(&table.name, patterns).condition == Some(condition);
+    let is_of = |table: &RecordTable| {
+        RecordGuess::from_name(&table.name, patterns).condition == Some(condition)
+    };
     Ok(found.tables.into_iter().filter(is_of).collect())
 }
 

@@ -22,8 +22,8 @@ pub enum IdentificationCaution {
     Records(#[from] RecordCaution),
     /// The records are shorter than they should be for the lower band end.
     #[error(
-        "the longest record lasts {longest_s:.0} s, {periods:.1} periods of {lowest:.2} rad/s: {better_s:.0} s would be better, the \
-         lower end of the band is known less well"
+        "the longest record lasts {longest_s:.0} s, {periods:.1} periods at {lowest:.2} rad/s: the models are less certain at the \
+         lower end of the band; {better_s:.0} s would be better"
     )]
     Short {
         longest_s: f64,
@@ -76,8 +76,8 @@ pub enum IdentificationCaution {
     },
     /// The overall residual is larger than the noise.
     #[error(
-        "the model leaves {cost:.1} times as much as the noise explains, most of it in {record} and in {signal}: non-linear, wrongly \
-                 aligned in time, or a missing input"
+        "the residual is {cost:.1} times the noise, largest in {record} and in {signal}: a non-linear response, wrong time \
+         alignment, or a missing input"
     )]
     Inadequate {
         /// Cost per degree of freedom; 1 is adequate.
@@ -89,8 +89,8 @@ pub enum IdentificationCaution {
     },
     /// A record's residual is larger than the noise.
     #[error(
-        "{name} is unlike the others: the model leaves {cost:.1} times as much as the noise explains. Another trim, a large amplitude or \
-                 a gust: it can be left out"
+        "{name} is unlike the others: its residual is {cost:.1} times the noise. Possible causes: another trim, a large amplitude, \
+         a gust. It can be left out"
     )]
     UnlikeRecord {
         /// Record number, counted from 0.
@@ -118,8 +118,8 @@ pub enum IdentificationCaution {
     },
     /// The model departs from the measured points.
     #[error(
-        "the model leaves the measured points of {output}/{input} between {:.1} and {:.1} rad/s: trust the points there, and try another \
-         order or band",
+        "the model departs from the measured points of {output}/{input} between {:.1} and {:.1} rad/s: trust the points there, and \
+         try another order or band",
         band[0],
         band[1]
     )]
@@ -133,8 +133,7 @@ pub enum IdentificationCaution {
     },
     /// The criterion still falls at the highest order tried.
     #[error(
-        "a higher order than {order} would fit still better: the band holds more than that many states. Narrow the band, \
-                 say to {:.1} rad/s",
+        "an order above {order} would fit better: the band holds more states. Narrow the band, for example to {:.1} rad/s",
         narrower[1]
     )]
     OrderLimit {
@@ -145,8 +144,9 @@ pub enum IdentificationCaution {
     },
     /// The model does not predict the held-out records.
     #[error(
-        "the held-out records are not predicted: the residual is {normalised:.1} times as large as the noise explains, with the model free to move \
-         within its uncertainty ({raw:.1} as it is). The aircraft was flown differently, or the records do not show enough"
+        "the held-out records are not predicted: the residual is {normalised:.1} times the noise with the model free to move \
+         within its uncertainty, and {raw:.1} times without. The aircraft was flown differently, or the records contain too little \
+         excitation"
     )]
     HeldOut {
         /// Names of the held-out records.
@@ -158,7 +158,7 @@ pub enum IdentificationCaution {
     },
     /// Records were weighed by their noise; the greatest over the least cost per degree of freedom
     /// before.
-    #[error("the noise of the records differs (by {0:.1}): they were weighed accordingly")]
+    #[error("the records differ in noise by a factor of {0:.1}: they were weighed accordingly")]
     Reweighed(f64),
     /// The held-out records cannot be compared with the model in time.
     #[error("the model was not compared with the held-out records in time: {0}")]
@@ -181,7 +181,7 @@ pub enum IdentificationCaution {
 }
 
 impl IdentificationCaution {
-    /// Whether some inputs' effects cannot be told apart.
+    /// Whether some inputs' effects cannot be separated.
     pub(crate) fn is_of_collinear_inputs(&self) -> bool {
         matches!(
             self,
@@ -338,7 +338,7 @@ fn contradiction_text(records: &[ContradictingRecord], contrast: f64) -> String 
         [record] => {
             let name = &record.name;
             let fault = match &record.fault {
-                Some(fault) => format!(" It seems that there {fault}."),
+                Some(fault) => format!(" Likely cause: {fault}."),
                 None => String::new(),
             };
             format!(
@@ -353,7 +353,7 @@ fn contradiction_text(records: &[ContradictingRecord], contrast: f64) -> String 
             );
             for record in records {
                 if let Some(fault) = &record.fault {
-                    text += &format!(" If {} is wrong, it seems that there {fault}.", record.name);
+                    text += &format!(" Likely cause in {}: {fault}.", record.name);
                 }
             }
             text
@@ -372,7 +372,7 @@ fn feedback_text(level: FeedbackLevel, share: f64) -> String {
              aircraft, however well the model fits. {remedy}"
         ),
         FeedbackLevel::Some | FeedbackLevel::None => format!(
-            "about {percent:.0} % of the measured response is gusts and noise fed back into the inputs: the models are off by some tenths \
+            "about {percent:.0} % of the measured response is gusts and noise fed back into the inputs: the models are off by a few tenths \
              of a dB. {remedy}"
         ),
     }

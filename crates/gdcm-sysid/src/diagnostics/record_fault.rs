@@ -77,9 +77,9 @@ impl fmt::Display for RecordFault {
                 write!(f, "{signal} is logged {}", delay_text(*delay_s))
             }
             Self::Gain(signal, factor) if *factor < 0.0 => {
-                write!(f, "{signal} has the other sign (times {factor:.2})")
+                write!(f, "{signal} has the opposite sign (factor {factor:.2})")
             }
-            Self::Gain(signal, factor) => write!(f, "{signal} is to be multiplied by {factor:.2}"),
+            Self::Gain(signal, factor) => write!(f, "{signal} needs a factor of {factor:.2}"),
         }
     }
 }

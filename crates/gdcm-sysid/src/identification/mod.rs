@@ -5,8 +5,9 @@
 //! | records to spectra and noise (M14.1, M14.2) | `prepared_data`, [`spectra`](crate::spectra) |
 //! | models of all orders (M14.3) | `candidates`, [`subspace`](crate::subspace) |
 //! | choice of the order (M14.13) | `model_selection`, `order`, [`likelihood`](crate::likelihood) |
-//! | uncertainty and doubts (M14.5, M14.10) | [`identify`], [`diagnostics`](crate::diagnostics) |
+//! | uncertainty and doubts (M14.5, M14.10) | `assessment`, [`diagnostics`](crate::diagnostics) |
 
+mod assessment;
 pub(crate) mod candidates;
 #[cfg(test)]
 mod fresh_flight_tests;

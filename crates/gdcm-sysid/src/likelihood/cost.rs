@@ -3,9 +3,8 @@
 //! ```text
 //! J = sum_r sum_k | W_k (Y_r - G U_r - C (j omega - A)^-1 tau_r - c1_r/(j omega) - c0_r) |^2
 //!
-//! 1  once a record: orthonormal bases for the columns W (real parts) and W/omega (imaginary
-//! parts),
-//!    which eliminate c0 and c1
+//! 1  once a record: orthonormal bases for the columns W (real parts) and W/omega
+//!    (imaginary parts), which eliminate c0 and c1
 //! 2  T = W C (j omega - A)^-1, e0 = W (Y - G U), both less their projections on these bases
 //! 3  tau = argmin |e0 - T tau|^2 from the scaled columns' Gram matrix,
 //!    eigenvalues below 1e-12 times the largest dropped

@@ -74,7 +74,7 @@ impl LaidOutRecord {
             problems,
             cautions,
         } = RecordLayout::proposed(&table, channels, time);
-        let guess = RecordGuess::of_table(&table, standard_patterns());
+        let guess = RecordGuess::from_table(&table, standard_patterns());
         let flight = layout.flight_record(&table, channels).ok().map(Arc::new);
         let record = Self {
             table: Arc::new(table),

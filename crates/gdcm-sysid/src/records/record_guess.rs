@@ -43,15 +43,15 @@ const VALIDATION_WORDS: [&str; 4] = ["val", "valid", "check", "verif"];
 
 impl RecordGuess {
     /// Reads the names of a record, its file, and its variable or file in an archive.
-    pub fn of_table(table: &RecordTable, patterns: &[NamePattern]) -> Self {
+    pub fn from_table(table: &RecordTable, patterns: &[NamePattern]) -> Self {
         let mut names = vec![table.source.file.as_str()];
         names.extend(table.source.variable.as_deref());
         names.push(&table.name);
-        Self::of(&names.join("/"), patterns)
+        Self::from_name(&names.join("/"), patterns)
     }
 
     /// Reads a name such as "c03_045kt/sweep_LON_1.csv" by these patterns.
-    pub fn of(name: &str, patterns: &[NamePattern]) -> Self {
+    pub fn from_name(name: &str, patterns: &[NamePattern]) -> Self {
         // "3-2-1-1" and "hold_out" become "3211" and "holdout".
         let joined = folded_name(name);
         let mut row = Row::default();
@@ -133,7 +133,7 @@ mod tests {
             ("values.csv", guess(Other, false, None, None)),
         ] {
             assert_eq!(
-                RecordGuess::of(name, standard_patterns()),
+                RecordGuess::from_name(name, standard_patterns()),
                 expected,
                 "{name}"
             );

@@ -53,7 +53,7 @@ impl Spectrogram {
     /// Computes the spectrogram up to `highest` \[rad/s\]; `None` if the
     /// record is shorter than a window, or no frequency is resolved by a window.
     #[must_use]
-    pub fn of(time_s: &[f64], samples: &[f64], highest: f64) -> Option<Self> {
+    pub fn new(time_s: &[f64], samples: &[f64], highest: f64) -> Option<Self> {
         let windows = Windows::new(time_s, samples.len())?;
         let rows = FrequencyRows::new(&windows, highest)?;
         let segments: Vec<Segment> = windows
@@ -231,7 +231,7 @@ mod tests {
             .iter()
             .map(|t| 50.0 + 5.0 * (2.0 * t + 0.05 * t * t).sin())
             .collect();
-        let found = Spectrogram::of(&time_s, &samples, 20.0).unwrap();
+        let found = Spectrogram::new(&time_s, &samples, 20.0).unwrap();
         let count = found.levels.len();
         let ratio = (found.omega[1] / found.omega[0]).powf(1.0 / (Spectrogram::ROWS - 1) as f64);
         for (place, levels) in found.levels.iter().enumerate() {
@@ -264,19 +264,19 @@ mod tests {
     #[test]
     fn short_coarse_and_empty_records_have_no_spectrogram() {
         let short = times(100, 0.02);
-        assert_eq!(Spectrogram::of(&short, &[1.0; 100], 12.0), None, "2 s");
+        assert_eq!(Spectrogram::new(&short, &[1.0; 100], 12.0), None, "2 s");
         let coarse = times(100, 5.0);
         assert_eq!(
-            Spectrogram::of(&coarse, &[1.0; 100], 12.0),
+            Spectrogram::new(&coarse, &[1.0; 100], 12.0),
             None,
             "too few samples a window"
         );
-        assert_eq!(Spectrogram::of(&[], &[], 12.0), None);
+        assert_eq!(Spectrogram::new(&[], &[], 12.0), None);
     }
 
     #[test]
     fn a_record_with_gaps_only_is_at_the_floor() {
-        let gaps = Spectrogram::of(&times(2000, 0.02), &[f64::NAN; 2000], 12.0).unwrap();
+        let gaps = Spectrogram::new(&times(2000, 0.02), &[f64::NAN; 2000], 12.0).unwrap();
         for level in gaps.levels.iter().flatten() {
             assert_eq!(*level, Spectrogram::FLOOR);
         }

@@ -41,7 +41,7 @@ pub struct Topic {
     values: Vec<f64>,
     /// The samples between two gaps; not empty.
     runs: Vec<Range<usize>>,
-    /// Samples in a second, without gaps.
+    /// Sample rate without gaps \[Hz\].
     pub rate_hz: f64,
 }
 
@@ -222,7 +222,7 @@ fn sample_width(time_s: &[f64], k: usize) -> f64 {
 pub struct CommonClock {
     /// First sample \[s\].
     pub start_s: f64,
-    /// Samples in a second.
+    /// Sample rate \[Hz\].
     pub rate_hz: f64,
     /// Sample count.
     pub samples: usize,
@@ -361,18 +361,18 @@ fn common_span_s(topics: &[Topic]) -> Result<[f64; 2], TopicError> {
 /// Why topics cannot be brought to a common clock.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TopicError {
-    #[error("{topic} has {samples} samples with a stamp: at least 3 are needed")]
+    #[error("{topic} has {samples} samples with a stamp; at least 3 are needed")]
     TooFew { topic: String, samples: usize },
     /// A topic is too slow for the band.
     #[error(
-        "{topic} has {rate_hz:.1} samples in a second, and a band to {band_end:.3} rad/s takes {needed_hz:.1}: log it faster, or end \
+        "{topic} is sampled at {rate_hz:.1} Hz, and a band to {band_end:.3} rad/s needs {needed_hz:.1} Hz: log it faster, or end \
          the band at {possible:.2} rad/s"
     )]
     TooSlow {
         topic: String,
-        /// Samples in a second.
+        /// Sample rate \[Hz\].
         rate_hz: f64,
-        /// Samples in a second that the band needs.
+        /// Sample rate that the band needs \[Hz\].
         needed_hz: f64,
         /// Upper band end \[rad/s\].
         band_end: f64,
@@ -381,7 +381,7 @@ pub enum TopicError {
     },
     /// Topics share no time.
     #[error(
-        "{first} ends at {first_end_s:.1} s, before {second} begins at {second_start_s:.1} s: they are not of one flight, or their \
+        "{first} ends at {first_end_s:.1} s, before {second} begins at {second_start_s:.1} s: they come from different flights, or their \
          clocks differ"
     )]
     NoCommonTime {
@@ -394,7 +394,7 @@ pub enum TopicError {
     },
     /// A stamp is so far off that the record would exceed the memory.
     #[error(
-        "the joined record would have {0:.0} samples: a stamp is wrong, or the rate asked for is too high"
+        "the joined record would have {0:.0} samples: a stamp is wrong, or the requested rate is too high"
     )]
     TooMany(f64),
 }

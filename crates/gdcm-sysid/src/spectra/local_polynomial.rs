@@ -31,10 +31,10 @@ const RIDGE: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum LocalPolynomialError {
     /// No lines, inputs or outputs.
-    #[error("there are no lines to estimate a frequency response from")]
+    #[error("there are no spectral lines for a frequency response")]
     Nothing,
     /// Record number, counted from 0.
-    #[error("record {} has another number of channels than the first", .0 + 1)]
+    #[error("record {} differs from the first in its number of channels", .0 + 1)]
     ChannelsDiffer(usize),
     /// A line or a frequency is not finite, or a frequency is not greater than 0.
     #[error("the spectra hold values that are not finite")]

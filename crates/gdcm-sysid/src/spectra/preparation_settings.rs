@@ -171,10 +171,10 @@ fn named_channels(names: &[&str]) -> Vec<ChannelPreparation> {
 pub enum PreparationError {
     #[error("there are no flight records")]
     NoRecords,
-    #[error("no {0} is named: identification needs at least one input and one output")]
+    #[error("no {0} is given: identification needs at least one input and one output")]
     NoChannels(ChannelSide),
     /// A record has other channels than the ones named.
-    #[error("record {record} has {found} {role}s where {named} are named")]
+    #[error("record {record} has {found} {role}s, not {named}")]
     ChannelsDiffer {
         record: String,
         role: ChannelSide,
@@ -183,7 +183,7 @@ pub enum PreparationError {
     },
     /// A record's columns differ in length.
     #[error(
-        "record {record} has {stamps} time stamps, {inputs} samples of the inputs and {outputs} of the outputs"
+        "record {record} has {stamps} time stamps, {inputs} input samples and {outputs} output samples"
     )]
     LengthsDiffer {
         record: String,
@@ -193,15 +193,15 @@ pub enum PreparationError {
     },
     /// A delay or a hold is not finite or too long.
     #[error(
-        "a delay or hold of {seconds} s for {signal}: it must be a number of at most {LONGEST_SHIFT_S} s"
+        "{signal}: a delay or hold of {seconds} s is not possible, at most {LONGEST_SHIFT_S} s"
     )]
     Shift { signal: Signal, seconds: f64 },
-    #[error("a least piece of {0} s: it must be greater than 0")]
+    #[error("the shortest piece is {0} s: it must be greater than 0")]
     LeastSegment(f64),
     #[error("gaps of {0} samples are too long to be bridged: at most {LONGEST_BRIDGE}")]
     Bridge(usize),
     #[error(
-        "record {record}: time goes from {previous_s} s to {time_s} s in row {}. Sort the rows, or delete the repeated ones",
+        "record {record}: time goes from {previous_s} s to {time_s} s in row {}. Sort the rows, or delete repeated rows",
         row + 1
     )]
     TimeNotIncreasing {
@@ -212,7 +212,7 @@ pub enum PreparationError {
         time_s: f64,
     },
     #[error(
-        "record {record}: the sample time varies by {percent:.0} %, more than 20 %. Where the stamps can be trusted, give a rate to interpolate to (--resample)"
+        "record {record}: the sample time varies by {percent:.0} %, more than 20 %. If the stamps are right, give a rate to interpolate to (--resample)"
     )]
     UnevenSampling {
         record: String,
@@ -221,8 +221,8 @@ pub enum PreparationError {
     },
     /// No segment is long enough.
     #[error(
-        "nothing is left: the longest piece without a gap lasts {longest_s:.1} s, and {least_s:.1} s are the least. \
-         Log longer records, fill the gaps, or leave out the channel that has them"
+        "no usable piece: the longest piece without a gap lasts {longest_s:.1} s, less than {least_s:.1} s. \
+         Log longer records, fill the gaps, or leave out the channel with gaps"
     )]
     NothingLeft { longest_s: f64, least_s: f64 },
     /// Channels that never move.

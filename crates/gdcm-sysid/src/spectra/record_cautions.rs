@@ -38,12 +38,12 @@ pub enum RecordCaution {
         start_s: f64,
         length_s: f64,
     },
-    #[error("{0}: nothing of it could be used")]
+    #[error("{0}: no part could be used")]
     RecordUnused(String),
     /// Most consecutive samples are equal while the channel moves.
     #[error(
-        "{signal}: {percent:.0} % of consecutive samples are equal, it changes every {:.0} ms. State the cause: {}or stairs that \
-                 are right as they are (nothing done, as now)",
+        "{signal}: {percent:.0} % of consecutive samples are equal, it changes every {:.0} ms. State the cause: {}or a signal \
+         that really moves in steps (nothing done, as now)",
         1e3 * hold_s, hold_choices(signal.role, 1e3 * hold_s)
     )]
     SampleHold {
@@ -63,7 +63,7 @@ pub enum RecordCaution {
         limit: f64,
     },
     #[error(
-        "{} always moved together (correlation {correlation:.3}): their effects cannot be told apart",
+        "{} always moved together (correlation {correlation:.3}): their effects cannot be separated",
         names(signals)
     )]
     MovedTogether {
@@ -99,7 +99,7 @@ pub enum RecordCaution {
     },
     /// An output is logged in coarse steps.
     #[error(
-        "{signal} is logged in coarse steps of {steps:.1} standard deviations; no harm from that was ever measured"
+        "{signal} is logged in coarse steps of {steps:.1} standard deviations; this had no effect in any test"
     )]
     Coarse {
         signal: Signal,

@@ -28,10 +28,10 @@ pub enum ScalingError {
     #[error("there are no flight records")]
     NoSegments,
     /// Segment number, counted from 0.
-    #[error("piece {} of the flight records has another number of channels than the first", .0 + 1)]
+    #[error("piece {} of the flight records differs from the first in its number of channels", .0 + 1)]
     ChannelsDiffer(usize),
     /// A sample or its square is not finite; number of the segment, counted from 0.
-    #[error("piece {} of the flight records holds values that are not finite or absurdly large", .0 + 1)]
+    #[error("piece {} of the flight records has values that are not finite or too large", .0 + 1)]
     NotFinite(usize),
     /// The channel is constant in every segment.
     #[error("{role} {} does not move in any record: leave it out", index + 1)]

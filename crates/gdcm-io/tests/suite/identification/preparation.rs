@@ -412,7 +412,7 @@ fn records_that_are_too_short_say_how_short() {
         .to_string();
     assert!(
         text.starts_with(
-            "nothing is left: the longest piece without a gap lasts 6.0 s, and 10.0 s are the least"
+            "no usable piece: the longest piece without a gap lasts 6.0 s, less than 10.0 s"
         ),
         "{text}"
     );
@@ -426,7 +426,7 @@ fn an_unused_record_does_not_spoil_the_others() {
     let prepared = prepare(&[lost, wandering(1000)], &settings(), &Sequential).unwrap();
     assert_eq!(prepared.segments.len(), 1);
     assert_eq!(prepared.segments[0].record, 1);
-    assert!(words(&prepared.cautions).contains("lost: nothing of it could be used"));
+    assert!(words(&prepared.cautions).contains("lost: no part could be used"));
     assert_eq!(prepared.records[0].used_s, 0.0);
 }
 

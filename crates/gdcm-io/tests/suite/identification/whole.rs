@@ -608,7 +608,7 @@ fn channels_that_say_nothing_are_named() {
         let first = record.inputs.column(0).into_owned();
         record.inputs.set_column(1, &(first * 2.0));
     });
-    assert!(same.contains("LON and LAT move as one"), "{same}");
+    assert!(same.contains("LON and LAT move together"), "{same}");
     let copy = with(&|record| {
         let first = record.outputs.column(0).into_owned();
         record.outputs.set_column(1, &(first * -3.0));

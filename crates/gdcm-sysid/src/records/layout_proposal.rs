@@ -308,16 +308,16 @@ impl Proposer<'_> {
             return Some(ColumnUse::as_it_is(column));
         }
         if let Some(unit) = unit {
-            return self.from_unit(rule, column, unit, UnitSource::Known);
+            return self.converted_from(rule, column, unit, UnitSource::Known);
         }
         if let Some(unit) = &rule.unit_in_files {
-            return self.from_unit(rule, column, unit, UnitSource::Rule);
+            return self.converted_from(rule, column, unit, UnitSource::Rule);
         }
         Some(self.by_samples(rule, column))
     }
 
     /// Converts a column from `unit` to the channel's unit, and adds a note.
-    fn from_unit(
+    fn converted_from(
         &mut self,
         rule: &ChannelRule,
         column: usize,

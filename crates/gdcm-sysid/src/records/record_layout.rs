@@ -156,10 +156,9 @@ impl RecordLayout {
         if let Some(time) = self.time {
             layout.time = Some(time_in_other(time, from, other)?);
         }
-        for used in layout.inputs.iter_mut().chain(&mut layout.outputs) {
-            if let Some(used) = used {
-                used.column = column_in_other(used.column, from, other)?;
-            }
+        let uses = layout.inputs.iter_mut().chain(&mut layout.outputs);
+        for used in uses.flatten() {
+            used.column = column_in_other(used.column, from, other)?;
         }
         Some(layout)
     }

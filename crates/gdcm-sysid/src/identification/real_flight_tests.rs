@@ -309,40 +309,47 @@ pub(crate) fn codes(found: &Identification) -> Vec<&'static str> {
         .collect()
 }
 
+/// Identifies a record at these orders, and measures the model's distance from its points.
+fn departure(record: &FlightRecord, orders: Option<Vec<usize>>) -> Departure {
+    let options = Options {
+        orders,
+        ..options()
+    };
+    let progress = Shares::new(&Unobserved);
+    let records = std::slice::from_ref(record);
+    let data = PreparedData::new(records, &options, &Sequential, &progress).unwrap();
+    let proposal = propose(&data, &options, &progress).unwrap();
+    let refinement = refine(&data, &proposal, &progress).unwrap();
+    let predicted = predict_points(&refinement.fit.model, &data.measured_data(), &options);
+    Departure::measure(&predicted, &data.measured, options.band, (0, 0))
+}
+
 #[test]
 fn a_model_of_too_low_an_order_leaves_its_points() {
     let file = known();
     let (record, _) = Flown::from_answers(&file["short_siso"]["record"], 11).record(&file);
-    let with_orders = |orders| {
-        let options = Options {
-            orders,
-            ..options()
-        };
-        let progress = Shares::new(&Unobserved);
-        let data = PreparedData::new(
-            std::slice::from_ref(&record),
-            &options,
-            &Sequential,
-            &progress,
-        )
-        .unwrap();
-        let proposal = propose(&data, &options, &progress).unwrap();
-        let refinement = refine(&data, &proposal, &progress).unwrap();
-        let predicted = predict_points(&refinement.fit.model, &data.measured_data(), &options);
-        Departure::measure(&predicted, &data.measured, options.band, (0, 0))
-    };
-    let good = with_orders(None);
+    let good = departure(&record, None);
     assert!(
         good.greatest < number(&file["points"]["T_max_chosen_order"]) && good.band.is_none(),
         "{}",
         good.greatest
     );
-    let low = with_orders(Some(vec![1]));
+    let low = departure(&record, Some(vec![1]));
     assert!(
         low.greatest > number(&file["points"]["threshold"]) && low.band.is_some(),
         "{}",
         low.greatest
     );
+}
+
+/// Flies once for each seed of the known answers.
+fn flown_with_seeds(file: &Value, answers: &Value) -> Vec<FlightRecord> {
+    let mut records = Vec::new();
+    for seed in numbers(&answers["seeds"]) {
+        let (record, _) = Flown::from_answers(answers, seed as u64).record(file);
+        records.push(record);
+    }
+    records
 }
 
 fn measured_feedback(data: &PreparedData, model: &BlockModel) -> Feedback {
@@ -358,33 +365,21 @@ fn measured_feedback(data: &PreparedData, model: &BlockModel) -> Feedback {
 fn the_feedback_matches_independent_code() {
     let file = known();
     for known in file["feedback"].as_array().unwrap() {
-        let flown = |seed: f64| {
-            Flown::from_answers(&known["records"], seed as u64)
-                .record(&file)
-                .0
-        };
-        let records: Vec<FlightRecord> = numbers(&known["records"]["seeds"])
-            .into_iter()
-            .map(flown)
-            .collect();
+        let records = flown_with_seeds(&file, &known["records"]);
         assert_is_the_flight(&records[0], &known["check"]);
         let progress = Shares::new(&Unobserved);
         let data = PreparedData::new(&records, &options(), &Sequential, &progress).unwrap();
         let proposal = propose(&data, &options(), &progress).unwrap();
         let model = refine(&data, &proposal, &progress).unwrap().fit.model;
         let feedback = measured_feedback(&data, &model);
-        let near = |found: f64, name: &str| {
-            let (known, tolerance) = (
-                number(&known[name]),
-                number(&known[format!("{name}_tolerance_relative")]),
-            );
+        for (found, name) in [(feedback.share, "b"), (feedback.significance, "z")] {
+            let expected = number(&known[name]);
+            let tolerance = number(&known[format!("{name}_tolerance_relative")]);
             assert!(
-                (found / known - 1.0).abs() < tolerance,
-                "{name} {found}, not {known}"
+                (found / expected - 1.0).abs() < tolerance,
+                "{name} {found}, not {expected}"
             );
-        };
-        near(feedback.share, "b");
-        near(feedback.significance, "z");
+        }
         assert_eq!(feedback.level() as u64, known["level"].as_u64().unwrap());
     }
 }
@@ -392,21 +387,9 @@ fn the_feedback_matches_independent_code() {
 #[test]
 fn bands_are_widened_from_a_fed_back_share_of_0_04_on() {
     let file = known();
-    for (known, is_widened) in file["feedback"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|of| (of, of["name"] != "calm"))
-    {
-        let flown = |seed: f64| {
-            Flown::from_answers(&known["records"], seed as u64)
-                .record(&file)
-                .0
-        };
-        let records: Vec<FlightRecord> = numbers(&known["records"]["seeds"])
-            .into_iter()
-            .map(flown)
-            .collect();
+    for known in file["feedback"].as_array().unwrap() {
+        let is_widened = known["name"] != "calm";
+        let records = flown_with_seeds(&file, &known["records"]);
         let progress = Shares::new(&Unobserved);
         let data = PreparedData::new(&records, &options(), &Sequential, &progress).unwrap();
         let proposal = propose(&data, &options(), &progress).unwrap();
@@ -416,16 +399,14 @@ fn bands_are_widened_from_a_fed_back_share_of_0_04_on() {
         let covariance =
             ParameterCovariance::from_systems(&data.likelihood, &fit, &systems, fit.cost).unwrap();
         let omegas = log_spaced(1.0, 12.0, 24);
-        let bands = |feedback: Option<&Feedback>| {
+        let [plain, widened] = [None, Some(&feedback)].map(|feedback| {
             let models = BandModels {
                 model: &fit.model,
                 neighbours: &[],
                 feedback,
             };
             models.bands(&covariance, &omegas, &Sequential).unwrap()
-        };
-        let plain = bands(None);
-        let widened = bands(Some(&feedback));
+        });
         assert_eq!(
             feedback.share >= 0.04,
             is_widened,
@@ -460,12 +441,11 @@ fn the_late_record_is_named_with_its_delay() {
     for known in file["records"].as_array().unwrap() {
         let count = known["records"].as_u64().unwrap();
         let late = known["late_samples_of_last"].as_u64().unwrap() as usize;
-        let flown = |at: u64| {
-            Flown::calm(200 + at, if at + 1 == count { late } else { 0 })
-                .record(&file)
-                .0
-        };
-        let records: Vec<FlightRecord> = (0..count).map(flown).collect();
+        let mut records = Vec::new();
+        for at in 0..count {
+            let late = if at + 1 == count { late } else { 0 };
+            records.push(Flown::calm(200 + at, late).record(&file).0);
+        }
         let progress = Shares::new(&Unobserved);
         let data = PreparedData::new(&records, &options(), &Sequential, &progress).unwrap();
         let proposal = propose(&data, &options(), &progress).unwrap();

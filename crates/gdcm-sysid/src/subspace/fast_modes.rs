@@ -101,21 +101,12 @@ mod tests {
 
     #[test]
     fn a_model_of_fast_modes_alone_has_no_slow_part() {
-        let model = |pole: f64| {
-            StateSpace::new(
-                sample(2).map(|_| 0.0) + DMatrix::identity(2, 2) * pole,
-                sample(2),
-                sample(2),
-                sample(2),
-            )
-        };
-        assert!(without_fast_modes(&model(-100.0).unwrap(), 50.0).is_none());
-        assert_eq!(
-            without_fast_modes(&model(-10.0).unwrap(), 50.0)
-                .unwrap()
-                .order(),
-            2
-        );
+        let [fast, slow] = [-100.0, -10.0].map(|pole| {
+            let a = DMatrix::identity(2, 2) * pole;
+            StateSpace::new(a, sample(2), sample(2), sample(2)).unwrap()
+        });
+        assert!(without_fast_modes(&fast, 50.0).is_none());
+        assert_eq!(without_fast_modes(&slow, 50.0).unwrap().order(), 2);
     }
 
     #[test]

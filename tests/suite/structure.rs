@@ -50,7 +50,10 @@ const CRATES: &[(&str, ModuleTable)] = &[
             ("options", &["identification_error", "spectra"]),
             ("subspace", &[]),
             ("likelihood", &["spectra", "subspace"]),
-            ("diagnostics", &["spectra", "likelihood", "options"]),
+            (
+                "diagnostics",
+                &["spectra", "subspace", "likelihood", "options"],
+            ),
             (
                 "identification",
                 &[

@@ -27,7 +27,7 @@ pub enum LayoutProblem {
     TimeOrder {
         /// In quotation marks.
         column: String,
-        /// Their count.
+        /// Count of repeated or decreasing stamps.
         count: usize,
         /// Sample count.
         samples: usize,
@@ -65,7 +65,7 @@ pub enum LayoutProblem {
     SeveralColumns {
         side: ChannelSide,
         channel: String,
-        /// Their names.
+        /// Column names, quoted.
         found: String,
     },
     /// The columns have no names.
@@ -194,7 +194,7 @@ pub enum LayoutCaution {
     /// The record repeats another record under a different name.
     #[error("same samples as {first}: left out, because evidence counts once")]
     Copy {
-        /// The other record's name.
+        /// The earlier record's name.
         first: String,
     },
     /// Samples are missing.

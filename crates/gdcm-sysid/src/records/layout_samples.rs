@@ -78,7 +78,7 @@ impl RecordLayout {
 /// Reads samples in chosen rows.
 struct RowSamples<'r> {
     table: &'r RecordTable,
-    /// Stamp by table row \[s\].
+    /// A stamp for each table row \[s\].
     time_s: &'r [f64],
     rows: &'r [usize],
 }

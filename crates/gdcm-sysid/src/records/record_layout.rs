@@ -18,9 +18,9 @@ use super::time_base::TimeBase;
 pub struct RecordLayout {
     /// Sample times; `None` while open.
     pub time: Option<TimeBase>,
-    /// Column by input; `None` while open.
+    /// A column for each input; `None` while open.
     pub inputs: Vec<Option<ColumnUse>>,
-    /// Column by output; `None` while open.
+    /// A column for each output; `None` while open.
     pub outputs: Vec<Option<ColumnUse>>,
 }
 

@@ -29,7 +29,7 @@ pub struct RecordColumn {
 pub struct TopicClock {
     /// The topic's name.
     pub name: String,
-    /// Stamp by sample \[s\].
+    /// A stamp for each sample \[s\].
     pub time_s: Vec<f64>,
 }
 

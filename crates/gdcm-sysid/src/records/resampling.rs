@@ -26,7 +26,7 @@ pub(super) struct Resampling {
     topics: Vec<Topic>,
     /// Input count.
     inputs: usize,
-    /// Names, held inputs only.
+    /// Names of held inputs.
     held: Vec<String>,
     clock: CommonClock,
 }

@@ -49,7 +49,7 @@ pub(super) fn without_sign_mark(name: &str) -> String {
     SignedName::of(name).name
 }
 
-/// Search for a channel's column.
+/// Search for the column of a channel.
 struct ColumnSearch<'r> {
     table: &'r RecordTable,
     rule: &'r ChannelRule,

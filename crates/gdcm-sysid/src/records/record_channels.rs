@@ -8,7 +8,7 @@ use gdcm_model::dataset::{Channel, Dataset};
 /// User-defined sample conversion; overrides the file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SaidConversion {
-    /// Sample unit.
+    /// Unit of the samples.
     Unit(String),
     /// Channel units per column unit; negative for the opposite sign.
     Factor(f64),

@@ -89,7 +89,7 @@ impl RecordLayout {
         add_remedies(&mut self.outputs, &channels.outputs, remedies);
     }
 
-    /// Returns a channel's use for editing.
+    /// Returns the column of a channel, to be edited.
     pub fn channel_mut(&mut self, role: ChannelSide, index: usize) -> Option<&mut ColumnUse> {
         role.of(&mut self.inputs, &mut self.outputs)
             .get_mut(index)?

@@ -1,4 +1,4 @@
-//! A record as in its file: sample columns.
+//! A record as its file holds it: columns of samples.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::units::number;
 
-/// A sample column.
+/// A column of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordColumn {
     /// Name in the file; "column 3" if the file has none.
@@ -106,7 +106,7 @@ pub struct RecordSource {
     pub variable: Option<String>,
 }
 
-/// A record as in its file.
+/// A record as its file holds it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordTable {
     /// Displayed name.

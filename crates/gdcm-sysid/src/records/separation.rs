@@ -8,7 +8,7 @@ use gdcm_model::units::number;
 use super::record_table::{RecordColumn, RecordSource, RecordTable};
 use super::time_base::TimeBase;
 
-/// How a table with several records is split.
+/// Separation of several records in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separation {
     /// The table is one record.

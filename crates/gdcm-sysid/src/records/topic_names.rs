@@ -20,7 +20,7 @@ pub(super) fn log_key(source: &RecordSource) -> String {
     }
 }
 
-/// Returns a name by topic: the variable if all come from one file, else the file's name
+/// Returns the name of each topic: the variable if all come from one file, else the file's name
 /// without its extension.
 pub(super) fn topic_names(tables: &[RecordTable]) -> Vec<String> {
     let is_one_file = are_from_one_file(tables);
@@ -51,7 +51,7 @@ fn topic_name(source: &RecordSource, is_one_file: bool) -> String {
     }
 }
 
-/// Returns a log by topic: "log_7" for "log_7_rates" beside "log_8_rates"; empty without a
+/// Returns the log of each topic: "log_7" for "log_7_rates" beside "log_8_rates"; empty without a
 /// log.
 ///
 /// ```text
@@ -136,7 +136,7 @@ pub(super) fn common_prefix(names: &[String]) -> usize {
     }
 }
 
-/// Returns how many bytes two names share at the beginning.
+/// Returns the length of the common beginning of two names, in bytes.
 fn common_bytes(first: &str, second: &str) -> usize {
     let pairs = first.bytes().zip(second.bytes());
     pairs.take_while(|(a, b)| a == b).count()

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | a file's columns, from the reader | [`record_table`], [`time_base`] |
 //! | several records in a table | [`separation`] |
-//! | topics with separate clocks | [`topic_tables`], `topic_names`, `side_by_side` |
+//! | topics with separate clocks (M14.11) | [`topic_tables`], `topic_names`, `side_by_side`, [`topics`] |
 //! | channels to read | [`record_channels`], [`channel_list`], [`dataset_of_records`] |
 //! | columns for time and channels | [`layout_proposal`], `column_candidates`, [`column_use`] |
 //! | checks | `layout_checks`, `plausible_units`, [`layout_problem`] |

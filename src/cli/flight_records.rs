@@ -15,7 +15,7 @@ use gdcm_study::{Analysis, Execution, Table};
 use gdcm_sysid::identification::{CautionNote, Preparation};
 use gdcm_sysid::records::layout_problem::LayoutCaution;
 use gdcm_sysid::records::record_channels::SaidConversion;
-use gdcm_sysid::records::record_table::median_step;
+use gdcm_sysid::records::time_base::median_step;
 use gdcm_sysid::records::{
     LaidOutRecord, LayoutProblem, RecordChannels, RecordSource, RecordTable, TimeWish,
     leave_out_copies, with_topics_joined,

@@ -19,14 +19,14 @@ use gdcm_model::simulation::Signal;
 use gdcm_study::decisions::changed_models::AdoptedModels;
 use gdcm_study::jobs::job::IdentificationRequest;
 use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
-use gdcm_sysid::identification::preparation::RecordUse;
-use gdcm_sysid::identification::topics::is_held;
 use gdcm_sysid::identification::{
     CautionNote, ChannelPreparation, Hold, Identification, IdentificationCaution,
     IdentificationError, Preparation,
 };
-use gdcm_sysid::records::record_table::median_step;
+use gdcm_sysid::records::time_base::median_step;
+use gdcm_sysid::records::topics::is_held;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
+use gdcm_sysid::spectra::preparation::RecordUse;
 
 use super::existing;
 use super::flight_records::{ReadRecords, hold_out, is_called, laid_out, record_table};

@@ -11,8 +11,8 @@ use gdcm_model::units::number;
 use gdcm_study::decisions::changed_models::OfferedModels;
 use gdcm_sysid::identification::{ChannelPreparation, Preparation, SearchSpace};
 use gdcm_sysid::records::RecordChannels;
-use gdcm_sysid::records::record_channels::{ChannelList, SaidChannel, SaidConversion};
-use gdcm_sysid::records::resampling::ResamplingWish;
+use gdcm_sysid::records::channel_list::{ChannelList, SaidChannel};
+use gdcm_sysid::records::record_channels::{ResamplingWish, SaidConversion};
 
 use super::arguments::{OfChannel, real_number, whole_number};
 use super::terminal::Failure;

@@ -11,7 +11,7 @@ use gdcm_io::{embedded_example, load_dataset};
 use gdcm_model::assembly::rules::standard_patterns;
 use gdcm_model::dataset::condition::RecordKind;
 use gdcm_model::dataset::{BundleKind, ConditionId};
-use gdcm_sysid::records::laid_out_record::RecordGuess;
+use gdcm_sysid::records::record_guess::RecordGuess;
 use gdcm_sysid::records::{RecordChannels, RecordLayout, TimeWish};
 
 use crate::commands::Desk;
@@ -52,7 +52,7 @@ fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() 
                 .chain(record.inputs.iter())
                 .all(|sample| sample.is_finite())
         );
-        let guess = RecordGuess::of_table(table, patterns);
+        let guess = RecordGuess::from_table(table, patterns);
         assert_eq!(guess.held_out, table.name.contains("validation"));
         sweeps[guess.condition.unwrap() as usize] += usize::from(guess.kind == RecordKind::Sweep);
     }
@@ -127,8 +127,8 @@ fn records_are_laid_out_in_words_and_held_out_by_name() {
     ]);
     for words in [
         "sweep_1: time from column \"t\", in s",
-        "sweep_1: P: column \"roll rate\" as it is, in rad/s",
-        "sweep_1: LON: column \"lon\" as it is",
+        "sweep_1: P: column \"roll rate\" unchanged, in rad/s",
+        "sweep_1: LON: column \"lon\" unchanged",
     ] {
         assert!(ended.error.contains(words), "{words}: {ended:?}");
     }
@@ -167,9 +167,9 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
         let ended = identify(&records, &[]);
         assert_eq!(ended.status, 2, "{ended:?}");
         for words in [
-            "error: bare: the file does not say the unit of P (column \"P\"), and its samples can be in rad/s or deg/s; say which: \
-             --unit \"P=rad/s\"",
-            "error: bare: the file does not say the unit of Q",
+            "error: bare: the file does not give the unit of P (column \"P\"), and its samples can be in rad/s or deg/s; choose it \
+             with --unit \"P=rad/s\"",
+            "error: bare: the file does not give the unit of Q",
             "error: 1 of 2 records cannot be taken as they are",
         ] {
             assert!(ended.error.contains(words), "{words}: {}", ended.error);
@@ -180,7 +180,7 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
         &["sweep_1.csv", "bare.csv"],
         &["--unit", "P=rad/s", "--unit", "Q=rad/s"],
     );
-    assert!(!said.error.contains("does not say the unit"), "{said:?}");
+    assert!(!said.error.contains("does not give the unit"), "{said:?}");
     // Into a dataset of deg/s; the sticks, from 40 to 60, can be nothing but per cent.
     let into = [
         "identify",
@@ -210,7 +210,7 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
     assert!(
         ended
             .error
-            .contains("P: column \"P\", in deg/s as is said of the channel"),
+            .contains("P: column \"P\", in deg/s as set for the channel"),
         "{ended:?}"
     );
     // The records that models are compared with are asked in the same way.
@@ -318,7 +318,7 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
     refused(
         &all("wrong.csv", &[]),
         &[
-            "wrong: no column is the input LAT; say which is (columns: t, lon, lever",
+            "wrong: no column for the input LAT; choose a column (columns: t, lon, lever",
             "1 of 1 record cannot be taken",
         ],
     );
@@ -427,8 +427,8 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
     refused(
         &all("sweep_1.csv", &["again.csv", "--hold-out", "sweep_1.csv"]),
         &[
-            "its samples are those of ",
-            "left out, for evidence counts once",
+            "same samples as ",
+            "left out, because evidence counts once",
             "--hold-out: every record is held out",
         ],
     );
@@ -633,7 +633,7 @@ fn units_that_were_said_once_are_kept_by_the_dataset_with_its_records() {
     let (kept, told) = identified("said/late.json", &[], "kept");
     assert_eq!(said, kept, "{told}");
     assert!(
-        told.contains("Q: times 57.29") && told.contains("as the dataset says of this record"),
+        told.contains("Q: times 57.29") && told.contains("removed, from the dataset"),
         "{told}"
     );
     // What the command line says stands before it.

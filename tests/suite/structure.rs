@@ -43,7 +43,29 @@ const CRATES: &[(&str, ModuleTable)] = &[
     ),
     (
         "gdcm-sysid",
-        &[("identification", &[]), ("records", &["identification"])],
+        &[
+            ("spectra", &[]),
+            ("records", &["spectra"]),
+            ("identification_error", &["spectra"]),
+            ("options", &["identification_error", "spectra"]),
+            ("subspace", &[]),
+            ("likelihood", &["spectra", "subspace"]),
+            (
+                "diagnostics",
+                &["spectra", "subspace", "likelihood", "options"],
+            ),
+            (
+                "identification",
+                &[
+                    "spectra",
+                    "subspace",
+                    "likelihood",
+                    "diagnostics",
+                    "identification_error",
+                    "options",
+                ],
+            ),
+        ],
     ),
     (
         "gdcm-study",

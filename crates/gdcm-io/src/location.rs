@@ -302,6 +302,31 @@ fn collect_steps(path: &serde_ignored::Path<'_>, steps: &mut Vec<Step>) {
     steps.extend(step);
 }
 
+/// Returns the line at which the condition or the model of a place begins, counted from 1.
+pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
+    let mut value = entry(
+        serde_json::from_slice(text).ok()?,
+        "conditions",
+        place.condition.as_ref()?.position,
+    )?;
+    if let Some(model) = &place.model {
+        let key = match model.bundle {
+            BundleKind::Physics => "physics_models",
+            BundleKind::Identified => "identified_models",
+        };
+        value = entry(value, key, model.position)?;
+    }
+    let offset = value.get().as_ptr() as usize - text.as_ptr() as usize;
+    Some(1 + text[..offset].iter().filter(|byte| **byte == b'\n').count())
+}
+
+/// Returns an entry of a list in an object, counted from 1: a part of the text, not a copy.
+pub(super) fn entry<'t>(object: &'t RawValue, key: &str, position: usize) -> Option<&'t RawValue> {
+    let object: BTreeMap<String, &RawValue> = serde_json::from_str(object.get()).ok()?;
+    let list: Vec<&RawValue> = serde_json::from_str(object.get(key)?.get()).ok()?;
+    list.get(position.checked_sub(1)?).copied()
+}
+
 #[cfg(test)]
 mod place_tests {
     use super::*;
@@ -381,29 +406,4 @@ mod outline_tests {
         );
         assert_eq!(format_of(b"[1, 2]"), None);
     }
-}
-
-/// Returns the line at which the condition or the model of a place begins, counted from 1.
-pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
-    let mut value = entry(
-        serde_json::from_slice(text).ok()?,
-        "conditions",
-        place.condition.as_ref()?.position,
-    )?;
-    if let Some(model) = &place.model {
-        let key = match model.bundle {
-            BundleKind::Physics => "physics_models",
-            BundleKind::Identified => "identified_models",
-        };
-        value = entry(value, key, model.position)?;
-    }
-    let offset = value.get().as_ptr() as usize - text.as_ptr() as usize;
-    Some(1 + text[..offset].iter().filter(|byte| **byte == b'\n').count())
-}
-
-/// Returns an entry of a list in an object, counted from 1: a part of the text, not a copy.
-pub(super) fn entry<'t>(object: &'t RawValue, key: &str, position: usize) -> Option<&'t RawValue> {
-    let object: BTreeMap<String, &RawValue> = serde_json::from_str(object.get()).ok()?;
-    let list: Vec<&RawValue> = serde_json::from_str(object.get(key)?.get()).ok()?;
-    list.get(position.checked_sub(1)?).copied()
 }

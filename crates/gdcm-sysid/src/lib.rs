@@ -4,8 +4,13 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | [`records`] | from the columns of record files to flight records: time, channels, units |
-//! | [`identification`] | from flight records to models: spectra, CT-PBSID, refinement, cautions |
+//! | [`records`] | from record files' columns to flight records: time, channels, units |
+//! | [`spectra`] | preparation, spectra, and the response without a model |
+//! | [`subspace`] | models of all orders by CT-PBSID |
+//! | [`likelihood`] | the cost, its minimum, and the covariance there |
+//! | [`diagnostics`] | doubts about the model, as typed facts |
+//! | [`identification`] | the whole run, from flight records to a model with its uncertainty |
+//! | [`options`], [`identification_error`] | settings of the run, and the reasons why it fails |
 //!
 //! Nothing here touches files, windows or threads.
 //!
@@ -13,8 +18,9 @@
 //! use gdcm_model::dataset::StateSpace;
 //! use gdcm_model::executor::Sequential;
 //! use gdcm_model::progress::Unobserved;
+//! use gdcm_model::simulation::{FirstOrderHold, FlightRecord};
 //! use gdcm_sysid::identification::identify::identify;
-//! use gdcm_sysid::identification::{FirstOrderHold, FlightRecord, Options, Preparation};
+//! use gdcm_sysid::identification::{Options, Preparation};
 //! use nalgebra::{DMatrix, DVector, dmatrix};
 //!
 //! // A roll axis with a time constant of 0.5 s, swept from 0.5 to 16 rad/s within a minute.
@@ -39,5 +45,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod diagnostics;
 pub mod identification;
+pub mod identification_error;
+pub mod likelihood;
+pub mod options;
 pub mod records;
+pub mod spectra;
+pub mod subspace;

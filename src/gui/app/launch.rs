@@ -21,10 +21,11 @@ use gdcm_study::Engine;
 use gdcm_study::stages::engine::LIVE_PROOF;
 
 use super::recovery::{Autosave, LAST_WAIT, end_words};
-use super::threads::{self, Fault, caught};
+use super::threads::{Fault, caught};
 use super::window::PREFERENCES;
 use super::{EngineMaker, GdcmApp};
 use crate::executor::{Pool, start_threads};
+use crate::gui::app::threads;
 use crate::gui::commands::command::Command;
 use crate::gui::panels::start_page::OpensWith;
 use crate::gui::state::display::Preferences;

@@ -18,7 +18,7 @@ use gdcm_study::Edit;
 use gdcm_study::decisions::changed_models::{AdoptedModels, OfferedModels};
 use gdcm_study::jobs::job::IdentifyJob;
 use gdcm_sysid::identification::{Identification, IdentificationError};
-use gdcm_sysid::records::record_channels::dataset_of_records;
+use gdcm_sysid::records::dataset_of_records::dataset_of_records;
 use gdcm_sysid::records::{
     LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish, leave_out_copies,
     with_topics_joined,

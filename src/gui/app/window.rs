@@ -22,13 +22,14 @@ use gdcm_study::{Analysis, Study};
 use super::Setup;
 use super::background_jobs::{AnalysisJob, BackgroundJobs, Proof};
 use super::files::{PendingAction, SavedStudy};
-use super::keyboard::{self, KeyOrder};
+use super::keyboard::KeyOrder;
 use super::outputs::ReportJob;
 use super::record_import::DatasetOfRecords;
 use super::recovery::{Autosave, LAST_WAIT};
 use super::reload::DiskWatch;
 use super::threads::{Fault, Reader, Reply, ReplySender};
 use super::update::NextFocus;
+use crate::gui::app::keyboard;
 use crate::gui::commands::command::Command;
 use crate::gui::panels::bars::Bar;
 use crate::gui::panels::explanation::{Sheet, sheet_ui};
@@ -44,7 +45,8 @@ use crate::gui::views::assembling::{AssemblingCommand, assembling_ui};
 use crate::gui::views::records::RecordsCommand;
 use crate::gui::views::{Need, View};
 use crate::gui::widgets::controls::restore_panel_size;
-use crate::gui::widgets::palette::{self, Palette};
+use crate::gui::widgets::palette;
+use crate::gui::widgets::palette::Palette;
 
 /// The program's window.
 pub struct GdcmApp {

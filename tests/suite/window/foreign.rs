@@ -135,7 +135,7 @@ fn a_unit_that_neither_a_record_nor_its_samples_say_is_chosen_in_the_page_of_col
     let asked = row(&window).unwrap();
     let words: Vec<String> = asked.problems.iter().map(ToString::to_string).collect();
     assert!(
-        words.len() == 1 && words[0].starts_with("the file does not say the unit of Q"),
+        words.len() == 1 && words[0].starts_with("the file does not give the unit of Q"),
         "{words:?}"
     );
     assert!(asked.flight.is_none(), "nothing is chosen");

@@ -1030,7 +1030,10 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
         !state(window).records.wanted.problems.is_empty()
     });
     let problems = state(&window).records.wanted.problems.join("\n");
-    assert!(problems.contains("no column is the output q"), "{problems}");
+    assert!(
+        problems.contains("no column for the output q"),
+        "{problems}"
+    );
     // Enter in a field makes the dataset too.
     type_into(&mut window, "Outputs of the dataset", "q [rad/s]");
     wait_until(&mut window, "the dataset", |window| {

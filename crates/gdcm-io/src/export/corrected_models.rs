@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
+use gdcm_method::correction;
 use gdcm_method::correction::corrected_model::CorrectedModel;
-use gdcm_method::correction::{self, ChannelCorrection, LeadPrice};
+use gdcm_method::correction::{ChannelCorrection, LeadPrice};
 use gdcm_model::assembly::FoundModel;
 use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::dataset::model::Origin;

@@ -19,9 +19,9 @@ use gdcm_model::dataset::unchecked_dataset::ModelDraft;
 use gdcm_model::response::pole_estimate::PoleEstimate;
 use gdcm_model::units::neper_to_db;
 use gdcm_model::whole_number::whole;
-use gdcm_sysid::identification::response_estimate::EstimatePoint;
 use gdcm_sysid::identification::{CautionNote, Identification, ResponseEstimate};
 use gdcm_sysid::records::RecordChannels;
+use gdcm_sysid::spectra::response_estimate::EstimatePoint;
 
 use super::corrections_file::without_empty;
 use super::dataset_file::{LabelText, ModelText};

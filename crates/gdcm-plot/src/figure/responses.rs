@@ -11,7 +11,7 @@ use gdcm_model::units::signed;
 use gdcm_study::jobs::job::AcrossCurves;
 use gdcm_study::stages::condition_responses::{ConditionCurves, display_band};
 use gdcm_study::{AcrossRole, Analysis};
-use gdcm_sysid::identification::uncertainty::TWO_SIDED_95;
+use gdcm_sysid::diagnostics::bands::TWO_SIDED_95;
 
 use super::axis::{PhaseUnit, Range};
 use super::bode::BodeOptions;

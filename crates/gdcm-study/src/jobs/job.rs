@@ -17,9 +17,9 @@ use gdcm_model::response::eigenvalues::{ModesError, modes_of};
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse, GainDelay, Mode, PreparedModel};
 use gdcm_model::simulation::{FlightRecord, Validation, ValidationSettings, validate};
 use gdcm_sysid::identification::identify::identify;
-use gdcm_sysid::identification::preparation::segments_of;
 use gdcm_sysid::identification::{Identification, IdentificationError, Options, Preparation};
 use gdcm_sysid::records::LaidOutRecord;
+use gdcm_sysid::spectra::preparation::segments_of;
 
 use crate::decisions::study::Study;
 use crate::results::analysis::{Analysis, ConditionAnalysis};

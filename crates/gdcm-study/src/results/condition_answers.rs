@@ -14,7 +14,7 @@ use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::simulation::{FlightRecord, Validation, validate};
 use gdcm_model::units::telling;
 use gdcm_sysid::identification::Preparation;
-use gdcm_sysid::identification::preparation::segments_of;
+use gdcm_sysid::spectra::preparation::segments_of;
 
 use super::analysis::Analysis;
 use super::requirements::RequirementRole;

@@ -23,8 +23,8 @@ use gdcm_model::simulation::{
     FlightRecord, Segment, ValidationSettings, ValidationWindow, validate,
 };
 use gdcm_sysid::identification::Preparation;
-use gdcm_sysid::identification::preparation::segments_of;
 use gdcm_sysid::records::LaidOutRecord;
+use gdcm_sysid::spectra::preparation::segments_of;
 
 use super::analysis::{Analysis, ConditionAnalysis};
 use super::requirements::{MissingFinding, RequirementRole, RoleModelError};
@@ -565,7 +565,7 @@ mod tests {
     use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
     use gdcm_model::simulation::{FirstOrderHold, FlightRecord, validate};
     use gdcm_sysid::identification::Preparation;
-    use gdcm_sysid::identification::preparation::segments_of;
+    use gdcm_sysid::spectra::preparation::segments_of;
 
     use super::*;
     use crate::results::couplings_tests::{COUPLED, EXAMPLE};

@@ -10,11 +10,12 @@ use gdcm_model::dataset::{Band, Dynamics, Pair, StateSpace};
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
+use gdcm_model::simulation::{FirstOrderHold, FlightRecord};
 
+use super::identify::identify;
 use super::real_flight_tests::{Flown, Generator, codes, known, options};
-use super::*;
-use crate::identification::identify::identify;
-use crate::identification::preparation::{RecordUse, prepare};
+use super::{Options, Preparation};
+use crate::spectra::preparation::{RecordUse, prepare};
 
 /// Records, and the options of their identification.
 struct Flights {
@@ -57,13 +58,6 @@ fn deviation(record: &FlightRecord) -> f64 {
     (record.outputs.norm_squared() / record.outputs.len() as f64).sqrt()
 }
 
-/// Flies calmly three times and changes the outputs of each flight.
-fn with_outputs(seed: u64, change: impl Fn(&mut FlightRecord)) -> Vec<FlightRecord> {
-    let mut records = flights(3, seed, calm);
-    records.iter_mut().for_each(change);
-    records
-}
-
 /// Flights with a fault.
 struct Trap {
     name: &'static str,
@@ -81,18 +75,15 @@ const TRAPS: [Trap; 11] = [
         code: "feedback",
         // Motion by gusts is noise: the sweep exceeds it over a narrower band.
         follows: &["not-identified", "unstable", "band-narrowed"],
-        flown: |seed| {
-            let gusty = |seed| Flown {
+        flown: |seed| Flights {
+            records: flights(3, seed, |seed| Flown {
                 gust: 2.0,
                 amp: 0.4,
                 noise: 0.02,
                 feedback: 0.15,
                 ..calm(seed)
-            };
-            Flights {
-                records: flights(3, seed, gusty),
-                options: options(),
-            }
+            }),
+            options: options(),
         },
     },
     Trap {
@@ -132,12 +123,13 @@ const TRAPS: [Trap; 11] = [
         // The response of a clipped output is non-linear.
         follows: &["order-limit", "points", "unstable"],
         flown: |seed| {
-            let clipped = |record: &mut FlightRecord| {
+            let mut records = flights(3, seed, calm);
+            for record in &mut records {
                 let limit = 1.5 * deviation(record);
                 record.outputs.apply(|y| *y = y.clamp(-limit, limit));
-            };
+            }
             Flights {
-                records: with_outputs(seed, clipped),
+                records,
                 options: options(),
             }
         },
@@ -171,11 +163,12 @@ const TRAPS: [Trap; 11] = [
         ],
         flown: |seed| {
             let step = 0.6 * deviation(&flights(1, seed, calm)[0]);
-            let coarse = |record: &mut FlightRecord| {
-                record.outputs.apply(|y| *y = (*y / step).round() * step)
-            };
+            let mut records = flights(3, seed, calm);
+            for record in &mut records {
+                record.outputs.apply(|y| *y = (*y / step).round() * step);
+            }
             Flights {
-                records: with_outputs(seed, coarse),
+                records,
                 options: options(),
             }
         },
@@ -197,16 +190,13 @@ const TRAPS: [Trap; 11] = [
         code: "collinear-inputs",
         follows: &["not-identified", "not-swept"],
         flown: |seed| {
-            let mut random = super::real_flight_tests::Generator::new(seed);
-            let together = |record: FlightRecord| {
+            let mut random = Generator::new(seed);
+            let mut records = flights(3, seed, calm);
+            for record in &mut records {
                 let first = record.inputs.column(0).into_owned();
                 let second = first.map(|u| u + 0.02 * random.normal());
-                FlightRecord {
-                    inputs: DMatrix::from_columns(&[first, second]),
-                    ..record
-                }
-            };
-            let records = flights(3, seed, calm).into_iter().map(together).collect();
+                record.inputs = DMatrix::from_columns(&[first, second]);
+            }
             Flights {
                 records,
                 options: Options::new([1.0, 12.0], Preparation::of(&["LON", "LAT"], &["Q"])),
@@ -303,18 +293,16 @@ fn count_raising(flights: &[BTreeSet<&str>], start: &str) -> usize {
         .count()
 }
 
+/// Returns the facts about records that raise no caution.
+fn facts(records: &[FlightRecord]) -> Vec<String> {
+    let prepared = prepare(records, &options().preparation, &Sequential).unwrap();
+    assert_eq!(prepared.cautions, []);
+    prepared.records.iter().flat_map(RecordUse::facts).collect()
+}
+
 #[test]
 fn an_input_at_its_limit_is_a_fact_and_no_caution() {
     let mut records = flights(1, 0, calm);
-    let facts = |records: &[FlightRecord]| {
-        let prepared = prepare(records, &options().preparation, &Sequential).unwrap();
-        assert_eq!(prepared.cautions, []);
-        prepared
-            .records
-            .iter()
-            .flat_map(RecordUse::facts)
-            .collect::<Vec<String>>()
-    };
     assert_eq!(facts(&records), Vec::<String>::new());
     // A sweep of amplitude 1 is beyond 0.9 for 29 % of the time; the remnant makes that less.
     records[0].inputs.apply(|u| *u = u.clamp(-0.9, 0.9));
@@ -356,7 +344,8 @@ fn sweeps(model: &StateSpace, random: &mut Generator) -> Vec<FlightRecord> {
     const STEP_S: f64 = 0.02;
     let time_s: Vec<f64> = (0..3000).map(|k| STEP_S * f64::from(k)).collect();
     let plant = FirstOrderHold::of(model, STEP_S).unwrap();
-    let mut sweep = |swept: usize| {
+    let mut records = Vec::new();
+    for swept in 0..model.inputs() {
         let mut slow = vec![0.0; model.inputs()];
         let inputs = DMatrix::from_fn(model.inputs(), time_s.len(), |input, k| {
             slow[input] = 0.95 * slow[input] + 0.02 * random.normal();
@@ -376,14 +365,14 @@ fn sweeps(model: &StateSpace, random: &mut Generator) -> Vec<FlightRecord> {
             let noise = 0.02 * (column.norm_squared() / column.len() as f64).sqrt();
             column.apply(|y| *y += noise * random.normal());
         }
-        FlightRecord {
+        records.push(FlightRecord {
             name: format!("sweep {swept}"),
             time_s: time_s.clone(),
             inputs,
             outputs,
-        }
-    };
-    (0..model.inputs()).map(&mut sweep).collect()
+        });
+    }
+    records
 }
 
 /// Asserts that the model of flown records has the response of the aircraft within half a decibel
@@ -392,21 +381,17 @@ fn assert_identified(inputs: usize, outputs: usize) {
     let mut random = Generator::new(7 + 100 * inputs as u64 + outputs as u64);
     let truth = aircraft(inputs, outputs, &mut random);
     let records = sweeps(&truth, &mut random);
-    let names = |letter: char, count: usize| {
-        (0..count)
-            .map(|at| format!("{letter}{at}"))
-            .collect::<Vec<_>>()
-    };
-    let of_inputs = names('u', inputs);
-    let of_outputs = names('y', outputs);
-    let [of_inputs, of_outputs]: [Vec<&str>; 2] =
-        [&of_inputs, &of_outputs].map(|names| names.iter().map(String::as_str).collect());
-    let options = Options::new([1.0, 12.0], Preparation::of(&of_inputs, &of_outputs));
+    let preparation = Preparation::of(
+        &["u0", "u1", "u2", "u3", "u4", "u5", "u6", "u7"][..inputs],
+        &[
+            "y0", "y1", "y2", "y3", "y4", "y5", "y6", "y7", "y8", "y9", "y10", "y11",
+        ][..outputs],
+    );
+    let options = Options::new([1.0, 12.0], preparation);
     let found = identify(&records, &options, &Sequential, &Unobserved).unwrap();
     let grid = FrequencyGrid::logarithmic(Band::new(1.2, 10.0).unwrap(), 8);
-    let response = |dynamics: &Dynamics| PreparedModel::of(dynamics).response(&grid);
-    let is = response(&found.refined.dynamics);
-    let expected = response(&Dynamics::StateSpace(truth));
+    let identified = PreparedModel::of(&found.refined.dynamics).response(&grid);
+    let expected = PreparedModel::of(&Dynamics::StateSpace(truth)).response(&grid);
     for output in 0..outputs {
         let strongest = (0..inputs)
             .flat_map(|input| expected.curve(Pair::new(output, input)))
@@ -414,13 +399,13 @@ fn assert_identified(inputs: usize, outputs: usize) {
         let strongest = strongest.fold(0.0, f64::max);
         for input in 0..inputs {
             let pair = Pair::new(output, input);
-            for (is, expected) in is.curve(pair).iter().zip(expected.curve(pair)) {
+            for (found, expected) in identified.curve(pair).iter().zip(expected.curve(pair)) {
                 // Noise is a fiftieth of an output, whichever input moves it: weak responses are
                 // known less well.
-                let error = (is - expected).norm() / expected.norm().max(0.3 * strongest);
+                let error = (found - expected).norm() / expected.norm().max(0.3 * strongest);
                 assert!(
                     error < 0.06,
-                    "{inputs} x {outputs}, {pair:?}: {is} for {expected}"
+                    "{inputs} x {outputs}, {pair:?}: {found} for {expected}"
                 );
             }
         }

@@ -7,38 +7,38 @@ use serde_json::Value;
 use gdcm_model::dataset::{Pair, StateSpace};
 use gdcm_model::executor::Sequential;
 
-use crate::identification::likelihood::{Likelihood, SpectralLines};
-use crate::identification::spectrum::Spectrum;
+use crate::likelihood::cost::{Likelihood, SpectralLines};
+use crate::spectra::spectrum::Spectrum;
 
 /// Reads the file of known answers.
-pub(super) fn answers() -> Value {
+pub(crate) fn answers() -> Value {
     serde_json::from_str(include_str!(
         "../../../../tests/data/identification-known-answers.json"
     ))
     .unwrap()
 }
 
-pub(super) fn number(value: &Value) -> f64 {
+pub(crate) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
-pub(super) fn numbers(value: &Value) -> Vec<f64> {
+pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(number).collect()
 }
 
 /// Reads a matrix that is written row by row.
-pub(super) fn matrix(value: &Value) -> DMatrix<f64> {
+pub(crate) fn matrix(value: &Value) -> DMatrix<f64> {
     let rows: Vec<Vec<f64>> = value.as_array().unwrap().iter().map(numbers).collect();
     DMatrix::from_fn(rows.len(), rows[0].len(), |row, column| rows[row][column])
 }
 
 /// Reads a complex matrix from its real and imaginary parts.
-pub(super) fn complex_matrix(value: &Value) -> DMatrix<Complex<f64>> {
+pub(crate) fn complex_matrix(value: &Value) -> DMatrix<Complex<f64>> {
     matrix(&value["re"]).zip_map(&matrix(&value["im"]), Complex::new)
 }
 
 /// Reads a complex matrix at each frequency.
-pub(super) fn response(value: &Value) -> Vec<DMatrix<Complex<f64>>> {
+pub(crate) fn response(value: &Value) -> Vec<DMatrix<Complex<f64>>> {
     let re = value["re"].as_array().unwrap().iter().map(matrix);
     let im = value["im"].as_array().unwrap().iter().map(matrix);
     re.zip(im)
@@ -47,7 +47,7 @@ pub(super) fn response(value: &Value) -> Vec<DMatrix<Complex<f64>>> {
 }
 
 /// Reads the lines of all records of a case, with noise of variance one.
-pub(super) fn known_records(known: &Value) -> Likelihood<'static> {
+pub(crate) fn known_records(known: &Value) -> Likelihood<'static> {
     let segments =
         known["records"]
             .as_array()
@@ -72,7 +72,7 @@ pub(super) fn known_records(known: &Value) -> Likelihood<'static> {
 }
 
 /// Evaluates the response of a model at a frequency \[rad/s\].
-pub(super) fn response_at(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
+pub(crate) fn response_at(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
     let response = gdcm_model::response::evaluate(model, &[omega]);
     DMatrix::from_fn(model.outputs(), model.inputs(), |output, input| {
         response.curve(Pair::new(output, input))[0]

@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 
 use gdcm_model::progress::Shares;
 
-use super::cautions::IdentificationCaution;
-use super::identification_error::IdentificationError;
-use super::likelihood::Likelihood;
-use super::options::Options;
 use super::order::OrderSearch;
 use super::prepared_data::PreparedData;
-use super::record_fits::fits_of_records;
-use super::refinement::{Fit, LEAST_GAIN};
-use super::subspace::{StabilisationPoint, stabilisation};
+use crate::diagnostics::cautions::IdentificationCaution;
+use crate::diagnostics::record_fits::fits_of_records;
+use crate::identification_error::IdentificationError;
+use crate::likelihood::cost::Likelihood;
+use crate::likelihood::refinement::{Fit, LEAST_GAIN};
+use crate::options::Options;
+use crate::subspace::stabilisation::{StabilisationPoint, stabilisation};
 
 /// Most further steps for the chosen order, after the comparison.
 const FURTHER_STEPS: usize = 15;
@@ -22,33 +22,33 @@ const STEPS_AFTER_REWEIGHING: usize = 3;
 const ALIKE: f64 = 1.5;
 
 /// The models that CT-PBSID proposes.
-pub(super) struct Proposal {
+pub(crate) struct Proposal {
     /// Best Laguerre pole \[rad/s\].
-    pub(super) laguerre_pole: f64,
+    pub(crate) laguerre_pole: f64,
     /// Best past window.
-    pub(super) past: usize,
+    pub(crate) past: usize,
     /// Each order's cheapest model.
-    pub(super) starts: BTreeMap<usize, Fit>,
+    pub(crate) starts: BTreeMap<usize, Fit>,
     /// Poles over orders at the best Laguerre pole and past window.
-    pub(super) stabilisation: Vec<StabilisationPoint>,
+    pub(crate) stabilisation: Vec<StabilisationPoint>,
 }
 
 /// The chosen order, refined.
-pub(super) struct Refinement<'a> {
+pub(crate) struct Refinement<'a> {
     /// The orders that were compared.
-    pub(super) search: OrderSearch,
+    pub(crate) search: OrderSearch,
     /// The recommended model.
-    pub(super) fit: Fit,
+    pub(crate) fit: Fit,
     /// The model before records were reweighed, if they were: a minimum over the data as measured.
-    pub(super) before_reweighing: Option<Fit>,
+    pub(crate) before_reweighing: Option<Fit>,
     /// The cost that `fit` minimises.
-    pub(super) likelihood: Likelihood<'a>,
+    pub(crate) likelihood: Likelihood<'a>,
     /// Reports changed weights.
-    pub(super) caution: Option<IdentificationCaution>,
+    pub(crate) caution: Option<IdentificationCaution>,
 }
 
 /// Runs CT-PBSID for every Laguerre pole and past window, and reports a first model to `progress`.
-pub(super) fn propose(
+pub(crate) fn propose(
     data: &PreparedData,
     options: &Options,
     progress: &Shares,
@@ -73,7 +73,7 @@ pub(super) fn propose(
 }
 
 /// Chooses the order, refines its model further, and reweighs records once if they differ in noise.
-pub(super) fn refine<'a>(
+pub(crate) fn refine<'a>(
     data: &PreparedData<'a>,
     proposal: &Proposal,
     progress: &Shares,

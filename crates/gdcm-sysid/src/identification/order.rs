@@ -22,11 +22,11 @@ use nalgebra::Complex;
 use gdcm_model::executor::each;
 use gdcm_model::progress::Shares;
 
-use super::blocks::BlockModel;
-use super::identification_error::IdentificationError;
-use super::likelihood::Likelihood;
 use super::prepared_data::PreparedData;
-use super::refinement::{Fit, LEAST_GAIN};
+use crate::identification_error::IdentificationError;
+use crate::likelihood::blocks::BlockModel;
+use crate::likelihood::cost::Likelihood;
+use crate::likelihood::refinement::{Fit, LEAST_GAIN};
 
 /// The highest order at which the search begins.
 const FIRST: usize = 16;
@@ -67,19 +67,19 @@ const FOR_LARGE_MODELS: Thoroughness = Thoroughness {
 
 /// The orders that were compared.
 #[derive(Clone, Debug)]
-pub(super) struct OrderSearch {
-    pub(super) fits: BTreeMap<usize, Fit>,
+pub(crate) struct OrderSearch {
+    pub(crate) fits: BTreeMap<usize, Fit>,
     /// BIC by order.
-    pub(super) criteria: BTreeMap<usize, f64>,
+    pub(crate) criteria: BTreeMap<usize, f64>,
     /// The chosen order.
-    pub(super) order: usize,
+    pub(crate) order: usize,
     /// Whether the criterion still falls at the highest available order.
-    pub(super) still_falls: bool,
+    pub(crate) still_falls: bool,
 }
 
 impl OrderSearch {
     /// Returns the unrefined model with which the search begins.
-    pub(super) fn first<'s>(
+    pub(crate) fn first<'s>(
         starts: &'s BTreeMap<usize, Fit>,
         likelihood: &Likelihood,
     ) -> Option<&'s Fit> {
@@ -87,7 +87,7 @@ impl OrderSearch {
     }
 
     /// Returns the next lower and the next higher order's model, unless they are starved.
-    pub(super) fn neighbours(&self) -> Vec<&BlockModel> {
+    pub(crate) fn neighbours(&self) -> Vec<&BlockModel> {
         let below = self.fits.range(..self.order).next_back();
         let above = self.fits.range(self.order + 1..).next();
         let most = STARVED
@@ -145,7 +145,7 @@ fn order_of_least(values: &BTreeMap<usize, f64>) -> Option<usize> {
 
 impl PreparedData<'_> {
     /// Searches the order from the unrefined models `starts`; `None` if the data carry no model.
-    pub(super) fn search_order(
+    pub(crate) fn search_order(
         &self,
         starts: &BTreeMap<usize, Fit>,
         progress: &Shares,
@@ -322,7 +322,7 @@ fn within(criteria: &BTreeMap<usize, f64>, best: usize, share: f64) -> BTreeMap<
 }
 
 /// Returns an unstable pole faster than `highest` \[rad/s\], which no line shows.
-pub(super) fn fast_unstable_pole(model: &BlockModel, highest: f64) -> Option<Complex<f64>> {
+pub(crate) fn fast_unstable_pole(model: &BlockModel, highest: f64) -> Option<Complex<f64>> {
     model
         .blocks
         .iter()

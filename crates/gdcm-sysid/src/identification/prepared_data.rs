@@ -11,22 +11,23 @@ use gdcm_model::progress::Shares;
 use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::simulation::{FlightRecord, Segment, centred};
 
-use super::blocks::BlockModel;
-use super::cautions::IdentificationCaution;
-use super::cut_off::CutOff;
-use super::identification_error::IdentificationError;
-use super::instrument::Instrument;
-use super::likelihood::{Likelihood, SpectralLines};
-use super::local_polynomial::{LocalPolynomialError, local_polynomial};
-use super::noise_covariance::NoiseCovariance;
-use super::options::Options;
-use super::preparation::{RecordUse, prepare};
-use super::record_cautions::RecordCaution;
-use super::response_estimate::ResponseEstimate;
-use super::scales::{Scales, ScalingError};
-use super::search_extent::{Extent, FIGURES_AN_UNKNOWN, parameters_of_order};
-use super::spectrum::{LineRange, Spectrum};
-use super::subspace::SubspaceSettings;
+use super::candidates::SubspaceSettings;
+use crate::diagnostics::cautions::IdentificationCaution;
+use crate::diagnostics::model_doubts::MeasuredData;
+use crate::identification_error::IdentificationError;
+use crate::likelihood::blocks::BlockModel;
+use crate::likelihood::cost::{Likelihood, SpectralLines};
+use crate::likelihood::noise_covariance::NoiseCovariance;
+use crate::options::Options;
+use crate::spectra::cut_off::CutOff;
+use crate::spectra::instrument::Instrument;
+use crate::spectra::local_polynomial::{LocalPolynomialError, local_polynomial};
+use crate::spectra::preparation::{RecordUse, prepare};
+use crate::spectra::record_cautions::RecordCaution;
+use crate::spectra::response_estimate::ResponseEstimate;
+use crate::spectra::scales::{Scales, ScalingError};
+use crate::spectra::spectrum::{LineRange, Spectrum};
+use crate::subspace::search_extent::{Extent, FIGURES_AN_UNKNOWN, parameters_of_order};
 
 /// Frequencies in the measured response.
 const MEASURED_POINTS: usize = 40;
@@ -46,34 +47,34 @@ const BETTER_PERIODS: f64 = 5.0;
 const PERIODS_AN_INPUT: f64 = 3.0;
 
 /// Records, prepared, transformed and weighed.
-pub(super) struct PreparedData<'a> {
+pub(crate) struct PreparedData<'a> {
     /// Used parts of every record.
-    pub(super) record_uses: Vec<RecordUse>,
+    pub(crate) record_uses: Vec<RecordUse>,
     /// Record units over scaled units.
-    pub(super) scales: Scales,
+    pub(crate) scales: Scales,
     /// Segments to fit, low-passed for the projections.
-    pub(super) segments: Vec<Segment>,
+    pub(crate) segments: Vec<Segment>,
     /// The same without the filter.
-    pub(super) unfiltered: Vec<Segment>,
+    pub(crate) unfiltered: Vec<Segment>,
     /// The lines behind the measured response.
-    pub(super) lines: LineRange,
+    pub(crate) lines: LineRange,
     /// Held-out segments in record units.
-    pub(super) held_out_segments: Vec<Segment>,
+    pub(crate) held_out_segments: Vec<Segment>,
     /// Spectral lines to fit.
-    pub(super) spectra: Vec<Spectrum>,
+    pub(crate) spectra: Vec<Spectrum>,
     /// The response without a model.
-    pub(super) measured: ResponseEstimate,
+    pub(crate) measured: ResponseEstimate,
     /// The cost over the fitted records.
-    pub(super) likelihood: Likelihood<'a>,
+    pub(crate) likelihood: Likelihood<'a>,
     /// The cost over the lines as logged, if the fit uses the lines seen through a reference
     /// (M14.15).
-    pub(super) direct: Option<Likelihood<'a>>,
+    pub(crate) direct: Option<Likelihood<'a>>,
     /// The cost over the held-out records.
-    pub(super) held_out: Likelihood<'a>,
+    pub(crate) held_out: Likelihood<'a>,
     /// Highest line used \[rad/s\].
-    pub(super) highest: f64,
+    pub(crate) highest: f64,
     /// Doubts about the records.
-    pub(super) cautions: Vec<IdentificationCaution>,
+    pub(crate) cautions: Vec<IdentificationCaution>,
 }
 
 impl<'a> PreparedData<'a> {
@@ -86,7 +87,7 @@ impl<'a> PreparedData<'a> {
     /// 4  line weights, for the fit and for the held-out records
     /// 5  low-pass for the projections
     /// ```
-    pub(super) fn new(
+    pub(crate) fn new(
         records: &[FlightRecord],
         options: &Options,
         executor: &'a dyn Executor,
@@ -153,7 +154,7 @@ impl<'a> PreparedData<'a> {
 
     /// Returns the settings of CT-PBSID: the options, completed by what the records can
     /// carry (M14.13).
-    pub(super) fn subspace_settings(&self, options: &Options) -> SubspaceSettings {
+    pub(crate) fn subspace_settings(&self, options: &Options) -> SubspaceSettings {
         let outputs = self.scales.outputs.len();
         let highest = options.band[1];
         let extent = Extent {
@@ -184,7 +185,7 @@ impl<'a> PreparedData<'a> {
 
     /// Converts a model to record units: each response is multiplied by the output's
     /// scale over the input's. `None` if the model is not finite.
-    pub(super) fn in_units(&self, model: &BlockModel) -> Option<StateSpace> {
+    pub(crate) fn in_units(&self, model: &BlockModel) -> Option<StateSpace> {
         let mut scaled = model.clone();
         for (input, scale) in self.scales.inputs.iter().enumerate() {
             scaled.b.column_mut(input).unscale_mut(*scale);
@@ -197,8 +198,17 @@ impl<'a> PreparedData<'a> {
         scaled.state_space()
     }
 
+    /// Returns the data to examine a model with.
+    pub(crate) fn measured_data(&self) -> MeasuredData<'_> {
+        MeasuredData {
+            spectra: &self.spectra,
+            measured: &self.measured,
+            executor: self.likelihood.executor,
+        }
+    }
+
     /// The error that no model was found.
-    pub(super) fn no_model(&self) -> IdentificationError {
+    pub(crate) fn no_model(&self) -> IdentificationError {
         IdentificationError::NoModel {
             lines: self.line_count(),
             seconds: self.duration_s(),

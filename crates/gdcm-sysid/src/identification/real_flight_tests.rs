@@ -7,27 +7,31 @@ use serde_json::Value;
 use gdcm_model::dataset::channel::Pair;
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Shares, Unobserved};
+use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::response::median;
+use gdcm_model::simulation::{FlightRecord, Segment};
 
-use super::*;
-use crate::identification::blocks::BlockModel;
-use crate::identification::channel_quality::Clipping;
-use crate::identification::diagnostics::{Departure, Diagnostics, predict_points};
-use crate::identification::feedback::{Feedback, FeedbackRecords};
-use crate::identification::identify::identify;
-use crate::identification::known_answers_tests::{matrix, number, numbers, response_at};
-use crate::identification::local_polynomial::local_polynomial;
-use crate::identification::model_selection::{propose, refine};
-use crate::identification::preparation::prepare;
-use crate::identification::prepared_data::PreparedData;
-use crate::identification::record_contrast::RecordContrasts;
-use crate::identification::record_fault::RecordFault;
-use crate::identification::response_estimate::EstimatePoint;
-use crate::identification::scales::Scales;
-use crate::identification::uncertainty::{BandModels, ParameterCovariance};
+use super::identify::identify;
+use super::known_answers_tests::{matrix, number, numbers, response_at};
+use super::model_selection::{propose, refine};
+use super::prepared_data::PreparedData;
+use super::{Identification, IdentificationCaution, Options, Preparation, TRUSTED_COHERENCE};
+use crate::diagnostics::bands::BandModels;
+use crate::diagnostics::feedback::{Feedback, FeedbackRecords};
+use crate::diagnostics::model_doubts::{Departure, Diagnostics, predict_points};
+use crate::diagnostics::record_contrast::RecordContrasts;
+use crate::diagnostics::record_fault::RecordFault;
+use crate::likelihood::blocks::BlockModel;
+use crate::likelihood::covariance::ParameterCovariance;
+use crate::spectra::channel_quality::Clipping;
+use crate::spectra::local_polynomial::local_polynomial;
+use crate::spectra::preparation::prepare;
+use crate::spectra::response_estimate::EstimatePoint;
+use crate::spectra::scales::Scales;
+use crate::spectra::spectrum::spectra;
 
 /// Reads the file of known answers.
-pub(super) fn known() -> Value {
+pub(crate) fn known() -> Value {
     serde_json::from_str(include_str!(
         "../../../../tests/data/identification-real-known-answers.json"
     ))
@@ -35,10 +39,10 @@ pub(super) fn known() -> Value {
 }
 
 /// The random generator of the file.
-pub(super) struct Generator(u32);
+pub(crate) struct Generator(u32);
 
 impl Generator {
-    pub(super) fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(seed as u32)
     }
 
@@ -47,22 +51,22 @@ impl Generator {
         f64::from(self.0) / f64::from(u32::MAX).mul_add(1.0, 1.0)
     }
 
-    pub(super) fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }
 }
 
 /// One flight of the file.
 #[derive(Clone, Copy)]
-pub(super) struct Flown {
-    pub(super) seed: u64,
-    pub(super) seconds: f64,
-    pub(super) gust: f64,
-    pub(super) amp: f64,
-    pub(super) noise: f64,
-    pub(super) feedback: f64,
-    pub(super) remnant: f64,
-    pub(super) late: usize,
+pub(crate) struct Flown {
+    pub(crate) seed: u64,
+    pub(crate) seconds: f64,
+    pub(crate) gust: f64,
+    pub(crate) amp: f64,
+    pub(crate) noise: f64,
+    pub(crate) feedback: f64,
+    pub(crate) remnant: f64,
+    pub(crate) late: usize,
 }
 
 impl Flown {
@@ -80,7 +84,7 @@ impl Flown {
     }
 
     /// A sweep with a little remnant, seen through noise.
-    pub(super) fn calm(seed: u64, late: usize) -> Self {
+    pub(crate) fn calm(seed: u64, late: usize) -> Self {
         Self {
             seed,
             seconds: 60.0,
@@ -94,7 +98,7 @@ impl Flown {
     }
 
     /// Returns the record, and the sweep that drove it from outside.
-    pub(super) fn record(self, file: &Value) -> (FlightRecord, Vec<f64>) {
+    pub(crate) fn record(self, file: &Value) -> (FlightRecord, Vec<f64>) {
         let generator = &file["generator"];
         let f = matrix(&generator["F"]);
         let g = matrix(&generator["G"]);
@@ -143,7 +147,7 @@ impl Flown {
     }
 }
 
-pub(super) fn options() -> Options {
+pub(crate) fn options() -> Options {
     Options::new([1.0, 12.0], Preparation::of(&["LON"], &["Q"]))
 }
 
@@ -165,8 +169,15 @@ fn assert_is_the_flight(record: &FlightRecord, check: &Value) {
     );
 }
 
+fn whole_numbers(value: &Value) -> Vec<usize> {
+    numbers(value)
+        .into_iter()
+        .map(|value| value as usize)
+        .collect()
+}
+
 #[test]
-fn the_short_record_of_one_axis_gives_the_model_of_independent_code() {
+fn lines_orders_and_past_windows_of_a_short_record_match_independent_code() {
     let file = known();
     let known = &file["short_siso"];
     let (record, _) = Flown::from_answers(&known["record"], 11).record(&file);
@@ -179,40 +190,38 @@ fn the_short_record_of_one_axis_gives_the_model_of_independent_code() {
         &progress,
     )
     .unwrap();
-    let lines: Vec<f64> = data
+    let lines: Vec<usize> = data
         .spectra
         .iter()
-        .map(|of| of.omega.len() as f64)
+        .map(|spectrum| spectrum.omega.len())
         .collect();
-    assert_eq!(lines, numbers(&known["lines"]));
+    assert_eq!(lines, whole_numbers(&known["lines"]));
     let settings = data.subspace_settings(&options());
-    let whole = |name: &str| {
-        numbers(&known[name])
-            .into_iter()
-            .map(|value| value as usize)
-            .collect::<Vec<_>>()
-    };
-    assert_eq!(
-        (settings.orders, settings.pasts),
-        (whole("orders"), whole("pasts"))
-    );
+    assert_eq!(settings.orders, whole_numbers(&known["orders"]));
+    assert_eq!(settings.pasts, whole_numbers(&known["pasts"]));
+}
 
-    let (held_out, _) = Flown {
+/// Identifies the short record with a further record held out.
+fn short_record_identified(file: &Value) -> Identification {
+    let answers = &file["short_siso"]["record"];
+    let (record, _) = Flown::from_answers(answers, 11).record(file);
+    let longer = Flown {
         seconds: 60.0,
-        ..Flown::from_answers(&known["record"], 12)
-    }
-    .record(&file);
-    let with_held_out = Options {
+        ..Flown::from_answers(answers, 12)
+    };
+    let (held_out, _) = longer.record(file);
+    let options = Options {
         held_out: vec![1],
         ..options()
     };
-    let found = identify(
-        &[record, held_out],
-        &with_held_out,
-        &Sequential,
-        &Unobserved,
-    )
-    .unwrap();
+    identify(&[record, held_out], &options, &Sequential, &Unobserved).unwrap()
+}
+
+#[test]
+fn the_short_record_of_one_axis_gives_the_model_of_independent_code() {
+    let file = known();
+    let known = &file["short_siso"];
+    let found = short_record_identified(&file);
     let expected = &known["expected"];
     let order = found.refined.order().unwrap() as f64;
     let range = numbers(&expected["order_range"]);
@@ -292,7 +301,7 @@ fn the_measured_response_of_a_short_record_is_that_of_independent_code() {
 }
 
 /// Returns the codes of the cautions.
-pub(super) fn codes(found: &Identification) -> Vec<&'static str> {
+pub(crate) fn codes(found: &Identification) -> Vec<&'static str> {
     found
         .cautions
         .iter()
@@ -300,40 +309,47 @@ pub(super) fn codes(found: &Identification) -> Vec<&'static str> {
         .collect()
 }
 
+/// Identifies a record at these orders, and measures the model's distance from its points.
+fn departure(record: &FlightRecord, orders: Option<Vec<usize>>) -> Departure {
+    let options = Options {
+        orders,
+        ..options()
+    };
+    let progress = Shares::new(&Unobserved);
+    let records = std::slice::from_ref(record);
+    let data = PreparedData::new(records, &options, &Sequential, &progress).unwrap();
+    let proposal = propose(&data, &options, &progress).unwrap();
+    let refinement = refine(&data, &proposal, &progress).unwrap();
+    let predicted = predict_points(&refinement.fit.model, &data.measured_data(), &options);
+    Departure::measure(&predicted, &data.measured, options.band, (0, 0))
+}
+
 #[test]
 fn a_model_of_too_low_an_order_leaves_its_points() {
     let file = known();
     let (record, _) = Flown::from_answers(&file["short_siso"]["record"], 11).record(&file);
-    let with_orders = |orders| {
-        let options = Options {
-            orders,
-            ..options()
-        };
-        let progress = Shares::new(&Unobserved);
-        let data = PreparedData::new(
-            std::slice::from_ref(&record),
-            &options,
-            &Sequential,
-            &progress,
-        )
-        .unwrap();
-        let proposal = propose(&data, &options, &progress).unwrap();
-        let refinement = refine(&data, &proposal, &progress).unwrap();
-        let predicted = predict_points(&refinement.fit.model, &data, &options);
-        Departure::measure(&predicted, &data.measured, options.band, (0, 0))
-    };
-    let good = with_orders(None);
+    let good = departure(&record, None);
     assert!(
         good.greatest < number(&file["points"]["T_max_chosen_order"]) && good.band.is_none(),
         "{}",
         good.greatest
     );
-    let low = with_orders(Some(vec![1]));
+    let low = departure(&record, Some(vec![1]));
     assert!(
         low.greatest > number(&file["points"]["threshold"]) && low.band.is_some(),
         "{}",
         low.greatest
     );
+}
+
+/// Flies once for each seed of the known answers.
+fn flown_with_seeds(file: &Value, answers: &Value) -> Vec<FlightRecord> {
+    let mut records = Vec::new();
+    for seed in numbers(&answers["seeds"]) {
+        let (record, _) = Flown::from_answers(answers, seed as u64).record(file);
+        records.push(record);
+    }
+    records
 }
 
 fn measured_feedback(data: &PreparedData, model: &BlockModel) -> Feedback {
@@ -349,33 +365,21 @@ fn measured_feedback(data: &PreparedData, model: &BlockModel) -> Feedback {
 fn the_feedback_matches_independent_code() {
     let file = known();
     for known in file["feedback"].as_array().unwrap() {
-        let flown = |seed: f64| {
-            Flown::from_answers(&known["records"], seed as u64)
-                .record(&file)
-                .0
-        };
-        let records: Vec<FlightRecord> = numbers(&known["records"]["seeds"])
-            .into_iter()
-            .map(flown)
-            .collect();
+        let records = flown_with_seeds(&file, &known["records"]);
         assert_is_the_flight(&records[0], &known["check"]);
         let progress = Shares::new(&Unobserved);
         let data = PreparedData::new(&records, &options(), &Sequential, &progress).unwrap();
         let proposal = propose(&data, &options(), &progress).unwrap();
         let model = refine(&data, &proposal, &progress).unwrap().fit.model;
         let feedback = measured_feedback(&data, &model);
-        let near = |found: f64, name: &str| {
-            let (known, tolerance) = (
-                number(&known[name]),
-                number(&known[format!("{name}_tolerance_relative")]),
-            );
+        for (found, name) in [(feedback.share, "b"), (feedback.significance, "z")] {
+            let expected = number(&known[name]);
+            let tolerance = number(&known[format!("{name}_tolerance_relative")]);
             assert!(
-                (found / known - 1.0).abs() < tolerance,
-                "{name} {found}, not {known}"
+                (found / expected - 1.0).abs() < tolerance,
+                "{name} {found}, not {expected}"
             );
-        };
-        near(feedback.share, "b");
-        near(feedback.significance, "z");
+        }
         assert_eq!(feedback.level() as u64, known["level"].as_u64().unwrap());
     }
 }
@@ -383,21 +387,9 @@ fn the_feedback_matches_independent_code() {
 #[test]
 fn bands_are_widened_from_a_fed_back_share_of_0_04_on() {
     let file = known();
-    for (known, is_widened) in file["feedback"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|of| (of, of["name"] != "calm"))
-    {
-        let flown = |seed: f64| {
-            Flown::from_answers(&known["records"], seed as u64)
-                .record(&file)
-                .0
-        };
-        let records: Vec<FlightRecord> = numbers(&known["records"]["seeds"])
-            .into_iter()
-            .map(flown)
-            .collect();
+    for known in file["feedback"].as_array().unwrap() {
+        let is_widened = known["name"] != "calm";
+        let records = flown_with_seeds(&file, &known["records"]);
         let progress = Shares::new(&Unobserved);
         let data = PreparedData::new(&records, &options(), &Sequential, &progress).unwrap();
         let proposal = propose(&data, &options(), &progress).unwrap();
@@ -407,16 +399,14 @@ fn bands_are_widened_from_a_fed_back_share_of_0_04_on() {
         let covariance =
             ParameterCovariance::from_systems(&data.likelihood, &fit, &systems, fit.cost).unwrap();
         let omegas = log_spaced(1.0, 12.0, 24);
-        let bands = |feedback: Option<&Feedback>| {
+        let [plain, widened] = [None, Some(&feedback)].map(|feedback| {
             let models = BandModels {
                 model: &fit.model,
                 neighbours: &[],
                 feedback,
             };
-            covariance.bands(&models, &omegas, &Sequential).unwrap()
-        };
-        let plain = bands(None);
-        let widened = bands(Some(&feedback));
+            models.bands(&covariance, &omegas, &Sequential).unwrap()
+        });
         assert_eq!(
             feedback.share >= 0.04,
             is_widened,
@@ -451,12 +441,11 @@ fn the_late_record_is_named_with_its_delay() {
     for known in file["records"].as_array().unwrap() {
         let count = known["records"].as_u64().unwrap();
         let late = known["late_samples_of_last"].as_u64().unwrap() as usize;
-        let flown = |at: u64| {
-            Flown::calm(200 + at, if at + 1 == count { late } else { 0 })
-                .record(&file)
-                .0
-        };
-        let records: Vec<FlightRecord> = (0..count).map(flown).collect();
+        let mut records = Vec::new();
+        for at in 0..count {
+            let late = if at + 1 == count { late } else { 0 };
+            records.push(Flown::calm(200 + at, late).record(&file).0);
+        }
         let progress = Shares::new(&Unobserved);
         let data = PreparedData::new(&records, &options(), &Sequential, &progress).unwrap();
         let proposal = propose(&data, &options(), &progress).unwrap();
@@ -480,7 +469,7 @@ fn the_late_record_is_named_with_its_delay() {
         let diagnostics = Diagnostics {
             records: &records,
             options: &options(),
-            data: &data,
+            data: data.measured_data(),
             fit,
         };
         let named = match contrasts.caution(false, &diagnostics) {

@@ -3,16 +3,16 @@
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::units::{number, telling};
 
-use crate::identification::topics::TopicError;
+use super::topics::TopicError;
 
 /// Reasons why the chosen columns cannot be used as they are.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LayoutProblem {
-    /// The time of the samples is missing; lists the available columns.
-    #[error("no column gives the time; say which does, or the sample rate (columns: {0})")]
+    /// The layout has no time; lists the available columns.
+    #[error("no time column; choose a column or give the sample rate (columns: {0})")]
     NoTime(String),
     /// A requested column does not exist.
-    #[error("there is no column \"{name}\"; there are {found}")]
+    #[error("there is no column \"{name}\" (columns: {found})")]
     NoSuchColumn {
         name: String,
         /// The available columns.
@@ -21,17 +21,17 @@ pub enum LayoutProblem {
     /// Stamps repeat or decrease.
     #[error(
         "the time in column {column} does not increase at {count} of {samples} samples, first at sample {sample} ({} s follows \
-         {} s); choose another column, give the sample rate in its place, or cut the file there",
+         {} s); choose another column, give the sample rate instead, or cut the file there",
         number(*after), number(*before)
     )]
     TimeOrder {
         /// In quotation marks.
         column: String,
-        /// Number of such stamps.
+        /// Count of repeated or decreasing stamps.
         count: usize,
-        /// Total number.
+        /// Sample count.
         samples: usize,
-        /// The first of them, counted from 1.
+        /// First such sample, counted from 1.
         sample: usize,
         /// The stamp before it \[s\].
         before: f64,
@@ -40,7 +40,7 @@ pub enum LayoutProblem {
     },
     /// Time steps are too long for a manoeuvre.
     #[error(
-        "the time in column {column} goes in steps of {} s: its unit is another, or it is no time",
+        "the time in column {column} has steps of {} s: its unit is wrong, or it is not a time",
         telling(*step_s, 3)
     )]
     TimeStep {
@@ -53,7 +53,7 @@ pub enum LayoutProblem {
     #[error("the sample time is {} s; it must be a positive number of seconds", number(*.0))]
     SampleTime(f64),
     /// No column matches this channel.
-    #[error("no column is the {side} {channel}; say which is (columns: {found})")]
+    #[error("no column for the {side} {channel}; choose a column (columns: {found})")]
     NoColumn {
         side: ChannelSide,
         channel: String,
@@ -61,28 +61,27 @@ pub enum LayoutProblem {
         found: String,
     },
     /// Several columns match this channel.
-    #[error("several columns can be the {side} {channel}: {found}; say which is")]
+    #[error("several columns can be the {side} {channel}: {found}; choose one")]
     SeveralColumns {
         side: ChannelSide,
         channel: String,
-        /// The names of these columns.
+        /// Column names, quoted.
         found: String,
     },
     /// The columns have no names.
     #[error(
-        "the file has {found} columns without names; say which column is which channel, by its number: {channel}=#2, and so on for \
-         each"
+        "the file has {found} columns without names; give the column number of each channel, as in {channel}=#2"
     )]
     Unnamed {
         /// The first channel.
         channel: String,
-        /// Number of columns in the file.
+        /// Column count.
         found: usize,
     },
     /// The column name leaves the sign open.
     #[error(
-        "nothing says whether column \"{column}\" is positive in the direction in which {channel} is; say it: {channel}={plain} \
-         takes the column as it is, {channel}=-{plain} turns it"
+        "the sign of column \"{column}\" relative to {channel} is unknown; {channel}={plain} keeps the sign, \
+         {channel}=-{plain} reverses it"
     )]
     Sign {
         channel: String,
@@ -90,22 +89,23 @@ pub enum LayoutProblem {
         /// The column name without sign marks.
         plain: String,
     },
-    /// Neither the file nor the samples determine the unit.
+    /// Neither file nor samples determine the unit.
     #[error(
-        "the file does not say the unit of {channel} (column {column}), and its samples can be in {units}; say which: \
-         --unit \"{channel}={unit}\", or page Columns"
+        "the file does not give the unit of {channel} (column {column}), and its samples can be in {units}; choose it \
+         with --unit \"{channel}={unit}\" or on page Columns"
     )]
     UnsaidUnit {
         channel: String,
         /// In quotation marks.
         column: String,
-        /// Unit of the channel.
+        /// The channel's unit.
         unit: String,
-        /// Possible units of the samples, as a list.
+        /// Units that fit the samples, as a list.
         units: String,
     },
+    /// The file's unit has another dimension than the channel's.
     #[error(
-        "{channel} has the unit \"{from}\" in the file (column {column}) and \"{to}\" is wanted: there is no factor from one to the other; say one"
+        "{channel}: the unit \"{from}\" in the file (column {column}) cannot be converted to \"{to}\"; give a factor"
     )]
     Conversion {
         channel: String,
@@ -118,7 +118,7 @@ pub enum LayoutProblem {
     },
     /// Two channels use the same column.
     #[error(
-        "{first} and {second} are both taken from column {column}; choose another for one of them"
+        "{first} and {second} are both taken from column {column}; choose another column for one of them"
     )]
     OneColumn {
         first: String,
@@ -128,29 +128,29 @@ pub enum LayoutProblem {
         column: String,
     },
     /// The column has no numbers.
-    #[error("{channel}: column {column} has no sample that is a number; choose another")]
+    #[error("{channel}: column {column} has no numeric sample; choose another column")]
     Empty {
         channel: String,
         /// In quotation marks.
         column: String,
     },
     /// The factor is zero or not finite.
-    #[error("{channel}: samples cannot be multiplied by {}", number(*factor))]
+    #[error("{channel}: the factor {} is zero or not finite", number(*factor))]
     Factor {
         channel: String,
         /// Zero, infinite or NaN.
         factor: f64,
     },
     /// The delay is not plausible for a sensor or a bus.
-    #[error("{channel}: a delay of {} s in one record is not possible; at most 10 s", number(*delay_s))]
+    #[error("{channel}: the delay of {} s exceeds the limit of 10 s", number(*delay_s))]
     Delay {
         channel: String,
         /// The delay \[s\].
         delay_s: f64,
     },
-    /// The samples exceed the range of helicopters in this unit.
+    /// Samples exceed a helicopter's range in this unit.
     #[error(
-        "{channel} (column {column}) reaches {} {unit}, and no helicopter more than {} {unit}: the column or its unit is wrong{hint}",
+        "{channel} (column {column}) reaches {} {unit}, above the limit of {} {unit} for a helicopter: the column or its unit is wrong{hint}",
         telling(*value, 0), number(*most)
     )]
     Magnitude {
@@ -161,7 +161,7 @@ pub enum LayoutProblem {
         value: f64,
         /// The largest plausible value.
         most: f64,
-        /// Unit of the channel.
+        /// The channel's unit.
         unit: String,
         /// A guess at the cause; empty without one.
         hint: String,
@@ -178,7 +178,7 @@ impl LayoutProblem {
     }
 }
 
-/// Unusual features of the chosen columns, which may be correct.
+/// Unusual features in the chosen columns, which may be correct.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LayoutCaution {
     /// A channel is constant.
@@ -190,16 +190,11 @@ pub enum LayoutCaution {
     },
     /// Two channels have the same samples.
     #[error("{first} and {second} have the same samples")]
-    Same {
-        /// Name of one channel.
-        first: String,
-        /// Name of the other channel.
-        second: String,
-    },
-    /// The record is a copy of another under a different name.
-    #[error("its samples are those of {first}: left out, for evidence counts once")]
+    Same { first: String, second: String },
+    /// The record repeats another record under a different name.
+    #[error("same samples as {first}: left out, because evidence counts once")]
     Copy {
-        /// Name of the other record.
+        /// The earlier record's name.
         first: String,
     },
     /// Samples are missing.
@@ -208,17 +203,17 @@ pub enum LayoutCaution {
         channel: String,
         /// In quotation marks.
         column: String,
-        /// Number of missing samples.
+        /// Missing sample count.
         count: usize,
-        /// Total number.
+        /// Sample count.
         samples: usize,
     },
     /// Stamps are missing.
-    #[error("{count} of {samples} stamps of time are missing")]
+    #[error("{count} of {samples} time stamps are missing")]
     MissingTime {
-        /// Number of missing stamps.
+        /// Missing stamp count.
         count: usize,
-        /// Total number.
+        /// Sample count.
         samples: usize,
     },
 }

@@ -1,182 +1,241 @@
-//! Resampling of chosen columns with separate clocks to a common clock (M14.11).
-
-use std::collections::BTreeSet;
-use std::sync::Arc;
+//! Resampling to a common clock, for columns with separate clocks (M14.11).
 
 use nalgebra::DMatrix;
 
-use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::FlightRecord;
 use gdcm_model::units::telling;
 
-use super::record_channels::RecordChannels;
-use super::record_layout::{ColumnUse, RecordLayout};
-use super::record_table::{RecordColumn, RecordTable, TopicClock, median_step};
-use crate::identification::topics::{CommonClock, Topic, TopicError, is_held};
-
-/// Settings for the combination of topics with separate clocks into one record.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ResamplingWish {
-    /// Upper end of the record's band of interest \[rad/s\]; `None` if unknown.
-    pub band_end: Option<f64>,
-    /// Sample rate \[Hz\], also applied to records with one clock; `None` leaves those unchanged
-    /// and resamples topics by the rule.
-    pub rate_hz: Option<f64>,
-    /// Inputs treated as constant between logged samples, whatever their samples look like.
-    pub held: BTreeSet<String>,
-}
+use super::record_channels::{RecordChannels, ResamplingWish};
+use super::record_layout::{ChannelUse, RecordLayout};
+use super::record_table::{RecordColumn, RecordTable};
+use super::time_base::median_step;
+use super::topics::{CommonClock, Topic, TopicError, is_held};
 
 /// Fraction of a column's samples followed by a hole, above which the table counts as a join of
 /// several clocks.
 const SHARE_OF_HOLES: f64 = 0.1;
+/// Largest deviation of an even step from a multiple of the median step, over the median step.
+const JITTER: f64 = 0.2;
+/// Least share of even steps in an even clock.
+const SHARE_OF_EVEN_STEPS: f64 = 0.95;
 
-/// The chosen columns of a table, and their common clock.
+/// Chosen columns, and their common clock.
 pub(super) struct Resampling {
-    /// The inputs, then the outputs.
+    /// Inputs, then outputs.
     topics: Vec<Topic>,
+    /// Input count.
     inputs: usize,
+    /// Names of held inputs.
     held: Vec<String>,
     clock: CommonClock,
+}
+
+/// A channel with its column.
+struct ChannelColumn<'r> {
+    channel: ChannelUse<'r>,
+    /// Total factor.
+    gain: f64,
+    /// Logging delay to remove \[s\].
+    delay_s: f64,
+    column: &'r RecordColumn,
 }
 
 impl RecordLayout {
     /// Whether the chosen columns have several clocks, or a rate is requested; the record then has
     /// a new clock.
     pub fn is_resampled(&self, table: &RecordTable, channels: &RecordChannels) -> bool {
-        Resampling::of(self, table, channels).is_some()
+        Resampling::new(self, table, channels).is_some()
     }
 }
 
 impl Resampling {
-    /// Prepares the resampling of the chosen columns to a common clock; `None` if they already have
-    /// one, or if a column or the time is still open.
+    /// Chooses a common clock for the chosen columns; `None` if they already have
+    /// a common clock, or if a column or the time is still open.
     ///
     /// # Errors
     /// The reason why they cannot be resampled.
-    pub(super) fn of(
+    pub(super) fn new(
         layout: &RecordLayout,
         table: &RecordTable,
         channels: &RecordChannels,
     ) -> Option<Result<Self, TopicError>> {
+        let chosen = channel_columns(layout, table, channels)?;
         let wish = &channels.resampling;
-        let mut chosen: Vec<(ChannelSide, &ChannelRule, ColumnUse, &RecordColumn)> = Vec::new();
-        for (side, rule, used) in layout.uses(channels) {
-            let used = used?;
-            chosen.push((side, rule, used, table.columns.get(used.column)?));
-        }
-        let own: Vec<Arc<TopicClock>> = chosen
-            .iter()
-            .filter_map(|(.., column)| column.topic.clone())
-            .collect();
-        let one_clock = own.windows(2).all(|pair| pair[0].time_s == pair[1].time_s);
-        let of_topics =
-            !own.is_empty() && (!one_clock || own.len() < chosen.len() || !is_even(&own[0].time_s));
-        let with_holes = chosen.iter().any(|(.., column)| has_holes(&column.values));
-        if chosen.is_empty() || !(of_topics || with_holes || wish.rate_hz.is_some()) {
+        let has_several_clocks =
+            has_separate_clocks(&chosen) || chosen.iter().any(|c| has_holes(&c.column.values));
+        if chosen.is_empty() || !(has_several_clocks || wish.rate_hz.is_some()) {
             return None;
         }
-        let of_table = layout.time?.times_s(table);
+        let table_time_s = layout.time?.times_s(table);
         let mut held = Vec::new();
-        let topics = chosen.iter().map(|(side, rule, used, column)| {
-            let stamps = column
-                .topic
-                .as_ref()
-                .map_or(&of_table, |topic| &topic.time_s);
-            let stamps: Vec<f64> = stamps
-                .iter()
-                .map(|time| time - used.remedy.delay_s)
-                .collect();
-            let values: Vec<f64> = column
-                .values
-                .iter()
-                .map(|value| value * used.gain())
-                .collect();
-            let holds =
-                *side == ChannelSide::Input && (wish.held.contains(&rule.name) || is_held(&values));
-            held.extend(holds.then(|| rule.name.clone()));
-            Topic::new(&rule.name, &stamps, &values, holds)
-        });
-        let topics: Result<Vec<Topic>, TopicError> = topics.collect();
-        Some(topics.and_then(|topics| {
-            let clock = CommonClock::choose(&topics, wish.band_end, wish.rate_hz)?;
-            let clock = table.part_s.map_or(clock, |part| clock.within(part));
-            Ok(Self {
-                topics,
-                inputs: layout.inputs.len(),
-                held,
-                clock,
-            })
+        let mut topics = Vec::new();
+        for chosen in &chosen {
+            let name = &chosen.channel.rule.name;
+            let stamps = chosen.stamps(&table_time_s);
+            let values = chosen.values();
+            let is_held = chosen.is_held(&values, wish);
+            if is_held {
+                held.push(name.clone());
+            }
+            match Topic::new(name, &stamps, &values, is_held) {
+                Ok(topic) => topics.push(topic),
+                Err(error) => return Some(Err(error)),
+            }
+        }
+        let clock = match CommonClock::choose(&topics, wish.band_end, wish.rate_hz) {
+            Ok(clock) => clock,
+            Err(error) => return Some(Err(error)),
+        };
+        Some(Ok(Self {
+            topics,
+            inputs: layout.inputs.len(),
+            held,
+            clock: match table.part_s {
+                Some(part_s) => clock.within(part_s),
+                None => clock,
+            },
         }))
     }
 
-    /// Returns a description of the resampling.
-    pub(super) fn words(&self) -> Vec<String> {
+    /// Returns notes on rates, low-pass and held inputs.
+    pub(super) fn notes(&self) -> Vec<String> {
         let rates: Vec<String> = self
             .topics
             .iter()
             .map(|topic| format!("{} {} Hz", topic.name, telling(topic.rate_hz, 1)))
             .collect();
-        let resampled = format!(
+        let mut notes = vec![format!(
             "resampled to {} Hz, every channel through the same low-pass at {} rad/s (logged: {})",
             telling(self.clock.rate_hz, 2),
             telling(self.clock.cutoff, 1),
             rates.join(", ")
-        );
-        let held = (!self.held.is_empty()).then(|| {
-            format!(
+        )];
+        if !self.held.is_empty() {
+            notes.push(format!(
                 "{}: taken as held from sample to sample, so moved half a sample later",
                 self.held.join(", ")
-            )
-        });
-        std::iter::once(resampled).chain(held).collect()
+            ));
+        }
+        notes
     }
 
-    /// Returns the record on the common clock; NaN in the gaps of each topic.
+    /// Returns the record on the common clock; NaN in each topic's gaps.
     pub(super) fn flight_record(&self, name: String) -> FlightRecord {
         let time_s = self.clock.times_s();
-        let matrix = |topics: &[Topic]| {
-            let values: Vec<f64> = topics
-                .iter()
-                .flat_map(|topic| topic.at(&time_s, self.clock.cutoff))
-                .collect();
-            DMatrix::from_vec(time_s.len(), topics.len(), values)
-        };
         let (inputs, outputs) = self.topics.split_at(self.inputs);
         FlightRecord {
             name,
-            inputs: matrix(inputs),
-            outputs: matrix(outputs),
+            inputs: self.samples(inputs, &time_s),
+            outputs: self.samples(outputs, &time_s),
             time_s,
         }
     }
+
+    /// Returns the low-passed samples at these times, a column for each topic.
+    fn samples(&self, topics: &[Topic], time_s: &[f64]) -> DMatrix<f64> {
+        let values: Vec<f64> = topics
+            .iter()
+            .flat_map(|topic| topic.at(time_s, self.clock.cutoff))
+            .collect();
+        DMatrix::from_vec(time_s.len(), topics.len(), values)
+    }
+}
+
+impl ChannelColumn<'_> {
+    /// Returns its topic's stamps, or else the table's, less the delay \[s\].
+    fn stamps(&self, table_time_s: &[f64]) -> Vec<f64> {
+        let stamps = match &self.column.topic {
+            Some(topic) => topic.time_s.as_slice(),
+            None => table_time_s,
+        };
+        stamps.iter().map(|time| time - self.delay_s).collect()
+    }
+
+    /// Returns the samples in channel units.
+    fn values(&self) -> Vec<f64> {
+        self.column
+            .values
+            .iter()
+            .map(|value| value * self.gain)
+            .collect()
+    }
+
+    /// Whether the channel is an input that is constant between its samples.
+    fn is_held(&self, values: &[f64], wish: &ResamplingWish) -> bool {
+        self.channel.side == ChannelSide::Input
+            && (wish.held.contains(&self.channel.rule.name) || is_held(values))
+    }
+}
+
+/// Returns every channel with its column; `None` if a channel has no column.
+fn channel_columns<'r>(
+    layout: &RecordLayout,
+    table: &'r RecordTable,
+    channels: &'r RecordChannels,
+) -> Option<Vec<ChannelColumn<'r>>> {
+    let mut chosen = Vec::new();
+    for channel in layout.uses(channels) {
+        let used = channel.used?;
+        chosen.push(ChannelColumn {
+            channel,
+            gain: used.gain(),
+            delay_s: used.remedy.delay_s,
+            column: table.columns.get(used.column)?,
+        });
+    }
+    Some(chosen)
+}
+
+/// Whether columns have topics with different or uneven clocks, or only some have a topic.
+fn has_separate_clocks(chosen: &[ChannelColumn]) -> bool {
+    let clocks: Vec<&[f64]> = chosen
+        .iter()
+        .filter_map(|chosen| chosen.column.topic.as_ref())
+        .map(|topic| topic.time_s.as_slice())
+        .collect();
+    if clocks.is_empty() {
+        return false;
+    }
+    let is_one_clock = clocks.windows(2).all(|pair| pair[0] == pair[1]);
+    !is_one_clock || clocks.len() < chosen.len() || !is_even(clocks[0])
 }
 
 /// Whether samples are missing repeatedly, as in a table that joins the rows of several clocks.
 pub(super) fn has_holes(values: &[f64]) -> bool {
-    let begin = values
+    let holes = values
         .windows(2)
         .filter(|pair| pair[0].is_finite() && !pair[1].is_finite())
         .count();
-    begin as f64 > SHARE_OF_HOLES * values.len() as f64
+    holes as f64 > SHARE_OF_HOLES * values.len() as f64
 }
 
-/// Whether 95 % of the steps are within 20 % of the median step or of a multiple of it (M14, 1.1).
+/// Whether 95 % of the steps differ from multiples of the median step by at most 20 % (M14.1).
 fn is_even(time_s: &[f64]) -> bool {
-    let Some(middle) = median_step(time_s).filter(|step| *step > 0.0) else {
+    let Some(median) = median_step(time_s) else {
         return false;
     };
-    let steps = time_s.windows(2).map(|pair| (pair[1] - pair[0]) / middle);
-    let even = steps
-        .filter(|step| (step - step.round().max(1.0)).abs() <= 0.2)
+    if median <= 0.0 {
+        return false;
+    }
+    let even = time_s
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]) / median)
+        .filter(|steps| (steps - steps.round().max(1.0)).abs() <= JITTER)
         .count();
-    even as f64 >= 0.95 * (time_s.len() as f64 - 1.0)
+    even as f64 >= SHARE_OF_EVEN_STEPS * (time_s.len() as f64 - 1.0)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use gdcm_model::assembly::ChannelRule;
+
     use super::*;
-    use crate::records::layout_proposal::{LayoutProposal, TimeWish};
+    use crate::records::layout_problem::LayoutProblem;
+    use crate::records::layout_proposal::TimeWish;
+    use crate::records::record_table::TopicClock;
 
     fn signal(t: f64) -> f64 {
         (3.0 * t).sin()
@@ -209,52 +268,51 @@ mod tests {
         }
     }
 
-    fn proposed(
-        table: &RecordTable,
-        channels: &RecordChannels,
-    ) -> (Vec<String>, Vec<String>, Option<FlightRecord>) {
-        let LayoutProposal {
-            layout,
-            notes,
-            problems,
-            ..
-        } = RecordLayout::proposed(table, channels, &TimeWish::default());
-        (
-            notes,
-            problems.iter().map(ToString::to_string).collect(),
-            layout.flight_record(table, channels).ok(),
-        )
+    fn flight(table: &RecordTable, channels: &RecordChannels) -> FlightRecord {
+        let proposal = RecordLayout::proposed(table, channels, &TimeWish::default());
+        assert_eq!(proposal.problems, []);
+        proposal.layout.flight_record(table, channels).unwrap()
     }
 
     #[test]
-    fn topics_with_clocks_of_their_own_become_one_record_and_that_is_said() {
+    fn topics_with_separate_clocks_become_a_record_with_a_note() {
         let table = RecordTable::new("log", vec![topic("M", 250.0, 0.3), topic("q", 100.0, 0.0)]);
-        let (notes, problems, flight) = proposed(&table, &channels());
-        assert!(problems.is_empty(), "{problems:?}");
-        let told = "resampled to 50.93 Hz, every channel through the same low-pass at 80.0 rad/s (logged: M 250.0 Hz, q 100.0 Hz)";
-        assert!(notes.iter().any(|note| note == told), "{notes:?}");
-        let flight = flight.unwrap();
+        let notes = RecordLayout::proposed(&table, &channels(), &TimeWish::default()).notes;
+        let expected = "resampled to 50.93 Hz, every channel through the same low-pass at 80.0 rad/s (logged: M 250.0 Hz, q 100.0 Hz)";
+        assert!(notes.iter().any(|note| note == expected), "{notes:?}");
+        let flight = flight(&table, &channels());
         assert_eq!(flight.time_s[0], 0.3);
         let middle = flight.time_s.len() / 2;
-        for (value, name) in [
-            (flight.inputs[(middle, 0)], "M"),
-            (flight.outputs[(middle, 0)], "q"),
-        ] {
+        for (name, samples) in [("M", &flight.inputs), ("q", &flight.outputs)] {
+            let error = samples[(middle, 0)] - signal(flight.time_s[middle]);
             // 3 rad/s is far below the cut-off.
-            assert!(
-                (value - signal(flight.time_s[middle])).abs() < 1e-3,
-                "{name}"
-            );
+            assert!(error.abs() < 1e-3, "{name}: {error}");
         }
     }
 
     #[test]
-    fn a_topic_too_slow_for_the_band_is_named_with_the_rate_that_it_takes() {
+    fn a_topic_too_slow_for_the_band_is_refused() {
         let table = RecordTable::new("log", vec![topic("M", 250.0, 0.0), topic("q", 4.0, 0.0)]);
-        let (_, problems, flight) = proposed(&table, &channels());
-        assert!(flight.is_none());
-        let told = "q has 4.0 samples in a second, and a band to 12.000 rad/s takes 6.4: log it faster, or end the band at 7.54 rad/s";
-        assert_eq!(problems, [told]);
+        let channels = channels();
+        let proposal = RecordLayout::proposed(&table, &channels, &TimeWish::default());
+        assert!(proposal.layout.flight_record(&table, &channels).is_err());
+        let [
+            LayoutProblem::Topics(TopicError::TooSlow {
+                topic,
+                rate_hz,
+                needed_hz,
+                band_end,
+                possible,
+            }),
+        ] = proposal.problems.as_slice()
+        else {
+            panic!("{:?}", proposal.problems);
+        };
+        assert_eq!(topic, "q");
+        assert_eq!(*band_end, 12.0);
+        assert!((rate_hz - 4.0).abs() < 1e-9, "{rate_hz}");
+        assert!((needed_hz - 6.4).abs() < 0.05, "{needed_hz}");
+        assert!((possible - 7.54).abs() < 0.005, "{possible}");
     }
 
     #[test]
@@ -274,41 +332,32 @@ mod tests {
             RecordColumn::new("q", q),
         ];
         let table = RecordTable::new("joined", columns);
-        let (notes, problems, flight) = proposed(&table, &channels());
+        let notes = RecordLayout::proposed(&table, &channels(), &TimeWish::default()).notes;
         assert!(
-            problems.is_empty()
-                && notes
-                    .iter()
-                    .any(|note| note.contains("M 125.0 Hz, q 50.0 Hz")),
+            notes
+                .iter()
+                .any(|note| note.contains("M 125.0 Hz, q 50.0 Hz")),
             "{notes:?}"
         );
-        let flight = flight.unwrap();
-        assert!(
-            flight
-                .outputs
-                .iter()
-                .chain(&flight.inputs)
-                .all(|value| value.is_finite())
-        );
+        let flight = flight(&table, &channels());
+        assert!(flight.outputs.iter().all(|value| value.is_finite()));
+        assert!(flight.inputs.iter().all(|value| value.is_finite()));
     }
 
     #[test]
-    fn a_record_of_one_even_clock_is_left_alone_unless_a_rate_is_asked_for() {
+    fn a_record_with_an_even_clock_is_unchanged_unless_a_rate_is_requested() {
         let stamps: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
         let values: Vec<f64> = stamps.iter().map(|t| signal(*t)).collect();
-        let columns = ["M", "q"].map(|name| RecordColumn::new(name, values.clone()));
-        let table = RecordTable::new(
-            "log",
-            [
-                vec![RecordColumn::new("t", stamps.clone())],
-                columns.to_vec(),
-            ]
-            .concat(),
-        );
+        let columns = vec![
+            RecordColumn::new("t", stamps.clone()),
+            RecordColumn::new("M", values.clone()),
+            RecordColumn::new("q", values),
+        ];
+        let table = RecordTable::new("log", columns);
         let mut channels = channels();
-        assert_eq!(proposed(&table, &channels).2.unwrap().time_s, stamps);
+        assert_eq!(flight(&table, &channels).time_s, stamps);
         channels.resampling.rate_hz = Some(50.0);
-        assert_eq!(proposed(&table, &channels).2.unwrap().time_s.len(), 500);
+        assert_eq!(flight(&table, &channels).time_s.len(), 500);
     }
 
     #[test]
@@ -320,12 +369,11 @@ mod tests {
             .part_of_time([6.0, 8.0]);
         assert_eq!(plain.name, "log, 6 to 8 s");
         for table in [plain, topics] {
-            let flight = proposed(&table, &channels()).2.unwrap();
-            let ends = [flight.time_s[0], *flight.time_s.last().unwrap()];
-            assert!(
-                (ends[0] - 6.0).abs() < 0.02 && (ends[1] - 8.0).abs() < 0.02,
-                "{ends:?}"
-            );
+            let flight = flight(&table, &channels());
+            let first = flight.time_s[0];
+            let last = flight.time_s[flight.time_s.len() - 1];
+            assert!((first - 6.0).abs() < 0.02, "{first}");
+            assert!((last - 8.0).abs() < 0.02, "{last}");
             assert_eq!(flight.outputs.nrows(), flight.time_s.len());
         }
     }

@@ -1,4 +1,4 @@
-//! Power of a channel over time and frequency, which shows a sweep in a long record.
+//! A channel's power over time and frequency, which shows a sweep in a long record.
 
 use std::f64::consts::TAU;
 
@@ -8,119 +8,207 @@ use gdcm_model::executor::Sequential;
 use gdcm_model::response::median;
 use gdcm_model::simulation::Segment;
 
-use crate::identification::spectra;
+use crate::spectra::spectrum::{Spectrum, spectra};
 
-/// Power of a channel over time and frequency.
+/// A channel's power over time and frequency.
 ///
 /// ```text
-/// windows  Hann, of 0.15 of the record within 4 s and 20 s, an eighth of their length apart (farther where there were too many)
-/// power    |U(omega_k)|^2 of the samples in the window less their mean (M14, 2); what is missing counts as the mean
-/// rows     frequencies evenly in ln(omega), from two periods a window to the highest: the greatest line within half a row
-/// level    10 log10 of the power over the greatest, not less than FLOOR
+/// windows  Hann, 0.15 times the record, within 4 s and 20 s; an eighth of their length apart,
+///          or farther for at most 400 windows
+/// power    |U(omega_k)|^2, from the samples in the window less their mean (M14.2); missing samples
+///          count as the mean
+/// rows     frequencies evenly in ln(omega), from two periods a window to the highest: the greatest
+///          line within half a row
+/// level    10 log10(power / greatest power), not less than FLOOR
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrogram {
-    /// Centres of the first and of the last window \[s\].
+    /// First and last window centre \[s\].
     pub time_s: [f64; 2],
-    /// Frequencies of the first and of the last row \[rad/s\].
+    /// First and last row's frequency \[rad/s\].
     pub omega: [f64; 2],
-    /// Level of each row in each window \[dB\].
+    /// Level by window and row \[dB\].
     pub levels: Vec<Vec<f64>>,
 }
 
+/// Window length over the record length.
+const WINDOW_SHARE: f64 = 0.15;
+/// Shortest and longest window \[s\].
+const SHORTEST_WINDOW_S: f64 = 4.0;
+const LONGEST_WINDOW_S: f64 = 20.0;
+/// Fewest samples in a window.
+const FEWEST_SAMPLES: usize = 8;
+/// Most windows.
+const MOST_WINDOWS: usize = 400;
+/// Highest frequency, over half the sample rate.
+const HIGHEST_OF_RATE: f64 = 0.9;
+
 impl Spectrogram {
-    /// Number of rows in every window.
+    /// Row count.
     pub const ROWS: usize = 64;
-    /// The lowest reported level \[dB\].
+    /// Lowest reported level \[dB\].
     pub const FLOOR: f64 = -40.0;
 
-    /// Computes the spectrogram of samples at these times up to `highest` \[rad/s\]; `None` if the
+    /// Computes the spectrogram up to `highest` \[rad/s\]; `None` if the
     /// record is shorter than a window, or no frequency is resolved by a window.
     #[must_use]
-    pub fn of(time_s: &[f64], samples: &[f64], highest: f64) -> Option<Self> {
-        /// Largest number of windows.
-        const MOST: usize = 400;
+    pub fn new(time_s: &[f64], samples: &[f64], highest: f64) -> Option<Self> {
+        let windows = Windows::new(time_s, samples.len())?;
+        let rows = FrequencyRows::new(&windows, highest)?;
+        let segments: Vec<Segment> = windows
+            .starts
+            .iter()
+            .map(|&from| windowed(&samples[from..from + windows.length], windows.step_s))
+            .collect();
+        let mut powers = Vec::with_capacity(segments.len());
+        for spectrum in spectra(&segments, 1.1 * rows.highest, &Sequential) {
+            powers.push(rows.powers(&spectrum));
+        }
+        let first = windows.starts[0];
+        let last = windows.starts[windows.starts.len() - 1];
+        Some(Self {
+            time_s: [
+                time_s[first] + 0.5 * windows.seconds,
+                time_s[last] + 0.5 * windows.seconds,
+            ],
+            omega: [rows.lowest, rows.highest],
+            levels: levels(&powers),
+        })
+    }
+}
+
+/// Windows along a record.
+struct Windows {
+    /// Sample time \[s\].
+    step_s: f64,
+    /// Window length \[s\].
+    seconds: f64,
+    /// Length in samples.
+    length: usize,
+    /// First sample by window.
+    starts: Vec<usize>,
+}
+
+impl Windows {
+    /// Lays windows along samples at these times; `None` if a window has too few samples or is
+    /// longer than the record.
+    fn new(time_s: &[f64], samples: usize) -> Option<Self> {
         let mut steps: Vec<f64> = time_s
             .windows(2)
             .map(|pair| pair[1] - pair[0])
             .filter(|step| *step > 0.0)
             .collect();
+        if steps.is_empty() {
+            return None;
+        }
         let step_s = median(&mut steps);
-        let seconds = (0.15 * step_s * samples.len() as f64).clamp(4.0, 20.0);
+        let seconds =
+            (WINDOW_SHARE * step_s * samples as f64).clamp(SHORTEST_WINDOW_S, LONGEST_WINDOW_S);
         let length = (seconds / step_s) as usize;
-        if steps.is_empty() || length < 8 || length > samples.len() {
+        if length < FEWEST_SAMPLES || length > samples {
             return None;
         }
         let hop = (length / 8)
-            .max((samples.len() - length).div_ceil(MOST))
+            .max((samples - length).div_ceil(MOST_WINDOWS))
             .max(1);
-        let starts: Vec<usize> = (0..=samples.len() - length).step_by(hop).collect();
-        let segments: Vec<Segment> = starts
-            .iter()
-            .map(|&from| window(&samples[from..from + length], step_s))
-            .collect();
-        let lowest = 2.0 * TAU / seconds;
-        let highest = highest.min(0.9 * TAU / (2.0 * step_s));
-        if highest <= 2.0 * lowest {
-            return None;
-        }
-        let lines = spectra(&segments, 1.1 * highest, &Sequential);
-        let ratio = (highest / lowest).powf(1.0 / (Self::ROWS - 1) as f64);
-        let row = |row: usize| lowest * ratio.powi(row as i32);
-        let power = |of: &crate::identification::spectrum::Spectrum, omega: f64| {
-            let nearest = of
-                .omega
-                .partition_point(|line| *line < omega)
-                .min(of.omega.len().saturating_sub(1));
-            let until = of
-                .omega
-                .partition_point(|line| *line <= omega * ratio.sqrt());
-            let from = of
-                .omega
-                .partition_point(|line| *line < omega / ratio.sqrt())
-                .min(nearest);
-            let lines = from..until.max(from + 1).min(of.omega.len());
-            lines
-                .map(|line| of.inputs[(0, line)].norm_sqr())
-                .fold(0.0, f64::max)
-        };
-        let powers: Vec<Vec<f64>> = lines
-            .iter()
-            .map(|of| (0..Self::ROWS).map(|at| power(of, row(at))).collect())
-            .collect();
-        let greatest = powers
-            .iter()
-            .flatten()
-            .copied()
-            .fold(f64::MIN_POSITIVE, f64::max);
-        let level = |power: f64| {
-            (10.0 * (power / greatest).max(f64::MIN_POSITIVE).log10()).max(Self::FLOOR)
-        };
-        let middle = |from: usize| time_s[from] + 0.5 * seconds;
         Some(Self {
-            time_s: [middle(starts[0]), middle(starts[starts.len() - 1])],
-            omega: [lowest, highest],
-            levels: powers
-                .into_iter()
-                .map(|of| of.into_iter().map(level).collect())
-                .collect(),
+            step_s,
+            seconds,
+            length,
+            starts: (0..=samples - length).step_by(hop).collect(),
         })
     }
 }
 
-/// Returns the samples in a Hann window, with their mean removed.
-fn window(samples: &[f64], sample_time_s: f64) -> Segment {
-    let finite = || samples.iter().copied().filter(|sample| sample.is_finite());
-    let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
-    let weight = |at: usize| 0.5 - 0.5 * (TAU * at as f64 / samples.len() as f64).cos();
-    let value = |at: usize| {
+/// Row frequencies, evenly in ln(omega).
+struct FrequencyRows {
+    /// First row \[rad/s\].
+    lowest: f64,
+    /// Last row \[rad/s\].
+    highest: f64,
+    /// Ratio between neighbouring rows.
+    ratio: f64,
+}
+
+impl FrequencyRows {
+    /// Lays rows from two periods a window to `highest` \[rad/s\]; `None` if these are less than an
+    /// octave apart.
+    fn new(windows: &Windows, highest: f64) -> Option<Self> {
+        let lowest = 2.0 * TAU / windows.seconds;
+        let highest = highest.min(HIGHEST_OF_RATE * TAU / (2.0 * windows.step_s));
+        if highest <= 2.0 * lowest {
+            return None;
+        }
+        let ratio = (highest / lowest).powf(1.0 / (Spectrogram::ROWS - 1) as f64);
+        Some(Self {
+            lowest,
+            highest,
+            ratio,
+        })
+    }
+
+    /// Returns a window's power by row.
+    fn powers(&self, spectrum: &Spectrum) -> Vec<f64> {
+        let mut powers = Vec::with_capacity(Spectrogram::ROWS);
+        for row in 0..Spectrogram::ROWS {
+            let omega = self.lowest * self.ratio.powi(row as i32);
+            powers.push(self.power_at(spectrum, omega));
+        }
+        powers
+    }
+
+    /// Returns the greatest power within half a row of `omega`, or of the next line above.
+    fn power_at(&self, spectrum: &Spectrum, omega: f64) -> f64 {
+        let lines = &spectrum.omega;
+        let half_row = self.ratio.sqrt();
+        let next = lines
+            .partition_point(|line| *line < omega)
+            .min(lines.len().saturating_sub(1));
+        let from = lines
+            .partition_point(|line| *line < omega / half_row)
+            .min(next);
+        let until = lines.partition_point(|line| *line <= omega * half_row);
+        (from..until.max(from + 1).min(lines.len()))
+            .map(|line| spectrum.inputs[(0, line)].norm_sqr())
+            .fold(0.0, f64::max)
+    }
+}
+
+/// Converts powers to levels below the greatest power \[dB\].
+fn levels(powers: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let greatest = powers
+        .iter()
+        .flatten()
+        .copied()
+        .fold(f64::MIN_POSITIVE, f64::max);
+    powers
+        .iter()
+        .map(|window| window.iter().map(|power| level(*power, greatest)).collect())
+        .collect()
+}
+
+/// Returns a power's level below `greatest` \[dB\].
+fn level(power: f64, greatest: f64) -> f64 {
+    let ratio = (power / greatest).max(f64::MIN_POSITIVE);
+    (10.0 * ratio.log10()).max(Spectrogram::FLOOR)
+}
+
+/// Returns the samples in a Hann window, with their mean removed; zero where missing.
+fn windowed(samples: &[f64], sample_time_s: f64) -> Segment {
+    let finite: Vec<f64> = samples
+        .iter()
+        .copied()
+        .filter(|sample| sample.is_finite())
+        .collect();
+    let mean = finite.iter().sum::<f64>() / finite.len().max(1) as f64;
+    let inputs = DMatrix::from_fn(samples.len(), 1, |at, _| {
+        let weight = 0.5 - 0.5 * (TAU * at as f64 / samples.len() as f64).cos();
         if samples[at].is_finite() {
-            weight(at) * (samples[at] - mean)
+            weight * (samples[at] - mean)
         } else {
             0.0
         }
-    };
-    let inputs = DMatrix::from_fn(samples.len(), 1, |at, _| value(at));
+    });
     Segment {
         record: 0,
         start_s: 0.0,
@@ -142,7 +230,7 @@ mod tests {
             .iter()
             .map(|t| 50.0 + 5.0 * (2.0 * t + 0.05 * t * t).sin())
             .collect();
-        let found = Spectrogram::of(&time_s, &samples, 20.0).unwrap();
+        let found = Spectrogram::new(&time_s, &samples, 20.0).unwrap();
         let count = found.levels.len();
         let ratio = (found.omega[1] / found.omega[0]).powf(1.0 / (Spectrogram::ROWS - 1) as f64);
         for (place, levels) in found.levels.iter().enumerate() {
@@ -152,8 +240,8 @@ mod tests {
                 .max_by(|a, b| levels[*a].total_cmp(&levels[*b]))
                 .unwrap();
             let omega = found.omega[0] * ratio.powi(ridge as i32);
-            // Within the resolution of a window of 15 s, whose lines are 0.42 rad/s apart, and half
-            // of the change of the sweep within it.
+            // Within a 15 s window's resolution, whose lines are 0.42 rad/s apart, and half
+            // the sweep's change within it.
             assert!(
                 (omega - (2.0 + 0.1 * time)).abs() < 0.42 + 0.75,
                 "{time} s: {omega}"
@@ -168,30 +256,28 @@ mod tests {
         );
     }
 
+    fn times(count: u32, step: f64) -> Vec<f64> {
+        (0..count).map(|k| step * f64::from(k)).collect()
+    }
+
     #[test]
-    fn a_short_record_a_coarse_one_and_nothing_but_gaps_have_words_elsewhere_and_no_numbers_here() {
-        let times = |count: u32, step: f64| {
-            (0..count)
-                .map(|k| step * f64::from(k))
-                .collect::<Vec<f64>>()
-        };
+    fn short_coarse_and_empty_records_have_no_spectrogram() {
+        let short = times(100, 0.02);
+        assert_eq!(Spectrogram::new(&short, &[1.0; 100], 12.0), None, "2 s");
+        let coarse = times(100, 5.0);
         assert_eq!(
-            Spectrogram::of(&times(100, 0.02), &[1.0; 100], 12.0),
-            None,
-            "2 s"
-        );
-        assert_eq!(
-            Spectrogram::of(&times(100, 5.0), &[1.0; 100], 12.0),
+            Spectrogram::new(&coarse, &[1.0; 100], 12.0),
             None,
             "too few samples a window"
         );
-        assert_eq!(Spectrogram::of(&[], &[], 12.0), None);
-        let gaps = Spectrogram::of(&times(2000, 0.02), &[f64::NAN; 2000], 12.0).unwrap();
-        assert!(
-            gaps.levels
-                .iter()
-                .flatten()
-                .all(|level| *level == Spectrogram::FLOOR)
-        );
+        assert_eq!(Spectrogram::new(&[], &[], 12.0), None);
+    }
+
+    #[test]
+    fn a_record_with_gaps_only_is_at_the_floor() {
+        let gaps = Spectrogram::new(&times(2000, 0.02), &[f64::NAN; 2000], 12.0).unwrap();
+        for level in gaps.levels.iter().flatten() {
+            assert_eq!(*level, Spectrogram::FLOOR);
+        }
     }
 }

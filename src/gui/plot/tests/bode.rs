@@ -6,7 +6,8 @@ use super::*;
 use crate::gui::plot::bode::BodeEvent;
 use crate::gui::plot::curve_menu::CurveWish;
 use crate::gui::state::curve_display::CurveCommand;
-use crate::gui::widgets::palette::{self, Palette};
+use crate::gui::widgets::palette;
+use crate::gui::widgets::palette::Palette;
 
 pub(super) struct Model {
     pub(super) curves: Vec<BodeCurve>,

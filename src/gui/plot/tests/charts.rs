@@ -6,7 +6,8 @@ use egui_plot::{PlotBounds, PlotMemory};
 use super::bode::wheel;
 use super::*;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine, chart_ui};
-use crate::gui::widgets::palette::{self, Palette};
+use crate::gui::widgets::palette;
+use crate::gui::widgets::palette::Palette;
 
 const TITLES: [&str; 2] = ["one", "other"];
 const SIZE: egui::Vec2 = vec2(600.0, 200.0);

@@ -5,7 +5,8 @@ use gdcm_plot::figure::figure::{Bars, Curve, Dot, DotShape, Dots, Plot};
 use gdcm_plot::figure::{Color, Figure, MarkId, Panel, Range, Role as CurveRole};
 
 use super::*;
-use crate::gui::widgets::palette::{self, Palette};
+use crate::gui::widgets::palette;
+use crate::gui::widgets::palette::Palette;
 
 /// Plots of gains, or of columns if there are any.
 #[derive(Default)]

@@ -7,7 +7,8 @@ use super::*;
 use crate::gui::plot::overview::{
     OverviewCell, OverviewEvent, OverviewScene, OverviewView, overview_ui,
 };
-use crate::gui::widgets::palette::{self, Palette};
+use crate::gui::widgets::palette;
+use crate::gui::widgets::palette::Palette;
 
 #[derive(Default)]
 struct Model {

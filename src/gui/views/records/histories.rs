@@ -13,10 +13,11 @@ use gdcm_model::dataset::Band;
 use gdcm_model::executor::Sequential;
 use gdcm_model::simulation::{FlightRecord, Segment};
 use gdcm_model::units::telling;
-use gdcm_sysid::identification::gaps::Treatment;
-use gdcm_sysid::identification::{CautionNote, spectra};
+use gdcm_sysid::identification::CautionNote;
 use gdcm_sysid::records::spectrogram::Spectrogram;
 use gdcm_sysid::records::{LaidOutRecord, ModeSpan};
+use gdcm_sysid::spectra::gaps::Treatment;
+use gdcm_sysid::spectra::spectrum::spectra;
 
 use super::records_state::Page;
 use super::simulation::{simulated, time_models_ui};
@@ -290,7 +291,7 @@ fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>) {
     let source: Source = Arc::clone(flight) as _;
     let found = kept(ui, "spectrogram", &[source], key, || {
         let samples: Vec<f64> = flight.inputs.column(index).iter().copied().collect();
-        let found = Spectrogram::of(&flight.time_s, &samples, highest)?;
+        let found = Spectrogram::new(&flight.time_s, &samples, highest)?;
         let picture = picture_of(&found, palette);
         Some((
             ui.ctx()
@@ -412,7 +413,7 @@ fn spans(records: &ConditionRecords, palette: &Palette) -> Vec<ChartSpan> {
     let record = (0..found.record_uses.len())
         .find(|record| records.row_of_record(*record) == Some(records.chosen));
     let gaps = record.map_or(&[][..], |record| &found.record_uses[record].gaps);
-    let span = |gap: &gdcm_sysid::identification::gaps::Gap| {
+    let span = |gap: &gdcm_sysid::spectra::gaps::Gap| {
         let color = match gap.treatment {
             Treatment::Bridged => palette.accent.gamma_multiply(0.25),
             Treatment::CutOut => palette.warning.gamma_multiply(0.35),

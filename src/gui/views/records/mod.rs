@@ -21,7 +21,7 @@ use gdcm_model::units::{number, six_digits};
 use gdcm_plot::figure::decimals;
 use gdcm_study::Table;
 use gdcm_sysid::identification::SearchSpace;
-use gdcm_sysid::identification::identification_error::{HIGHEST_ORDER, LONGEST_PAST};
+use gdcm_sysid::identification_error::{HIGHEST_ORDER, LONGEST_PAST};
 use gdcm_sysid::records::LayoutProblem;
 
 use crate::gui::commands::command::Command;

@@ -11,13 +11,13 @@ use gdcm_model::simulation::Signal;
 use gdcm_model::units::s_to_ms;
 use gdcm_study::decisions::changed_models::OfferedModels;
 use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
-use gdcm_sysid::identification::diagnostics::HELD_OUT;
-use gdcm_sysid::identification::record_cautions::RecordCaution;
-use gdcm_sysid::identification::record_fault::{ContradictingRecord, RecordFault};
+use gdcm_sysid::diagnostics::model_doubts::HELD_OUT;
+use gdcm_sysid::diagnostics::record_fault::{ContradictingRecord, RecordFault};
 use gdcm_sysid::identification::{
     ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError,
 };
 use gdcm_sysid::records::LaidOutRecord;
+use gdcm_sysid::spectra::record_cautions::RecordCaution;
 
 use super::histories::{Source, kept};
 use super::record_list::{BAD, CHI_SQUARED};

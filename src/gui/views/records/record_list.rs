@@ -8,7 +8,7 @@ use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::{ChannelRemedy, RecordKind};
 use gdcm_model::simulation::Signal;
 use gdcm_model::units::{ms_to_s, number, s_to_ms};
-use gdcm_sysid::records::record_table::TimeBase;
+use gdcm_sysid::records::time_base::TimeBase;
 use gdcm_sysid::records::{ColumnUse, LaidOutRecord, LayoutProblem, RecordLayout};
 
 use super::records_state::Page;

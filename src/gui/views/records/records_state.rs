@@ -18,8 +18,8 @@ use gdcm_sysid::identification::{
     CautionNote, ChannelPreparation, Hold, Identification, IdentificationError, Preparation,
     SearchSpace,
 };
-use gdcm_sysid::records::record_channels::{ChannelList, SaidChannel};
-use gdcm_sysid::records::resampling::ResamplingWish;
+use gdcm_sysid::records::channel_list::{ChannelList, SaidChannel};
+use gdcm_sysid::records::record_channels::ResamplingWish;
 use gdcm_sysid::records::{
     ColumnUse, LaidOutRecord, LayoutProblem, RecordChannels, RecordColumn, RecordLayout,
     RecordSource, RecordTable,

@@ -11,13 +11,13 @@ use gdcm_model::response::evaluate;
 use gdcm_model::response::frequency_response::{ResponseShape, log_spaced};
 use gdcm_model::response::pole_estimate::PoleEstimate;
 use gdcm_model::units::neper_to_db;
-use gdcm_sysid::identification::diagnostics::NARROW_WINDOW;
-use gdcm_sysid::identification::response_estimate::EstimatePoint;
-use gdcm_sysid::identification::subspace::StabilisationPoint;
-use gdcm_sysid::identification::uncertainty::TWO_SIDED_95;
+use gdcm_sysid::diagnostics::bands::TWO_SIDED_95;
+use gdcm_sysid::diagnostics::model_doubts::NARROW_WINDOW;
 use gdcm_sysid::identification::{
     CautionNote, Identification, IdentificationCaution, TRUSTED_COHERENCE,
 };
+use gdcm_sysid::spectra::response_estimate::EstimatePoint;
+use gdcm_sysid::subspace::stabilisation::StabilisationPoint;
 
 use super::histories::kept;
 use super::records_state::Page;

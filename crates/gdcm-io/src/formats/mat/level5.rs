@@ -7,8 +7,9 @@ use std::io::{ErrorKind, Read};
 
 use flate2::read::ZlibDecoder;
 
+use crate::formats::mat;
 use crate::formats::mat::matrix::Arrays;
-use crate::formats::mat::{self, FieldPath, Header};
+use crate::formats::mat::{FieldPath, Header};
 use crate::formats::strides::{NumberClass, StoredNumber};
 use crate::formats::variables::Variable;
 use crate::reading_budget::{ReadingBudget, VariableFault};

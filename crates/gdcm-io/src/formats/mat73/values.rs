@@ -4,7 +4,8 @@ use hdf5_pure::{
     CompoundMember, Dataset, Datatype, File, Object, StringPadding, VlenStringReadOptions,
 };
 
-use crate::formats::mat::{self, Subsystem};
+use crate::formats::mat;
+use crate::formats::mat::Subsystem;
 use crate::formats::mat73::dataset::{Elements, NumberType, Order};
 use crate::formats::mat73::{MatlabAttributes, Reader, damaged, fault};
 use crate::formats::strides::{Entries, count};

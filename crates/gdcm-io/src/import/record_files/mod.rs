@@ -15,8 +15,8 @@ use std::sync::atomic::AtomicBool;
 
 use gdcm_model::assembly::rules::standard_patterns;
 use gdcm_model::dataset::condition::ConditionRecord;
-use gdcm_sysid::records::laid_out_record::RecordGuess;
-use gdcm_sysid::records::record_table::Separation;
+use gdcm_sysid::records::record_guess::RecordGuess;
+use gdcm_sysid::records::separation::Separation;
 use gdcm_sysid::records::{RecordColumn, RecordSource, RecordTable};
 
 use self::record_columns::{
@@ -379,8 +379,9 @@ pub fn example_records(condition: i64) -> Result<Vec<RecordTable>, FileError> {
     }
     let patterns = standard_patterns();
     let found = records_of_bytes(ARCHIVE, NAME, &ReadingBudget::default())?;
-    let is_of =
-        |table: &RecordTable| RecordGuess::of(&table.name, patterns).condition == Some(condition);
+    let is_of = |table: &RecordTable| {
+        RecordGuess::from_name(&table.name, patterns).condition == Some(condition)
+    };
     Ok(found.tables.into_iter().filter(is_of).collect())
 }
 

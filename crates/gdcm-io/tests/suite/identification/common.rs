@@ -10,10 +10,10 @@ use gdcm_model::executor::{Executor, Sequential, Task};
 use gdcm_model::response::evaluate;
 use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::simulation::Segment;
-use gdcm_sysid::identification::local_polynomial::local_polynomial;
-use gdcm_sysid::identification::scales::Scales;
-use gdcm_sysid::identification::spectrum::Spectrum;
-use gdcm_sysid::identification::{ResponseEstimate, spectra};
+use gdcm_sysid::identification::ResponseEstimate;
+use gdcm_sysid::spectra::local_polynomial::local_polynomial;
+use gdcm_sysid::spectra::scales::Scales;
+use gdcm_sysid::spectra::spectrum::{Spectrum, spectra};
 
 /// So many threads, which take the last segment of work first.
 pub struct Threads(pub usize);

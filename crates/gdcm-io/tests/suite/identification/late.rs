@@ -8,9 +8,10 @@ use gdcm_model::executor::Sequential;
 use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::simulation::FlightRecord;
 use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
-use gdcm_sysid::identification::local_polynomial::local_polynomial;
-use gdcm_sysid::identification::preparation::prepare;
-use gdcm_sysid::identification::{Preparation, ResponseEstimate, spectra};
+use gdcm_sysid::identification::{Preparation, ResponseEstimate};
+use gdcm_sysid::spectra::local_polynomial::local_polynomial;
+use gdcm_sysid::spectra::preparation::prepare;
+use gdcm_sysid::spectra::spectrum::spectra;
 
 use crate::made_up::{Flight, Gusts, stable_aircraft};
 

@@ -6,12 +6,13 @@ use proptest::prelude::*;
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::Sequential;
-use gdcm_sysid::identification::cut_off::CutOff;
-use gdcm_sysid::identification::local_polynomial::{LocalPolynomialError, local_polynomial};
-use gdcm_sysid::identification::noise_covariance::NoiseCovariance;
-use gdcm_sysid::identification::scales::{Scales, ScalingError};
-use gdcm_sysid::identification::spectrum::Spectrum;
-use gdcm_sysid::identification::*;
+use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::simulation::{FirstOrderHold, LowPass, Segment};
+use gdcm_sysid::likelihood::noise_covariance::NoiseCovariance;
+use gdcm_sysid::spectra::cut_off::CutOff;
+use gdcm_sysid::spectra::local_polynomial::{LocalPolynomialError, local_polynomial};
+use gdcm_sysid::spectra::scales::{Scales, ScalingError};
+use gdcm_sysid::spectra::spectrum::{Spectrum, spectra};
 
 use super::common::{
     Threads, complex, known, list, matrix, noise, noisy, noisy_spectra, response, slow_system,

@@ -4,11 +4,12 @@ use nalgebra::DMatrix;
 use proptest::prelude::*;
 
 use gdcm_model::executor::Sequential;
-use gdcm_sysid::identification::gaps::{Cause, Treatment};
-use gdcm_sysid::identification::preparation::{Prepared, prepare};
-use gdcm_sysid::identification::preparation_settings::PreparationError;
-use gdcm_sysid::identification::record_cautions::RecordCaution;
-use gdcm_sysid::identification::*;
+use gdcm_model::simulation::FlightRecord;
+use gdcm_sysid::identification::{Hold, Preparation};
+use gdcm_sysid::spectra::gaps::{Cause, Treatment};
+use gdcm_sysid::spectra::preparation::{Prepared, prepare};
+use gdcm_sysid::spectra::preparation_settings::PreparationError;
+use gdcm_sysid::spectra::record_cautions::RecordCaution;
 
 use super::common::{known, list, matrix, noise};
 use crate::made_up::tries;
@@ -411,7 +412,7 @@ fn records_that_are_too_short_say_how_short() {
         .to_string();
     assert!(
         text.starts_with(
-            "nothing is left: the longest piece without a gap lasts 6.0 s, and 10.0 s are the least"
+            "no usable piece: the longest piece without a gap lasts 6.0 s, less than 10.0 s"
         ),
         "{text}"
     );
@@ -425,7 +426,7 @@ fn an_unused_record_does_not_spoil_the_others() {
     let prepared = prepare(&[lost, wandering(1000)], &settings(), &Sequential).unwrap();
     assert_eq!(prepared.segments.len(), 1);
     assert_eq!(prepared.segments[0].record, 1);
-    assert!(words(&prepared.cautions).contains("lost: nothing of it could be used"));
+    assert!(words(&prepared.cautions).contains("lost: no part could be used"));
     assert_eq!(prepared.records[0].used_s, 0.0);
 }
 

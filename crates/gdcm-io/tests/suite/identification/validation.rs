@@ -5,7 +5,9 @@ use proptest::prelude::*;
 
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::executor::Sequential;
-use gdcm_sysid::identification::*;
+use gdcm_model::simulation::{
+    FirstOrderHold, Segment, ValidationError, ValidationSettings, validate,
+};
 
 use super::common::{known, list, noise, noisy, slow_system};
 use crate::made_up::tries;

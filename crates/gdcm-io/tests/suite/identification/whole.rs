@@ -13,8 +13,8 @@ use gdcm_model::dataset::{Pair, StateSpace};
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 use gdcm_model::simulation::FlightRecord;
+use gdcm_sysid::diagnostics::record_fault::{ContradictingRecord, RecordFault};
 use gdcm_sysid::identification::identify::identify;
-use gdcm_sysid::identification::record_fault::{ContradictingRecord, RecordFault};
 use gdcm_sysid::identification::{
     Identification, IdentificationCaution, IdentificationError, Options, Preparation,
 };
@@ -608,7 +608,7 @@ fn channels_that_say_nothing_are_named() {
         let first = record.inputs.column(0).into_owned();
         record.inputs.set_column(1, &(first * 2.0));
     });
-    assert!(same.contains("LON and LAT move as one"), "{same}");
+    assert!(same.contains("LON and LAT move together"), "{same}");
     let copy = with(&|record| {
         let first = record.outputs.column(0).into_owned();
         record.outputs.set_column(1, &(first * -3.0));

@@ -1,0 +1,379 @@
+//! Doubts about an identified model, with the data that a remedy needs (M14.10).
+
+use nalgebra::Complex;
+
+use gdcm_model::simulation::{Signal, ValidationError};
+
+use super::feedback::FeedbackLevel;
+use super::record_fault::{ContradictingRecord, RecordFault};
+use crate::spectra::caution_note::CautionNote;
+use crate::spectra::gaps::listed;
+use crate::spectra::record_cautions::RecordCaution;
+use crate::spectra::response_estimate::TRUSTED_COHERENCE;
+
+/// Periods at the lower band end that a record should last (M14.12).
+const BETTER_PERIODS: f64 = 5.0;
+
+/// A doubt about the model or its parts.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum IdentificationCaution {
+    /// A doubt about the records themselves.
+    #[error(transparent)]
+    Records(#[from] RecordCaution),
+    /// The records are shorter than they should be for the lower band end.
+    #[error(
+        "the longest record lasts {longest_s:.0} s, {periods:.1} periods at {lowest:.2} rad/s: the models are less certain at the \
+         lower end of the band; {better_s:.0} s would be better"
+    )]
+    Short {
+        longest_s: f64,
+        /// Lower band end \[rad/s\].
+        lowest: f64,
+        /// Periods at the lower end in the longest record.
+        periods: f64,
+        better_s: f64,
+    },
+    /// An input was not moved, or only together with others.
+    #[error(
+        "{signal} was not swept, or only with another input (partial coherence {partial_coherence:.2}): its column is not \
+                 identified"
+    )]
+    NotSwept {
+        signal: Signal,
+        /// Median partial coherence with the output that it moves most.
+        partial_coherence: f64,
+    },
+    /// Inputs were moved together.
+    #[error(
+        "the inputs were not moved independently (condition number {condition:.0}): sweep them one after another"
+    )]
+    MovedTogether {
+        /// Their spectral matrix's median condition number.
+        condition: f64,
+    },
+    /// No input moves any output at an end of the band.
+    #[error(
+        "{} no input moves any output enough to be seen (partial coherence below {TRUSTED_COHERENCE}): the models are unreliable \
+                 there. Narrow the band",
+        hidden_ends(*band, *shown)
+    )]
+    BandNotShown {
+        /// The requested band \[rad/s\].
+        band: [f64; 2],
+        /// The part that the records show \[rad/s\].
+        shown: [f64; 2],
+    },
+    /// An output vibrates above the band, so that the projections were filtered lower.
+    #[error(
+        "{percent:.0} % of {signal} is vibration above the band: CT-PBSID was run below {cut_off:.0} rad/s"
+    )]
+    Vibration {
+        signal: Signal,
+        /// Share of its variance above the cut-off \[%\].
+        percent: f64,
+        /// \[rad/s\].
+        cut_off: f64,
+    },
+    /// The overall residual is larger than the noise.
+    #[error(
+        "the residual is {cost:.1} times the noise, largest in {record} and in {signal}: a non-linear response, wrong time \
+         alignment, or a missing input"
+    )]
+    Inadequate {
+        /// Cost per degree of freedom; 1 is adequate.
+        cost: f64,
+        /// Name of the record with the largest residual.
+        record: String,
+        /// The output with the largest residual.
+        signal: Signal,
+    },
+    /// A record's residual is larger than the noise.
+    #[error(
+        "{name} is unlike the others: its residual is {cost:.1} times the noise. Possible causes: another trim, a large amplitude, \
+         a gust. It can be left out"
+    )]
+    UnlikeRecord {
+        /// Record number, counted from 0.
+        record: usize,
+        name: String,
+        /// Cost per degree of freedom; 1 is adequate.
+        cost: f64,
+    },
+    /// A record contradicts the others, or two records contradict each other.
+    #[error("{}", contradiction_text(records, *contrast))]
+    Contradiction {
+        /// The record, or both.
+        records: Vec<ContradictingRecord>,
+        /// The worse record's `F`; 1 is agreement.
+        contrast: f64,
+    },
+    /// Gusts and noise went into the inputs through the feedback.
+    #[error("{}", feedback_text(*level, *share))]
+    Feedback {
+        level: FeedbackLevel,
+        /// Median share of the response.
+        share: f64,
+        /// Median square over the variance.
+        significance: f64,
+    },
+    /// The model departs from the measured points.
+    #[error(
+        "the model departs from the measured points of {output}/{input} between {:.1} and {:.1} rad/s: trust the points there, and \
+         try another order or band",
+        band[0],
+        band[1]
+    )]
+    LeavesPoints {
+        output: Signal,
+        input: Signal,
+        /// \[rad/s\].
+        band: [f64; 2],
+        /// Mean square distance over the points' variance; 12 is the limit.
+        strength: f64,
+    },
+    /// The criterion still falls at the highest order tried.
+    #[error(
+        "an order above {order} would fit better: the band holds more states. Narrow the band, for example to {:.1} rad/s",
+        narrower[1]
+    )]
+    OrderLimit {
+        /// The highest order.
+        order: usize,
+        /// A suggested narrower band \[rad/s\].
+        narrower: [f64; 2],
+    },
+    /// The model does not predict the held-out records.
+    #[error(
+        "the held-out records are not predicted: the residual is {normalised:.1} times the noise with the model free to move \
+         within its uncertainty, and {raw:.1} times without. The aircraft was flown differently, or the records contain too little \
+         excitation"
+    )]
+    HeldOut {
+        /// Names of the held-out records.
+        records: Vec<String>,
+        /// Cost per degree of freedom.
+        raw: f64,
+        /// The same with the model free to move within its uncertainty.
+        normalised: f64,
+    },
+    /// Records were weighed by their noise; the greatest over the least cost per degree of freedom
+    /// before.
+    #[error("the records differ in noise by a factor of {0:.1}: they were weighed accordingly")]
+    Reweighed(f64),
+    /// The held-out records cannot be compared with the model in time.
+    #[error("the model was not compared with the held-out records in time: {0}")]
+    NotValidated(ValidationError),
+    /// An unstable pole that no line shows.
+    #[error(
+        "the model has an unstable pole of {:.0} rad/s, above the lines used (to {highest:.0} rad/s): it is an artefact, and the model \
+         was not simulated in time",
+        pole.norm()
+    )]
+    Unstable {
+        /// \[rad/s\].
+        pole: Complex<f64>,
+        /// Highest line used \[rad/s\].
+        highest: f64,
+    },
+    /// Outputs and inputs whose responses are not identified.
+    #[error("{} not identified: one standard deviation is over 3 dB", responses_are(.0))]
+    PairsNotIdentified(Vec<[Signal; 2]>),
+}
+
+impl IdentificationCaution {
+    /// Whether some inputs' effects cannot be separated.
+    pub(crate) fn is_of_collinear_inputs(&self) -> bool {
+        matches!(
+            self,
+            Self::MovedTogether { .. } | Self::Records(RecordCaution::MovedTogether { .. })
+        )
+    }
+
+    /// Whether another caution is a mere consequence of this caution.
+    ///
+    /// A record that contradicts the others is unlike them for another reason than its noise; and
+    /// if its sign is turned, no input seems to be swept in the mean over records.
+    pub(crate) fn explains(&self, other: &Self) -> bool {
+        let Self::Contradiction { records, .. } = self else {
+            return false;
+        };
+        match other {
+            Self::UnlikeRecord { record, .. } => {
+                records.iter().any(|wrong| wrong.record == *record)
+            }
+            Self::Reweighed(_) => true,
+            Self::NotSwept { .. } => records.iter().any(has_turned_sign),
+            _ => false,
+        }
+    }
+
+    /// Returns the caution with its code and its subject.
+    #[must_use]
+    pub fn note(&self) -> CautionNote {
+        CautionNote {
+            text: self.to_string(),
+            ..self.note_without_text()
+        }
+    }
+
+    fn note_without_text(&self) -> CautionNote {
+        match self {
+            Self::Records(caution) => caution.note(),
+            Self::Short {
+                lowest, periods, ..
+            } => {
+                let better_lowest = lowest * (BETTER_PERIODS / periods).max(1.0);
+                CautionNote::new("short").with_band([*lowest, better_lowest])
+            }
+            Self::NotSwept { signal, .. } => CautionNote::new("not-swept").with_channel(signal),
+            Self::MovedTogether { .. } => CautionNote::new("collinear-inputs"),
+            Self::BandNotShown { shown, .. } => CautionNote::new("band-narrowed").with_band(*shown),
+            Self::Vibration { signal, .. } => CautionNote::new("vibration").with_channel(signal),
+            Self::Inadequate { record, signal, .. } => CautionNote::new("inadequate")
+                .with_record(record)
+                .with_channel(signal),
+            Self::UnlikeRecord { name, .. } => CautionNote::new("record").with_record(name),
+            Self::Contradiction { records, .. } => CautionNote {
+                records: records.iter().map(|record| record.name.clone()).collect(),
+                ..CautionNote::new(common_code(records)).with_channel(common_channel(records))
+            },
+            Self::Feedback {
+                level: FeedbackLevel::TooMuch,
+                ..
+            } => CautionNote::new("feedback"),
+            Self::Feedback { .. } => CautionNote::new("feedback-some"),
+            Self::LeavesPoints {
+                output,
+                input,
+                band,
+                ..
+            } => CautionNote::new("points")
+                .with_pair([output, input])
+                .with_band(*band),
+            Self::OrderLimit { narrower, .. } => {
+                CautionNote::new("order-limit").with_band(*narrower)
+            }
+            Self::HeldOut { records, .. } => CautionNote {
+                records: records.clone(),
+                ..CautionNote::new("held-out")
+            },
+            Self::Reweighed(_) => CautionNote::new("reweighed"),
+            Self::NotValidated(_) => CautionNote::new("not-validated"),
+            Self::Unstable { .. } => CautionNote::new("unstable"),
+            Self::PairsNotIdentified(pairs) => match pairs.as_slice() {
+                [[output, input]] => CautionNote::new("not-identified").with_pair([output, input]),
+                _ => CautionNote::new("not-identified"),
+            },
+        }
+    }
+}
+
+/// Whether a record's fault is a turned sign.
+fn has_turned_sign(record: &ContradictingRecord) -> bool {
+    matches!(record.fault, Some(RecordFault::Gain(_, factor)) if factor < 0.0)
+}
+
+/// Returns the code for a record's fault.
+fn fault_code(record: &ContradictingRecord) -> &'static str {
+    match &record.fault {
+        Some(RecordFault::OutputsLate(_) | RecordFault::Late(..)) => "time-skew",
+        Some(RecordFault::Gain(_, factor)) if *factor < 0.0 => "sign",
+        _ => "record",
+    }
+}
+
+/// Returns the fault's code if it is the same whichever record is wrong.
+fn common_code(records: &[ContradictingRecord]) -> &'static str {
+    let Some(code) = records.first().map(fault_code) else {
+        return "record";
+    };
+    if records.iter().all(|record| fault_code(record) == code) {
+        code
+    } else {
+        "record"
+    }
+}
+
+/// Returns the faulty channel if it is the same whichever record is wrong.
+fn common_channel(records: &[ContradictingRecord]) -> Option<&Signal> {
+    let channels: Vec<Option<&Signal>> = records
+        .iter()
+        .map(|record| record.fault.as_ref().and_then(RecordFault::signal))
+        .collect();
+    let first = *channels.first()?;
+    if channels.iter().all(|channel| *channel == first) {
+        first
+    } else {
+        None
+    }
+}
+
+/// Lists a band's hidden ends: `below 0.80 rad/s and above 8.0 rad/s`.
+fn hidden_ends(band: [f64; 2], shown: [f64; 2]) -> String {
+    let mut ends = Vec::new();
+    if shown[0] > band[0] {
+        ends.push(format!("below {:.2} rad/s", shown[0]));
+    }
+    if shown[1] < band[1] {
+        ends.push(format!("above {:.1} rad/s", shown[1]));
+    }
+    ends.join(" and ")
+}
+
+/// Lists responses with their verb: `LON to P, LAT to P and LON to Q are`.
+fn responses_are(pairs: &[[Signal; 2]]) -> String {
+    let names: Vec<String> = pairs
+        .iter()
+        .map(|[output, input]| format!("{input} to {output}"))
+        .collect();
+    let verb = if names.len() == 1 { "is" } else { "are" };
+    format!("{} {verb}", listed(&names))
+}
+
+/// Writes which records contradict each other, and their possible faults.
+fn contradiction_text(records: &[ContradictingRecord], contrast: f64) -> String {
+    let agreement = format!("(F {contrast:.0}; 1 is agreement)");
+    match records {
+        [] => String::new(),
+        [record] => {
+            let name = &record.name;
+            let fault = match &record.fault {
+                Some(fault) => format!(" Likely cause: {fault}."),
+                None => String::new(),
+            };
+            format!(
+                "{name} contradicts the other records {agreement}.{fault} Correct it, or leave the record out"
+            )
+        }
+        records => {
+            let names: Vec<&str> = records.iter().map(|record| record.name.as_str()).collect();
+            let names = listed(&names);
+            let mut text = format!(
+                "{names} contradict one another {agreement}; a third record would show which is wrong."
+            );
+            for record in records {
+                if let Some(fault) = &record.fault {
+                    text += &format!(" Likely cause in {}: {fault}.", record.name);
+                }
+            }
+            text
+        }
+    }
+}
+
+/// Writes the feedback's effect, and the remedy.
+fn feedback_text(level: FeedbackLevel, share: f64) -> String {
+    let percent = 100.0 * share;
+    let remedy =
+        "Sweep more strongly, or give the recorded reference that drove the loop (--reference)";
+    match level {
+        FeedbackLevel::TooMuch => format!(
+            "do not use this model: about {percent:.0} % of the measured response is gusts and noise fed back into the inputs, not the \
+             aircraft, however well the model fits. {remedy}"
+        ),
+        FeedbackLevel::Some | FeedbackLevel::None => format!(
+            "about {percent:.0} % of the measured response is gusts and noise fed back into the inputs: the models are off by a few tenths \
+             of a dB. {remedy}"
+        ),
+    }
+}

@@ -1,0 +1,310 @@
+//! Records compared with each other: contradictions and their causes (M14.16).
+//!
+//! ```text
+//! G = sum G_r, V'GV = I, at the optimum before records are reweighed, which hides the wrong record
+//! 1  a = V'G_r V = Q diag(eps) Q';  the nu directions with 0.02 < eps < 0.98 are known to the record
+//!    and to the others
+//! 2  c = Q'(V'g_r - a V'g);   F_r = sum c^2 / (eps (1 - eps)) / (nu phi): 1 if the record agrees with
+//!    the others' model
+//! 3  for the record with the greatest F, residual columns d with transient and theta
+//!    projected out:
+//!      all outputs late W jw Y,  an output late W e_o jw Y_o,
+//!      an input late -W G_j jw U_j,  a gain W e_o Y_o
+//!      h = d'e - d'J G^+ g,  S = d'd - d'J G^+ J'd
+//!    the fault with the greatest h^2/S; its size is -h/S
+//! ```
+//!
+//! A changed model without a record is no evidence against that record: it only says that the
+//! record carries an axis alone.
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::executor::each;
+
+use super::cautions::IdentificationCaution;
+use super::model_doubts::Diagnostics;
+use super::record_fault::{ContradictingRecord, RecordFault};
+use crate::likelihood::blocks::BlockModel;
+use crate::likelihood::cost::{Likelihood, SegmentCost, SpectralLines, whiten};
+use crate::likelihood::gram_matrix::pseudo_inverse_root;
+use crate::likelihood::normal_system::{NormalSystem, gradient_along, system_of_record};
+use crate::likelihood::refinement::Fit;
+use crate::options::Options;
+use crate::spectra::spectrum::Spectrum;
+
+/// Least share of a direction that a record has to know, so that it can be compared.
+const LEAST_KNOWN: f64 = 0.02;
+/// Greatest share of a direction that a record may know, so that the others know it too.
+const MOST_KNOWN: f64 = 0.98;
+/// Share of the largest eigenvalue of `G` below which a direction is a free scale of the states.
+const FREE_SCALE: f64 = 1e-9;
+/// `F` above which a record contradicts the others.
+const CONTRADICTS: f64 = 4.0;
+/// The same with gusts fed back, which differ from flight to flight.
+const CONTRADICTS_IN_GUSTS: f64 = 12.0;
+/// The worst record's `F` over the second's, from which the worst is wrong alone.
+const ALONE: f64 = 1.5;
+/// Gain over the greatest gain from which a common delay of all outputs is preferred to another
+/// fault.
+const AS_GOOD: f64 = 0.98;
+
+/// How far a record contradicts the others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecordContrast {
+    /// Record number, counted from 0.
+    pub record: usize,
+    /// `F`; 1 is agreement.
+    pub contrast: f64,
+}
+
+/// The records behind a fit that minimises its likelihood.
+pub(crate) struct RecordContrasts<'a> {
+    likelihood: &'a Likelihood<'a>,
+    /// Each segment's lines in scaled units, not whitened.
+    spectra: &'a [Spectrum],
+    fit: &'a Fit,
+    whole: NormalSystem,
+    /// `V`.
+    root: DMatrix<f64>,
+    /// By record, ascending; empty for a single record.
+    pub(crate) contrasts: Vec<RecordContrast>,
+}
+
+/// `h` and `S` for a fault.
+#[derive(Clone, Copy)]
+struct FaultSums {
+    h: f64,
+    s: f64,
+}
+
+impl FaultSums {
+    /// Returns `h^2/S`, the cost that the fault explains.
+    fn gain(self) -> f64 {
+        if self.s > 0.0 {
+            self.h * self.h / self.s
+        } else {
+            0.0
+        }
+    }
+}
+
+impl<'a> RecordContrasts<'a> {
+    /// Compares the records (steps 1 and 2); `None` if an iteration does not converge.
+    pub(crate) fn new(
+        likelihood: &'a Likelihood<'a>,
+        spectra: &'a [Spectrum],
+        fit: &'a Fit,
+    ) -> Option<Self> {
+        let systems = fit.systems(likelihood)?;
+        let whole = NormalSystem::sum(fit.model.parameters(), &systems);
+        let dispersion = fit.cost / fit.spare_freedom(likelihood)? as f64;
+        let root = pseudo_inverse_root(whole.matrix.clone(), FREE_SCALE)?;
+        let gradient = root.tr_mul(&whole.gradient);
+        let records = likelihood.records();
+        let contrasts = if records.len() < 2 {
+            Vec::new()
+        } else {
+            each(likelihood.executor, records, |record| {
+                let own = system_of_record(likelihood, record, &systems);
+                let contrast = contrast(&own, &root, &gradient, dispersion)?;
+                Some(RecordContrast { record, contrast })
+            })
+            .into_iter()
+            .collect::<Option<Vec<_>>>()?
+        };
+        Some(Self {
+            likelihood,
+            spectra,
+            fit,
+            whole,
+            root,
+            contrasts,
+        })
+    }
+
+    /// Names the record that contradicts the others, or two that contradict each other, each with
+    /// its most likely fault.
+    pub(crate) fn caution(
+        &self,
+        is_in_gusts: bool,
+        names: &Diagnostics,
+    ) -> Option<IdentificationCaution> {
+        let mut worst = self.contrasts.clone();
+        worst.sort_by(|a, b| b.contrast.total_cmp(&a.contrast));
+        let first = worst.first()?;
+        let second = worst.get(1)?;
+        let limit = if is_in_gusts {
+            CONTRADICTS_IN_GUSTS
+        } else {
+            CONTRADICTS
+        };
+        if first.contrast.is_nan() || first.contrast <= limit {
+            return None;
+        }
+        let is_alone = worst.len() > 2 && first.contrast >= ALONE * second.contrast;
+        let mut numbers = vec![first.record];
+        if !is_alone {
+            numbers.push(second.record);
+        }
+        numbers.sort_unstable();
+        let mut records = Vec::with_capacity(numbers.len());
+        for record in numbers {
+            records.push(ContradictingRecord {
+                record,
+                name: names.record_name(record),
+                fault: self.fault(record, names.options),
+            });
+        }
+        Some(IdentificationCaution::Contradiction {
+            records,
+            contrast: first.contrast,
+        })
+    }
+
+    /// Finds the fault that explains most in a record's residual (step 3).
+    pub(crate) fn fault(&self, record: usize, options: &Options) -> Option<RecordFault> {
+        let faults = self.possible_faults(options);
+        let sums = each(self.likelihood.executor, &faults, |fault| {
+            self.sums(record, fault)
+        });
+        let mut found: Vec<(&RecordFault, FaultSums)> = Vec::new();
+        for (fault, sums) in faults.iter().zip(sums) {
+            if let Some(sums) = sums {
+                found.push((fault, sums));
+            }
+        }
+        let best = found
+            .iter()
+            .max_by(|a, b| a.1.gain().total_cmp(&b.1.gain()))?;
+        let outputs_late = found.iter().find(|(fault, sums)| {
+            matches!(fault, RecordFault::OutputsLate(_)) && sums.gain() >= AS_GOOD * best.1.gain()
+        });
+        let (fault, sums) = outputs_late.unwrap_or(best);
+        let size = -sums.h / sums.s;
+        if !size.is_finite() {
+            return None;
+        }
+        Some(match fault {
+            RecordFault::OutputsLate(_) => RecordFault::OutputsLate(size),
+            RecordFault::Late(signal, _) => RecordFault::Late(signal.clone(), size),
+            RecordFault::Gain(signal, _) => RecordFault::Gain(signal.clone(), 1.0 + size),
+        })
+    }
+
+    /// Lists the faults that a record may have, with size zero.
+    fn possible_faults(&self, options: &Options) -> Vec<RecordFault> {
+        let (outputs, inputs) = self.fit.model.d.shape();
+        let mut faults = vec![RecordFault::OutputsLate(0.0)];
+        for output in 0..outputs {
+            faults.push(RecordFault::Late(
+                options.signal(ChannelSide::Output, output),
+                0.0,
+            ));
+        }
+        // A single early input is the same as all outputs late.
+        if inputs > 1 {
+            for input in 0..inputs {
+                faults.push(RecordFault::Late(
+                    options.signal(ChannelSide::Input, input),
+                    0.0,
+                ));
+            }
+        }
+        for output in 0..outputs {
+            faults.push(RecordFault::Gain(
+                options.signal(ChannelSide::Output, output),
+                1.0,
+            ));
+        }
+        faults
+    }
+
+    /// Computes `h` and `S` for a fault of a record; `None` if they are not finite.
+    fn sums(&self, record: usize, fault: &RecordFault) -> Option<FaultSums> {
+        let model = &self.fit.model;
+        let mut with_residual = 0.0;
+        let mut square = 0.0;
+        let mut with_parameters = DVector::zeros(model.parameters());
+        let segments = self.likelihood.segments.iter().zip(&self.fit.parts);
+        for ((lines, part), spectrum) in segments.zip(self.spectra) {
+            if lines.record != record {
+                continue;
+            }
+            let effect = residual_effect(fault, lines, spectrum, model);
+            let column = lines.without_transient(model, &effect)?;
+            with_residual += column.dotc(&part.residual).re;
+            square += column.norm_squared();
+            let along = SegmentCost {
+                residual: column,
+                ..part.clone()
+            };
+            with_parameters += gradient_along(lines, model, &along);
+        }
+        let known = self.root.tr_mul(&with_parameters);
+        let optimum = self.root.tr_mul(&self.whole.gradient);
+        Some(FaultSums {
+            h: with_residual - known.dot(&optimum),
+            s: square - known.norm_squared(),
+        })
+    }
+}
+
+/// Computes `F` for a record with the normal system `own`; `root` is `V`, `gradient` is `V'g` and
+/// `dispersion` is `phi`.
+fn contrast(
+    own: &NormalSystem,
+    root: &DMatrix<f64>,
+    gradient: &DVector<f64>,
+    dispersion: f64,
+) -> Option<f64> {
+    let share = root.tr_mul(&(&own.matrix * root));
+    let wanted = root.tr_mul(&own.gradient) - &share * gradient;
+    let eigen = share.try_symmetric_eigen(f64::EPSILON, 10_000)?;
+    let along = eigen.eigenvectors.tr_mul(&wanted);
+    let mut compared = Vec::new();
+    for (c, eps) in along.iter().zip(eigen.eigenvalues.iter()) {
+        if LEAST_KNOWN < *eps && *eps < MOST_KNOWN {
+            compared.push(c.powi(2) / (eps * (1.0 - eps)));
+        }
+    }
+    let count = compared.len().max(1) as f64;
+    Some(compared.iter().sum::<f64>() / (count * dispersion))
+}
+
+/// Returns a unit fault's effect on the whitened residual, outputs x lines.
+fn residual_effect(
+    fault: &RecordFault,
+    lines: &SpectralLines,
+    spectrum: &Spectrum,
+    model: &BlockModel,
+) -> DMatrix<Complex<f64>> {
+    let (outputs, count) = lines.outputs.shape();
+    let mut effect = DMatrix::zeros(outputs, count);
+    for (k, (&omega, weight)) in lines.omega.iter().zip(&lines.weights).enumerate() {
+        let derivative = Complex::new(0.0, omega);
+        let mut raw = vec![Complex::default(); outputs];
+        match fault {
+            RecordFault::OutputsLate(_) => {
+                for (to, y) in raw.iter_mut().zip(spectrum.outputs.column(k).iter()) {
+                    *to = derivative * y;
+                }
+            }
+            RecordFault::Late(signal, _) if signal.role == ChannelSide::Output => {
+                raw[signal.index] = derivative * spectrum.outputs[(signal.index, k)];
+            }
+            RecordFault::Late(signal, _) => {
+                let moved = derivative * spectrum.inputs[(signal.index, k)];
+                let response = model.response(omega);
+                for (to, g) in raw.iter_mut().zip(response.column(signal.index).iter()) {
+                    *to = -g * moved;
+                }
+            }
+            RecordFault::Gain(signal, _) => {
+                raw[signal.index] = spectrum.outputs[(signal.index, k)];
+            }
+        }
+        whiten(weight, &raw, |o, value| effect[(o, k)] = value);
+    }
+    effect
+}

@@ -1,0 +1,294 @@
+//! Uncertainty of the recommended model, and doubts about it (M14.5, M14.6, M14.10).
+
+use nalgebra::Complex;
+
+use gdcm_model::dataset::Pair;
+use gdcm_model::dataset::model::ModelBands;
+use gdcm_model::progress::Shares;
+use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::simulation::{FlightRecord, Validation, ValidationSettings, validate};
+
+use super::model_selection::Refinement;
+use super::order::fast_unstable_pole;
+use super::prepared_data::PreparedData;
+use crate::diagnostics::bands::BandModels;
+use crate::diagnostics::cautions::IdentificationCaution;
+use crate::diagnostics::feedback::{Feedback, FeedbackLevel, FeedbackRecords};
+use crate::diagnostics::model_doubts::Diagnostics;
+use crate::diagnostics::record_contrast::{RecordContrast, RecordContrasts};
+use crate::diagnostics::record_fits::RecordFits;
+use crate::identification_error::IdentificationError;
+use crate::likelihood::covariance::ParameterCovariance;
+use crate::likelihood::models_without_record::{ModelWithoutRecord, without_each_record};
+use crate::likelihood::normal_system::NormalSystem;
+use crate::options::Options;
+
+/// Frequencies in the bands.
+const BAND_POINTS: usize = 60;
+/// Upper end of the suggested narrower band over the present end, if the highest order is too low.
+const NARROWER: f64 = 0.7;
+/// Standard deviation above which a response is not identified \[dB\].
+const NOT_IDENTIFIED_DB: f64 = 3.0;
+
+/// The recommended model's uncertainty.
+pub(super) struct Uncertainty {
+    covariance: ParameterCovariance,
+    /// The covariance from the lines as logged, if the fit used a reference (M14.15).
+    logged: Option<ParameterCovariance>,
+    pub(super) feedback: Option<Feedback>,
+    pub(super) bands: ModelBands,
+    /// Output and input whose responses are not identified.
+    pub(super) not_identified: Vec<(usize, usize)>,
+}
+
+impl Uncertainty {
+    /// Returns the covariance from the lines as logged: with a reference the cost says nothing
+    /// about the uncertainty (M14.15).
+    pub(super) fn as_logged(&self) -> &ParameterCovariance {
+        self.logged.as_ref().unwrap_or(&self.covariance)
+    }
+}
+
+/// Assesses the recommended model.
+pub(super) struct Assessment<'a> {
+    pub(super) records: &'a [FlightRecord],
+    pub(super) options: &'a Options,
+    pub(super) data: &'a PreparedData<'a>,
+    pub(super) refinement: &'a Refinement<'a>,
+}
+
+/// The recommended model with its uncertainty, its fits and all doubts.
+pub(super) struct AssessedModel {
+    pub(super) uncertainty: Uncertainty,
+    /// Models without each record.
+    pub(super) without: Vec<ModelWithoutRecord>,
+    pub(super) fits: RecordFits,
+    /// How far each fitted record contradicts the others (M14.16).
+    pub(super) contrasts: Vec<RecordContrast>,
+    pub(super) cautions: Vec<IdentificationCaution>,
+    pub(super) validation: Option<Validation>,
+}
+
+impl Assessment<'_> {
+    /// Computes covariance, bands, models without each record, fits, doubts and the validation.
+    pub(super) fn assess(&self, progress: &Shares) -> Result<AssessedModel, IdentificationError> {
+        let Refinement {
+            fit, likelihood, ..
+        } = self.refinement;
+        progress.next(0.8, "uncertainty")?;
+        let systems = fit
+            .systems(likelihood)
+            .ok_or_else(|| self.data.no_model())?;
+        let uncertainty = self.uncertainty(&systems)?;
+        progress.next(0.88, "models without each record")?;
+        let without = without_each_record(likelihood, fit, &systems);
+        progress.next(0.93, "validation")?;
+        let covariance = &uncertainty.covariance;
+        let fits = RecordFits::new(
+            &self.data.likelihood,
+            &self.data.held_out,
+            &fit.model,
+            covariance,
+        )
+        .ok_or_else(|| self.data.no_model())?;
+        let contrasts = self.contrasts()?;
+        let mut cautions = self.cautions(&uncertainty, &fits, contrasts.as_ref());
+        let validation = self.validate(&mut cautions)?;
+        Ok(AssessedModel {
+            uncertainty,
+            without,
+            fits,
+            contrasts: contrasts.map_or_else(Vec::new, |contrasts| contrasts.contrasts),
+            cautions,
+            validation,
+        })
+    }
+
+    /// Whether no reference was used. With a reference nothing is fed back, and every record is
+    /// seen through the same reference.
+    fn is_direct(&self) -> bool {
+        self.options.references == 0
+    }
+
+    /// Computes covariance, feedback and bands.
+    fn uncertainty(&self, systems: &[NormalSystem]) -> Result<Uncertainty, IdentificationError> {
+        let Refinement {
+            search,
+            fit,
+            likelihood,
+            ..
+        } = self.refinement;
+        let executor = likelihood.executor;
+        let covariance = ParameterCovariance::from_systems(likelihood, fit, systems, fit.cost)
+            .ok_or_else(|| self.data.no_model())?;
+        let logged = match &self.data.direct {
+            Some(direct) => Some(
+                ParameterCovariance::from_lines(direct, fit).ok_or_else(|| self.data.no_model())?,
+            ),
+            None => None,
+        };
+        let feedback = self.feedback();
+        let omegas = log_spaced(self.options.band[0], self.options.band[1], BAND_POINTS);
+        let models = BandModels {
+            model: &fit.model,
+            neighbours: &search.neighbours(),
+            feedback: feedback.as_ref(),
+        };
+        let mut bands = models
+            .bands(logged.as_ref().unwrap_or(&covariance), &omegas, executor)
+            .ok_or_else(|| self.data.no_model())?;
+        if !self.is_direct() {
+            bands = self
+                .data
+                .measured
+                .widened(&bands)
+                .ok_or_else(|| self.data.no_model())?;
+        }
+        Ok(Uncertainty {
+            covariance,
+            logged,
+            feedback,
+            not_identified: not_identified(&bands),
+            bands,
+        })
+    }
+
+    /// Measures the feedback; `None` with a reference, or if inputs were moved only together, which
+    /// hides it.
+    fn feedback(&self) -> Option<Feedback> {
+        let mut cautions = self.data.cautions.iter();
+        if !self.is_direct() || cautions.any(IdentificationCaution::is_of_collinear_inputs) {
+            return None;
+        }
+        let records = FeedbackRecords {
+            segments: &self.data.unfiltered,
+            lines: self.data.lines,
+            band: self.options.band,
+        };
+        Feedback::measure(
+            &records,
+            &self.refinement.fit.model,
+            self.refinement.likelihood.executor,
+        )
+    }
+
+    /// Compares the records with each other; `None` with a reference.
+    ///
+    /// The fit before reweighing counts, for weights hide which record is wrong.
+    fn contrasts(&self) -> Result<Option<RecordContrasts<'_>>, IdentificationError> {
+        if !self.is_direct() {
+            return Ok(None);
+        }
+        let fit = self
+            .refinement
+            .before_reweighing
+            .as_ref()
+            .unwrap_or(&self.refinement.fit);
+        let contrasts = RecordContrasts::new(&self.data.likelihood, &self.data.spectra, fit)
+            .ok_or_else(|| self.data.no_model())?;
+        Ok(Some(contrasts))
+    }
+
+    /// Collects all doubts about records and models.
+    fn cautions(
+        &self,
+        uncertainty: &Uncertainty,
+        fits: &RecordFits,
+        contrasts: Option<&RecordContrasts<'_>>,
+    ) -> Vec<IdentificationCaution> {
+        let Refinement { search, fit, .. } = self.refinement;
+        let diagnostics = Diagnostics {
+            records: self.records,
+            options: self.options,
+            data: self.data.measured_data(),
+            fit,
+        };
+        let mut cautions = self.data.cautions.clone();
+        cautions.extend(self.refinement.caution.clone());
+        let feedback = feedback_caution(uncertainty.feedback.as_ref());
+        let is_in_gusts = feedback.is_some();
+        cautions.extend(feedback);
+        if let Some(contrasts) = contrasts {
+            cautions.extend(diagnostics.adequacy(fits));
+            if let Some(contradiction) = contrasts.caution(is_in_gusts, &diagnostics) {
+                cautions.retain(|caution| !contradiction.explains(caution));
+                cautions.push(contradiction);
+            }
+        }
+        cautions.extend(diagnostics.departures());
+        if search.still_falls {
+            cautions.push(IdentificationCaution::OrderLimit {
+                order: search.order,
+                narrower: [self.options.band[0], NARROWER * self.options.band[1]],
+            });
+        }
+        cautions.extend(diagnostics.unidentified_pairs(&uncertainty.not_identified));
+        if let Some(pole) = self.unstable_pole() {
+            cautions.push(IdentificationCaution::Unstable {
+                pole,
+                highest: self.options.highest(),
+            });
+        }
+        cautions
+    }
+
+    /// Returns an unstable pole above the lines used.
+    fn unstable_pole(&self) -> Option<Complex<f64>> {
+        fast_unstable_pole(&self.refinement.fit.model, self.options.highest())
+    }
+
+    /// Compares the model with the held-out records in time; a failure becomes a caution.
+    ///
+    /// An unstable pole that no line shows would end the windows after a few samples.
+    fn validate(
+        &self,
+        cautions: &mut Vec<IdentificationCaution>,
+    ) -> Result<Option<Validation>, IdentificationError> {
+        let segments = self.data.held_out_segments.as_slice();
+        if segments.is_empty() || self.unstable_pole().is_some() {
+            return Ok(None);
+        }
+        let settings = ValidationSettings::filtered(self.options.highest());
+        let model = self
+            .data
+            .in_units(&self.refinement.fit.model)
+            .ok_or_else(|| self.data.no_model())?;
+        let executor = self.refinement.likelihood.executor;
+        match validate(&model, segments, &settings, executor) {
+            Ok(validation) => Ok(Some(validation)),
+            Err(error) => {
+                cautions.push(IdentificationCaution::NotValidated(error));
+                Ok(None)
+            }
+        }
+    }
+}
+
+/// Reports gusts and noise that went into the inputs.
+fn feedback_caution(feedback: Option<&Feedback>) -> Option<IdentificationCaution> {
+    let feedback = feedback?;
+    let level = feedback.level();
+    if level == FeedbackLevel::None {
+        return None;
+    }
+    Some(IdentificationCaution::Feedback {
+        level,
+        share: feedback.share,
+        significance: feedback.significance,
+    })
+}
+
+/// Returns output and input whose responses are known too badly in mid-band.
+fn not_identified(bands: &ModelBands) -> Vec<(usize, usize)> {
+    let sd_db = bands.sd_db();
+    let middle = bands.omega().len() / 2;
+    let mut pairs = Vec::new();
+    for input in 0..sd_db.inputs() {
+        for output in 0..sd_db.outputs() {
+            if sd_db[Pair { output, input }][middle] > NOT_IDENTIFIED_DB {
+                pairs.push((output, input));
+            }
+        }
+    }
+    pairs
+}

@@ -1,0 +1,221 @@
+//! Laguerre poles and past windows, compared by the cost of their models (M14.3, M14.7).
+
+use std::collections::BTreeMap;
+
+use gdcm_model::dataset::StateSpace;
+use gdcm_model::executor::{Executor, each};
+use gdcm_model::progress::{Cancelled, Shares};
+use gdcm_model::response::eigenvalues::poles;
+use gdcm_model::simulation::Segment;
+
+use crate::likelihood::blocks::BlockModel;
+use crate::likelihood::cost::Likelihood;
+use crate::likelihood::refinement::Fit;
+use crate::subspace::ct_pbsid::{Subspace, SubspaceShape};
+use crate::subspace::fast_modes::without_fast_modes;
+use crate::subspace::laguerre::Projections;
+use crate::subspace::search_extent::SPACING;
+use crate::subspace::stabilisation::PolesOfOrder;
+use crate::subspace::triangular_factor::TriangularFactor;
+
+/// Highest order at which poles and past windows are compared.
+const RANKING_ORDER: usize = 18;
+/// Poles and past windows that propose models for all orders.
+const KEPT: usize = 2;
+/// Modes beyond this many times the upper band end are images of z near -1.
+const FASTEST: f64 = 8.0;
+/// Share of the whole work that the candidates take.
+const SHARE: f64 = 0.2;
+/// Ridge of the predictor over unit columns.
+const RIDGE: f64 = 1e-8;
+
+/// CT-PBSID settings.
+#[derive(Clone, Debug)]
+pub(crate) struct SubspaceSettings {
+    /// Upper band end \[rad/s\].
+    pub(crate) highest: f64,
+    /// Laguerre poles \[rad/s\].
+    pub(crate) poles: Vec<f64>,
+    /// Past windows.
+    pub(crate) pasts: Vec<usize>,
+    /// Ascending.
+    pub(crate) orders: Vec<usize>,
+    /// Most block rows in the map to the future.
+    pub(crate) longest_future: usize,
+}
+
+/// The states that a Laguerre pole and a past window propose.
+#[derive(Clone, Debug)]
+pub(crate) struct Candidate {
+    /// Laguerre pole \[rad/s\].
+    pub(crate) pole: f64,
+    /// Past window.
+    pub(crate) past: usize,
+    /// Cost at the compared order.
+    cost: f64,
+    subspace: Subspace,
+}
+
+impl SubspaceSettings {
+    /// Returns the two cheapest poles and past windows, the cheaper first.
+    ///
+    /// ```text
+    /// 1  R for each Laguerre pole a
+    /// 2  for each a and past window p: the model of order 18, its cost
+    /// 3  the two cheapest (a, p)
+    /// ```
+    pub(crate) fn candidates(
+        &self,
+        segments: &[Segment],
+        likelihood: &Likelihood,
+        progress: &Shares,
+    ) -> Result<Vec<Candidate>, Cancelled> {
+        let Some(ranking) = Ranking::new(self, segments, likelihood, progress) else {
+            return Ok(Vec::new());
+        };
+        let numbers = 0..self.poles.len();
+        let mut candidates = Vec::new();
+        for of_pole in each(likelihood.executor, numbers, |k| ranking.rank_pole(k)) {
+            candidates.extend(of_pole?);
+        }
+        candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        candidates.truncate(KEPT);
+        Ok(candidates)
+    }
+
+    /// Returns each order's cheapest model from `candidates`, with its cost.
+    pub(crate) fn starts(
+        &self,
+        candidates: &[Candidate],
+        likelihood: &Likelihood,
+    ) -> BTreeMap<usize, Fit> {
+        let cheapest = each(likelihood.executor, &self.orders, |&order| {
+            candidates
+                .iter()
+                .filter_map(|candidate| self.block_model(&candidate.subspace, order))
+                .filter_map(|model| Fit::start(likelihood, model))
+                .min_by(|a, b| a.cost.total_cmp(&b.cost))
+        });
+        let mut starts = BTreeMap::new();
+        for (order, fit) in self.orders.iter().zip(cheapest) {
+            if let Some(fit) = fit {
+                starts.insert(*order, fit);
+            }
+        }
+        starts
+    }
+
+    /// Returns the poles that a candidate proposes, for all orders.
+    pub(crate) fn poles_by_order(
+        &self,
+        candidate: &Candidate,
+        executor: &dyn Executor,
+    ) -> Vec<PolesOfOrder> {
+        each(executor, &self.orders, |&order| {
+            let model = self.slow_model(&candidate.subspace, order)?;
+            let poles = poles(&model)?;
+            Some(PolesOfOrder { order, poles })
+        })
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+
+    /// Returns an order's model without modes far above the band.
+    fn slow_model(&self, subspace: &Subspace, order: usize) -> Option<StateSpace> {
+        without_fast_modes(&subspace.model(order)?, FASTEST * self.highest)
+    }
+
+    /// Returns the same in blocks; `None` if all its modes are far above the band.
+    fn block_model(&self, subspace: &Subspace, order: usize) -> Option<BlockModel> {
+        BlockModel::from_state_space(&self.slow_model(subspace, order)?)
+    }
+}
+
+/// Compares Laguerre poles and past windows.
+struct Ranking<'r> {
+    settings: &'r SubspaceSettings,
+    segments: &'r [Segment],
+    likelihood: &'r Likelihood<'r>,
+    progress: &'r Shares<'r>,
+    inputs: usize,
+    outputs: usize,
+    longest_past: usize,
+    /// Order at which models are compared.
+    order: usize,
+    /// Share of the whole work that is reported for a step.
+    share: f64,
+}
+
+impl<'r> Ranking<'r> {
+    /// Chooses an order for which the shortest past window has states; `None` without orders, past
+    /// windows or segments.
+    fn new(
+        settings: &'r SubspaceSettings,
+        segments: &'r [Segment],
+        likelihood: &'r Likelihood<'r>,
+        progress: &'r Shares<'r>,
+    ) -> Option<Self> {
+        let segment = segments.first()?;
+        let outputs = segment.outputs.ncols();
+        let future = settings.pasts.iter().min()?.min(&settings.longest_future);
+        let steps = settings.poles.len() * (settings.pasts.len() + 1);
+        Some(Self {
+            settings,
+            segments,
+            likelihood,
+            progress,
+            inputs: segment.inputs.ncols(),
+            outputs,
+            longest_past: *settings.pasts.iter().max()?,
+            order: RANKING_ORDER
+                .min(*settings.orders.last()?)
+                .min(future * outputs),
+            share: SHARE / steps as f64,
+        })
+    }
+
+    /// Computes a pole's candidates, by its number.
+    fn rank_pole(&self, number: usize) -> Result<Vec<Candidate>, Cancelled> {
+        let executor = self.likelihood.executor;
+        let poles = &self.settings.poles;
+        let step = format!("pole {} of {}", number + 1, poles.len());
+        self.progress
+            .advance(self.share, &format!("{step}, projections"))?;
+        let projections = Projections {
+            pole: poles[number],
+            past: self.longest_past,
+            spacing_s: SPACING / self.settings.highest,
+        };
+        let factor = projections.factor(self.segments, executor);
+        let mut candidates = Vec::new();
+        let of_pasts = each(executor, &self.settings.pasts, |&past| {
+            self.progress
+                .advance(self.share, &format!("{step}, past {past}"))?;
+            Ok::<_, Cancelled>(self.candidate(&factor, poles[number], past))
+        });
+        for candidate in of_pasts {
+            candidates.extend(candidate?);
+        }
+        Ok(candidates)
+    }
+
+    /// Computes the candidate for a pole and a past window; `None` if it proposes no model.
+    fn candidate(&self, factor: &TriangularFactor, pole: f64, past: usize) -> Option<Candidate> {
+        let shape = SubspaceShape {
+            inputs: self.inputs,
+            outputs: self.outputs,
+            past,
+            longest_future: self.settings.longest_future,
+        };
+        let subspace = Subspace::new(factor, pole, shape, RIDGE)?;
+        let model = self.settings.block_model(&subspace, self.order)?;
+        let cost = self.likelihood.cost(&model)?;
+        Some(Candidate {
+            pole,
+            past,
+            cost,
+            subspace,
+        })
+    }
+}

@@ -1,0 +1,112 @@
+//! Why a flight condition cannot be identified.
+
+use gdcm_model::progress::Cancelled;
+use gdcm_model::simulation::Signal;
+
+use crate::spectra::gaps::names;
+use crate::spectra::local_polynomial::LocalPolynomialError;
+use crate::spectra::preparation_settings::PreparationError;
+use crate::spectra::scales::ScalingError;
+
+/// The highest order that may be requested.
+pub const HIGHEST_ORDER: usize = 60;
+/// The longest past window that may be requested.
+pub const LONGEST_PAST: usize = 60;
+
+/// Why a flight condition cannot be identified.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum IdentificationError {
+    /// The records cannot be prepared.
+    #[error(transparent)]
+    Preparation(#[from] PreparationError),
+    /// The channels cannot be scaled.
+    #[error(transparent)]
+    Scaling(#[from] ScalingError),
+    /// The response cannot be measured.
+    #[error(transparent)]
+    Measurement(#[from] LocalPolynomialError),
+    /// The records are too short for the lower band end.
+    #[error(
+        "the longest record lasts {longest_s:.0} s: {lowest:.2} rad/s needs {needed_s:.1} s, better {better_s:.0} s. From \
+         {enough:.2} rad/s on the records are long enough"
+    )]
+    TooShort {
+        longest_s: f64,
+        /// Lower band end \[rad/s\].
+        lowest: f64,
+        /// 1.5 periods \[s\].
+        needed_s: f64,
+        /// 5 periods, or 3 an input if several are moved in the same record \[s\].
+        better_s: f64,
+        /// Lower band end for which the records are long enough \[rad/s\].
+        enough: f64,
+    },
+    /// Fewer real values than a first-order model needs.
+    #[error(
+        "the lines of the records in the band hold {figures} real values, and {needed} are needed, 5 for each of the {unknowns} \
+         unknowns in a first-order model: log longer or more records, widen the band, or leave out channels"
+    )]
+    TooFewFigures {
+        /// Real values in the lines.
+        figures: usize,
+        needed: usize,
+        /// Unknowns in a first-order model.
+        unknowns: usize,
+    },
+    /// The band ends are invalid or interchanged.
+    #[error(
+        "a band from {lowest} to {highest} rad/s: its lower end must be greater than 0, and its upper end above it"
+    )]
+    Band { lowest: f64, highest: f64 },
+    /// The records are sampled too slowly for the band.
+    #[error(
+        "the band ends at {highest} rad/s, but a sample time of {sample_time_s:.4} s is too long for that: \
+         end the band below {limit:.1} rad/s, or log faster"
+    )]
+    SampledTooSlowly {
+        /// Upper band end \[rad/s\].
+        highest: f64,
+        /// The longest sample time \[s\].
+        sample_time_s: f64,
+        /// Highest possible upper end \[rad/s\].
+        limit: f64,
+    },
+    /// Orders, past windows or poles are missing or invalid.
+    #[error(
+        "orders and past windows must be given, from 1 to {HIGHEST_ORDER} and from 1 to {LONGEST_PAST}, \
+         and Laguerre poles greater than 0"
+    )]
+    Settings,
+    #[error("every input is given as a reference: the model needs at least one input")]
+    OnlyReferences,
+    #[error("record {} is to be held out, but there are only {records}", record + 1)]
+    HeldOutMissing {
+        /// Counted from 0.
+        record: usize,
+        /// Record count.
+        records: usize,
+    },
+    /// All records are held out or unusable.
+    #[error("no record remains to fit a model to: hold out fewer")]
+    NothingToFit,
+    /// Inputs that copy each other.
+    #[error("{} move together in every record: leave out all but one, or move them independently", names(.0))]
+    InputsDepend(Vec<Signal>),
+    /// The covariance of the noise of the outputs is singular.
+    #[error(
+        "the outputs depend on each other so closely that their noise covariance is singular: leave out the copies"
+    )]
+    OutputsDepend,
+    #[error(
+        "no model was found from {lines} spectral lines in {seconds:.0} s of records: log longer or more records, \
+         widen the band, or leave out channels"
+    )]
+    NoModel {
+        /// In all records.
+        lines: usize,
+        /// Total record length \[s\].
+        seconds: f64,
+    },
+    #[error("the identification was stopped")]
+    Stopped(#[from] Cancelled),
+}

@@ -1,0 +1,90 @@
+//! The noise covariance over frequency, and the weights that follow from it (M14.2, M14.4).
+
+use nalgebra::DMatrix;
+
+use crate::spectra::interpolation::Neighbours;
+use crate::spectra::response_estimate::{EstimatePoint, ResponseEstimate};
+
+/// Weights for a point and its neighbours in the smoothed covariance (M14.2).
+const SMOOTHING: [f64; 5] = [1.0, 2.0, 3.0, 2.0, 1.0];
+/// Share added to the diagonal, so that dependent outputs leave the covariance regular (M14.2).
+const ADDED: f64 = 1e-4;
+/// Least noise variance over output power: exact data still have rounding.
+const FLOOR: f64 = 1e-16;
+
+/// `Cv(omega)`, a line's noise covariance, outputs x outputs.
+///
+/// A measured response's covariances are smoothed over five neighbours, interpolated linearly
+/// in log frequency and constant beyond the ends (M14.2).
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoiseCovariance {
+    log_omega: Vec<f64>,
+    covariances: Vec<DMatrix<f64>>,
+}
+
+impl NoiseCovariance {
+    /// Smooths a measured response's covariances; `None` where it has no points.
+    #[must_use]
+    pub fn from_measured(measured: &ResponseEstimate) -> Option<Self> {
+        let points = &measured.points;
+        if points.is_empty() {
+            return None;
+        }
+        Some(Self {
+            log_omega: points.iter().map(|point| point.omega.ln()).collect(),
+            covariances: (0..points.len()).map(|k| smoothed(points, k)).collect(),
+        })
+    }
+
+    /// Returns `Cv` at `omega` \[rad/s\].
+    #[must_use]
+    pub fn at(&self, omega: f64) -> DMatrix<f64> {
+        let Neighbours {
+            before,
+            after,
+            share,
+        } = Neighbours::find(&self.log_omega, omega.ln());
+        self.covariances[before].scale(1.0 - share) + self.covariances[after].scale(share)
+    }
+
+    /// Returns `W` at `omega` \[rad/s\]: the inverse lower Cholesky factor of `Cv / 2`,
+    /// outputs x outputs, lower triangular.
+    ///
+    /// `W e` has real and imaginary parts with unit variance if `e` is noise (M14.4). `None` where
+    /// the covariance is not positive definite: the noise is 1e8 times stronger in one combination
+    /// of outputs than in another.
+    #[must_use]
+    pub fn weight(&self, omega: f64) -> Option<DMatrix<f64>> {
+        let lower = self.at(omega).scale(0.5).cholesky()?.unpack();
+        let inverse =
+            lower.solve_lower_triangular(&DMatrix::identity(lower.nrows(), lower.nrows()))?;
+        if inverse.iter().all(|w| w.is_finite()) {
+            Some(inverse)
+        } else {
+            None
+        }
+    }
+}
+
+/// Returns the weighted mean covariance around point `k`, its diagonal raised.
+fn smoothed(points: &[EstimatePoint], k: usize) -> DMatrix<f64> {
+    let reach = SMOOTHING.len() / 2;
+    let mut sum = points[k].noise.scale(0.0);
+    let mut weights = 0.0;
+    for (weight, neighbour) in SMOOTHING.iter().zip(k..) {
+        // Neighbours before the first point do not exist.
+        let Some(neighbour) = neighbour.checked_sub(reach) else {
+            continue;
+        };
+        if let Some(point) = points.get(neighbour) {
+            sum += point.noise.scale(*weight);
+            weights += weight;
+        }
+    }
+    let mut covariance = sum / weights;
+    for o in 0..covariance.nrows() {
+        covariance[(o, o)] +=
+            ADDED * covariance[(o, o)] + FLOOR * points[k].power[o] + f64::MIN_POSITIVE;
+    }
+    covariance
+}

@@ -1,0 +1,153 @@
+//! Identification options (M14.9).
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::simulation::{FlightRecord, Signal};
+
+use crate::identification_error::{HIGHEST_ORDER, IdentificationError, LONGEST_PAST};
+use crate::spectra::preparation_settings::Preparation;
+
+/// Lowest line used over the lower band end.
+const LOWEST_LINE: f64 = 0.5;
+/// Highest line used over the upper band end.
+const HIGHEST_LINE: f64 = 4.0 / 3.0;
+
+/// The band, the channels, the held-out records, and the orders, poles and windows to try.
+///
+/// M14.9 states the defaults: fixed on five conditions in the example, and right on the other
+/// six, on fresh noise and on half the data.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Lower and upper band end \[rad/s\].
+    pub band: [f64; 2],
+    /// The channels and their preparation.
+    pub preparation: Preparation,
+    /// Number of references at the end of the inputs: recorded signals, no model inputs, that
+    /// drove the loop from outside (M14.15).
+    pub references: usize,
+    /// Records that no model is fitted to, counted from 0: they judge the model.
+    pub held_out: Vec<usize>,
+    /// Orders to try; `None` for those that the records can carry (M14.13).
+    pub orders: Option<Vec<usize>>,
+    /// Laguerre poles over the upper band end.
+    pub poles: Vec<f64>,
+    /// Past windows, in Laguerre projections; `None` for those that the records can carry (M14.13).
+    pub pasts: Option<Vec<usize>>,
+}
+
+impl Options {
+    /// The defaults for a band \[rad/s\] and channels.
+    #[must_use]
+    pub fn new(band: [f64; 2], preparation: Preparation) -> Self {
+        Self {
+            band,
+            preparation,
+            references: 0,
+            held_out: Vec::new(),
+            orders: None,
+            poles: vec![0.375, 0.54, 0.75],
+            pasts: None,
+        }
+    }
+
+    /// Refuses invalid options.
+    pub(crate) fn check(&self) -> Result<(), IdentificationError> {
+        let [lowest, highest] = self.band;
+        if !(lowest.is_finite() && highest.is_finite() && 0.0 < lowest && lowest < highest) {
+            return Err(IdentificationError::Band { lowest, highest });
+        }
+        if self.inputs() == 0 && self.references > 0 {
+            return Err(IdentificationError::OnlyReferences);
+        }
+        let poles_are_valid = !self.poles.is_empty()
+            && self
+                .poles
+                .iter()
+                .all(|pole| pole.is_finite() && *pole > 0.0);
+        if is_within(&self.orders, HIGHEST_ORDER)
+            && is_within(&self.pasts, LONGEST_PAST)
+            && poles_are_valid
+        {
+            Ok(())
+        } else {
+            Err(IdentificationError::Settings)
+        }
+    }
+
+    /// Counts the model's inputs.
+    pub(crate) fn inputs(&self) -> usize {
+        self.preparation
+            .inputs
+            .len()
+            .saturating_sub(self.references)
+    }
+
+    /// Returns the record names that models are fitted to, but for the record `without`.
+    pub(crate) fn fitted(&self, records: &[FlightRecord], without: Option<usize>) -> Vec<String> {
+        let mut names = Vec::new();
+        for (number, record) in records.iter().enumerate() {
+            if !self.held_out.contains(&number) && Some(number) != without {
+                names.push(record.name.clone());
+            }
+        }
+        names
+    }
+
+    /// Returns a channel with its name; the name is empty for a channel that does not exist.
+    pub(crate) fn signal(&self, role: ChannelSide, index: usize) -> Signal {
+        let channels = role.of(&self.preparation.inputs, &self.preparation.outputs);
+        Signal {
+            role,
+            index,
+            name: channels
+                .get(index)
+                .map_or_else(String::new, |channel| channel.name.clone()),
+        }
+    }
+
+    /// Returns the lowest line used \[rad/s\]: half the lower band end.
+    pub(crate) fn lowest(&self) -> f64 {
+        LOWEST_LINE * self.band[0]
+    }
+
+    /// Returns the highest line used \[rad/s\]: 4/3 times the upper band end.
+    pub(crate) fn highest(&self) -> f64 {
+        HIGHEST_LINE * self.band[1]
+    }
+}
+
+/// Whether a list, if given, is not empty and holds numbers from 1 to `most`.
+fn is_within(list: &Option<Vec<usize>>, most: usize) -> bool {
+    match list {
+        None => true,
+        Some(list) => !list.is_empty() && list.iter().all(|value| (1..=most).contains(value)),
+    }
+}
+
+/// Replacements for the defaults to try; an empty list keeps them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SearchSpace {
+    pub orders: Vec<usize>,
+    /// Past windows, in Laguerre projections.
+    pub pasts: Vec<usize>,
+    /// Laguerre poles \[rad/s\].
+    pub poles: Vec<f64>,
+}
+
+impl SearchSpace {
+    /// Replaces the defaults in `options`.
+    pub fn set(&self, options: &mut Options) {
+        if !self.orders.is_empty() {
+            options.orders = Some(self.orders.clone());
+        }
+        if !self.pasts.is_empty() {
+            options.pasts = Some(self.pasts.clone());
+        }
+        if !self.poles.is_empty() {
+            options.poles = self
+                .poles
+                .iter()
+                .map(|pole| pole / options.band[1])
+                .collect();
+        }
+    }
+}

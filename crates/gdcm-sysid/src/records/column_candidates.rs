@@ -1,0 +1,237 @@
+//! Search for the columns that can be a channel, by name, documentation and unit.
+//!
+//! ```text
+//! 1  names: the exact name; else the name with a sign mark; else synonyms of the field
+//!    aliases replace the name: exactly as given; else the first that is found in any spelling
+//!    or by its number; else, without a number, in folded spelling, with a sign mark, synonyms
+//! 2  none: columns whose documentation names the channel
+//! 3  none: fields of topics with the exact name
+//! 4  without aliases: no latitude and no longitude
+//! 5  several: the only column whose unit can be converted
+//! ```
+
+use gdcm_model::assembly::ChannelRule;
+use gdcm_model::assembly::channel_match::{SignedName, folded_name, same_channel};
+use gdcm_model::assembly::physical_unit::conversion_factor;
+use gdcm_model::dataset::channel::ChannelSide;
+
+use super::record_table::{RecordColumn, RecordTable};
+
+/// Returns the columns that can be this channel.
+pub(super) fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec<usize> {
+    let search = ColumnSearch { table, rule, side };
+    let names = search.wanted_names();
+    let mut found = if rule.aliases.is_empty() {
+        search.by_name()
+    } else {
+        search.by_aliases(&names)
+    };
+    if found.is_empty() {
+        found = search.by_documentation(&names);
+    }
+    if found.is_empty() && search.may_be_field() {
+        found = search.by_field(&names);
+    }
+    if rule.aliases.is_empty() {
+        found.retain(|column| !is_position(table, *column, rule));
+    }
+    if found.len() > 1 {
+        let convertible = search.convertible(&found);
+        if convertible.len() == 1 {
+            return convertible;
+        }
+    }
+    found
+}
+
+/// Returns a name without its sign marks: "-az" and "az (down)" become "az".
+pub(super) fn without_sign_mark(name: &str) -> String {
+    SignedName::of(name).name
+}
+
+/// Search for the column of a channel.
+struct ColumnSearch<'r> {
+    table: &'r RecordTable,
+    rule: &'r ChannelRule,
+    side: ChannelSide,
+}
+
+impl ColumnSearch<'_> {
+    /// Returns the channel's name, or its aliases, each also without its sign mark.
+    fn wanted_names(&self) -> Vec<String> {
+        if self.rule.aliases.is_empty() {
+            return vec![self.rule.name.clone()];
+        }
+        let mut names = Vec::new();
+        for alias in &self.rule.aliases {
+            names.push(alias.clone());
+            names.push(without_sign_mark(alias));
+        }
+        names
+    }
+
+    /// Returns the columns accepted by `is_wanted`, unless the file gives them the other side.
+    fn named(&self, is_wanted: impl Fn(&str) -> bool) -> Vec<usize> {
+        let mut found = Vec::new();
+        for (index, column) in self.table.columns.iter().enumerate() {
+            let has_other_side = column.side.is_some_and(|side| side != self.side);
+            if !has_other_side && is_wanted(&column.name) {
+                found.push(index);
+            }
+        }
+        found
+    }
+
+    /// Returns the columns with the channel's name: exactly, else beside a sign mark, else as a
+    /// synonym.
+    fn by_name(&self) -> Vec<usize> {
+        let name = &self.rule.name;
+        let exact = self.named(|column| column == name);
+        if !exact.is_empty() {
+            return exact;
+        }
+        let wanted = without_sign_mark(name);
+        let marked = self.named(|column| without_sign_mark(column) == wanted);
+        if !marked.is_empty() {
+            return marked;
+        }
+        self.named(|column| same_channel(&without_sign_mark(column), &wanted))
+    }
+
+    /// Returns the columns with a user-defined name, in any spelling: "elev_yoke1" is "elev,yoke1".
+    /// A column number is not a name.
+    fn by_aliases(&self, aliases: &[String]) -> Vec<usize> {
+        let exact = self.named(|column| self.rule.aliases.iter().any(|alias| alias == column));
+        if !exact.is_empty() {
+            return exact;
+        }
+        if let Some(column) = aliases.iter().find_map(|alias| self.table.find(alias)) {
+            return vec![column];
+        }
+        if aliases.iter().any(|alias| alias.starts_with('#')) {
+            return Vec::new();
+        }
+        let folded = self.named(|column| {
+            let column = folded_name(column);
+            aliases.iter().any(|alias| column == folded_name(alias))
+        });
+        if !folded.is_empty() {
+            return folded;
+        }
+        let marked = self.named(|column| {
+            let column = folded_name(&without_sign_mark(column));
+            aliases.iter().any(|alias| column == folded_name(alias))
+        });
+        if !marked.is_empty() {
+            return marked;
+        }
+        self.named(|column| {
+            let column = without_sign_mark(column);
+            aliases.iter().any(|alias| same_channel(&column, alias))
+        })
+    }
+
+    /// Returns the columns accepted by `is_wanted`, on any side.
+    fn columns(&self, is_wanted: impl Fn(&RecordColumn) -> bool) -> Vec<usize> {
+        let mut found = Vec::new();
+        for (index, column) in self.table.columns.iter().enumerate() {
+            if is_wanted(column) {
+                found.push(index);
+            }
+        }
+        found
+    }
+
+    fn by_documentation(&self, names: &[String]) -> Vec<usize> {
+        self.columns(|column| match column.meaning {
+            Some(meaning) => names.iter().any(|name| same_channel(meaning, name)),
+            None => false,
+        })
+    }
+
+    /// Whether a topic's field with the channel's name is the channel. In logs with documented
+    /// columns it is something else, unless the user names it: "PIDR.P" is not a roll rate.
+    fn may_be_field(&self) -> bool {
+        let is_documented = self
+            .table
+            .columns
+            .iter()
+            .any(|column| column.meaning.is_some());
+        !self.rule.aliases.is_empty() || !is_documented
+    }
+
+    fn by_field(&self, names: &[String]) -> Vec<usize> {
+        self.columns(|column| names.iter().any(|name| column.field() == *name))
+    }
+
+    /// Returns those columns whose unit can be converted to the channel's.
+    fn convertible(&self, columns: &[usize]) -> Vec<usize> {
+        let mut found = Vec::new();
+        for column in columns {
+            let unit = self.table.columns[*column].unit.as_deref();
+            if unit.is_some_and(|unit| conversion_factor(unit, &self.rule.unit).is_some()) {
+                found.push(*column);
+            }
+        }
+        found
+    }
+}
+
+/// Folded names for latitude and longitude.
+const LATITUDE: [&str; 1] = ["lat"];
+const LONGITUDE: [&str; 3] = ["lon", "long", "lng"];
+/// Largest position change in a record \[deg\]: a minute at 140 kt is 0.04 degrees.
+const LARGEST_POSITION_CHANGE_DEG: f64 = 0.5;
+/// Largest position change without a unit, over its largest absolute value.
+const LARGEST_RELATIVE_CHANGE: f64 = 0.02;
+/// The same for a column with the channel's exact name: less than any stick moves in
+/// flight.
+const LARGEST_RELATIVE_CHANGE_OF_NAMESAKE: f64 = 0.002;
+
+/// Whether a column is a latitude or a longitude, whose names resemble input names: an angle
+/// that hardly changes. Without a unit in the file, the table must have a latitude and a longitude
+/// that are both nearly constant.
+fn is_position(table: &RecordTable, column: usize, rule: &ChannelRule) -> bool {
+    let own = &table.columns[column];
+    if !has_folded_name(own, &LATITUDE) && !has_folded_name(own, &LONGITUDE) {
+        return false;
+    }
+    if let Some(unit) = own.said_unit() {
+        return conversion_factor(unit, "deg").is_some_and(|factor| is_place_angle(own, factor));
+    }
+    let largest_change = if own.name == rule.name {
+        LARGEST_RELATIVE_CHANGE_OF_NAMESAKE
+    } else {
+        LARGEST_RELATIVE_CHANGE
+    };
+    has_near_constant_angle(table, &LATITUDE, largest_change)
+        && has_near_constant_angle(table, &LONGITUDE, largest_change)
+}
+
+fn has_folded_name(column: &RecordColumn, names: &[&str]) -> bool {
+    names.contains(&folded_name(&column.name).as_str())
+}
+
+/// Whether samples, times `factor` in degrees, are within ±180° and change little.
+fn is_place_angle(column: &RecordColumn, factor: f64) -> bool {
+    let Some((least, most)) = column.range() else {
+        return false;
+    };
+    (most - least) * factor < LARGEST_POSITION_CHANGE_DEG
+        && least.abs().max(most.abs()) * factor <= 180.0
+}
+
+/// Whether a column with a folded name from `names` changes, but by less than `largest_change`
+/// relative to its largest absolute value.
+fn has_near_constant_angle(table: &RecordTable, names: &[&str], largest_change: f64) -> bool {
+    table.columns.iter().any(|column| {
+        let Some((least, most)) = column.range() else {
+            return false;
+        };
+        let change = (most - least) / least.abs().max(most.abs());
+        has_folded_name(column, names)
+            && is_place_angle(column, 1.0)
+            && 0.0 < change
+            && change < largest_change
+    })
+}

@@ -1,0 +1,129 @@
+//! A record's column, used as a channel.
+
+use gdcm_model::assembly::ChannelRule;
+use gdcm_model::assembly::channel_match::sign_between;
+use gdcm_model::assembly::physical_unit::conversion_factor;
+use gdcm_model::dataset::condition::ChannelRemedy;
+
+use super::plausible_units::possible_units;
+use super::record_table::{RecordColumn, RecordTable};
+
+/// A record's column, used as a channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColumnUse {
+    /// Column index.
+    pub column: usize,
+    /// Channel units per column unit; negative for the opposite sign.
+    pub factor: f64,
+    /// Whether the factor is still open: neither the file nor the samples determine the unit.
+    pub is_unit_open: bool,
+    /// Remedy applied in this record only.
+    pub remedy: ChannelRemedy,
+}
+
+impl ColumnUse {
+    /// Uses the column unchanged.
+    pub fn as_it_is(column: usize) -> Self {
+        Self::times(column, 1.0)
+    }
+
+    /// Uses the column times a factor.
+    pub fn times(column: usize, factor: f64) -> Self {
+        Self {
+            column,
+            factor,
+            is_unit_open: false,
+            remedy: ChannelRemedy::NONE,
+        }
+    }
+
+    /// Uses a column for a channel with this unit, converted from the unit in the file, or else
+    /// from the only unit that fits its samples; the unit is open if several fit.
+    pub fn by_unit(table: &RecordTable, column: usize, unit: &str) -> Self {
+        let Some(samples) = table.columns.get(column) else {
+            return Self::as_it_is(column);
+        };
+        let unit_in_file = samples.said_unit();
+        if let Some(factor) = unit_in_file.and_then(|from| conversion_factor(from, unit)) {
+            return Self::times(column, factor);
+        }
+        match possible_units(samples, unit).as_slice() {
+            [only] => Self::times(column, conversion_factor(only, unit).unwrap_or(1.0)),
+            [_, _, ..] if unit_in_file.is_none() => Self {
+                is_unit_open: true,
+                ..Self::as_it_is(column)
+            },
+            _ => Self::as_it_is(column),
+        }
+    }
+
+    /// Returns the units that fit an open column, for a channel with this unit; empty if nothing
+    /// is open.
+    pub fn open_units<'u>(&self, table: &RecordTable, unit: &'u str) -> Vec<&'u str> {
+        match table.columns.get(self.column) {
+            Some(column) if self.is_unit_open => possible_units(column, unit),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Uses the column in a given unit for a channel with another.
+    #[must_use]
+    pub fn in_unit(self, said: &str, unit: &str) -> Self {
+        Self {
+            factor: self.factor * conversion_factor(said, unit).unwrap_or(1.0),
+            is_unit_open: false,
+            ..self
+        }
+    }
+
+    /// Returns the use without its remedy.
+    pub(super) fn without_remedy(self) -> Self {
+        Self {
+            remedy: ChannelRemedy::NONE,
+            ..self
+        }
+    }
+
+    /// Returns the use with its unit taken to be the channel's.
+    pub(super) fn in_unit_of_channel(self) -> Self {
+        Self {
+            is_unit_open: false,
+            ..self
+        }
+    }
+
+    /// Returns the total factor, remedy included.
+    pub(super) fn gain(&self) -> f64 {
+        self.factor * self.remedy.factor
+    }
+
+    /// Returns the remedy to store with the dataset: the record's remedy, times the part of
+    /// the factor that cannot be derived from the file (its unit, or the dataset's unit if it has
+    /// none, and its sign mark). A later reading with the dataset has no other information.
+    pub(super) fn kept_remedy(&self, table: &RecordTable, rule: &ChannelRule) -> ChannelRemedy {
+        let from_file = match table.columns.get(self.column) {
+            Some(column) => factor_from_file(column, rule),
+            None => 1.0,
+        };
+        let besides = if self.factor == from_file {
+            1.0
+        } else {
+            self.factor / from_file
+        };
+        ChannelRemedy {
+            factor: self.remedy.factor * besides,
+            ..self.remedy
+        }
+    }
+}
+
+/// Returns the factor from the file's unit and sign mark to the channel's.
+fn factor_from_file(column: &RecordColumn, rule: &ChannelRule) -> f64 {
+    let mut factor = 1.0;
+    if let Some(unit) = column.said_unit()
+        && !rule.unit.is_empty()
+    {
+        factor = conversion_factor(unit, &rule.unit).unwrap_or(1.0);
+    }
+    factor * sign_between(&column.name, &rule.name).unwrap_or(1.0)
+}

@@ -1,0 +1,184 @@
+//! A layout's flight record: cautions, remedies, copies, and transfer to other records.
+
+use std::collections::BTreeMap;
+
+use gdcm_model::dataset::condition::ChannelRemedy;
+
+use super::laid_out_record::{LaidOutRecord, leave_out_copies};
+use super::layout_problem::{LayoutCaution, LayoutProblem};
+use super::layout_proposal::TimeWish;
+use super::layout_tests::{channels, column, proposed, record};
+use super::record_guess::RecordGuess;
+use super::record_table::RecordColumn;
+
+#[test]
+fn missing_samples_stay_missing_and_infinite_ones_become_so() {
+    let mut table = record();
+    table.columns[3].values[7] = f64::INFINITY;
+    table.columns[3].values[8] = f64::NAN;
+    let proposal = proposed(&table);
+    assert_eq!(
+        proposal.cautions,
+        [LayoutCaution::Missing {
+            channel: "P".into(),
+            column: "\"roll rate\"".into(),
+            count: 2,
+            samples: 60,
+        }]
+    );
+    let flight = proposal.layout.flight_record(&table, &channels()).unwrap();
+    assert!(
+        flight.outputs[(7, 0)].is_nan()
+            && flight.outputs[(8, 0)].is_nan()
+            && flight.outputs[(9, 0)].is_finite()
+    );
+}
+
+#[test]
+fn a_layout_goes_over_to_a_record_with_the_same_columns_in_another_order() {
+    let first = record();
+    let mut second = record();
+    second.columns.rotate_left(2);
+    let layout = proposed(&first).layout;
+    let carried = layout.carried_to(&second, &first).unwrap();
+    let flight = carried.flight_record(&second, &channels()).unwrap();
+    assert_eq!(flight, layout.flight_record(&first, &channels()).unwrap());
+    second.columns.retain(|column| column.name != "nz");
+    assert_eq!(layout.carried_to(&second, &first), None);
+}
+
+#[test]
+fn constant_and_equal_channels_are_cautions() {
+    let mut table = record();
+    table.columns[4] = column("LON", "%", |_| 50.0);
+    assert_eq!(
+        proposed(&table).cautions,
+        [LayoutCaution::Constant {
+            channel: "LON".into(),
+            column: "\"LON\"".into(),
+        }]
+    );
+    table.columns[4] = RecordColumn {
+        name: "LON".into(),
+        ..table.columns[2].clone()
+    };
+    assert_eq!(
+        proposed(&table).cautions,
+        [LayoutCaution::Same {
+            first: "LON".into(),
+            second: "LAT".into(),
+        }]
+    );
+}
+
+/// The record under another name, with another first LAT sample.
+fn named_record(name: &str, first: f64) -> LaidOutRecord {
+    let mut table = record();
+    table.name = name.to_owned();
+    table.columns[2].values[0] = first;
+    LaidOutRecord::proposed(table, &channels(), &TimeWish::default()).0
+}
+
+#[test]
+fn the_same_record_under_two_names_counts_once() {
+    let mut records = [
+        named_record("a", 55.0),
+        named_record("b", 55.0),
+        named_record("c", 54.0),
+    ];
+    leave_out_copies(&mut records);
+    leave_out_copies(&mut records);
+    assert_eq!(
+        records.each_ref().map(|record| record.used),
+        [true, false, true]
+    );
+    let copy = LayoutCaution::Copy {
+        first: "a".to_owned(),
+    };
+    assert_eq!(records[1].cautions, [copy]);
+}
+
+#[test]
+fn remedies_apply_to_one_record_only() {
+    let table = record();
+    let channels = channels();
+    let as_logged = proposed(&table).layout;
+    let mut layout = as_logged.clone();
+    let remedies = BTreeMap::from([
+        (
+            "LON".to_owned(),
+            ChannelRemedy {
+                delay_s: 0.03,
+                factor: 1.0,
+            },
+        ),
+        (
+            "P".to_owned(),
+            ChannelRemedy {
+                delay_s: 0.0,
+                factor: -1.0,
+            },
+        ),
+    ]);
+    layout.put_right(&remedies, &channels);
+    let [before, after] =
+        [&as_logged, &layout].map(|layout| layout.flight_record(&table, &channels).unwrap());
+    // LON is 40 + k at 0.02 k: 30 ms later it is 1.5 more, and there is no value beyond the end.
+    assert!(
+        (after.inputs[(10, 0)] - 51.5).abs() < 1e-12,
+        "{}",
+        after.inputs[(10, 0)]
+    );
+    assert!(after.inputs[(58, 0)].is_nan() && after.inputs[(57, 0)].is_finite());
+    assert_eq!(after.outputs.column(0), -before.outputs.column(0));
+    assert_eq!(
+        (after.inputs.column(1), after.outputs.column(1)),
+        (before.inputs.column(1), before.outputs.column(1))
+    );
+    // The remedy is stored with the record, is not passed to other records, and survives a change
+    // of columns.
+    let entry = layout.condition_record(&table, &RecordGuess::default(), &channels);
+    assert_eq!(entry.remedies, remedies);
+    let other = as_logged
+        .carried_to(&table, &table)
+        .unwrap()
+        .with_remedies_of(&layout);
+    assert_eq!(other, layout);
+    // Applying it twice accumulates.
+    layout.put_right(&remedies, &channels);
+    let twice = layout.flight_record(&table, &channels).unwrap();
+    assert!((twice.inputs[(10, 0)] - 53.0).abs() < 1e-12 && twice.outputs == before.outputs);
+}
+
+fn delay_of_lon(delay_s: f64) -> BTreeMap<String, ChannelRemedy> {
+    let remedy = ChannelRemedy {
+        delay_s,
+        factor: 1.0,
+    };
+    BTreeMap::from([("LON".to_owned(), remedy)])
+}
+
+#[test]
+fn gaps_are_not_interpolated_and_long_delays_are_refused() {
+    let mut table = record();
+    for sample in 30..60 {
+        table.columns[1].values[sample] += 1.0;
+    }
+    let channels = channels();
+    let mut layout = proposed(&table).layout;
+    layout.put_right(&delay_of_lon(0.03), &channels);
+    let flight = layout.flight_record(&table, &channels).unwrap();
+    assert!(
+        flight.inputs[(28, 0)].is_nan()
+            && flight.inputs[(27, 0)].is_finite()
+            && flight.inputs[(30, 0)].is_finite()
+    );
+    layout.put_right(&delay_of_lon(1e300), &channels);
+    assert_eq!(
+        layout.problems(&table, &channels),
+        [LayoutProblem::Delay {
+            channel: "LON".into(),
+            delay_s: 1e300,
+        }]
+    );
+}

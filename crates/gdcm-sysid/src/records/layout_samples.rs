@@ -1,0 +1,177 @@
+//! The flight record from the chosen columns: samples times their factor, delays removed.
+
+use nalgebra::DMatrix;
+
+use gdcm_model::simulation::FlightRecord;
+
+use super::column_use::ColumnUse;
+use super::layout_problem::LayoutProblem;
+use super::record_channels::RecordChannels;
+use super::record_layout::RecordLayout;
+use super::record_table::RecordTable;
+use super::resampling::Resampling;
+use super::time_base::{TimeBase, median_step};
+
+/// Longest interpolation interval, in median steps: three missing samples, as in preparing
+/// records (M14.1).
+const LONGEST_LINE: f64 = 4.5;
+
+impl RecordLayout {
+    /// Returns the flight record from the chosen columns: each sample times its factor, otherwise
+    /// unchanged.
+    ///
+    /// # Errors
+    /// All problems with the columns.
+    pub fn flight_record(
+        &self,
+        table: &RecordTable,
+        channels: &RecordChannels,
+    ) -> Result<FlightRecord, Vec<LayoutProblem>> {
+        let problems = self.problems(table, channels);
+        let Some(time) = self.time else {
+            return Err(problems);
+        };
+        if !problems.is_empty() {
+            return Err(problems);
+        }
+        match Resampling::new(self, table, channels) {
+            Some(Ok(resampling)) => Ok(resampling.flight_record(table.name.clone())),
+            _ => Ok(self.as_logged(table, time)),
+        }
+    }
+
+    /// Returns the samples on their common clock, restricted to the record's part.
+    fn as_logged(&self, table: &RecordTable, time: TimeBase) -> FlightRecord {
+        let time_s = if time == TimeBase::Topics {
+            self.stamps_of_first_topic(table).unwrap_or_default()
+        } else {
+            time.times_s(table)
+        };
+        let mut rows = Vec::new();
+        for (row, time) in time_s.iter().enumerate() {
+            match table.part_s {
+                Some([from, to]) if !(from..=to).contains(time) => {}
+                _ => rows.push(row),
+            }
+        }
+        let samples = RowSamples {
+            table,
+            time_s: &time_s,
+            rows: &rows,
+        };
+        FlightRecord {
+            name: table.name.clone(),
+            inputs: samples.matrix(&self.inputs),
+            outputs: samples.matrix(&self.outputs),
+            time_s: rows.iter().map(|row| time_s[*row]).collect(),
+        }
+    }
+
+    /// Returns the stamps from the first channel's topic \[s\].
+    fn stamps_of_first_topic(&self, table: &RecordTable) -> Option<Vec<f64>> {
+        let used = self.inputs.iter().chain(&self.outputs).flatten().next()?;
+        let topic = table.columns.get(used.column)?.topic.as_ref()?;
+        Some(topic.time_s.clone())
+    }
+}
+
+/// Reads samples in chosen rows.
+struct RowSamples<'r> {
+    table: &'r RecordTable,
+    /// A stamp for each table row \[s\].
+    time_s: &'r [f64],
+    rows: &'r [usize],
+}
+
+impl RowSamples<'_> {
+    /// Returns the samples, one column per channel; NaN where a sample is missing.
+    fn matrix(&self, uses: &[Option<ColumnUse>]) -> DMatrix<f64> {
+        let mut samples = DMatrix::from_element(self.rows.len(), uses.len(), f64::NAN);
+        for (channel, used) in uses.iter().enumerate() {
+            let Some(used) = used else {
+                continue;
+            };
+            let Some(column) = self.table.columns.get(used.column) else {
+                continue;
+            };
+            if used.remedy.delay_s == 0.0 {
+                self.fill(&mut samples, channel, &column.values, used.gain());
+            } else {
+                let values = advanced(self.time_s, &column.values, used.remedy.delay_s);
+                self.fill(&mut samples, channel, &values, used.gain());
+            }
+        }
+        samples
+    }
+
+    /// Writes the finite values in the chosen rows, times `gain`, to a channel.
+    fn fill(&self, samples: &mut DMatrix<f64>, channel: usize, values: &[f64], gain: f64) {
+        for (sample, row) in self.rows.iter().enumerate() {
+            let value = values.get(*row).copied().unwrap_or(f64::NAN);
+            if value.is_finite() {
+                samples[(sample, channel)] = if gain == 1.0 { value } else { value * gain };
+            }
+        }
+    }
+}
+
+/// Removes a logging delay \[s\] from a channel: the value at t becomes the linear interpolation at
+/// t + delay between two adjacent samples; NaN beyond the ends, beside a missing sample, and in a
+/// stamp gap.
+fn advanced(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
+    let lines = SampleLines {
+        time_s,
+        values,
+        longest_s: LONGEST_LINE * median_step(time_s).unwrap_or(0.0),
+    };
+    let mut advanced = Vec::with_capacity(time_s.len());
+    // First row later than the read time, which rises from row to row.
+    let mut next = 0;
+    for time in time_s {
+        let read_s = time + delay_s;
+        if !read_s.is_finite() {
+            advanced.push(f64::NAN);
+            continue;
+        }
+        while next < time_s.len() && (time_s[next] <= read_s || time_s[next].is_nan()) {
+            next += 1;
+        }
+        advanced.push(lines.value_before(next, read_s));
+    }
+    advanced
+}
+
+/// Lines between a channel's adjacent samples.
+struct SampleLines<'r> {
+    /// Stamps \[s\].
+    time_s: &'r [f64],
+    values: &'r [f64],
+    /// Longest line \[s\].
+    longest_s: f64,
+}
+
+impl SampleLines<'_> {
+    /// Returns the value at `read_s` on the line that ends at row `next`; NaN without such a line.
+    fn value_before(&self, next: usize, read_s: f64) -> f64 {
+        let Some(before) = next.checked_sub(1) else {
+            return f64::NAN;
+        };
+        if self.time_s[before] == read_s {
+            return self.value(before);
+        }
+        let Some(after) = self.time_s.get(next) else {
+            return f64::NAN;
+        };
+        let step = after - self.time_s[before];
+        let part = (read_s - self.time_s[before]) / step;
+        if step <= self.longest_s {
+            self.value(before) + part * (self.value(next) - self.value(before))
+        } else {
+            f64::NAN
+        }
+    }
+
+    fn value(&self, row: usize) -> f64 {
+        self.values.get(row).copied().unwrap_or(f64::NAN)
+    }
+}

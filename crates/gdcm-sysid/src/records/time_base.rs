@@ -1,0 +1,347 @@
+//! Source of a record's sample times: a stamp column, a sample time, or topics.
+
+use gdcm_model::assembly::PhysicalUnit;
+use gdcm_model::assembly::channel_match::time_name_rank;
+use gdcm_model::assembly::physical_unit::Dimension;
+use gdcm_model::units::telling;
+
+use super::record_table::{RecordColumn, RecordTable};
+
+/// Source of the sample times.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TimeBase {
+    /// A stamp column.
+    Column {
+        /// Column index.
+        column: usize,
+        /// Seconds per column unit.
+        seconds: f64,
+    },
+    /// Equidistant samples with this sample time \[s\].
+    SampleTime(f64),
+    /// Each topic's own stamps.
+    Topics,
+}
+
+/// Longest plausible step in a manoeuvre \[s\].
+pub(super) const LONGEST_STEP_S: f64 = 1.5;
+/// Shortest plausible step in a flight recorder \[s\].
+const SHORTEST_STEP_S: f64 = 5e-5;
+/// Shortest step accepted for a guessed unit \[s\].
+const SHORTEST_GUESSED_STEP_S: f64 = 2e-4;
+const SECONDS_A_DAY: f64 = 86_400.0;
+
+/// Likelihood that a column holds the time; the smallest rank is the likeliest.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct TimeRank {
+    /// A column that mostly repeats or decreases is a time by name only.
+    mostly_falls: bool,
+    by_name: u8,
+    column: usize,
+}
+
+impl TimeRank {
+    /// Ranks a column; `None` if it is not named like a time. Without names only the first
+    /// column can be the time.
+    fn new(table: &RecordTable, column: usize) -> Option<Self> {
+        let candidate = &table.columns[column];
+        let by_name = if table.named {
+            time_name_rank(&candidate.name)?
+        } else if column == 0 {
+            2
+        } else {
+            return None;
+        };
+        Some(Self {
+            mostly_falls: !mostly_rises(&candidate.values),
+            by_name,
+            column,
+        })
+    }
+}
+
+impl TimeBase {
+    /// Returns the sample times \[s\]; NaN where a stamp is missing, empty for topics.
+    pub fn times_s(self, table: &RecordTable) -> Vec<f64> {
+        match self {
+            TimeBase::SampleTime(step_s) => (0..table.rows())
+                .map(|sample| sample as f64 * step_s)
+                .collect(),
+            TimeBase::Topics => Vec::new(),
+            TimeBase::Column { column, seconds } => match table.columns.get(column) {
+                Some(stamps) => stamps
+                    .values
+                    .iter()
+                    .map(|stamp| finite_product(*stamp, seconds))
+                    .collect(),
+                None => Vec::new(),
+            },
+        }
+    }
+
+    /// Returns the median step \[s\]; `None` without two stamps.
+    pub fn step_s(self, table: &RecordTable) -> Option<f64> {
+        match self {
+            TimeBase::SampleTime(step_s) => Some(step_s),
+            TimeBase::Topics => None,
+            TimeBase::Column { column, seconds } => {
+                Some(median_step(&table.columns.get(column)?.values)? * seconds)
+            }
+        }
+    }
+
+    /// Returns a stamp column as time base.
+    pub(super) fn from_column(table: &RecordTable, column: usize) -> Self {
+        TimeBase::Column {
+            column,
+            seconds: StampUnit::new(&table.columns[column]).seconds,
+        }
+    }
+
+    /// Describes a stamp column, with the reason for its unit.
+    pub(super) fn column_note(table: &RecordTable, column: usize) -> String {
+        let unit = StampUnit::new(&table.columns[column]);
+        let quoted = table.quoted(column);
+        format!("time from column {quoted}, in {}{}", unit.name, unit.reason)
+    }
+
+    /// Finds the time column by its name, or as the first, rising column in a table without names.
+    pub(super) fn find(table: &RecordTable) -> Option<usize> {
+        let best = (0..table.columns.len())
+            .filter_map(|column| TimeRank::new(table, column))
+            .min()?;
+        if table.named || !best.mostly_falls {
+            Some(best.column)
+        } else {
+            None
+        }
+    }
+}
+
+/// Returns a stamp in seconds; NaN if it is not finite.
+fn finite_product(stamp: f64, seconds: f64) -> f64 {
+    if stamp.is_finite() {
+        stamp * seconds
+    } else {
+        f64::NAN
+    }
+}
+
+/// A stamp column's unit.
+struct StampUnit {
+    name: &'static str,
+    seconds: f64,
+    /// Reason in parentheses, for a note; empty if the file gives the unit.
+    reason: String,
+}
+
+impl StampUnit {
+    /// Units shorter than a second; steps too short for milliseconds are microseconds, and so on.
+    const SHORT: [(&str, f64); 3] = [("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
+
+    /// Determines the unit: the file's, else the last word in the column's name (`time_ms`), else a
+    /// unit that makes the median step plausible, else the second.
+    fn new(stamps: &RecordColumn) -> Self {
+        if let Some(unit) = stamps.unit.as_deref().and_then(Self::from_name) {
+            return unit;
+        }
+        if let Some(unit) = last_word(&stamps.name).and_then(Self::from_name) {
+            return unit;
+        }
+        let step = median_step(&stamps.values).unwrap_or(f64::NAN);
+        if step > LONGEST_STEP_S {
+            for (name, seconds) in Self::SHORT {
+                if is_plausible_step(step * seconds) {
+                    return Self::from_steps(name, seconds, step);
+                }
+            }
+            return Self::seconds(String::new());
+        }
+        if step > 0.0 && step < SHORTEST_STEP_S && is_plausible_step(step * SECONDS_A_DAY) {
+            return Self::from_steps("days", SECONDS_A_DAY, step);
+        }
+        Self::seconds(" (the file does not say the unit)".to_owned())
+    }
+
+    /// Returns a time unit by its name, in its usual spelling.
+    fn from_name(name: &str) -> Option<Self> {
+        let unit = PhysicalUnit::of(name)?;
+        if unit.dimension != Dimension::Time {
+            return None;
+        }
+        Some(Self {
+            name: unit.name,
+            seconds: unit.size,
+            reason: String::new(),
+        })
+    }
+
+    /// Returns a unit chosen because `step` seconds are implausible.
+    fn from_steps(name: &'static str, seconds: f64, step: f64) -> Self {
+        let fault = if step > 1.0 { "long" } else { "short" };
+        let step = telling(step, 3);
+        Self {
+            name,
+            seconds,
+            reason: format!(" (its steps are {step}: s would be too {fault})"),
+        }
+    }
+
+    fn seconds(reason: String) -> Self {
+        Self {
+            name: "s",
+            seconds: 1.0,
+            reason,
+        }
+    }
+}
+
+/// Returns the last word in a name with several words.
+fn last_word(name: &str) -> Option<&str> {
+    name.rsplit(|c: char| !c.is_alphanumeric())
+        .next()
+        .filter(|word| *word != name)
+}
+
+fn is_plausible_step(step_s: f64) -> bool {
+    (SHORTEST_GUESSED_STEP_S..=LONGEST_STEP_S).contains(&step_s)
+}
+
+/// Returns the median step between consecutive stamps; `None` without finite steps.
+pub fn median_step(stamps: &[f64]) -> Option<f64> {
+    let mut steps: Vec<f64> = stamps
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .filter(|step| step.is_finite())
+        .collect();
+    if steps.is_empty() {
+        return None;
+    }
+    let middle = steps.len() / 2;
+    let (_, median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
+    Some(*median)
+}
+
+/// Whether more than half of the finite steps are positive.
+fn mostly_rises(stamps: &[f64]) -> bool {
+    let mut rising = 0;
+    let mut total = 0;
+    for pair in stamps.windows(2) {
+        let step = pair[1] - pair[0];
+        if step.is_finite() {
+            total += 1;
+            rising += usize::from(step > 0.0);
+        }
+    }
+    2 * rising > total
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table_with(name: &str, unit: Option<&str>, stamps: Vec<f64>) -> RecordTable {
+        let constant = RecordColumn::new("time constant", vec![1.0; stamps.len()]);
+        let column = RecordColumn {
+            unit: unit.map(str::to_owned),
+            ..RecordColumn::new(name, stamps)
+        };
+        RecordTable::new("r", vec![constant, column])
+    }
+
+    fn stamps(step: f64) -> Vec<f64> {
+        (0..50)
+            .map(|sample| 3.0 + step * f64::from(sample))
+            .collect()
+    }
+
+    #[test]
+    fn the_time_is_found_by_its_name_and_by_rising() {
+        for name in [
+            "t",
+            "Time",
+            "time_s",
+            "TIME [s]",
+            "Elapsed",
+            "real,_time",
+            "t_ms",
+            "timestamp",
+        ] {
+            assert_eq!(
+                TimeBase::find(&table_with(name, None, stamps(0.02))),
+                Some(1),
+                "{name}"
+            );
+        }
+        assert_eq!(
+            TimeBase::find(&table_with("theta", None, stamps(0.02))),
+            Some(0),
+            "by its name only"
+        );
+        let mut unnamed = table_with("column 2", None, stamps(0.02));
+        unnamed.named = false;
+        assert_eq!(
+            TimeBase::find(&unnamed),
+            None,
+            "its first column does not rise"
+        );
+        unnamed.columns.swap(0, 1);
+        assert_eq!(TimeBase::find(&unnamed), Some(0));
+    }
+
+    #[test]
+    fn the_unit_of_time_is_given_by_the_file_the_name_or_the_steps() {
+        for (name, unit, step, expected) in [
+            ("t", Some("ms"), 20.0, 1e-3),
+            ("time_ms", None, 20.0, 1e-3),
+            // As the name says; the checks refuse such steps.
+            ("time_s", None, 20.0, 1.0),
+            ("t", None, 0.02, 1.0),
+            ("t", None, 20.0, 1e-3),
+            ("t", None, 20_000.0, 1e-6),
+            // Days, as in Excel and MATLAB.
+            ("t", None, 0.02 / 86_400.0, 86_400.0),
+        ] {
+            let base = TimeBase::from_column(&table_with(name, unit, stamps(step)), 1);
+            let expected = TimeBase::Column {
+                column: 1,
+                seconds: expected,
+            };
+            assert_eq!(base, expected, "{name} {unit:?} {step}");
+        }
+    }
+
+    #[test]
+    fn the_note_has_the_unit_and_its_reason() {
+        for (unit, step, expected) in [
+            (Some("ms"), 20.0, "time from column \"t\", in ms"),
+            (
+                None,
+                0.02,
+                "time from column \"t\", in s (the file does not say the unit)",
+            ),
+            (
+                None,
+                20.0,
+                "time from column \"t\", in ms (its steps are 20.000: s would be too long)",
+            ),
+        ] {
+            let table = table_with("t", unit, stamps(step));
+            assert_eq!(TimeBase::column_note(&table, 1), expected);
+        }
+    }
+
+    #[test]
+    fn a_missing_stamp_is_no_number_and_does_not_move_the_median() {
+        let mut gaps = stamps(20.0);
+        gaps[7] = f64::INFINITY;
+        let table = table_with("t", Some("ms"), gaps);
+        let base = TimeBase::from_column(&table, 1);
+        assert!(base.times_s(&table)[7].is_nan());
+        assert!(
+            (base.step_s(&table).unwrap() - 0.02).abs() < 1e-15,
+            "one rounding of the factor"
+        );
+        assert_eq!(TimeBase::SampleTime(0.5).times_s(&table)[3], 1.5);
+    }
+}

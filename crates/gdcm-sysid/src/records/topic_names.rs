@@ -1,0 +1,143 @@
+//! Names for topics and their logs, from file and variable names.
+
+use std::collections::BTreeMap;
+
+use super::record_table::{RecordSource, RecordTable};
+
+/// Separators between words in a name.
+const SEPARATORS: [char; 4] = ['_', '-', '.', ' '];
+/// File extensions. An ending with digits only is not an extension: "motor.1".
+const EXTENSIONS: [&str; 7] = ["csv", "txt", "tsv", "dat", "mat", "npz", "json"];
+
+/// Returns the common key for a log's topics: their file, or else their folder.
+pub(super) fn log_key(source: &RecordSource) -> String {
+    if source.variable.is_some() {
+        return source.file.clone();
+    }
+    match source.file.rsplit_once('/') {
+        Some((folder, _)) => format!("{folder}/"),
+        None => String::new(),
+    }
+}
+
+/// Returns the name of each topic: the variable if all come from one file, else the file's name
+/// without its extension.
+pub(super) fn topic_names(tables: &[RecordTable]) -> Vec<String> {
+    let is_one_file = are_from_one_file(tables);
+    tables
+        .iter()
+        .map(|table| topic_name(&table.source, is_one_file))
+        .collect()
+}
+
+/// Whether all tables come from the first table's file.
+pub(super) fn are_from_one_file(tables: &[RecordTable]) -> bool {
+    tables
+        .iter()
+        .all(|table| table.source.file == tables[0].source.file)
+}
+
+fn topic_name(source: &RecordSource, is_one_file: bool) -> String {
+    let mut name = source.file.as_str();
+    if let Some(variable) = &source.variable
+        && is_one_file
+    {
+        name = variable;
+    }
+    let name = name.rsplit('/').next().unwrap_or(name);
+    match name.rsplit_once('.') {
+        Some((stem, ending)) if EXTENSIONS.contains(&ending) => stem.to_owned(),
+        _ => name.to_owned(),
+    }
+}
+
+/// Returns the log of each topic: "log_7" for "log_7_rates" beside "log_8_rates"; empty without a
+/// log.
+///
+/// ```text
+/// 1  a topic begins at the first separator after which another name is the same;
+///    the text before it is the log
+/// 2  several topics confirm a log
+/// 3  a topic without a confirmed log belongs to the longest confirmed log that its name begins with
+/// ```
+pub(super) fn logs_of_topics(names: &[String]) -> Vec<String> {
+    let logs = logs_by_shared_endings(names);
+    let confirmed: Vec<&String> = logs.iter().filter(|log| is_confirmed(log, &logs)).collect();
+    let mut found = Vec::with_capacity(names.len());
+    for (name, log) in names.iter().zip(&logs) {
+        let log = if is_confirmed(log, &logs) {
+            log.clone()
+        } else {
+            longest_log_of(name, &confirmed)
+        };
+        found.push(log);
+    }
+    found
+}
+
+/// Returns the text before each name's shared ending (step 1).
+fn logs_by_shared_endings(names: &[String]) -> Vec<String> {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for name in names {
+        for (at, _) in name.match_indices(SEPARATORS) {
+            *counts.entry(&name[at..]).or_default() += 1;
+        }
+    }
+    let mut logs = Vec::with_capacity(names.len());
+    for name in names {
+        let shared = name
+            .match_indices(SEPARATORS)
+            .map(|(at, _)| at)
+            .find(|at| counts.get(&name[*at..]).is_some_and(|count| *count > 1));
+        logs.push(name[..shared.unwrap_or(0)].to_owned());
+    }
+    logs
+}
+
+/// Whether several topics have this log.
+fn is_confirmed(log: &str, logs: &[String]) -> bool {
+    !log.is_empty() && logs.iter().filter(|other| *other == log).count() > 1
+}
+
+/// Returns the longest of `logs` with which a name begins, as a whole word.
+fn longest_log_of(name: &str, logs: &[&String]) -> String {
+    let mut longest = "";
+    for log in logs {
+        let begins = name
+            .strip_prefix(log.as_str())
+            .is_some_and(|rest| rest.starts_with(SEPARATORS));
+        if begins && log.len() >= longest.len() {
+            longest = log;
+        }
+    }
+    longest.to_owned()
+}
+
+/// Returns the byte count of the names' common prefix, up to and with its last separator:
+/// "log_3_2024_" for "log_3_2024_q" and "log_3_2024_M".
+pub(super) fn common_prefix(names: &[String]) -> usize {
+    let Some((first, rest)) = names.split_first() else {
+        return 0;
+    };
+    if rest.is_empty() {
+        return 0;
+    }
+    let length = rest
+        .iter()
+        .map(|name| common_bytes(first, name))
+        .min()
+        .unwrap_or(0);
+    let last_separator = first.as_bytes()[..length]
+        .iter()
+        .rposition(|byte| SEPARATORS.contains(&char::from(*byte)));
+    match last_separator {
+        Some(at) => at + 1,
+        None => 0,
+    }
+}
+
+/// Returns the length of the common beginning of two names, in bytes.
+fn common_bytes(first: &str, second: &str) -> usize {
+    let pairs = first.bytes().zip(second.bytes());
+    pairs.take_while(|(a, b)| a == b).count()
+}

@@ -1,0 +1,90 @@
+//! A caution reduced to its code and subject, for files and for marks in the window.
+
+use gdcm_model::simulation::Signal;
+
+/// A caution as files hold it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CautionNote {
+    /// Stable code, for programs.
+    pub code: &'static str,
+    /// Names of the affected records; empty if all are affected.
+    pub records: Vec<String>,
+    /// Name of the affected channel.
+    pub channel: Option<String>,
+    /// Names of output and input in the affected response.
+    pub pair: Option<[String; 2]>,
+    /// Affected frequencies \[rad/s\].
+    pub band_rad_s: Option<[f64; 2]>,
+    /// The full sentence.
+    pub text: String,
+}
+
+impl CautionNote {
+    /// A note about all records.
+    pub(crate) fn new(code: &'static str) -> Self {
+        Self {
+            code,
+            ..Self::default()
+        }
+    }
+
+    pub(crate) fn with_record(self, name: &str) -> Self {
+        Self {
+            records: vec![name.to_owned()],
+            ..self
+        }
+    }
+
+    pub(crate) fn with_channel<'s>(self, signal: impl Into<Option<&'s Signal>>) -> Self {
+        Self {
+            channel: signal.into().map(|signal| signal.name.clone()),
+            ..self
+        }
+    }
+
+    pub(crate) fn with_pair(self, channels: [&Signal; 2]) -> Self {
+        Self {
+            pair: Some(channels.map(|signal| signal.name.clone())),
+            ..self
+        }
+    }
+
+    pub(crate) fn with_band(self, ends: [f64; 2]) -> Self {
+        Self {
+            band_rad_s: Some(ends),
+            ..self
+        }
+    }
+
+    /// Returns a label with at most four words for a mark in the window.
+    #[must_use]
+    pub fn mark(&self) -> &'static str {
+        match self.code {
+            "clipped" => "at its limit",
+            "stuck" => "stood still",
+            "coarse" => "coarse steps",
+            "held" => "steps",
+            "copy" => "a copy",
+            "sign" => "other sign",
+            "time-skew" => "time skew",
+            "vibration" => "vibrates",
+            "unit" => "unit in doubt",
+            "inadequate" => "poorly fitted",
+            "not-swept" => "not swept",
+            "collinear-inputs" => "not moved alone",
+            "points" => "leaves the points",
+            "not-identified" => "not identified",
+            "feedback" | "feedback-some" => "gusts fed back",
+            "record" => "contradicts",
+            "gap" => "gaps",
+            "duplicate" => "a duplicate",
+            "resampled" => "resampled",
+            "held-out" => "not predicted",
+            "unstable" => "unstable, above the lines",
+            "order-limit" => "order too low",
+            "band-narrowed" => "shows nothing",
+            "short" => "short records",
+            _ => "see the caution",
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! A record's time stamps, and the uniform grid behind them (M14.1).
+
+use gdcm_model::response::curve_values::quantile;
+use gdcm_model::simulation::FlightRecord;
+
+use super::gaps::{Cause, Gap, Treatment};
+use super::preparation_settings::PreparationError;
+
+/// Deviation from the multiples of the sample time above which stamps are uneven \[%\] (M14.1).
+const UNEVEN_PERCENT: f64 = 20.0;
+/// Quantile that counts among the deviations: a single late stamp is no jitter.
+const COUNTED: f64 = 0.95;
+
+/// A record's stamps.
+pub(crate) struct Clock {
+    /// First stamp \[s\].
+    pub start_s: f64,
+    /// Median stamp difference \[s\]; 0 for fewer than two.
+    pub sample_time_s: f64,
+    /// 95th percentile for the differences' deviations from multiples of the sample time \[%\].
+    pub jitter_percent: f64,
+    /// Rows with a stamp.
+    pub rows: Vec<usize>,
+    /// Their stamps \[s\], counted from the first.
+    pub times: Vec<f64>,
+    /// Samples further apart than this \[s\] have a gap between them that is not bridged.
+    pub longest_step_s: f64,
+}
+
+/// Grid points `k dt` between two gaps.
+pub(crate) struct GridStretch {
+    /// First `k`; whole.
+    pub first: f64,
+    /// Point count.
+    pub points: usize,
+}
+
+impl Clock {
+    /// Reads the clock from `record`; gaps up to `longest_bridge` samples are bridged.
+    pub fn new(record: &FlightRecord, longest_bridge: usize) -> Result<Self, PreparationError> {
+        let rows: Vec<usize> = (0..record.time_s.len())
+            .filter(|&row| record.time_s[row].is_finite())
+            .collect();
+        let start_s = rows.first().map_or(0.0, |&row| record.time_s[row]);
+        let times: Vec<f64> = rows
+            .iter()
+            .map(|&row| record.time_s[row] - start_s)
+            .collect();
+        check_increasing(record, &rows, &times)?;
+        let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let sample_time_s = quantile_or_zero(steps.clone(), 0.5);
+        let deviations = steps
+            .iter()
+            .map(|step| step / sample_time_s)
+            .map(|steps| (steps - steps.round().max(1.0)).abs())
+            .collect();
+        Ok(Self {
+            start_s,
+            sample_time_s,
+            jitter_percent: 100.0 * quantile_or_zero(deviations, COUNTED),
+            rows,
+            times,
+            longest_step_s: (longest_bridge as f64 + 1.5) * sample_time_s,
+        })
+    }
+
+    /// Whether the stamps are more than 20 % off the multiples of the sample time.
+    pub fn is_uneven(&self) -> bool {
+        // Rounded stamps may lie just at the limit.
+        self.jitter_percent > UNEVEN_PERCENT * (1.0 + 1e-6)
+    }
+
+    /// Returns the time from the first stamp to the last \[s\].
+    pub fn logged_s(&self) -> f64 {
+        self.times.last().copied().unwrap_or(0.0)
+    }
+
+    /// Returns the stretches of the grid `k dt` between gaps.
+    pub fn grid(&self) -> Vec<GridStretch> {
+        let mut grid = Vec::new();
+        let mut from = 0;
+        for to in 0..self.times.len() {
+            let next = self.times.get(to + 1);
+            let ends = next.is_none_or(|next| next - self.times[to] > self.longest_step_s);
+            if !ends {
+                continue;
+            }
+            if to > from {
+                // Less than a millionth of a sample is rounding.
+                let last = (self.times[to] / self.sample_time_s + 1e-6).floor();
+                let first = (self.times[from] / self.sample_time_s).ceil();
+                grid.push(GridStretch {
+                    first,
+                    points: (last - first + 1.0).max(0.0) as usize,
+                });
+            }
+            from = to + 1;
+        }
+        grid
+    }
+
+    /// Returns the gaps between the stamps.
+    pub fn gaps(&self) -> Vec<Gap> {
+        let mut gaps = Vec::new();
+        for k in 1..self.times.len() {
+            let step = self.times[k] - self.times[k - 1];
+            let stamp_missing = self.rows[k] > self.rows[k - 1] + 1;
+            if !stamp_missing && step <= 1.5 * self.sample_time_s {
+                continue;
+            }
+            gaps.push(Gap {
+                start_s: self.start_s + self.times[k - 1],
+                end_s: self.start_s + self.times[k],
+                cause: if stamp_missing {
+                    Cause::StampsMissing
+                } else {
+                    Cause::RowsMissing
+                },
+                treatment: Treatment::for_gap(step <= self.longest_step_s),
+            });
+        }
+        gaps
+    }
+}
+
+/// Refuses stamps that do not increase.
+fn check_increasing(
+    record: &FlightRecord,
+    rows: &[usize],
+    times: &[f64],
+) -> Result<(), PreparationError> {
+    for k in 1..times.len() {
+        // Huge stamps may differ and still round to the same time from the first stamp.
+        let step = times[k] - times[k - 1];
+        if !(step > 0.0 && step.is_finite()) {
+            return Err(PreparationError::TimeNotIncreasing {
+                record: record.name.clone(),
+                row: rows[k],
+                previous_s: record.time_s[rows[k - 1]],
+                time_s: record.time_s[rows[k]],
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Returns a quantile; 0 without values, as for a single stamp.
+fn quantile_or_zero(mut values: Vec<f64>, share: f64) -> f64 {
+    if values.is_empty() {
+        0.0
+    } else {
+        quantile(&mut values, share)
+    }
+}

@@ -1,0 +1,82 @@
+//! Gaps in a flight record: their causes and their treatment (M14.1).
+
+use std::fmt;
+
+use gdcm_model::simulation::Signal;
+
+/// Joins the names of `signals`: `P, Q and R`.
+pub(crate) fn names(signals: &[Signal]) -> String {
+    let names: Vec<&str> = signals.iter().map(|signal| signal.name.as_str()).collect();
+    listed(&names)
+}
+
+/// Joins words: `P, Q and R`.
+pub(crate) fn listed<S: AsRef<str> + std::borrow::Borrow<str>>(words: &[S]) -> String {
+    match words {
+        [] => String::new(),
+        [single] => single.as_ref().to_owned(),
+        [most @ .., last] => format!("{} and {}", most.join(", "), last.as_ref()),
+    }
+}
+
+/// A gap's cause.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cause {
+    /// Rows have no time stamp.
+    StampsMissing,
+    /// Time jumps between rows.
+    RowsMissing,
+    /// Channels have no value.
+    SamplesMissing(Vec<Signal>),
+    /// Outputs stood still while others moved.
+    Frozen(Vec<Signal>),
+    /// The rest between two gaps is shorter than the least segment; its length \[s\].
+    SegmentTooShort(f64),
+}
+
+/// How a gap is treated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Treatment {
+    /// By straight lines.
+    Bridged,
+    CutOut,
+}
+
+impl Treatment {
+    /// Short gaps are bridged, others cut out.
+    pub(crate) fn for_gap(is_short: bool) -> Self {
+        if is_short {
+            Self::Bridged
+        } else {
+            Self::CutOut
+        }
+    }
+}
+
+/// A gap in a record: from the last good sample to the next.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gap {
+    /// On the record's clock \[s\].
+    pub start_s: f64,
+    /// On the record's clock \[s\].
+    pub end_s: f64,
+    pub cause: Cause,
+    pub treatment: Treatment,
+}
+
+impl fmt::Display for Gap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.2} to {:.2} s: ", self.start_s, self.end_s)?;
+        match &self.cause {
+            Cause::StampsMissing => f.write_str("time stamps missing")?,
+            Cause::RowsMissing => f.write_str("rows missing")?,
+            Cause::SamplesMissing(signals) => write!(f, "{} missing", names(signals))?,
+            Cause::Frozen(signals) => write!(f, "{} frozen", names(signals))?,
+            Cause::SegmentTooShort(length_s) => write!(f, "only {length_s:.1} s between gaps")?,
+        }
+        f.write_str(match self.treatment {
+            Treatment::Bridged => ", bridged",
+            Treatment::CutOut => ", left out",
+        })
+    }
+}

@@ -1,0 +1,31 @@
+//! Linear interpolation between ascending numbers.
+
+/// A number's two neighbours in an ascending list, and the second's share.
+pub(crate) struct Neighbours {
+    pub(crate) before: usize,
+    pub(crate) after: usize,
+    /// From 0 at `before` to 1 at `after`.
+    pub(crate) share: f64,
+}
+
+impl Neighbours {
+    /// Finds the neighbours for `x` in `ascending`; beyond an end the end counts.
+    pub(crate) fn find(ascending: &[f64], x: f64) -> Self {
+        let after = ascending
+            .partition_point(|at| *at <= x)
+            .min(ascending.len() - 1);
+        let before = after.saturating_sub(1);
+        let from = ascending[before];
+        let to = ascending[after];
+        let share = if to > from {
+            ((x - from) / (to - from)).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        Self {
+            before,
+            after,
+            share,
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! Settings for preparing flight records: the channels, their delays, gaps (M14.1).
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::simulation::Signal;
+
+use super::gaps::names;
+
+/// Longest plausible channel delay or hold \[s\].
+const LONGEST_SHIFT_S: f64 = 10.0;
+/// Longest gap that may be bridged, in samples.
+const LONGEST_BRIDGE: usize = 1000;
+
+/// The meaning behind stairs in a channel that is logged more often than it changes (M14.1).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Hold {
+    /// A continuous signal; stairs raise a caution.
+    #[default]
+    None,
+    /// The stairs act on the aircraft, or are the sensor's resolution: the samples are right.
+    Acts,
+    /// A command held for `hold_s` \[s\] and logged when it begins: it acts `hold_s / 2` later.
+    Command { hold_s: f64 },
+    /// A sensor with the sample time `hold_s` \[s\], repeated by a faster logger: it measured
+    /// `hold_s / 2` earlier.
+    SlowSensor { hold_s: f64 },
+    /// A sensor slower than the logger: only new samples count, with straight lines between them.
+    FreshSamples,
+}
+
+/// How a channel is prepared.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ChannelPreparation {
+    pub name: String,
+    /// Known sensor or bus delay \[s\], to be taken out.
+    pub delay_s: f64,
+    pub hold: Hold,
+    /// Greatest plausible modulus in its unit; above it the unit is in doubt.
+    pub limit: Option<f64>,
+}
+
+impl ChannelPreparation {
+    /// A channel that is used as it is.
+    #[must_use]
+    pub fn named(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..Self::default()
+        }
+    }
+
+    /// Returns the time \[s\] by which a sample is logged after the moment that it belongs to.
+    pub(crate) fn shift_s(&self) -> f64 {
+        match self.hold {
+            Hold::Command { hold_s } => self.delay_s - 0.5 * hold_s,
+            Hold::SlowSensor { hold_s } => self.delay_s + 0.5 * hold_s,
+            Hold::None | Hold::Acts | Hold::FreshSamples => self.delay_s,
+        }
+    }
+
+    /// Returns the hold \[s\]; 0 without hold.
+    fn hold_s(&self) -> f64 {
+        match self.hold {
+            Hold::Command { hold_s } | Hold::SlowSensor { hold_s } => hold_s,
+            Hold::None | Hold::Acts | Hold::FreshSamples => 0.0,
+        }
+    }
+}
+
+/// How flight records are prepared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Preparation {
+    /// In column order.
+    pub inputs: Vec<ChannelPreparation>,
+    /// In column order.
+    pub outputs: Vec<ChannelPreparation>,
+    /// Whether a record with uneven sample times may be interpolated.
+    pub resample: bool,
+    /// Whether an output that stands still while others move is kept, and no gap.
+    pub keep_frozen: bool,
+    /// Longest gap, in samples, that is bridged by a straight line; longer gaps split the record.
+    pub longest_bridge: usize,
+    /// Least segment length \[s\].
+    pub least_segment_s: f64,
+}
+
+impl Preparation {
+    /// The defaults: every channel as it is, gaps up to 3 samples bridged, segments from 10 s up.
+    #[must_use]
+    pub fn of(inputs: &[&str], outputs: &[&str]) -> Self {
+        Self {
+            inputs: named_channels(inputs),
+            outputs: named_channels(outputs),
+            resample: false,
+            keep_frozen: false,
+            longest_bridge: 3,
+            least_segment_s: 10.0,
+        }
+    }
+
+    /// Returns the inputs, then the outputs.
+    pub(crate) fn channels(&self) -> impl Iterator<Item = (Signal, &ChannelPreparation)> {
+        self.channels_of(ChannelSide::Input)
+            .chain(self.channels_of(ChannelSide::Output))
+    }
+
+    /// Returns the inputs or the outputs.
+    pub(crate) fn channels_of(
+        &self,
+        role: ChannelSide,
+    ) -> impl Iterator<Item = (Signal, &ChannelPreparation)> {
+        let channels = role.of(&self.inputs, &self.outputs).iter().enumerate();
+        channels.map(move |(index, channel)| {
+            let signal = Signal {
+                role,
+                index,
+                name: channel.name.clone(),
+            };
+            (signal, channel)
+        })
+    }
+
+    /// Returns a channel's settings.
+    pub fn channel(&self, signal: &Signal) -> Option<&ChannelPreparation> {
+        signal
+            .role
+            .of(&self.inputs, &self.outputs)
+            .get(signal.index)
+    }
+
+    /// Returns a channel's settings for a change.
+    pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
+        signal
+            .role
+            .of(&mut self.inputs, &mut self.outputs)
+            .get_mut(signal.index)
+    }
+
+    /// Refuses invalid settings.
+    pub(crate) fn check(&self) -> Result<(), PreparationError> {
+        for role in [ChannelSide::Input, ChannelSide::Output] {
+            if role.of(&self.inputs, &self.outputs).is_empty() {
+                return Err(PreparationError::NoChannels(role));
+            }
+        }
+        for (signal, channel) in self.channels() {
+            for seconds in [channel.delay_s, channel.hold_s()] {
+                if !seconds.is_finite() || seconds.abs() > LONGEST_SHIFT_S {
+                    return Err(PreparationError::Shift { signal, seconds });
+                }
+            }
+        }
+        if !(self.least_segment_s.is_finite() && self.least_segment_s > 0.0) {
+            return Err(PreparationError::LeastSegment(self.least_segment_s));
+        }
+        if self.longest_bridge > LONGEST_BRIDGE {
+            return Err(PreparationError::Bridge(self.longest_bridge));
+        }
+        Ok(())
+    }
+}
+
+fn named_channels(names: &[&str]) -> Vec<ChannelPreparation> {
+    names
+        .iter()
+        .map(|name| ChannelPreparation::named(*name))
+        .collect()
+}
+
+/// Why flight records cannot be prepared.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PreparationError {
+    #[error("there are no flight records")]
+    NoRecords,
+    #[error("no {0} is given: identification needs at least one input and one output")]
+    NoChannels(ChannelSide),
+    /// A record has other channels than the ones named.
+    #[error("record {record} has {found} {role}s, not {named}")]
+    ChannelsDiffer {
+        record: String,
+        role: ChannelSide,
+        found: usize,
+        named: usize,
+    },
+    /// A record's columns differ in length.
+    #[error(
+        "record {record} has {stamps} time stamps, {inputs} input samples and {outputs} output samples"
+    )]
+    LengthsDiffer {
+        record: String,
+        stamps: usize,
+        inputs: usize,
+        outputs: usize,
+    },
+    /// A delay or a hold is not finite or too long.
+    #[error(
+        "{signal}: a delay or hold of {seconds} s is not possible, at most {LONGEST_SHIFT_S} s"
+    )]
+    Shift { signal: Signal, seconds: f64 },
+    #[error("the shortest piece is {0} s: it must be greater than 0")]
+    LeastSegment(f64),
+    #[error("gaps of {0} samples are too long to be bridged: at most {LONGEST_BRIDGE}")]
+    Bridge(usize),
+    #[error(
+        "record {record}: time goes from {previous_s} s to {time_s} s in row {}. Sort the rows, or delete repeated rows",
+        row + 1
+    )]
+    TimeNotIncreasing {
+        record: String,
+        /// Later stamp's row, counted from 0.
+        row: usize,
+        previous_s: f64,
+        time_s: f64,
+    },
+    #[error(
+        "record {record}: the sample time varies by {percent:.0} %, more than 20 %. If the stamps are right, give a rate to interpolate to (--resample)"
+    )]
+    UnevenSampling {
+        record: String,
+        /// 95th percentile for the deviation from whole multiples of the median sample time \[%\].
+        percent: f64,
+    },
+    /// No segment is long enough.
+    #[error(
+        "no usable piece: the longest piece without a gap lasts {longest_s:.1} s, less than {least_s:.1} s. \
+         Log longer records, fill the gaps, or leave out the channel with gaps"
+    )]
+    NothingLeft { longest_s: f64, least_s: f64 },
+    /// Channels that never move.
+    #[error("{} never moved in any record: leave {} out", names(.0), if .0.len() == 1 { "it" } else { "them" })]
+    Constant(Vec<Signal>),
+}

@@ -1,0 +1,331 @@
+//! Doubts about the flight records themselves, channel by channel (M14.1, M14.18).
+
+use std::collections::BTreeSet;
+
+use nalgebra::DMatrix;
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::simulation::{FlightRecord, Segment, Signal, centred};
+
+use super::caution_note::CautionNote;
+use super::channel_quality::{
+    COARSE, Clipping, Stairs, coarseness, finite_samples, finite_values, is_coarse,
+};
+use super::gaps::{Cause, Gap, names};
+use super::preparation_settings::{ChannelPreparation, Hold, Preparation};
+
+/// Correlation beyond which two inputs are moved together.
+const TOGETHER: f64 = 0.99;
+/// Correlation beyond which an output copies an input or another output.
+const COPY: f64 = 0.9999;
+
+/// A doubt about the flight records, or a change made to them.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RecordCaution {
+    /// A record with uneven sample times was interpolated, as allowed.
+    #[error(
+        "{record}: the sample time varies by {percent:.0} %; it was interpolated to even steps"
+    )]
+    Resampled {
+        record: String,
+        /// 95th percentile for the deviation from multiples of the sample time \[%\].
+        percent: f64,
+    },
+    /// The rest between two gaps is too short.
+    #[error("{record}: {length_s:.1} s from {start_s:.2} s were left out, too short between gaps")]
+    SegmentDropped {
+        record: String,
+        start_s: f64,
+        length_s: f64,
+    },
+    #[error("{0}: no part could be used")]
+    RecordUnused(String),
+    /// Most consecutive samples are equal while the channel moves.
+    #[error(
+        "{signal}: {percent:.0} % of consecutive samples are equal, it changes every {:.0} ms. State the cause: {}or a signal \
+         that really moves in steps (nothing done, as now)",
+        1e3 * hold_s, hold_choices(signal.role, 1e3 * hold_s)
+    )]
+    SampleHold {
+        signal: Signal,
+        /// Share of equal samples \[%\].
+        percent: f64,
+        /// Median time between changes \[s\].
+        hold_s: f64,
+    },
+    /// A value that is implausible in the channel's unit.
+    #[error("{signal} reaches {greatest:.3}, beyond {limit}: check its unit")]
+    UnlikelyUnit {
+        signal: Signal,
+        /// Greatest modulus.
+        greatest: f64,
+        /// Greatest plausible modulus.
+        limit: f64,
+    },
+    #[error(
+        "{} always moved together (correlation {correlation:.3}): their effects cannot be separated",
+        names(signals)
+    )]
+    MovedTogether {
+        /// Two inputs.
+        signals: [Signal; 2],
+        correlation: f64,
+    },
+    /// An output is at its limit.
+    #[error(
+        "{signal} is at its limit for {percent:.1} % of {record}{}, which cannot be repaired. Leave the output out, or {}",
+        if *records > 1 { format!(", and in {} other records", records - 1) } else { String::new() },
+        if *records > 1 { "these records" } else { "the record" }
+    )]
+    AtLimit {
+        /// Worst record's name.
+        record: String,
+        signal: Signal,
+        /// Share of the samples \[%\].
+        percent: f64,
+        /// Affected records.
+        records: usize,
+    },
+    /// Outputs stood still while others moved.
+    #[error(
+        "{record}: {} stood still for {seconds:.1} s while other channels moved; that time was left out",
+        names(signals)
+    )]
+    Stuck {
+        record: String,
+        signals: Vec<Signal>,
+        /// Total time \[s\].
+        seconds: f64,
+    },
+    /// An output is logged in coarse steps.
+    #[error(
+        "{signal} is logged in coarse steps of {steps:.1} standard deviations; this had no effect in any test"
+    )]
+    Coarse {
+        signal: Signal,
+        /// Step over the standard deviation.
+        steps: f64,
+    },
+    /// An output copies another channel.
+    #[error(
+        "{copy} is a copy of the {} {of}: leave it out", of.role
+    )]
+    Copy {
+        copy: Signal,
+        /// The original.
+        of: Signal,
+    },
+}
+
+/// Lists the possible causes for stairs.
+fn hold_choices(role: ChannelSide, hold_ms: f64) -> String {
+    let half = 0.5 * hold_ms;
+    let command = match role {
+        ChannelSide::Input => {
+            format!("a command held and logged once a hold (moved {half:.0} ms later), ")
+        }
+        ChannelSide::Output => String::new(),
+    };
+    format!("{command}a slow sensor (only fresh samples kept, or moved {half:.0} ms earlier), ")
+}
+
+/// Examines the channels in the records as logged, and in the segments made from them.
+pub(crate) fn channel_cautions(
+    records: &[FlightRecord],
+    segments: &[Segment],
+    preparation: &Preparation,
+) -> Vec<RecordCaution> {
+    let mut cautions = Vec::new();
+    for (signal, channel) in preparation.channels() {
+        cautions.extend(unit_caution(&signal, channel, segments));
+        cautions.extend(stairs_caution(&signal, channel, records));
+    }
+    for (signal, _) in preparation.channels_of(ChannelSide::Output) {
+        cautions.extend(limit_caution(&signal, records));
+        cautions.extend(coarse_caution(&signal, records));
+    }
+    cautions.extend(correlation_cautions(segments, preparation));
+    cautions
+}
+
+/// Doubts a channel's unit if it exceeds its plausible limit.
+fn unit_caution(
+    signal: &Signal,
+    channel: &ChannelPreparation,
+    segments: &[Segment],
+) -> Option<RecordCaution> {
+    let limit = channel.limit?;
+    let greatest = segments
+        .iter()
+        .map(|segment| segment.channel(signal).amax())
+        .fold(0.0, f64::max);
+    if greatest > limit {
+        Some(RecordCaution::UnlikelyUnit {
+            signal: signal.clone(),
+            greatest,
+            limit,
+        })
+    } else {
+        None
+    }
+}
+
+/// Reports stairs in a channel whose hold is not declared.
+fn stairs_caution(
+    signal: &Signal,
+    channel: &ChannelPreparation,
+    records: &[FlightRecord],
+) -> Option<RecordCaution> {
+    if channel.hold != Hold::None {
+        return None;
+    }
+    // A coarse output's stairs are its steps.
+    if signal.role == ChannelSide::Output && is_coarse(&values_of_all(records, signal)) {
+        return None;
+    }
+    let stairs = Stairs::find(records.iter().map(|record| finite_samples(record, signal)))?;
+    Some(RecordCaution::SampleHold {
+        signal: signal.clone(),
+        percent: 100.0 * stairs.share,
+        hold_s: stairs.hold_s,
+    })
+}
+
+/// Reports an output at its limit, with the worst record.
+fn limit_caution(signal: &Signal, records: &[FlightRecord]) -> Option<RecordCaution> {
+    let mut clipped = Vec::new();
+    for record in records {
+        let clipping = Clipping::measure(&finite_values(record, signal));
+        if clipping.is_excessive() {
+            clipped.push((record, clipping.share));
+        }
+    }
+    let (record, share) = clipped.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(RecordCaution::AtLimit {
+        record: record.name.clone(),
+        signal: signal.clone(),
+        percent: 100.0 * share,
+        records: clipped.len(),
+    })
+}
+
+/// Reports an output in coarse steps.
+fn coarse_caution(signal: &Signal, records: &[FlightRecord]) -> Option<RecordCaution> {
+    let steps = coarseness(&values_of_all(records, signal))?;
+    if steps > COARSE {
+        Some(RecordCaution::Coarse {
+            signal: signal.clone(),
+            steps,
+        })
+    } else {
+        None
+    }
+}
+
+/// Returns a channel's finite values in all records.
+fn values_of_all(records: &[FlightRecord], signal: &Signal) -> Vec<f64> {
+    records
+        .iter()
+        .flat_map(|record| finite_values(record, signal))
+        .collect()
+}
+
+/// Reports channels that move together, by their correlation over all segments.
+fn correlation_cautions(segments: &[Segment], preparation: &Preparation) -> Vec<RecordCaution> {
+    let signals: Vec<Signal> = preparation.channels().map(|(signal, _)| signal).collect();
+    let mut covariance = DMatrix::zeros(signals.len(), signals.len());
+    for segment in segments {
+        let samples: Vec<_> = signals
+            .iter()
+            .map(|signal| segment.channel(signal))
+            .collect();
+        let centred = centred(DMatrix::from_columns(&samples));
+        covariance += centred.tr_mul(&centred);
+    }
+    let mut cautions = Vec::new();
+    for (second, b) in signals.iter().enumerate() {
+        for (first, a) in signals.iter().enumerate().take(second) {
+            let power = (covariance[(first, first)] * covariance[(second, second)]).sqrt();
+            let correlation: f64 = covariance[(first, second)] / power;
+            match b.role {
+                ChannelSide::Input if correlation.abs() > TOGETHER => {
+                    cautions.push(RecordCaution::MovedTogether {
+                        signals: [a.clone(), b.clone()],
+                        correlation,
+                    });
+                }
+                ChannelSide::Output if correlation.abs() > COPY => {
+                    cautions.push(RecordCaution::Copy {
+                        copy: b.clone(),
+                        of: a.clone(),
+                    })
+                }
+                ChannelSide::Input | ChannelSide::Output => {}
+            }
+        }
+    }
+    cautions
+}
+
+/// Reports the outputs that were stuck in a record, from its gaps.
+pub(crate) fn stuck_caution(record: &str, gaps: &[Gap]) -> Option<RecordCaution> {
+    let mut stuck = BTreeSet::new();
+    let mut seconds = 0.0;
+    for gap in gaps {
+        if let Cause::Frozen(signals) = &gap.cause {
+            stuck.extend(signals.iter().cloned());
+            seconds += gap.end_s - gap.start_s;
+        }
+    }
+    if stuck.is_empty() {
+        return None;
+    }
+    Some(RecordCaution::Stuck {
+        record: record.to_owned(),
+        signals: stuck.into_iter().collect(),
+        seconds,
+    })
+}
+
+/// Returns a record's inputs at their limit, with the sample share \[%\].
+pub(crate) fn inputs_at_limit(
+    record: &FlightRecord,
+    preparation: &Preparation,
+) -> Vec<(Signal, f64)> {
+    let mut clipped = Vec::new();
+    for (signal, _) in preparation.channels_of(ChannelSide::Input) {
+        let clipping = Clipping::measure(&finite_values(record, &signal));
+        if clipping.is_excessive() {
+            clipped.push((signal, 100.0 * clipping.share));
+        }
+    }
+    clipped
+}
+
+impl RecordCaution {
+    /// Returns the code and the subject, without the sentence.
+    pub(crate) fn note(&self) -> CautionNote {
+        match self {
+            Self::Resampled { record, .. } => CautionNote::new("resampled").with_record(record),
+            Self::SegmentDropped { record, .. } | Self::RecordUnused(record) => {
+                CautionNote::new("gap").with_record(record)
+            }
+            Self::SampleHold { signal, .. } => CautionNote::new("held").with_channel(signal),
+            Self::UnlikelyUnit { signal, .. } => CautionNote::new("unit").with_channel(signal),
+            Self::MovedTogether {
+                signals: [_, second],
+                ..
+            } => CautionNote::new("collinear-inputs").with_channel(second),
+            Self::Copy { copy, .. } => CautionNote::new("copy").with_channel(copy),
+            Self::AtLimit { record, signal, .. } => CautionNote::new("clipped")
+                .with_record(record)
+                .with_channel(signal),
+            Self::Stuck {
+                record, signals, ..
+            } => CautionNote::new("stuck")
+                .with_record(record)
+                .with_channel(signals.first()),
+            Self::Coarse { signal, .. } => CautionNote::new("coarse").with_channel(signal),
+        }
+    }
+}

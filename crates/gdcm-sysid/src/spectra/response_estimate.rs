@@ -1,0 +1,225 @@
+//! The frequency response measured without a model, and how far it can be trusted (M14.2).
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use gdcm_model::dataset::measured_response::MeasuredResponse;
+use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::response::median;
+
+use super::scales::Scales;
+
+/// Local polynomial terms: 1, x, x^2.
+pub(crate) const TERMS: usize = 3;
+/// An input with a median partial coherence below this was not swept, or only together with another
+/// (M14.2).
+const LEAST_PARTIAL_COHERENCE: f64 = 0.3;
+/// Inputs with a spectral matrix above this condition number were moved together (M14.2).
+const GREATEST_CONDITION: f64 = 1e3;
+/// Partial coherence from which a point is trusted (M14.2).
+pub const TRUSTED_COHERENCE: f64 = 0.6;
+/// Share of the band, in logarithm, that shows nothing at an end if the band is too wide there
+/// (M14.10).
+const END: f64 = 0.2;
+
+/// The measured response at a frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EstimatePoint {
+    /// \[rad/s\].
+    pub omega: f64,
+    /// `G0`, outputs x inputs.
+    pub response: DMatrix<Complex<f64>>,
+    /// `E |error of G0|^2`, outputs x inputs. Real and imaginary part have a half
+    /// each, so `sqrt(variance / 2) / |G0|` is the standard deviation in log modulus \[Np\] and
+    /// phase \[rad\].
+    pub variance: DMatrix<f64>,
+    /// `Cv`, noise covariance of a line, real part, outputs x outputs.
+    pub noise: DMatrix<f64>,
+    /// Mean line power around this frequency, by output.
+    pub power: DVector<f64>,
+    /// Multiple coherence, by output: the power share that all inputs explain, 0 to 1.
+    pub coherence: DVector<f64>,
+    /// Partial coherence, outputs x inputs: the share, 0 to 1, of the power left by the other
+    /// inputs that this input explains.
+    pub partial_coherence: DMatrix<f64>,
+    /// Condition number of the inputs' spectral matrix `S_uu`, in scaled units.
+    pub condition: f64,
+    /// `h`, window half width \[rad/s\].
+    pub half_width: f64,
+    /// Spectral lines less unknowns: degrees of freedom in `noise`.
+    pub freedom: usize,
+}
+
+impl EstimatePoint {
+    /// Returns the standard deviation in `ln G0`: in log modulus \[Np\] and
+    /// in phase \[rad\] alike.
+    pub fn sd(&self, pair: (usize, usize)) -> f64 {
+        (0.5 * self.variance[pair]).sqrt() / self.response[pair].norm()
+    }
+
+    /// Returns the partial coherence between an input and the output that it moves most, less the
+    /// share that as many noise columns would explain: `1 - (1 - c) (freedom + 3) / freedom`.
+    ///
+    /// Without the correction the greatest among many outputs is never small by chance.
+    fn greatest_coherence(&self, input: usize) -> f64 {
+        let columns = TERMS as f64;
+        let freedom = self.freedom.max(1) as f64;
+        let greatest = self
+            .partial_coherence
+            .column(input)
+            .iter()
+            .fold(0.0, |a: f64, b| a.max(*b));
+        (1.0 - (1.0 - greatest) * (freedom + columns) / freedom).max(0.0)
+    }
+
+    /// Whether some input moves some output visibly.
+    fn is_shown(&self) -> bool {
+        (0..self.response.ncols()).any(|input| self.greatest_coherence(input) >= TRUSTED_COHERENCE)
+    }
+
+    /// Converts a point in scaled units to file units.
+    fn in_units(&self, response_factors: &DMatrix<f64>, outputs: &DVector<f64>) -> Self {
+        Self {
+            response: self
+                .response
+                .zip_map(response_factors, |g, scale| g * scale),
+            variance: self
+                .variance
+                .zip_map(response_factors, |v, scale| v * scale * scale),
+            noise: self.noise.component_mul(&(outputs * outputs.transpose())),
+            power: self.power.component_mul(outputs).component_mul(outputs),
+            ..self.clone()
+        }
+    }
+}
+
+/// How well each input was moved by itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Excitation {
+    /// For each input, the median partial coherence over frequency with the output that it
+    /// moves most, 0 to 1.
+    pub partial_coherence: Vec<f64>,
+    /// Median condition number over frequency of the inputs' spectral matrix.
+    pub condition: f64,
+}
+
+impl Excitation {
+    /// Returns the inputs, counted from 0, with a median partial coherence below 0.3: their columns
+    /// are not identified.
+    pub fn not_identified(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.partial_coherence.len())
+            .filter(|&i| self.partial_coherence[i] < LEAST_PARTIAL_COHERENCE)
+    }
+
+    /// Whether the median condition number exceeds 1000: some inputs were moved only together.
+    #[must_use]
+    pub fn moved_together(&self) -> bool {
+        self.condition > GREATEST_CONDITION
+    }
+}
+
+/// The measured response `G[output, input]` over frequency, by the local polynomial method (M14.2).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResponseEstimate {
+    /// By ascending frequency, not empty.
+    pub points: Vec<EstimatePoint>,
+}
+
+impl ResponseEstimate {
+    /// Returns the part of a band \[rad/s\] that the records show, if its lower or upper fifth (in
+    /// logarithm) shows nothing: no input is coherent with any output there.
+    #[must_use]
+    pub fn shown_band(&self, band: [f64; 2]) -> Option<[f64; 2]> {
+        let mut shown = self
+            .points
+            .iter()
+            .filter(|point| (band[0]..=band[1]).contains(&point.omega) && point.is_shown())
+            .map(|point| point.omega);
+        let first = shown.next()?;
+        let last = shown.next_back()?;
+        let fifth = (band[1] / band[0]).powf(END);
+        let lower = if first > band[0] * fifth {
+            first
+        } else {
+            band[0]
+        };
+        let upper = if last < band[1] / fifth {
+            last
+        } else {
+            band[1]
+        };
+        let part = [lower, upper];
+        if part != band && part[1] > part[0] * fifth {
+            Some(part)
+        } else {
+            None
+        }
+    }
+
+    /// Converts the estimate to a measured response whose weights are the partial coherences.
+    ///
+    /// Returns `None` for fewer than two points.
+    pub fn measured(&self) -> Option<MeasuredResponse> {
+        self.points.first()?;
+        let re = self.table(|point, pair| point.response[pair].re);
+        let im = self.table(|point, pair| point.response[pair].im);
+        let coherence = self.table(|point, pair| point.partial_coherence[pair].clamp(0.0, 1.0));
+        MeasuredResponse::new(
+            self.points.iter().map(|point| point.omega).collect(),
+            &re,
+            &im,
+            Some(coherence),
+        )
+        .ok()
+    }
+
+    /// Tabulates every response's value over frequency. `points` is not empty.
+    fn table(&self, value: fn(&EstimatePoint, (usize, usize)) -> f64) -> PairTable<Vec<f64>> {
+        let (outputs, inputs) = self.points[0].response.shape();
+        PairTable::from_fn(outputs, inputs, |pair: Pair| {
+            self.points
+                .iter()
+                .map(|point| value(point, (pair.output, pair.input)))
+                .collect()
+        })
+    }
+
+    /// Computes how well each input was moved by itself.
+    ///
+    /// A coupled response may be weak although its input was moved well: for each input and
+    /// frequency the output with the greatest partial coherence counts.
+    #[must_use]
+    pub fn excitation(&self) -> Excitation {
+        let inputs = self
+            .points
+            .first()
+            .map_or(0, |point| point.response.ncols());
+        let mut partial_coherence = Vec::with_capacity(inputs);
+        for input in 0..inputs {
+            let mut coherences: Vec<f64> = self
+                .points
+                .iter()
+                .map(|point| point.greatest_coherence(input))
+                .collect();
+            partial_coherence.push(median(&mut coherences));
+        }
+        let mut conditions: Vec<f64> = self.points.iter().map(|point| point.condition).collect();
+        Excitation {
+            partial_coherence,
+            condition: median(&mut conditions),
+        }
+    }
+
+    /// Converts an estimate from the units in `scales` to file units.
+    #[must_use]
+    pub fn in_units(&self, scales: &Scales) -> Self {
+        let response_factors = scales.response_factors();
+        let outputs = DVector::from_column_slice(&scales.outputs);
+        Self {
+            points: self
+                .points
+                .iter()
+                .map(|point| point.in_units(&response_factors, &outputs))
+                .collect(),
+        }
+    }
+}

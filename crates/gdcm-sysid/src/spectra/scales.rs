@@ -1,0 +1,129 @@
+//! Channel scales: the rms about the mean (M14.1).
+
+use nalgebra::DMatrix;
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::simulation::Segment;
+
+/// A channel with an rms below this share of its greatest modulus is constant but for rounding.
+const CONSTANT: f64 = 1e-12;
+
+/// Every channel's scale, in file units: its rms about each segment's mean,
+/// over all segments (M14.1).
+///
+/// ```text
+/// s_c = sqrt( sum_r sum_n (x_c[n] - mean_r x_c)^2 / sum_r N_r )
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scales {
+    /// Greater than 0.
+    pub inputs: Vec<f64>,
+    /// Greater than 0.
+    pub outputs: Vec<f64>,
+}
+
+/// Why channels cannot be scaled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ScalingError {
+    #[error("there are no flight records")]
+    NoSegments,
+    /// Segment number, counted from 0.
+    #[error("piece {} of the flight records differs from the first in its number of channels", .0 + 1)]
+    ChannelsDiffer(usize),
+    /// A sample or its square is not finite; number of the segment, counted from 0.
+    #[error("piece {} of the flight records has values that are not finite or too large", .0 + 1)]
+    NotFinite(usize),
+    /// The channel is constant in every segment.
+    #[error("{role} {} does not move in any record: leave it out", index + 1)]
+    Constant { role: ChannelSide, index: usize },
+}
+
+impl Scales {
+    /// Computes the channel scales for `segments`.
+    ///
+    /// # Errors
+    /// No segments, differing channel counts, values that are not finite, a constant channel.
+    pub fn from_segments(segments: &[Segment]) -> Result<Self, ScalingError> {
+        let first = segments.first().ok_or(ScalingError::NoSegments)?;
+        for (number, segment) in segments.iter().enumerate() {
+            let differs = segment.inputs.ncols() != first.inputs.ncols()
+                || segment.outputs.ncols() != first.outputs.ncols();
+            if differs {
+                return Err(ScalingError::ChannelsDiffer(number));
+            }
+        }
+        Ok(Self {
+            inputs: rms_of_side(segments, ChannelSide::Input)?,
+            outputs: rms_of_side(segments, ChannelSide::Output)?,
+        })
+    }
+
+    /// Divides every channel by its scale. Channels without a scale stay as they are.
+    #[must_use]
+    pub fn scaled(&self, segment: &Segment) -> Segment {
+        let mut scaled = segment.clone();
+        divide_columns(&mut scaled.inputs, &self.inputs);
+        divide_columns(&mut scaled.outputs, &self.outputs);
+        scaled
+    }
+
+    /// Returns the factors, outputs x inputs, that bring a scaled response to file units.
+    #[must_use]
+    pub fn response_factors(&self) -> DMatrix<f64> {
+        DMatrix::from_fn(self.outputs.len(), self.inputs.len(), |o, i| {
+            self.outputs[o] / self.inputs[i]
+        })
+    }
+}
+
+fn divide_columns(samples: &mut DMatrix<f64>, scales: &[f64]) {
+    for (mut column, scale) in samples.column_iter_mut().zip(scales) {
+        column /= *scale;
+    }
+}
+
+/// A segment's inputs or outputs.
+fn samples_of_side(segment: &Segment, role: ChannelSide) -> &DMatrix<f64> {
+    role.of(&segment.inputs, &segment.outputs)
+}
+
+/// Computes each channel's rms about its mean in each segment, over all segments.
+fn rms_of_side(segments: &[Segment], role: ChannelSide) -> Result<Vec<f64>, ScalingError> {
+    let channels = segments
+        .first()
+        .map_or(0, |segment| samples_of_side(segment, role).ncols());
+    let mut squares = vec![0.0; channels];
+    let mut greatest = vec![0.0_f64; channels];
+    let mut count = 0;
+    for (number, segment) in segments.iter().enumerate() {
+        let samples = samples_of_side(segment, role);
+        let rows = samples.nrows();
+        count += rows;
+        for (c, column) in samples.column_iter().enumerate() {
+            let mean = if rows == 0 {
+                0.0
+            } else {
+                column.sum() / rows as f64
+            };
+            squares[c] += column.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
+            if !squares[c].is_finite() {
+                return Err(ScalingError::NotFinite(number));
+            }
+            greatest[c] = greatest[c].max(column.amax());
+        }
+    }
+    let mut scales = Vec::with_capacity(channels);
+    for (index, (square, greatest)) in squares.iter().zip(&greatest).enumerate() {
+        let rms = if count == 0 {
+            0.0
+        } else {
+            (square / count as f64).sqrt()
+        };
+        let moves = rms > 0.0 && rms > CONSTANT * greatest;
+        if !moves {
+            return Err(ScalingError::Constant { role, index });
+        }
+        scales.push(rms);
+    }
+    Ok(scales)
+}

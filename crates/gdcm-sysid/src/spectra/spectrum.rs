@@ -1,0 +1,131 @@
+//! A segment's spectral lines: its Fourier transform without a window (M14.2).
+
+use std::f64::consts::TAU;
+
+use nalgebra::{Complex, DMatrix};
+
+use gdcm_model::executor::{Executor, each};
+use gdcm_model::simulation::Segment;
+use gdcm_numerics::{FourierPlanner, FourierTransform};
+
+/// A segment's lines are used from its second up: the first holds its drift (M14.12).
+const FIRST_LINE: f64 = 1.5;
+
+/// A segment's lines (M14.2): columns are lines, rows are channels.
+///
+/// ```text
+/// U(omega_k) = dt / sqrt(T) sum_n u[n] e^(-j omega_k n dt)
+/// omega_k = 2 pi k / T,   T = N dt,   k >= 1
+/// ```
+///
+/// There is no window. The mean is taken off for accuracy only: lines from k = 1 do not hold it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spectrum {
+    /// Record number, counted from 0.
+    pub record: usize,
+    /// `T` \[s\].
+    pub duration_s: f64,
+    /// `omega_k` \[rad/s\], ascending.
+    pub omega: Vec<f64>,
+    /// `U`, inputs x lines.
+    pub inputs: DMatrix<Complex<f64>>,
+    /// `Y`, outputs x lines.
+    pub outputs: DMatrix<Complex<f64>>,
+}
+
+impl Spectrum {
+    /// Returns the lines with `lowest <= omega_k <= highest` \[rad/s\].
+    #[must_use]
+    pub fn between(&self, lowest: f64, highest: f64) -> Self {
+        let from = self.omega.partition_point(|&w| w < lowest);
+        let to = self.omega.partition_point(|&w| w <= highest).max(from);
+        Self {
+            record: self.record,
+            duration_s: self.duration_s,
+            omega: self.omega[from..to].to_vec(),
+            inputs: self.inputs.columns(from, to - from).into_owned(),
+            outputs: self.outputs.columns(from, to - from).into_owned(),
+        }
+    }
+}
+
+/// The range in which lines are used.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LineRange {
+    /// \[rad/s\].
+    pub(crate) lowest: f64,
+    /// \[rad/s\].
+    pub(crate) highest: f64,
+}
+
+impl LineRange {
+    /// Transforms the segments and keeps the lines in the range, from each segment's second on.
+    ///
+    /// Segments without a line in the range are left out.
+    pub(crate) fn spectra(self, segments: &[Segment], executor: &dyn Executor) -> Vec<Spectrum> {
+        let mut used = Vec::new();
+        for spectrum in spectra(segments, self.highest, executor) {
+            let second = FIRST_LINE * TAU / spectrum.duration_s;
+            let lines = spectrum.between(self.lowest.max(second), self.highest);
+            if !lines.omega.is_empty() {
+                used.push(lines);
+            }
+        }
+        used
+    }
+}
+
+/// Computes every segment's lines up to `highest` \[rad/s\] and below half the sampling
+/// frequency, in segment order.
+#[must_use]
+pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
+    let mut planner = FourierPlanner::default();
+    let plans: Vec<_> = segments
+        .iter()
+        .map(|segment| planner.plan(segment.inputs.nrows()))
+        .collect();
+    each(executor, segments.iter().zip(plans), |(segment, plan)| {
+        spectrum(segment, highest, &plan)
+    })
+}
+
+/// Computes a segment's lines up to `highest`; `plan` is a transform for its length.
+fn spectrum(segment: &Segment, highest: f64, plan: &FourierTransform) -> Spectrum {
+    let duration_s = segment.sample_time_s * segment.inputs.nrows() as f64;
+    let below_nyquist = segment.inputs.nrows().saturating_sub(1) / 2;
+    let omega: Vec<f64> = (1..=below_nyquist)
+        .map(|k| TAU * k as f64 / duration_s)
+        .take_while(|&w| w <= highest)
+        .collect();
+    let factor = segment.sample_time_s / duration_s.sqrt();
+    Spectrum {
+        record: segment.record,
+        duration_s,
+        inputs: transform(&segment.inputs, omega.len(), factor, plan),
+        outputs: transform(&segment.outputs, omega.len(), factor, plan),
+        omega,
+    }
+}
+
+/// Computes lines 1 to `lines` for each column in `samples`, times `factor`; rows are channels.
+fn transform(
+    samples: &DMatrix<f64>,
+    lines: usize,
+    factor: f64,
+    plan: &FourierTransform,
+) -> DMatrix<Complex<f64>> {
+    let mut transformed = DMatrix::zeros(samples.ncols(), lines);
+    if lines == 0 {
+        return transformed;
+    }
+    for (channel, column) in samples.column_iter().enumerate() {
+        let mean = column.mean();
+        let mut centred: Vec<f64> = column.iter().map(|sample| sample - mean).collect();
+        let spectrum = plan.of(&mut centred).unwrap_or_default();
+        let mut row = transformed.row_mut(channel);
+        for (y, line) in row.iter_mut().zip(spectrum.iter().skip(1)) {
+            *y = line * factor;
+        }
+    }
+    transformed
+}

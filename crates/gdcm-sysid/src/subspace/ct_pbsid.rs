@@ -1,0 +1,200 @@
+//! CT-PBSID: models of all orders from the data matrix's triangular factor (M14.3).
+//!
+//! ```text
+//! Z0 = [z_0 ... z_{p-1}], Z1 = [z_1 ... z_p], U = u~_p, Y = y~_p, columns of R
+//! 1  Theta = argmin |[Z0 U] Theta - Y|^2 + ridge |Theta|^2     predictor with an exogenous input
+//! 2  Gamma K: block row i = Theta' columns 1 to (p - i) q, placed from column i q
+//!    i = 0 ... f - 1, f = min(p, f_max)
+//! 3  Gamma K Z0' = W S V';   T = S_n^-1/2 W_n' Gamma K;   states X0 = Z0 T', X1 = Z1 T'
+//! 4  [Co Do] from Y on [X0 U], residual E;   [Ao Bo Ko] from X1 on [X0 U E]
+//! ```
+//!
+//! A. Chiuso, "The role of vector autoregressive modeling in predictor-based subspace
+//! identification", Automatica 43, 2007.
+
+use nalgebra::{DMatrix, DMatrixView};
+
+use gdcm_model::dataset::StateSpace;
+
+use super::laguerre::continuous;
+use super::triangular_factor::{TriangularFactor, least_squares, ridge_solution};
+
+/// Dimensions for a data matrix and its map to the future.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SubspaceShape {
+    pub(crate) inputs: usize,
+    pub(crate) outputs: usize,
+    /// Past window p.
+    pub(crate) past: usize,
+    /// Most block rows in the map to the future, `f_max`.
+    pub(crate) longest_future: usize,
+}
+
+/// The states that a Laguerre pole and a past window propose, for every order.
+#[derive(Clone, Debug)]
+pub(crate) struct Subspace {
+    pole: f64,
+    inputs: usize,
+    /// `R`, its leading (p + 1) q columns and rows.
+    factor: DMatrix<f64>,
+    /// `Gamma K`.
+    map: DMatrix<f64>,
+    /// `W`.
+    left: DMatrix<f64>,
+    /// The diagonal of `S`, descending.
+    pub(crate) singular_values: Vec<f64>,
+}
+
+impl Subspace {
+    /// Computes the states (steps 1 to 3) from the triangular factor at a Laguerre pole \[rad/s\];
+    /// `ridge` is over unit columns.
+    ///
+    /// Returns `None` if the regressors depend on each other or an iteration does not converge.
+    pub(crate) fn new(
+        factor: &TriangularFactor,
+        pole: f64,
+        shape: SubspaceShape,
+        ridge: f64,
+    ) -> Option<Self> {
+        let SubspaceShape {
+            inputs,
+            outputs,
+            past,
+            longest_future,
+        } = shape;
+        let channels = inputs + outputs;
+        let width = past * channels;
+        let size = width + channels;
+        if factor.matrix().ncols() < size {
+            return None;
+        }
+        let factor = factor.matrix().view((0, 0), (size, size)).into_owned();
+        let theta = ridge_solution(factor.as_view(), width + inputs, ridge)?.transpose();
+        let future = past.min(longest_future);
+        let mut map = DMatrix::zeros(future * outputs, width);
+        for row in 0..future {
+            let kept = (past - row) * channels;
+            map.view_mut((row * outputs, row * channels), (outputs, kept))
+                .copy_from(&theta.columns(0, kept));
+        }
+        // The transposed triangular factor of (Gamma K Z0')' shares its left factors with Gamma K
+        // Z0'.
+        let mut transposed = TriangularFactor::empty(future * outputs);
+        transposed.append(&(factor.view((0, 0), (width, width)) * map.transpose()));
+        let decomposition =
+            transposed
+                .matrix()
+                .transpose()
+                .try_svd(true, false, f64::EPSILON, 10_000)?;
+        let singular_values: Vec<f64> = decomposition.singular_values.iter().copied().collect();
+        if !singular_values.iter().all(|value| value.is_finite()) {
+            return None;
+        }
+        Some(Self {
+            pole,
+            inputs,
+            factor,
+            map,
+            left: decomposition.u?,
+            singular_values,
+        })
+    }
+
+    /// Computes an order's continuous-time model (step 4); `None` if the data do not hold so
+    /// many states.
+    pub(crate) fn model(&self, order: usize) -> Option<StateSpace> {
+        let inputs = self.inputs;
+        let width = self.map.ncols();
+        let channels = self.factor.ncols() - width;
+        let outputs = channels - inputs;
+        let states = self.state_map(order)?.transpose();
+        let x0 = self.factor.columns(0, width) * &states;
+        let x1 = self.factor.columns(channels, width) * &states;
+        let u = self.factor.columns(width, inputs);
+        let y = self.factor.columns(width + inputs, outputs);
+        let regressors = side_by_side(&[x0.as_view(), u.as_view()]);
+        let output_solution = least_squares(&regressors, &y.into_owned())?;
+        let innovation = y - &regressors * &output_solution;
+        let regressors = side_by_side(&[regressors.as_view(), innovation.as_view()]);
+        let state_solution = least_squares(&regressors, &x1)?;
+        let a = state_solution.rows(0, order).transpose();
+        let b = state_solution.rows(order, inputs).transpose();
+        let c = output_solution.rows(0, order).transpose();
+        let d = output_solution.rows(order, inputs).transpose();
+        continuous(self.pole, &StateSpace::new(a, b, c, d).ok()?)
+    }
+
+    /// Computes `T = S_n^-1/2 W_n' Gamma K`.
+    fn state_map(&self, order: usize) -> Option<DMatrix<f64>> {
+        let singular_values = self.singular_values.get(..order)?;
+        let mut map = self.left.columns(0, order).transpose() * &self.map;
+        for (mut row, value) in map.row_iter_mut().zip(singular_values) {
+            let root = value.sqrt();
+            if root == 0.0 {
+                return None;
+            }
+            row.unscale_mut(root);
+        }
+        Some(map)
+    }
+}
+
+/// Joins matrices side by side.
+fn side_by_side(parts: &[DMatrixView<'_, f64>]) -> DMatrix<f64> {
+    let rows = parts.first().map_or(0, |part| part.nrows());
+    let columns: Vec<_> = parts.iter().flat_map(|part| part.column_iter()).collect();
+    DMatrix::from_fn(rows, columns.len(), |row, column| columns[column][row])
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_model::simulation::Segment;
+
+    use super::*;
+    use crate::identification::known_answers_tests::{
+        answers, matrix, number, numbers, response, response_at,
+    };
+    use crate::subspace::laguerre::Projections;
+
+    #[test]
+    fn a_system_without_noise_comes_back() {
+        let known = &answers()["pbsid_noise_free"];
+        let inputs = matrix(&known["u"]);
+        let outputs = matrix(&known["y"]);
+        let dt = number(&known["dt"]);
+        let shape = SubspaceShape {
+            inputs: inputs.ncols(),
+            outputs: outputs.ncols(),
+            past: number(&known["p"]) as usize,
+            longest_future: 2,
+        };
+        let segment = Segment {
+            record: 0,
+            start_s: 0.0,
+            sample_time_s: dt,
+            inputs,
+            outputs,
+        };
+        let projections = Projections {
+            pole: number(&known["a"]),
+            past: shape.past,
+            spacing_s: dt,
+        };
+        let rows = projections.rows(&segment);
+        let mut factor = TriangularFactor::empty(rows.ncols());
+        factor.append(&rows);
+        let subspace = Subspace::new(&factor, projections.pole, shape, 0.0).unwrap();
+        // Independent numpy code; the tolerances are stated in its file.
+        for (found, expected) in subspace
+            .singular_values
+            .iter()
+            .zip(numbers(&known["singular_values"]))
+        {
+            assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
+        }
+        let model = subspace.model(4).unwrap();
+        for (omega, expected) in numbers(&known["w"]).into_iter().zip(response(&known["H"])) {
+            assert!((response_at(&model, omega) - expected).camax() < 1e-6);
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Orders and past windows that the records can carry (M14.13).
+
+use std::ops::RangeInclusive;
+
+/// Orders that are all tried.
+const LOW_ORDERS: RangeInclusive<usize> = 1..=8;
+/// Even orders that are tried beyond.
+const HIGH_ORDERS: RangeInclusive<usize> = 10..=24;
+/// Channels up to which odd orders above 3 are tried.
+const ODD_ORDERS: usize = 6;
+/// Past windows for any channel count.
+const PASTS: [usize; 4] = [8, 10, 12, 16];
+/// Further past window for few channels.
+const LONG_PAST: usize = 24;
+/// Channels up to which the further past window is tried.
+const LONG_PAST_CHANNELS: usize = 4;
+/// Shortest past window.
+const LEAST_PAST: usize = 3;
+/// Least ratio between rows and columns in a data matrix.
+const LEAST_ROWS: f64 = 2.0;
+/// The same if no past window has so many.
+const LEAST_ROWS_SHORT: f64 = 1.5;
+/// Time between instants times the upper band end \[rad\].
+pub(crate) const SPACING: f64 = 1.2;
+/// Fewest real values in the lines for each unknown in a model (M14.13).
+pub(crate) const FIGURES_AN_UNKNOWN: usize = 5;
+
+/// Counts the parameters that matter in a model with this order: `n (m + l) + m l`.
+///
+/// Changes in the state basis do not count.
+pub(crate) fn parameters_of_order(order: usize, inputs: usize, outputs: usize) -> usize {
+    order * (inputs + outputs) + inputs * outputs
+}
+
+/// The channel counts and the amount of data.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extent {
+    pub(crate) inputs: usize,
+    pub(crate) outputs: usize,
+    /// Real values in all lines less the records' transients.
+    pub(crate) figures: usize,
+    /// Record length times the upper band end \[rad\].
+    pub(crate) radians: f64,
+}
+
+impl Extent {
+    fn channels(self) -> usize {
+        self.inputs + self.outputs
+    }
+
+    /// Returns the most block rows in the map to the future: enough for 30 states.
+    pub(crate) fn longest_future(self) -> usize {
+        30_usize.div_ceil(self.outputs.max(1)).max(12)
+    }
+
+    /// Returns the past windows that the records can carry.
+    pub(crate) fn pasts(self) -> Vec<usize> {
+        let rows = self.radians / SPACING;
+        let mut pasts = PASTS.to_vec();
+        if self.channels() <= LONG_PAST_CHANNELS {
+            pasts.push(LONG_PAST);
+        }
+        pasts.retain(|past| {
+            let columns = ((past + 1) * self.channels()) as f64;
+            rows >= LEAST_ROWS * columns
+        });
+        if pasts.is_empty() {
+            let block_columns = (rows / (LEAST_ROWS_SHORT * self.channels() as f64)) as usize;
+            pasts.push(block_columns.saturating_sub(1).max(LEAST_PAST));
+        }
+        pasts
+    }
+
+    /// Returns the orders that the records can carry, with past windows up to `longest_past`.
+    pub(crate) fn orders(self, longest_past: usize) -> Vec<usize> {
+        let most = longest_past.min(self.longest_future()) * self.outputs;
+        let tries_odd = self.channels() <= ODD_ORDERS;
+        LOW_ORDERS
+            .chain(HIGH_ORDERS.step_by(2))
+            .filter(|order| *order <= 3 || order.is_multiple_of(2) || tries_odd)
+            .filter(|order| *order <= most && self.carries(*order))
+            .collect()
+    }
+
+    /// Whether there are enough real values for an order's parameters.
+    fn carries(self, order: usize) -> bool {
+        let parameters = parameters_of_order(order, self.inputs, self.outputs);
+        FIGURES_AN_UNKNOWN * parameters <= self.figures
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_axis_of_thirty_seconds_carries_orders_to_14_and_all_past_windows() {
+        // 74 lines of one output: known answer of independent code (identification-real.json,
+        // short_siso).
+        let extent = Extent {
+            inputs: 1,
+            outputs: 1,
+            figures: 2 * 74 - 2,
+            radians: 30.0 * 12.0,
+        };
+        assert_eq!(extent.pasts(), [8, 10, 12, 16, 24]);
+        assert_eq!(extent.orders(24), [1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14]);
+    }
+
+    #[test]
+    fn many_channels_have_even_orders_and_short_records_short_windows() {
+        let extent = Extent {
+            inputs: 8,
+            outputs: 12,
+            figures: 100_000,
+            radians: 60.0 * 12.0,
+        };
+        assert_eq!(
+            extent.orders(8),
+            [1, 2, 3, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24]
+        );
+        // 600 rows of 20 channels: 1.5 (p + 1) 20 of them for p = 19, two for p = 14.
+        assert_eq!(extent.pasts(), [8, 10, 12]);
+        let short = Extent {
+            radians: 20.0 * 12.0,
+            ..extent
+        };
+        assert_eq!(short.pasts(), [5]);
+        // 340 rows: two for each column would take 360 of p = 8, and one and a half are there up
+        // to p = 10.
+        let between = Extent {
+            radians: 34.0 * 12.0,
+            ..extent
+        };
+        assert_eq!(between.pasts(), [10]);
+    }
+}

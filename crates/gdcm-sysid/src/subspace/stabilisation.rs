@@ -1,0 +1,83 @@
+//! Stabilisation diagram: poles that stay in place while the order rises (M14.3).
+
+use nalgebra::Complex;
+
+/// Relative distance up to which a pole is stable between orders.
+const STABLE: f64 = 0.05;
+
+/// The poles of an order's model.
+pub(crate) struct PolesOfOrder {
+    pub(crate) order: usize,
+    /// \[rad/s\].
+    pub(crate) poles: Vec<Complex<f64>>,
+}
+
+/// An unrefined model's pole, for the stabilisation diagram.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StabilisationPoint {
+    /// Model order.
+    pub order: usize,
+    /// Pole \[rad/s\] with a non-negative imaginary part: the upper pole in a pair.
+    pub pole: Complex<f64>,
+    /// Whether the model with two states less has a pole within 5 %, relative to its modulus.
+    pub stable: bool,
+}
+
+/// Finds the poles that stay in place while the order rises; `orders` are ascending.
+pub(crate) fn stabilisation(orders: &[PolesOfOrder]) -> Vec<StabilisationPoint> {
+    let mut points = Vec::new();
+    for own in orders {
+        let before = orders
+            .iter()
+            .find(|other| other.order + 2 == own.order)
+            .map_or(&[][..], |other| other.poles.as_slice());
+        for &pole in own.poles.iter().filter(|pole| pole.im >= 0.0) {
+            points.push(StabilisationPoint {
+                order: own.order,
+                pole,
+                stable: before
+                    .iter()
+                    .any(|other| (other - pole).norm() < STABLE * pole.norm()),
+            });
+        }
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pole_is_stable_when_the_order_before_has_it() {
+        let orders = [
+            PolesOfOrder {
+                order: 2,
+                poles: vec![Complex::new(-1.0, 2.0), Complex::new(-1.0, -2.0)],
+            },
+            PolesOfOrder {
+                order: 4,
+                poles: vec![
+                    Complex::new(-1.0, 2.05),
+                    Complex::new(-1.0, -2.05),
+                    Complex::new(-3.0, 0.0),
+                    Complex::new(-8.0, 0.0),
+                ],
+            },
+        ];
+        let diagram = stabilisation(&orders);
+        let stable: Vec<_> = diagram
+            .iter()
+            .map(|point| (point.order, point.pole.re, point.stable))
+            .collect();
+        assert_eq!(
+            stable,
+            [
+                (2, -1.0, false),
+                (4, -1.0, true),
+                (4, -3.0, false),
+                (4, -8.0, false)
+            ]
+        );
+    }
+}

@@ -13,7 +13,8 @@ use gdcm_study::study::{Analysis, AssessedCorrection, AssessmentTable, Table};
 use super::axis::{Axis, Range};
 use super::condition_source::{schedule_words, settings_words};
 use super::drawing::{Color, Hue, Stroke};
-use super::figure::{Bars, DotShape, Dots, Figure, Intervals, Note, Panel, Place, Plot, Rule};
+use super::figure::{Figure, Panel, Plot};
+use super::marks::{Bars, DotShape, Dots, Intervals, Note, Place, Rule};
 
 const ZERO: Stroke = Stroke::solid(Color::DIM, 0.6);
 /// Width of a bar; conditions are 1 apart.

@@ -14,9 +14,9 @@ use gdcm_study::study::{Analysis, ConditionAnalysis, ConditionChoice};
 use super::axis::{Axis, Range, decimals};
 use super::condition_source::{schedule_words, settings_words};
 use super::drawing::{Color, Dash, Hue, Stroke};
-use super::figure::{
-    Bracket, Brackets, Curve, Dot, DotShape, Dots, Envelope, Figure, Intervals, Mark, MarkId,
-    Panel, Plot, Rule, Spans,
+use super::figure::{Figure, Panel, Plot};
+use super::marks::{
+    Bracket, Brackets, Curve, Dot, DotShape, Dots, Envelope, Intervals, Mark, MarkId, Rule, Spans,
 };
 use super::role::Role;
 

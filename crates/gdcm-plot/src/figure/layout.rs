@@ -5,9 +5,10 @@ use skrifa::{FontRef, GlyphId, MetadataProvider};
 
 use gdcm_model::message_text::sanitized;
 
-use super::axis::{Axis, Range, Tick, ticks};
+use super::axis::{Axis, Range, Tick};
 use super::drawing::Area;
-use super::figure::{Along, Figure, Panel};
+use super::figure::{Figure, Panel};
+use super::marks::Along;
 
 /// Font size of numbers at ticks, of the legend, of the caption and of texts at dots \[pt\]: the
 /// minimum that journals accept.
@@ -215,7 +216,7 @@ impl<'f> Table<'f> {
     fn y_side(&self, index: usize, panel: usize, height: f64) -> Side {
         let range = self.y_range(index, panel);
         let axis = &self.figure.plots[index].panels[panel].y;
-        let ticks = ticks(axis, range, height, VERTICAL_GAP);
+        let ticks = axis.ticks(range, height, VERTICAL_GAP);
         let has_numbers = self.has_y_numbers(index);
         let depth = if has_numbers {
             TICK + 2.0 + SMALL_PT * widest(&ticks)
@@ -328,12 +329,12 @@ fn widest(ticks: &[Tick]) -> f64 {
 /// Returns ticks with labels that do not touch.
 fn horizontal_ticks(axis: &Axis, range: Range, length_pt: f64) -> Vec<Tick> {
     let apart = |ticks: &[Tick]| SMALL_PT * widest(ticks) + 5.0;
-    let close = ticks(axis, range, length_pt, 12.0);
-    let ticks = ticks(axis, range, length_pt, apart(&close).max(12.0));
+    let close = axis.ticks(range, length_pt, 12.0);
+    let ticks = axis.ticks(range, length_pt, apart(&close).max(12.0));
     match &axis.names {
         // Names have a fixed width: the first guess includes all of them.
         Some(_) => ticks,
-        None => super::axis::ticks(axis, range, length_pt, apart(&ticks).max(12.0)),
+        None => axis.ticks(range, length_pt, apart(&ticks).max(12.0)),
     }
 }
 

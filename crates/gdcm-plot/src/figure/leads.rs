@@ -9,8 +9,9 @@ use gdcm_model::response::GainDelay;
 use super::axis::{Axis, Range};
 use super::condition_source::ConditionSource;
 use super::drawing::{Color, Dash, Hue, Stroke};
-use super::figure::{Band, Curve, Figure, Panel, Plot, Rule};
+use super::figure::{Figure, Panel, Plot};
 use super::gains::all_channels;
+use super::marks::{Band, Curve, Rule};
 use super::role::Role;
 
 /// Points of a curve.

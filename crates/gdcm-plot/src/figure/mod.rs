@@ -37,7 +37,11 @@ use gdcm_study::study::{AcrossRole, Analysis, ConditionAnalysis};
 pub mod assessment;
 pub mod axis;
 pub mod bode;
+mod bode_curve;
+mod bode_options;
+mod coherence;
 pub mod condition_source;
+mod display_units;
 pub mod drawing;
 pub mod error;
 #[expect(
@@ -45,23 +49,34 @@ pub mod error;
     reason = "the room is named by what it makes"
 )]
 pub mod figure;
+mod figure_format;
+mod frequency_panels;
 pub mod gains;
 pub mod label_places;
 pub mod layout;
 pub mod leads;
+pub mod legend;
+pub mod marks;
+mod muad;
+mod number_text;
 pub mod paint;
 pub mod poles;
+mod range;
+mod reference_line;
 pub mod requirements;
 pub mod responses;
 pub mod role;
 pub mod tables;
 pub mod thinning;
+mod ticks;
 
 pub use axis::{Range, decimals};
 pub use condition_source::ConditionSource;
 pub use drawing::Color;
-pub use figure::{ColumnWidth, Figure, FigureFormat, Mark, MarkId, Panel};
+pub use figure::{Figure, Panel};
+pub use figure_format::{ColumnWidth, FigureFormat};
 pub use gains::all_channels;
+pub use marks::{Mark, MarkId};
 pub use role::Role;
 
 use assessment::{assessment_figure, evidence_figure, usual_choice};

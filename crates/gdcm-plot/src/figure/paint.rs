@@ -2,15 +2,17 @@
 
 use super::axis::{Axis, Range};
 use super::drawing::{Anchor, Area, Color, Dash, Drawing, PT_PER_MM, Shape, Stroke, Text};
-use super::figure::{
-    Along, Bars, Bracket, Brackets, ColumnWidth, Curve, DotShape, Dots, Envelope, Figure, Guide,
-    Intervals, Mark, Note, Panel, Place, Rule, Spans,
-};
+use super::figure::{Figure, Panel};
+use super::figure_format::ColumnWidth;
 use super::label_places::{LabelledDot, Surroundings, place_labels};
 use super::layout::{
     LABEL_LINE, LABEL_PT, Layout, Placed, SMALL_LINE, SMALL_PT, Side, TICK, width, wrapped,
 };
-use super::role::{Entry, Sample};
+use super::legend::{Entry, Sample};
+use super::marks::{
+    Along, Bars, Bracket, Brackets, Curve, DotShape, Dots, Envelope, Guide, Intervals, Mark, Note,
+    Place, Rule, Spans,
+};
 use super::thinning::{Pixel, thinned};
 
 /// Font size of the title \[pt\].
@@ -429,7 +431,8 @@ fn lines_of(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
         }
         Mark::Envelope(of) => of
             .edges()
-            .flat_map(|edge| curve_lines(placed, &edge))
+            .iter()
+            .flat_map(|edge| curve_lines(placed, edge))
             .collect(),
         Mark::Dots(_) | Mark::Band(_) | Mark::Spans(_) | Mark::Note(_) => Vec::new(),
     }

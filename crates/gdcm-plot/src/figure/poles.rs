@@ -9,15 +9,15 @@ use gdcm_model::response::zeros::finite_zeros;
 use gdcm_study::study::couplings_assessment::CouplingsAssessment;
 use gdcm_study::study::job::ConditionModes;
 
-use super::axis::{Axis, FrequencyUnit, Range, step_above};
+use super::axis::{Axis, FrequencyUnit, Range};
 use super::bode::BodeOptions;
 use super::condition_source::{ConditionSource, SourceModel};
 use super::drawing::{Color, Dash, Hue, Stroke};
-use super::figure::{
-    Band, Curve, Dot, DotShape, Dots, Figure, Guide, Mark, MarkId, Panel, Plot, Rule,
-};
+use super::figure::{Figure, Panel, Plot};
+use super::marks::{Band, Curve, Dot, DotShape, Dots, Guide, Mark, MarkId, Rule};
 use super::requirements::{arrow, spanned};
 use super::role::Role;
+use super::ticks::step_above;
 
 /// Real and imaginary ranges of the slow modes \[rad/s\]: those of the rigid-body modes of a
 /// helicopter.

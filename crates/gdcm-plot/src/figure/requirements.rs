@@ -12,9 +12,8 @@ use gdcm_study::study::requirements::{RequirementRole, Requirements};
 
 use super::axis::{Axis, Range};
 use super::drawing::{Color, Dash, Hue, Stroke};
-use super::figure::{
-    Curve, Dot, DotShape, Dots, Envelope, Figure, Intervals, Mark, MarkId, Panel, Plot,
-};
+use super::figure::{Figure, Panel, Plot};
+use super::marks::{Curve, Dot, DotShape, Dots, Envelope, Intervals, Mark, MarkId};
 use super::role::Role;
 
 const WAY: Stroke = Stroke::solid(Color::DIM.tint(70), 0.7);

@@ -7,7 +7,8 @@ use gdcm_model::message_text::sanitized;
 use gdcm_study::study::Table;
 
 use super::axis::Axis;
-use super::figure::{Along, Bracket, Curve, Envelope, Figure, Intervals, Mark, Panel, Spans};
+use super::figure::{Figure, Panel};
+use super::marks::{Along, Bracket, Curve, Envelope, Intervals, Mark, Spans};
 
 /// The columns of a figure's long table.
 pub const LONG_COLUMNS: [&str; 8] = [
@@ -219,9 +220,7 @@ fn series(mark: &Mark) -> Vec<Series> {
     };
     match mark {
         Mark::Curve(curve) => vec![of_curve(curve)],
-        Mark::Envelope(of) if of.edge.is_some() => {
-            of.edges().map(|curve| of_curve(&curve)).collect()
-        }
+        Mark::Envelope(of) if of.edge.is_some() => of.edges().iter().map(of_curve).collect(),
         Mark::Dots(dots) => {
             let labels = dots.dots.iter().map(|dot| dot.label.clone()).collect();
             vec![of(
@@ -296,7 +295,8 @@ fn figure(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::drawing::{Color, Stroke};
-    use super::super::figure::{Bars, Curve, DotShape, Dots, Plot, Rule};
+    use super::super::figure::Plot;
+    use super::super::marks::{Bars, DotShape, Dots, Rule};
     use super::*;
 
     const LINE: Stroke = Stroke::solid(Color::INK, 1.0);

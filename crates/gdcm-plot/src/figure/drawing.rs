@@ -25,28 +25,20 @@ pub enum Shape {
         points: Vec<[f64; 2]>,
         /// Whether the last point connects to the first.
         closed: bool,
-        /// Fill colour.
         fill: Option<Color>,
-        /// Line style.
         stroke: Option<Stroke>,
     },
     /// A circle.
     Circle {
         center: [f64; 2],
         radius: f64,
-        /// Fill colour.
         fill: Option<Color>,
-        /// Line style.
         stroke: Option<Stroke>,
     },
     /// A line of text.
     Text(Text),
     /// Shapes clipped to an area.
-    Clipped {
-        /// The clipping area.
-        area: Area,
-        shapes: Vec<Shape>,
-    },
+    Clipped { area: Area, shapes: Vec<Shape> },
 }
 
 /// A line of text.
@@ -57,7 +49,7 @@ pub struct Text {
     pub words: String,
     /// Font size \[pt\].
     pub size_pt: f64,
-    /// The part of the text at its position.
+    /// The part that lies at the position.
     pub anchor: Anchor,
     /// Whether the text runs upwards.
     pub upright: bool,
@@ -72,8 +64,37 @@ pub enum Anchor {
     End,
 }
 
+impl Text {
+    /// Creates a horizontal text in ink that begins at `at`.
+    pub fn new(at: [f64; 2], words: impl Into<String>, size_pt: f64) -> Self {
+        Self {
+            at,
+            words: words.into(),
+            size_pt,
+            anchor: Anchor::Start,
+            upright: false,
+            color: Color::INK,
+        }
+    }
+
+    /// Returns the text with another part of it at its position.
+    pub fn anchored(self, anchor: Anchor) -> Self {
+        Self { anchor, ..self }
+    }
+
+    /// Returns the text in another colour.
+    pub fn colored(self, color: Color) -> Self {
+        Self { color, ..self }
+    }
+
+    /// Returns the text running upwards, or horizontally.
+    pub fn upright(self, upright: bool) -> Self {
+        Self { upright, ..self }
+    }
+}
+
 impl Anchor {
-    /// Returns the fraction of the width of a text before its position.
+    /// Returns the part of the text before its position, as a fraction of its width.
     pub fn before(self) -> f64 {
         match self {
             Self::Start => 0.0,
@@ -103,17 +124,15 @@ impl Area {
         }
     }
 
-    /// Returns the right edge.
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
-    /// Returns the lower edge.
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
 
-    /// Returns the point at these fractions of the width from the left and of the height from the
+    /// Returns the point at fractions of the width, from the left, and of the height, from the
     /// bottom.
     pub fn at(&self, x: f64, y: f64) -> [f64; 2] {
         [self.left + x * self.width, self.bottom() - y * self.height]
@@ -151,16 +170,22 @@ impl Area {
 
     /// Returns the distance of a point from the rectangle; 0 inside.
     pub fn distance(&self, [x, y]: [f64; 2]) -> f64 {
-        let beyond = |value: f64, low: f64, high: f64| (low - value).max(value - high).max(0.0);
-        beyond(x, self.left, self.right()).hypot(beyond(y, self.top, self.bottom()))
+        let dx = outside_distance(x, self.left, self.right());
+        let dy = outside_distance(y, self.top, self.bottom());
+        dx.hypot(dy)
     }
 
     /// Returns the area common to both rectangles; 0 if they do not overlap.
     pub fn overlap(&self, other: &Self) -> f64 {
-        let along = |a: f64, b: f64, c: f64, d: f64| (b.min(d) - a.max(c)).max(0.0);
-        along(self.left, self.right(), other.left, other.right())
-            * along(self.top, self.bottom(), other.top, other.bottom())
+        let width = self.right().min(other.right()) - self.left.max(other.left);
+        let height = self.bottom().min(other.bottom()) - self.top.max(other.top);
+        width.max(0.0) * height.max(0.0)
     }
+}
+
+/// Returns the distance of a value from the interval from `low` to `high`; 0 inside.
+fn outside_distance(value: f64, low: f64, high: f64) -> f64 {
+    (low - value).max(value - high).max(0.0)
 }
 
 impl Shape {
@@ -185,7 +210,7 @@ impl Shape {
     }
 }
 
-/// Meaning of a colour; each theme of the window and paper has its own colour for it.
+/// Meaning of a colour. Paper and each theme of the window have their own colour for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Hue {
     /// Paper, and the background of plots in the window.
@@ -245,12 +270,15 @@ impl Hue {
     }
 }
 
-/// Interpolates between two colours.
+/// Interpolates between two colours: `part` 0 gives `from`, 1 gives `to`.
 fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
-    let mix = |from: u8, to: u8| {
-        (f64::from(from) + part * (f64::from(to) - f64::from(from))).round() as u8
-    };
-    std::array::from_fn(|at| mix(from[at], to[at]))
+    let mut mixed = [0; 3];
+    for (channel, mixed) in mixed.iter_mut().enumerate() {
+        let start = f64::from(from[channel]);
+        let end = f64::from(to[channel]);
+        *mixed = (start + part * (end - start)).round() as u8;
+    }
+    mixed
 }
 
 /// A colour by its meaning and strength.
@@ -296,11 +324,8 @@ impl Color {
 pub enum Dash {
     #[default]
     Solid,
-    /// Long dashes.
     Long,
-    /// Short dashes.
     Short,
-    /// Dots.
     Dotted,
     /// Dashes with a dot between them.
     DashDot,
@@ -366,21 +391,27 @@ impl Drawing {
     /// Returns the drawing with fewer points: no omitted point is farther than `tolerance_pt` from
     /// its line.
     pub fn thinned(self, tolerance_pt: f64) -> Self {
+        let pixel = Pixel {
+            width: tolerance_pt,
+            tolerance: tolerance_pt,
+        };
         Self {
-            shapes: coarser(
-                self.shapes,
-                Pixel {
-                    width: tolerance_pt,
-                    tolerance: tolerance_pt,
-                },
-            ),
+            shapes: thinned_shapes(self.shapes, pixel),
             ..self
         }
     }
 }
 
-fn coarser(shapes: Vec<Shape>, pixel: Pixel) -> Vec<Shape> {
-    let one = |shape: Shape| match shape {
+/// Thins open polylines, also those that are clipped.
+fn thinned_shapes(shapes: Vec<Shape>, pixel: Pixel) -> Vec<Shape> {
+    shapes
+        .into_iter()
+        .map(|shape| thinned_shape(shape, pixel))
+        .collect()
+}
+
+fn thinned_shape(shape: Shape, pixel: Pixel) -> Shape {
+    match shape {
         Shape::Path {
             points,
             closed: false,
@@ -394,11 +425,10 @@ fn coarser(shapes: Vec<Shape>, pixel: Pixel) -> Vec<Shape> {
         },
         Shape::Clipped { area, shapes } => Shape::Clipped {
             area,
-            shapes: coarser(shapes, pixel),
+            shapes: thinned_shapes(shapes, pixel),
         },
         other => other,
-    };
-    shapes.into_iter().map(one).collect()
+    }
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use gdcm_model::message_text::sanitized;
 
 use crate::figure::Color;
 use crate::figure::drawing::{Area, Drawing, Shape, Stroke, Text};
-use crate::figure::layout::{FONTS, Letter, letters, width};
+use crate::figure::letters::{FONTS, Letter, letters, width};
 
 /// Distance of the control points of a cubic curve for a quarter circle, as a fraction of the
 /// radius.

@@ -14,7 +14,7 @@ use vello_cpu::{Level, Pixmap, RenderContext, RenderSettings, Resources};
 
 use crate::figure::Color;
 use crate::figure::drawing::{Area, Drawing, Shape, Stroke, Text};
-use crate::figure::layout::{FONTS, letters, width};
+use crate::figure::letters::{FONTS, letters, width};
 
 /// Dots per inch, as journals require.
 const DOTS_PER_INCH: f64 = 300.0;

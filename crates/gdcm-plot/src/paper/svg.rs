@@ -6,7 +6,7 @@ use gdcm_model::message_text::sanitized;
 
 use crate::figure::Color;
 use crate::figure::drawing::{Anchor, Area, Drawing, PT_PER_MM, Shape, Stroke, Text};
-use crate::figure::layout::{FONTS, width};
+use crate::figure::letters::{FONTS, width};
 
 /// Fallback fonts of similar width, for a viewer without ours.
 const OTHER_FONTS: &str = "Helvetica, Arial, sans-serif";

@@ -34,6 +34,7 @@ use gdcm_study::study::job::ConditionModes;
 use gdcm_study::study::requirements::Requirements;
 use gdcm_study::study::{AcrossRole, Analysis, ConditionAnalysis};
 
+mod arrow;
 pub mod assessment;
 pub mod axis;
 pub mod bode;
@@ -42,9 +43,12 @@ mod bode_options;
 mod coherence;
 mod condition_classes;
 pub mod condition_source;
+mod couplings;
+mod damping_grid;
 mod display_units;
 pub mod drawing;
 pub mod error;
+mod evidence;
 #[expect(
     clippy::module_inception,
     reason = "the room is named by what it makes"
@@ -78,6 +82,7 @@ pub mod role;
 pub mod tables;
 pub mod thinning;
 mod ticks;
+mod time_histories;
 
 pub use axis::{Range, decimals};
 pub use condition_source::ConditionSource;

@@ -1,4 +1,4 @@
-//! Thinning of lines: points that need not be drawn.
+//! Thinning of lines: leaves out points that would not be seen.
 
 use std::borrow::Cow;
 
@@ -7,7 +7,7 @@ use std::borrow::Cow;
 pub struct Pixel {
     /// Width of a column of pixels, in units of x.
     pub width: f64,
-    /// Maximum distance of a line from a curve, in units of y.
+    /// Maximum distance of a thinned line from the curve, in units of y.
     pub tolerance: f64,
 }
 
@@ -18,12 +18,9 @@ impl Pixel {
         std::iter::from_fn(move || {
             let first = rest.first()?;
             let end = ((first[0] / self.width).floor() + 1.0) * self.width;
+            let inside = rest.iter().position(|point| point[0] >= end);
             // By rounding, the end may fall on the first point itself.
-            let count = rest
-                .iter()
-                .take_while(|point| point[0] < end)
-                .count()
-                .max(1);
+            let count = inside.unwrap_or(rest.len()).max(1);
             let (column, others) = rest.split_at(count);
             rest = others;
             Some(column)
@@ -35,7 +32,7 @@ impl Pixel {
 /// many others as keep the lines between them within the tolerance of every value. Both ends stay;
 /// a `run` that does not ascend in x is returned whole.
 pub fn thinned(run: &[[f64; 2]], pixel: Pixel) -> Vec<[f64; 2]> {
-    if !run.is_sorted_by(|one, next| one[0] < next[0]) {
+    if !run.is_sorted_by(|point, next| point[0] < next[0]) {
         return run.to_vec();
     }
     along_wedges(&column_extremes(run, pixel), pixel.tolerance)
@@ -55,31 +52,74 @@ fn column_extremes(run: &[[f64; 2]], pixel: Pixel) -> Cow<'_, [[f64; 2]]> {
     for points in pixel.columns(run) {
         if points.len() <= 2 {
             kept.extend_from_slice(points);
-            continue;
+        } else {
+            kept.extend(extremes_of_column(points).map(|index| points[index]));
         }
-        let by_value = |a: &usize, b: &usize| points[*a][1].total_cmp(&points[*b][1]);
-        let indices = || 0..points.len();
-        let extremes = [indices().min_by(by_value), indices().max_by(by_value)];
-        let mut indices = [
-            0,
-            extremes[0].unwrap_or(0),
-            extremes[1].unwrap_or(0),
-            points.len() - 1,
-        ];
-        indices.sort_unstable();
-        let distinct = indices.chunk_by(|a, b| a == b).map(|same| points[same[0]]);
-        kept.extend(distinct);
     }
     Cow::Owned(kept)
+}
+
+/// Returns the indices of the first, the least, the greatest and the last point of a column, in
+/// ascending order without duplicates.
+fn extremes_of_column(points: &[[f64; 2]]) -> impl Iterator<Item = usize> {
+    let mut least = 0;
+    let mut greatest = 0;
+    for (index, point) in points.iter().enumerate() {
+        if point[1].total_cmp(&points[least][1]).is_lt() {
+            least = index;
+        }
+        // The last of several equal points, the first of equal least points.
+        if point[1].total_cmp(&points[greatest][1]).is_ge() {
+            greatest = index;
+        }
+    }
+    let mut indices = vec![0, least, greatest, points.len() - 1];
+    indices.sort_unstable();
+    indices.dedup();
+    indices.into_iter()
+}
+
+/// Slopes of lines from the last kept point that pass within tolerance of all values since.
+struct Wedge {
+    apex: [f64; 2],
+    least_slope: f64,
+    greatest_slope: f64,
+}
+
+impl Wedge {
+    /// Starts at a kept point, with every slope.
+    fn new(apex: [f64; 2]) -> Self {
+        Self {
+            apex,
+            least_slope: f64::NEG_INFINITY,
+            greatest_slope: f64::INFINITY,
+        }
+    }
+
+    /// Returns whether the line to a point passes within tolerance of all values.
+    fn contains(&self, [x, y]: [f64; 2]) -> bool {
+        (self.least_slope..=self.greatest_slope).contains(&self.slope_to(x, y))
+    }
+
+    /// Removes the slopes that do not pass within tolerance of a point.
+    fn narrow(&mut self, [x, y]: [f64; 2], tolerance: f64) {
+        self.least_slope = self.least_slope.max(self.slope_to(x, y - tolerance));
+        self.greatest_slope = self.greatest_slope.min(self.slope_to(x, y + tolerance));
+    }
+
+    fn slope_to(&self, x: f64, y: f64) -> f64 {
+        (y - self.apex[1]) / (x - self.apex[0])
+    }
 }
 
 /// Returns the points of `run` needed for straight lines between them to stay within `tolerance` of
 /// every omitted value.
 ///
 /// ```text
-/// keep the first point
-/// of each next one: the slopes from the point kept last that pass all values since then within tolerance are a wedge
-///     where the next point lies outside of it: keep the point before, and begin a wedge there
+/// keep the first point; it is the apex of a wedge of slopes
+/// for each further point:
+///     if it lies outside the wedge: keep the point before it, which is the apex of a new wedge
+///     narrow the wedge to the slopes that pass within tolerance of the point
 /// keep the last point
 /// ```
 /// Linear in the number of points. Williams, "An efficient algorithm for the piecewise linear
@@ -89,18 +129,14 @@ fn along_wedges(run: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
         return Vec::new();
     };
     let mut kept = vec![*first];
-    let mut anchor = *first;
+    let mut wedge = Wedge::new(*first);
     let mut previous = *first;
-    let mut slopes = (f64::NEG_INFINITY, f64::INFINITY);
     for point in rest {
-        let slope_to = |y: f64, anchor: [f64; 2]| (y - anchor[1]) / (point[0] - anchor[0]);
-        if !(slopes.0..=slopes.1).contains(&slope_to(point[1], anchor)) {
+        if !wedge.contains(*point) {
             kept.push(previous);
-            anchor = previous;
-            slopes = (f64::NEG_INFINITY, f64::INFINITY);
+            wedge = Wedge::new(previous);
         }
-        slopes.0 = slopes.0.max(slope_to(point[1] - tolerance, anchor));
-        slopes.1 = slopes.1.min(slope_to(point[1] + tolerance, anchor));
+        wedge.narrow(*point, tolerance);
         previous = *point;
     }
     if !rest.is_empty() {

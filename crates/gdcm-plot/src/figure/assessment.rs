@@ -16,10 +16,10 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Bars, Note, Place, Rule};
 
 const ZERO: Stroke = Stroke::solid(Color::DIM, 0.6);
-/// Width of a bar; conditions are 1 apart.
+/// Bar width; conditions are 1 apart.
 const BAR: f64 = 0.27;
 
-/// A part of the change of J and the style of its bars; in print, parts differ in darkness.
+/// A part of ΔJ and the style for its bars; in print, parts differ in darkness.
 struct Part {
     name: &'static str,
     color: Color,
@@ -49,7 +49,7 @@ const PARTS: [Part; 3] = [
     },
 ];
 
-/// Plots ΔJ and its parts for each of `pairs` in each condition; negative values are improvements.
+/// Plots ΔJ and its parts for each pair in each condition; negative values are improvements.
 pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: AssessmentChoice) -> Figure {
     let table = AssessmentTable::of(analysis, choice);
     let dataset = &analysis.study.dataset;
@@ -76,7 +76,7 @@ pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: Assessment
         .aspect(0.62)
 }
 
-/// Returns the choice of Figures 8 to 19: the nominal model under the schedule, with the average
+/// Returns the choice in Figures 8 to 19: the nominal model under the schedule, with the average
 /// from the settings.
 pub fn usual_choice(analysis: &Analysis) -> AssessmentChoice {
     AssessmentChoice {
@@ -86,7 +86,7 @@ pub fn usual_choice(analysis: &Analysis) -> AssessmentChoice {
     }
 }
 
-/// Draws the bars of a response over the conditions; conditions without a change are marked as left
+/// Draws a response's bars over the conditions; conditions without a change are marked as left
 /// out.
 fn change_panel(dataset: &Dataset, table: &AssessmentTable, pair: Pair) -> Panel {
     let conditions = dataset.conditions();
@@ -132,7 +132,7 @@ fn left_out_note(x: f64) -> Note {
     }
 }
 
-/// Tabulates the signed change of J of each of `pairs`, or a `part` of it, in each condition under
+/// Tabulates the signed ΔJ for each pair, or a `part` of it, in each condition under
 /// its heading.
 pub fn change_table(
     title: impl Into<String>,

@@ -1,13 +1,13 @@
-//! An axis of a panel: its quantity and unit, its scale, the range shown, and its ticks.
+//! A panel's axis: its quantity and unit, its scale, the range shown, and its ticks.
 
 pub use super::display_units::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 pub use super::number_text::{compact, decimals};
 pub use super::range::Range;
 pub use super::ticks::{Scale, Tick, TickGaps, ticks_of};
 
-/// Margin on either side of the shown values, as a fraction of their range.
+/// Margin on either side of the shown values, relative to their range.
 const MARGIN: f64 = 0.05;
-/// Range of an axis without values.
+/// Axis range without values.
 const EMPTY: Range = Range {
     min: 1.0,
     max: 10.0,
@@ -49,7 +49,7 @@ impl Axis {
         Self::new(label, Scale::Linear)
     }
 
-    /// Creates an axis of angles \[deg\].
+    /// Creates an axis for angles \[deg\].
     pub fn degrees(label: impl Into<String>) -> Self {
         Self::new(label, Scale::Degrees)
     }
@@ -59,7 +59,7 @@ impl Axis {
         Self::new(label, Scale::Logarithmic)
     }
 
-    /// Creates an axis of names at 0, 1, 2, …, with half a step beyond the first and the last.
+    /// Creates an axis with names at 0, 1, 2, …, and half a step beyond the first and the last.
     pub fn named(
         label: impl Into<String>,
         names: impl IntoIterator<Item = impl Into<String>>,
@@ -125,7 +125,7 @@ impl Axis {
         value.is_finite() && (self.scale != Scale::Logarithmic || value > 0.0)
     }
 
-    /// Returns the position of a value along the axis: 0 at the lower end of `range`, 1 at the
+    /// Returns a value's position along the axis: 0 at the lower end of `range`, 1 at the
     /// upper end; `None` if the axis cannot show the value.
     pub(super) fn fraction(&self, value: f64, range: Range) -> Option<f64> {
         if !self.can_show(value) {

@@ -1,5 +1,5 @@
-//! Responses of one or several conditions: magnitude above phase over frequency (Figures 2 and 5),
-//! with the coherence of measured responses below them; and all magnitudes of a condition, small.
+//! Responses in one or several conditions: magnitude above phase over frequency (Figures 2 and 5),
+//! with the measured coherence below them; and all magnitudes in a condition, small.
 
 use std::sync::Arc;
 
@@ -28,21 +28,21 @@ use super::responses::{
 };
 use super::role::Role;
 
-/// Background of the band of comparison.
+/// Background for the band of comparison.
 const BAND: Color = Color::of(Hue::Accent).tint(8);
-/// Background of frequencies above the band if there are leads.
+/// Background above the band if there are leads.
 const INVALID: Color = Color::of(Hue::Warning).tint(10);
 /// Line at a marked frequency.
 const CROSSING: Stroke = Stroke::dashed(Color::of(Hue::Text), 0.8, Dash::Short);
-/// Height of the magnitude panel, relative to 1 for the phase.
+/// Height for magnitudes, relative to 1 for phases.
 const MAGNITUDE_WEIGHT: f64 = 1.35;
-/// Margin above and below the curves, as a fraction of their height.
+/// Margin above and below the curves, relative to their height.
 const MARGIN: f64 = 0.04;
-/// Minimum height of the magnitude panel \[dB\] and of the phase panel \[deg\].
+/// Minimum height for magnitudes \[dB\] and phases \[deg\].
 const LEAST_DB: f64 = 4.0;
 const LEAST_DEG: f64 = 20.0;
 
-/// Plots the responses `pairs` of one condition, magnitude above phase, of every model and of the
+/// Plots the responses `pairs` in a condition, magnitude above phase, for every model and for the
 /// corrected models.
 pub fn bode_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeOptions) -> Figure {
     figure_of_pairs(source, pairs, None, |pair| {
@@ -50,7 +50,7 @@ pub fn bode_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeO
     })
 }
 
-/// Plots one response of one condition, with the strip of its coherence.
+/// Plots a condition's response, with a strip for its coherence.
 fn condition_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -> Plot {
     let band = source.study.settings.band;
     let curves = source.response_curves(pair, options, &mut ResponseCache::default());
@@ -69,12 +69,12 @@ fn condition_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOption
     }
 }
 
-/// Contents of a plot of one response, magnitude above phase.
+/// Contents of a response plot, magnitude above phase.
 struct ResponsePlot<'a> {
     curves: &'a [BodeCurve],
     bands: &'a [BodeBand],
     references: &'a [ReferenceLine],
-    /// Unit of magnitudes drawn as ratios.
+    /// Unit for magnitudes drawn as ratios.
     ratio_unit: &'a str,
     band: BandOfComparison,
     options: &'a BodeOptions,
@@ -140,7 +140,7 @@ impl ResponsePlot<'_> {
         }
     }
 
-    /// Returns the range of a panel that shows the visible curves within the band, or up to the end
+    /// Returns the range that shows the visible curves within the band, or up to the end
     /// of the range without leads, and is at least `least` high.
     fn fitted(&self, pane: Pane, least: f64) -> Option<Range> {
         let visible: Vec<BodeCurve> = self
@@ -165,7 +165,7 @@ impl ResponsePlot<'_> {
         without_leads.omega.last().copied()
     }
 
-    /// Returns the panel on the backgrounds of its frequency ranges.
+    /// Returns the panel with backgrounds for its frequency ranges.
     fn on_grounds(&self, panel: Panel) -> Panel {
         let band = band_ground(self.band, self.options);
         match self.invalid_up_to() {
@@ -174,7 +174,7 @@ impl ResponsePlot<'_> {
         }
     }
 
-    /// Returns the background of the frequencies above the band, where a model with leads is not
+    /// Returns the background above the band, where a model with leads is not
     /// valid.
     fn invalid_ground(&self, up_to: f64) -> Band {
         Band {
@@ -185,7 +185,7 @@ impl ResponsePlot<'_> {
     }
 }
 
-/// Returns the background of the band of comparison.
+/// Returns the background for the band of comparison.
 fn band_ground(band: BandOfComparison, options: &BodeOptions) -> Band {
     Band {
         range: options.in_unit(band.min(), band.max()),
@@ -194,7 +194,7 @@ fn band_ground(band: BandOfComparison, options: &BodeOptions) -> Band {
     }
 }
 
-/// Plots the responses `pairs` of one model of every condition, magnitude above phase, from blue
+/// Plots the responses `pairs` of a model in every condition, magnitude above phase, from blue
 /// for the slowest condition to amber for the fastest. `None` if no condition has such a model.
 pub fn airspeeds_figure(
     analysis: &Analysis,
@@ -241,7 +241,7 @@ pub fn airspeeds_figure(
     Some(figure.caption(settings_words(dataset, settings)))
 }
 
-/// Plots the magnitude of every response of one condition, outputs down, inputs across, with J
+/// Plots every response's magnitude in a condition, outputs down, inputs across, with J
 /// before and after the correction.
 pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> Figure {
     let dataset = source.dataset();
@@ -258,7 +258,7 @@ pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> F
         .aspect(0.55)
 }
 
-/// Plots the magnitude of one response, with its J; a star after the title marks a constrained
+/// Plots a response's magnitude, with its J; a star after the title marks a constrained
 /// response.
 fn overview_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -> Plot {
     let panels = FrequencyPanels {

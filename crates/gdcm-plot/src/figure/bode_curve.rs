@@ -6,7 +6,7 @@ use gdcm_model::dataset::ModelId;
 
 use super::role::Role;
 
-/// Identity of a curve; unique among the curves of a response.
+/// Identity of a curve; unique within a response.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum CurveId {
     Model(ModelId),
@@ -18,11 +18,11 @@ pub enum CurveId {
     WithoutLeads,
     /// Representative physics model with couplings alone.
     Coupled,
-    /// Representative physics model in a variant of the study, with that variant's own correction.
+    /// Representative physics model in a study variant, with that variant's own correction.
     Variant,
 }
 
-/// The upper or the lower panel of a Bode plot.
+/// The upper or the lower panel in a Bode plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Pane {
     /// Upper panel \[dB\].
@@ -31,8 +31,8 @@ pub enum Pane {
     Phase,
 }
 
-/// A frequency response with its name and role; also an error of a response, then with the phase
-/// panel in the unit of phase errors.
+/// A frequency response with its name and role; also an error, then with the phase
+/// panel in the unit for phase errors.
 #[derive(Clone, Debug)]
 pub struct BodeCurve {
     pub id: CurveId,
@@ -92,7 +92,7 @@ impl BodeCurve {
         self.shared_values(pane)
     }
 
-    /// Returns [`Self::values`] with their owner. A holder of the owner recognises by its address
+    /// Returns [`Self::values`] with their owner, by whose address a holder recognises
     /// whether the values are unchanged.
     pub fn shared_values(&self, pane: Pane) -> &Arc<[f64]> {
         match pane {
@@ -122,7 +122,7 @@ impl BodeCurve {
             .map(|(log_omega, value)| [*log_omega, *value])
     }
 
-    /// Returns the points of [`Self::points_on`] from `low` to `high` in `log10 omega`, and one
+    /// Returns the points in [`Self::points_on`] from `low` to `high` in `log10 omega`, and one
     /// more on either side.
     pub fn points_between<'a>(
         &'a self,
@@ -142,7 +142,7 @@ impl BodeCurve {
     }
 
     /// Returns the value at `omega` \[rad/s\], linear in `log10 omega` between points; `None`
-    /// outside the frequencies of the curve and beside a gap.
+    /// outside the curve's frequencies and beside a gap.
     pub fn value_at(&self, pane: Pane, omega: f64) -> Option<f64> {
         let value = self.interpolated(self.values(pane), omega)?;
         if value.is_finite() { Some(value) } else { None }
@@ -164,7 +164,7 @@ impl BodeCurve {
     }
 }
 
-/// Logarithms of the frequencies of the last curve: the curves of a plot mostly share theirs.
+/// Logarithms of the last curve's frequencies: curves in a plot mostly share theirs.
 #[derive(Clone, Debug, Default)]
 pub struct LogFrequencies {
     omega: Arc<[f64]>,

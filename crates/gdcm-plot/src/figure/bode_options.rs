@@ -1,4 +1,4 @@
-//! Options of a Bode plot and of its relatives: contents, units and ranges.
+//! Options for Bode plots and their relatives: contents, units and ranges.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,7 +8,7 @@ use super::axis::{Axis, FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit,
 use super::bode_curve::CurveId;
 use super::role::Role;
 
-/// Options of a Bode plot: contents, units and ranges.
+/// Options for a Bode plot: contents, units and ranges.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodeOptions {
     pub unit: FrequencyUnit,
@@ -30,7 +30,7 @@ pub struct BodeOptions {
     pub crossings: Vec<(&'static str, f64)>,
     /// Frequencies shown \[rad/s\]; fitted to the curves if `None`.
     pub omega: Option<Range>,
-    /// Ranges of the upper panel \[dB\] and the lower panel \[deg\]; fitted to the band if `None`.
+    /// Ranges in the upper panel \[dB\] and the lower panel \[deg\]; fitted to the band if `None`.
     pub values: [Option<Range>; 2],
 }
 

@@ -12,12 +12,12 @@ use super::figure::Panel;
 use super::marks::{Curve, Rule};
 use super::role::Role;
 
-/// Height of the strip, relative to 1 for the phase.
+/// Strip height, relative to 1 for the phase.
 const WEIGHT: f64 = 0.45;
 /// Line at the least trusted coherence.
 const TRUSTED: Stroke = Stroke::dashed(Color::DIM, 0.8, Dash::Short);
 
-/// Coherence of one measured response.
+/// Coherence of a measured response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoherenceCurve {
     /// Name of the model.
@@ -29,7 +29,7 @@ pub struct CoherenceCurve {
 }
 
 impl ConditionSource<'_> {
-    /// Returns the coherence of a response for every visible identified model measured with it; the
+    /// Returns a response's coherence for every visible identified model measured with it; the
     /// representative comes last.
     pub fn coherence_curves(&self, pair: Pair, options: &BodeOptions) -> Vec<CoherenceCurve> {
         let mut curves: Vec<CoherenceCurve> = self
@@ -42,7 +42,7 @@ impl ConditionSource<'_> {
         curves
     }
 
-    /// Returns the coherence of an identified model; `None` if it was not measured.
+    /// Returns an identified model's coherence; `None` if it was not measured.
     fn coherence_curve(&self, model: SourceModel, pair: Pair) -> Option<CoherenceCurve> {
         let identified = self.curves.condition.bundle(BundleKind::Identified);
         let Dynamics::Measured(response) = &identified[model.index].dynamics else {

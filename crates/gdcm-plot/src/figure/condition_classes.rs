@@ -1,4 +1,4 @@
-//! Altitude and weight classes of conditions, and how dots distinguish them.
+//! Altitude and weight classes, and how dots distinguish them.
 
 use std::collections::BTreeSet;
 
@@ -9,8 +9,8 @@ use gdcm_study::study::ConditionChoice;
 /// Classes that come first in their order, whatever the others are called.
 const FIRST: [&str; 2] = ["low", "light"];
 
-/// Classes of the conditions of a dataset. Conditions of the first altitude class are circles,
-/// others diamonds; conditions of the first weight class are filled, others open.
+/// Classes in a dataset. Conditions in the first altitude class are circles,
+/// others diamonds; conditions in the first weight class are filled, others open.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Classes {
     /// `low` or `light` first, then in alphabetical order.
@@ -20,7 +20,7 @@ pub struct Classes {
 }
 
 impl Classes {
-    /// Collects the classes of a dataset.
+    /// Collects the classes in a dataset.
     pub fn of(dataset: &Dataset) -> Self {
         let mut altitudes = BTreeSet::new();
         let mut weights = BTreeSet::new();

@@ -1,4 +1,4 @@
-//! Source of the figures of one condition: its models with their roles, the corrected versions of
+//! Source for figures about one condition: its models with their roles, the corrected versions of
 //! the representative, and the words that describe them.
 
 use std::sync::Arc;
@@ -21,21 +21,21 @@ use super::bode_curve::BodeCurve;
 use super::bode_options::BodeOptions;
 use super::role::Role;
 
-/// Source of the figures of one condition.
+/// Source for figures about one condition.
 #[derive(Clone, Copy, Debug)]
 pub struct ConditionSource<'a> {
     /// The dataset with its decisions.
     pub study: &'a Study,
-    /// Result of the condition; without it, the responses can still be shown.
+    /// The condition's result; without it, the responses can still be shown.
     pub analysis: Option<&'a ConditionAnalysis>,
     pub schedule: Option<&'a Schedule>,
-    /// Responses of the models of the condition.
+    /// Responses of the condition's models.
     pub curves: &'a Arc<ConditionCurves>,
-    /// Name of an overlaid variant of the study, and its result for the condition.
+    /// Name of an overlaid study variant, and its result for the condition.
     pub variant: Option<(&'a str, &'a ConditionAnalysis)>,
 }
 
-/// A model of the condition that is not suppressed by an isolated model.
+/// A model in the condition that is not suppressed by an isolated model.
 #[derive(Clone, Debug)]
 pub(super) struct SourceModel {
     pub(super) id: ModelId,
@@ -59,11 +59,11 @@ pub(super) struct CorrectedModel<'a> {
     pub(super) correction: GainDelay,
 }
 
-/// A version of the representative physics model that is drawn as corrected.
+/// A corrected version of the representative physics model.
 struct Version<'c> {
     id: CurveId,
     role: Role,
-    /// Words after the name of the model in its label.
+    /// Words after the model's name in its label.
     words: &'static str,
     correction: &'c ChannelCorrection,
 }
@@ -99,13 +99,13 @@ impl<'a> ConditionSource<'a> {
         caption
     }
 
-    /// Returns the representative of a bundle; `None` before the bundle is compared.
+    /// Returns a bundle's representative; `None` before the bundle is compared.
     fn representative(&self, kind: BundleKind) -> Option<&'a str> {
         self.analysis
             .map(|analysis| analysis.representative_name(kind))
     }
 
-    /// Returns the index of the identified model that the others are aligned and compared with: the
+    /// Returns the index of the identified model with which the others are aligned and compared: the
     /// representative, or the first model before the bundle is compared.
     pub(super) fn reference(&self) -> usize {
         let name = self.representative(BundleKind::Identified);
@@ -113,7 +113,7 @@ impl<'a> ConditionSource<'a> {
             .unwrap_or(0)
     }
 
-    /// Returns the models of a bundle in file order; if a model is isolated, only that model and
+    /// Returns a bundle's models in file order; if a model is isolated, only that model and
     /// the representative.
     pub(super) fn models(&self, kind: BundleKind, options: &BodeOptions) -> Vec<SourceModel> {
         let bundle = self.curves.condition.bundle(kind);
@@ -127,7 +127,7 @@ impl<'a> ConditionSource<'a> {
         models
     }
 
-    /// Returns whether another model of the condition is isolated, and this model does not
+    /// Returns whether another model in the condition is isolated, and this model does not
     /// represent its bundle.
     fn is_suppressed(&self, id: &ModelId, options: &BodeOptions) -> bool {
         match &options.isolated {
@@ -159,7 +159,7 @@ impl<'a> ConditionSource<'a> {
         }
     }
 
-    /// Creates the curve of a model, without points.
+    /// Creates a model's curve, without points.
     pub(super) fn curve_of(&self, model: SourceModel) -> BodeCurve {
         BodeCurve {
             label: model.id.name.clone(),
@@ -170,7 +170,7 @@ impl<'a> ConditionSource<'a> {
         }
     }
 
-    /// Returns the detail of a model: `ratio 3.68, suggested as an outlier · from run 3`.
+    /// Returns a model's detail: `ratio 3.68, suggested as an outlier · from run 3`.
     fn detail(&self, id: &ModelId, index: usize) -> String {
         let mut parts = Vec::new();
         if id.bundle == BundleKind::Physics
@@ -323,7 +323,7 @@ pub fn condition_words(FlightState { id, name, .. }: &FlightState) -> String {
     }
 }
 
-/// Describes the dataset and the settings behind every figure of the analysis.
+/// Describes the dataset and the settings behind every figure.
 pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
     let low = compact(settings.band.min());
     let high = compact(settings.band.max());

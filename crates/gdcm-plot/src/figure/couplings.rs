@@ -20,7 +20,7 @@ const SHIFT: Stroke = Stroke::solid(Color::of(Hue::Corrected), 1.0);
 const RINGING: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
 const BAND: Color = Color::of(Hue::Accent).tint(12);
 pub(super) const AXIS: Stroke = Stroke::solid(Color::DIM, 0.6);
-/// Magnitude of the poles shown, relative to the upper end of the band.
+/// Largest magnitude of poles shown, relative to the band's upper end.
 const SHOWN_POLES: f64 = 1.5;
 
 /// Plots the least singular value of `I - K H` over frequency for every condition, `shown` on top;
@@ -58,7 +58,7 @@ fn least_margin(assessment: &CouplingsAssessment, id: ConditionId) -> f64 {
     }
 }
 
-/// Plots the distance of the loop from ringing.
+/// Plots how far the loop is from ringing.
 fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: FrequencyUnit) -> Plot {
     let frequencies: Vec<f64> = assessment
         .omega
@@ -94,7 +94,7 @@ fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: Frequen
     Plot::new("Loop at the sticks").panel(panel.with(curve))
 }
 
-/// Plots the shifts of the poles near the band.
+/// Plots the pole shifts near the band.
 fn pole_plot(assessment: &CouplingsAssessment, shown: ConditionId) -> Plot {
     let most_rad_s = SHOWN_POLES * assessment.band.max();
     let mut near: Vec<PoleShift> = Vec::new();

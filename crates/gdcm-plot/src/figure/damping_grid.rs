@@ -1,4 +1,4 @@
-//! Grid of the s-plane: rays of constant damping ratio and arcs of constant frequency.
+//! Grid in the s-plane: rays at constant damping ratio and arcs at constant frequency.
 
 use std::f64::consts::PI;
 
@@ -7,15 +7,15 @@ use super::marks::Guide;
 use super::ticks::step_above;
 
 const DAMPING_RATIOS: [f64; 6] = [0.1, 0.2, 0.4, 0.6, 0.8, 0.95];
-/// Length of the rays of a figure \[rad/s\], beyond every pole shown.
+/// Length of the rays in a figure \[rad/s\], beyond every pole shown.
 const FAR: f64 = 1e3;
-/// Arcs of constant frequency at most, and the points of each.
+/// Maximum arc count, and points in each arc.
 const ARCS: u32 = 8;
 const ARC_POINTS: usize = 60;
-/// Fractions of the width and height of a plot within which two labels would overlap.
+/// Fractions of plot width and height within which two labels would overlap.
 const BESIDE: [f64; 2] = [0.11, 0.07];
 
-/// Returns rays of constant damping ratio, `Re λ = -ζ |λ|`, above and below the real axis, for a
+/// Returns rays at constant damping ratio, `Re λ = -ζ |λ|`, above and below the real axis, for a
 /// figure without labels on them.
 pub(super) fn rays() -> Vec<Guide> {
     let mut rays = Vec::new();
@@ -31,8 +31,8 @@ pub(super) fn rays() -> Vec<Guide> {
     rays
 }
 
-/// Returns grid lines for a part of the s-plane with these real and imaginary ranges: rays of
-/// constant damping ratio, the upper ones labelled where they leave the part, and arcs of constant
+/// Returns grid lines for a part of the s-plane with these real and imaginary ranges: rays at
+/// constant damping ratio, the upper rays labelled where they leave the part, and arcs at constant
 /// frequency.
 pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide> {
     let mut reach = 0.0f64;
@@ -51,13 +51,13 @@ pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide
     guides.into_iter()
 }
 
-/// Returns the rays of a part of the s-plane; a label too near the one before it is left out.
+/// Returns the rays; a label too near the previous label is left out.
 fn labelled_rays(real: Range, imaginary: Range, reach: f64) -> Vec<Guide> {
     let mut last_label: Option<[f64; 2]> = None;
     let mut rays = Vec::new();
     for ratio in DAMPING_RATIOS {
         let slope = (1.0 - ratio * ratio).sqrt() / ratio;
-        // Distance of the left or upper edge from the imaginary axis along the ray.
+        // Distance between the imaginary axis and the point at which the ray leaves the part.
         let edge = (-real.min).min(imaginary.max / slope).max(0.0);
         let place = [edge / real.width(), edge * slope / imaginary.width()];
         let is_labelled = edge > 0.0 && !last_label.is_some_and(|last| is_beside(place, last));

@@ -6,7 +6,7 @@ use gdcm_model::units::rad_s_to_hz;
 
 use super::number_text::three_digits;
 
-/// Unit of displayed frequencies; internally they are always rad/s.
+/// Unit for displayed frequencies; internally they are always rad/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FrequencyUnit {
     #[default]
@@ -15,7 +15,7 @@ pub enum FrequencyUnit {
 }
 
 impl FrequencyUnit {
-    /// Returns the symbol of the unit: `rad/s`, `Hz`.
+    /// Returns `rad/s` or `Hz`.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::RadPerSecond => "rad/s",
@@ -45,13 +45,13 @@ impl FrequencyUnit {
         )
     }
 
-    /// Returns the label of a frequency axis.
+    /// Returns the label for a frequency axis.
     pub fn axis_label(self) -> String {
         format!("Frequency [{}]", self.symbol())
     }
 }
 
-/// Unit of the magnitude of a response.
+/// Unit for magnitudes of responses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MagnitudeUnit {
     #[default]
@@ -60,7 +60,7 @@ pub enum MagnitudeUnit {
     Ratio,
 }
 
-/// Representation of the phase of a response \[deg\].
+/// Representation of phases \[deg\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PhaseUnit {
     /// Continuous over frequency (M2).
@@ -70,7 +70,7 @@ pub enum PhaseUnit {
     Wrapped,
 }
 
-/// Unit of a phase error.
+/// Unit for phase errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PhaseErrorUnit {
     /// Δφ \[deg\].

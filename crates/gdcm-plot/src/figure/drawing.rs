@@ -9,7 +9,7 @@ pub const PT_PER_MM: f64 = 72.0 / 25.4;
 /// A drawing on white paper, in points from the upper left corner, y downwards.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
-    /// Title of the file.
+    /// Title in the file.
     pub title: String,
     /// Width and height \[pt\].
     pub size: [f64; 2],
@@ -17,7 +17,7 @@ pub struct Drawing {
     pub shapes: Vec<Shape>,
 }
 
-/// A shape of a drawing.
+/// A shape in a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// A polyline.
@@ -35,16 +35,16 @@ pub enum Shape {
         fill: Option<Color>,
         stroke: Option<Stroke>,
     },
-    /// A line of text.
+    /// Text on one line.
     Text(Text),
     /// Shapes clipped to an area.
     Clipped { area: Area, shapes: Vec<Shape> },
 }
 
-/// A line of text.
+/// Text on one line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
-    /// Position of the anchor on the base line.
+    /// Anchor position on the base line.
     pub at: [f64; 2],
     pub words: String,
     /// Font size \[pt\].
@@ -56,7 +56,7 @@ pub struct Text {
     pub color: Color,
 }
 
-/// Part of a text that lies at its position.
+/// Part of a text at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     Start,
@@ -94,7 +94,7 @@ impl Text {
 }
 
 impl Anchor {
-    /// Returns the part of the text before its position, as a fraction of its width.
+    /// Returns the part before the text's position, relative to its width.
     pub fn before(self) -> f64 {
         match self {
             Self::Start => 0.0,
@@ -132,7 +132,7 @@ impl Area {
         self.top + self.height
     }
 
-    /// Returns the point at fractions of the width, from the left, and of the height, from the
+    /// Returns the point at fractions of width, from the left, and height, from the
     /// bottom.
     pub fn at(&self, x: f64, y: f64) -> [f64; 2] {
         [self.left + x * self.width, self.bottom() - y * self.height]
@@ -153,7 +153,7 @@ impl Area {
         (self.left..=self.right()).contains(&x) && (self.top..=self.bottom()).contains(&y)
     }
 
-    /// Returns the area of the rectangle.
+    /// Returns width times height.
     pub fn size(&self) -> f64 {
         self.width * self.height
     }
@@ -168,7 +168,7 @@ impl Area {
         )
     }
 
-    /// Returns the distance of a point from the rectangle; 0 inside.
+    /// Returns the distance from a point to the rectangle; 0 inside.
     pub fn distance(&self, [x, y]: [f64; 2]) -> f64 {
         let dx = outside_distance(x, self.left, self.right());
         let dy = outside_distance(y, self.top, self.bottom());
@@ -183,7 +183,7 @@ impl Area {
     }
 }
 
-/// Returns the distance of a value from the interval from `low` to `high`; 0 inside.
+/// Returns the distance from a value to the interval between `low` and `high`; 0 inside.
 fn outside_distance(value: f64, low: f64, high: f64) -> f64 {
     (low - value).max(value - high).max(0.0)
 }
@@ -210,10 +210,10 @@ impl Shape {
     }
 }
 
-/// Meaning of a colour. Paper and each theme of the window have their own colour for it.
+/// Meaning of a colour. Paper and each theme in the window have their own colour for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Hue {
-    /// Paper, and the background of plots in the window.
+    /// Paper, and plot backgrounds in the window.
     Background,
     /// Grid lines.
     Grid,
@@ -237,7 +237,7 @@ pub enum Hue {
     Warning,
     /// Proofs and improvements.
     Good,
-    /// From the colour of perturbed models, 0, to the colour of identified models, 255, as in
+    /// From the colour for perturbed models, 0, to the colour for identified models, 255, as in
     /// colour-blind-safe scales.
     OfAirspeed(u8),
 }
@@ -334,7 +334,7 @@ pub enum Dash {
 }
 
 impl Dash {
-    /// Returns the lengths of dashes and gaps in turn \[pt\]; empty for a solid line.
+    /// Returns dash and gap lengths in turn \[pt\]; empty for a solid line.
     pub fn pattern_pt(self) -> &'static [f64] {
         match self {
             Self::Solid => &[],
@@ -347,7 +347,7 @@ impl Dash {
     }
 }
 
-/// Colour, width and dashes of a line.
+/// Line style: colour, width and dashes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     pub color: Color,
@@ -375,7 +375,7 @@ impl Stroke {
         }
     }
 
-    /// Returns this line of the window as printed: thinner, because paper resolves more.
+    /// Returns this line as printed: thinner than in the window, because paper resolves more.
     pub fn printed(self) -> Self {
         Self {
             width_pt: Self::PRINTED * self.width_pt,
@@ -383,7 +383,7 @@ impl Stroke {
         }
     }
 
-    /// Width on paper as a fraction of the width in the window.
+    /// Line width on paper relative to the window.
     const PRINTED: f64 = 0.55;
 }
 

@@ -1,4 +1,4 @@
-//! Errors that the fit sees: distance of a response from its reference, frequency by frequency
+//! Errors that the fit sees: distance from a response to its reference, frequency by frequency
 //! (M6).
 
 use std::sync::Arc;
@@ -23,7 +23,7 @@ use super::frequency_panels::{FrequencyPanels, figure_of_pairs};
 use super::muad::muad_among_errors;
 use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 
-/// Plots the errors that the fit sees for `pairs`: of every kept physics model, and of the
+/// Plots the errors that the fit sees for `pairs`: for every kept physics model, and for the
 /// representative before and after its correction, with G, D and the bounds.
 pub fn error_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeOptions) -> Figure {
     figure_of_pairs(source, pairs, Some("Error"), |pair| {
@@ -58,8 +58,8 @@ fn error_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -
 }
 
 impl ConditionSource<'_> {
-    /// Returns the errors over the band: of every kept physics model, of the reference as the line
-    /// at zero, and of the representative after each of its corrections. `cache` keeps the numbers
+    /// Returns the errors over the band: for every kept physics model, for the reference as the line
+    /// at zero, and for the representative after each correction. `cache` keeps the numbers
     /// until their sources change.
     pub fn error_curves(
         &self,
@@ -113,7 +113,7 @@ impl ConditionSource<'_> {
         drawn
     }
 
-    /// Returns G and D, the bounds of the channels, and quantiles of the representative's error
+    /// Returns G and D, the channel bounds, and quantiles of the representative's error
     /// among `drawn`, hidden or not: the values that the fit derives from it (M6, M7).
     pub fn error_references(
         &self,
@@ -143,12 +143,12 @@ impl ConditionSource<'_> {
     }
 }
 
-/// Distance of one response from the reference, with the phase on its branch.
+/// Distance from a response to the reference, with the phase on its branch.
 #[derive(Clone, Debug)]
 struct ErrorShape {
     /// `20 log10 |H_sim| / |H_ref|`.
     mismatch_db: Vec<f64>,
-    /// `Delta phi(H_sim, H_ref)` \[rad\] (M3, M6b): never a difference of two separately unwrapped
+    /// `Delta phi(H_sim, H_ref)` \[rad\] (M3, M6b): never the difference between two separately unwrapped
     /// phases.
     phase: Vec<f64>,
 }
@@ -186,7 +186,7 @@ impl ErrorShape {
         })
     }
 
-    /// Returns the error after a gain and a delay of the simulated response (M10), which leave it
+    /// Returns the error after a gain and a delay in the simulated response (M10), which leave it
     /// on its branch, as drawn over `omega` \[rad/s\].
     fn drawn(&self, correction: GainDelay, omega: &[f64], unit: PhaseErrorUnit) -> DrawnError {
         let magnitude_db = correction
@@ -208,20 +208,20 @@ impl ErrorShape {
     }
 }
 
-/// Choices on which the errors of a condition depend.
+/// Choices on which errors depend.
 #[derive(Clone, Debug, PartialEq)]
 struct ErrorKey {
     pair: Pair,
     /// Index of the identified model that the others are compared with.
     reference: usize,
-    /// Ends of the band \[rad/s\].
+    /// Band ends \[rad/s\].
     band: [f64; 2],
     /// Least coherence that counts.
     least_coherence: Option<f64>,
     unit: PhaseErrorUnit,
 }
 
-/// Source of the errors.
+/// Source for errors.
 #[derive(Clone, Debug)]
 struct ErrorSource {
     curves: Arc<ConditionCurves>,
@@ -233,7 +233,7 @@ impl ErrorSource {
         Arc::ptr_eq(&self.curves, &other.curves) && self.key == other.key
     }
 
-    /// Computes the error of a response of the condition over `omega`, the frequencies in the
+    /// Computes the error of a response over `omega`, the frequencies in the
     /// band. `None` if the response or the reference is zero or not finite somewhere in it.
     fn shape(&self, response: &FrequencyResponse, omega: &[f64]) -> Option<ErrorShape> {
         let reference = self.polar(self.curves.identified.get(self.key.reference)?)?;
@@ -250,7 +250,7 @@ impl ErrorSource {
         PolarCurve::of(response.curve(self.key.pair).get(self.band_indices())?)
     }
 
-    /// Returns the weights of the frequencies `omega` by the coherence of the reference; `None`
+    /// Returns weights for the frequencies `omega`, from the reference's coherence; `None`
     /// without a coherence.
     fn coherence_weights(&self, omega: &[f64]) -> Option<CoherenceWeights> {
         let identified = self.curves.condition.bundle(BundleKind::Identified);
@@ -259,7 +259,7 @@ impl ErrorSource {
         Some(weights[self.key.pair].clone())
     }
 
-    /// Returns the indices of the frequencies in the band.
+    /// Returns the frequency indices in the band.
     fn band_indices(&self) -> std::ops::Range<usize> {
         let omega = self.curves.grid.omega();
         let [min, max] = self.key.band;
@@ -276,14 +276,14 @@ struct ModelError {
     drawn: DrawnError,
 }
 
-/// Errors of every physics model of a condition for one response, kept until their source changes.
+/// Errors of a response for every physics model in a condition, kept until their source changes.
 #[derive(Debug, Default)]
 pub struct ErrorCache {
     source: Option<ErrorSource>,
     omega: Arc<[f64]>,
-    /// Zero at each frequency: the error of the reference.
+    /// Zero at each frequency: the reference's error.
     zero: Arc<[f64]>,
-    /// In the order of the physics models; `None` for a model without an error.
+    /// In model order; `None` for a model without an error.
     errors: Vec<Option<ModelError>>,
 }
 
@@ -313,13 +313,13 @@ impl ErrorCache {
         Some(error.shape.clone())
     }
 
-    /// Computes the error of any other response of the condition.
+    /// Computes the error of any other response.
     fn shape(&self, response: &FrequencyResponse) -> Option<ErrorShape> {
         self.source.as_ref()?.shape(response, &self.omega)
     }
 }
 
-/// Creates a line at a delay in the panel of phase errors.
+/// Creates a line at a delay, among phase errors.
 fn delay_rule(
     kind: ReferenceKind,
     label: String,
@@ -333,7 +333,7 @@ fn delay_rule(
     ReferenceLine::new(Pane::Phase, kind, label, level)
 }
 
-/// Creates a line at a gain in the panel of magnitude errors.
+/// Creates a line at a gain, among magnitude errors.
 fn gain_rule(kind: ReferenceKind, label: String, gain: f64) -> ReferenceLine {
     let level = Level::Constant(ratio_to_db(gain));
     ReferenceLine::new(Pane::Magnitude, kind, label, level)
@@ -344,7 +344,7 @@ fn signed(value: f64) -> String {
     format!("{value:.1}").replace('-', "\u{2212}")
 }
 
-/// Returns lines at delta gain G and delta delay D of a response (M6), as far as they are defined.
+/// Returns lines at delta gain G and delta delay D (M6), as far as they are defined.
 fn delta_rules(
     analysis: &ConditionAnalysis,
     pair: Pair,
@@ -368,7 +368,7 @@ fn delta_rules(
     lines
 }
 
-/// Returns lines at the bounds of the channels: both gains, and the upper delay (M7).
+/// Returns lines at the channel bounds: both gains, and the upper delay (M7).
 fn bound_rules(analysis: &ConditionAnalysis, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let bounds = analysis.gain_bounds();
     let delay_s = analysis.delay_upper_s();
@@ -382,7 +382,7 @@ fn bound_rules(analysis: &ConditionAnalysis, unit: PhaseErrorUnit) -> Vec<Refere
     ]
 }
 
-/// Returns the quantiles `q` and `1 - q` of one response's error: the values of M7 if there were no
+/// Returns the quantiles `q` and `1 - q` in a response's error: the values in M7 if there were no
 /// other responses.
 fn quantile_rules(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let mut ratios_db = curve.magnitude_db.to_vec();

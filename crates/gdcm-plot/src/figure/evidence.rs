@@ -1,4 +1,4 @@
-//! Contributions to the scatter of the net gains (M13.5).
+//! Contributions to the scatter in net gains (M13.5).
 
 use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::Pair;
@@ -11,33 +11,33 @@ use super::drawing::{Color, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::marks::{Bars, DotShape, Dots, Intervals, Note, Place};
 
-/// Width of a stacked bar; places on the axis are 1 apart.
+/// Bar width; places on the axis are 1 apart.
 const BAR: f64 = 0.56;
-/// Spacing of the dots at the same place.
+/// Spacing between dots at the same place.
 const APART: f64 = 0.24;
-/// Interval of the unexplained rest.
+/// Interval about the unexplained rest.
 const INTERVAL: Stroke = Stroke::solid(Color::of(Hue::Nominal).tint(50), 2.4);
-/// Intervals are shown up to this multiple of the scatter.
+/// Intervals are shown up to this many times the scatter.
 const MOST_SEEN: f64 = 4.0;
 /// The shares end at 100 %; the numbers above them need the rest \[%\].
 const SHARES: Range = Range {
     min: 0.0,
     max: 118.0,
 };
-/// Position of those numbers, and of the note for a missing split \[%\].
+/// Positions for those numbers, and for the note on a missing split \[%\].
 const ABOVE: f64 = 109.0;
 const MIDDLE: f64 = 50.0;
 
-/// Reference of each scatter, in the order of the places on the axis.
+/// Reference for each scatter, in axis order.
 const ABOUT: [&str; 2] = ["airspeed", "schedule"];
 
-/// A share of the variance, and its colour; in print, shares differ in darkness.
+/// A share in the variance, and its colour; in print, shares differ in darkness.
 struct Share {
     name: &'static str,
     hue: Hue,
 }
 
-/// From the bottom up, in the order of [`VarianceDecomposition::shares`].
+/// From the bottom up, in the same order as [`VarianceDecomposition::shares`].
 const STACK: [Share; 3] = [
     Share {
         name: "trim",
@@ -53,8 +53,8 @@ const STACK: [Share; 3] = [
     },
 ];
 
-/// Plots the split of the scatter of each of `pairs`, at equal airspeed and about the schedule:
-/// shares of the variance as stacked bars; below them the scatter, its expected value, and the
+/// Plots how the scatter splits for each pair, at equal airspeed and about the schedule:
+/// variance shares as stacked bars; below them the scatter, its expected value, and the
 /// unexplained rest with its interval. `None` without error bars, or if no pair has a scatter.
 pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     let uncertainty = analysis.uncertainty.as_ref()?;
@@ -81,7 +81,7 @@ pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     Some(figure)
 }
 
-/// A split of a scatter at its place on the axis.
+/// A split at its place on the axis.
 struct PlacedSplit<'a> {
     x: f64,
     split: Option<&'a VarianceDecomposition>,
@@ -104,8 +104,8 @@ fn axis() -> Axis {
     Axis::named("Scatter about", ABOUT)
 }
 
-/// Plots the shares of trim, identification and rest in the variance, stacked; above them the
-/// ratio of the scatter to its expected value.
+/// Stacks the variance shares due to trim, identification and the rest; above them the
+/// scatter relative to its expected value.
 fn shares_panel(scatter: &PairScatter) -> Panel {
     let mut stack = STACK.map(|share| Bars {
         name: share.name.to_owned(),
@@ -149,7 +149,7 @@ fn note(x: f64, y: f64, text: String, upright: bool) -> Note {
     }
 }
 
-/// Plots the standard deviations of `ln k_o k_i` in percent: the scatter, its expected value, and
+/// Plots standard deviations in `ln k_o k_i` in percent: the scatter, its expected value, and
 /// the unexplained rest with its interval at this level.
 fn deviations_panel(scatter: &PairScatter, level: f64) -> Panel {
     let mut total = empty_dots("scatter", DotShape::Circle, Color::INK);
@@ -189,12 +189,12 @@ fn empty_dots(name: &str, shape: DotShape, color: Color) -> Dots {
     Dots::new(name, shape, color).key(name)
 }
 
-/// Returns the standard deviation \[%\] of a variance of `ln k_o k_i`.
+/// Converts a variance in `ln k_o k_i` to a standard deviation \[%\].
 fn percent(variance: f64) -> f64 {
     100.0 * variance.sqrt()
 }
 
-/// Describes the size of the differences, their parts, the schedule and the settings.
+/// Describes how large the differences are, their parts, the schedule and the settings.
 fn caption(analysis: &Analysis, uncertainty: &Uncertainty) -> String {
     let settings = &analysis.study.settings;
     format!(

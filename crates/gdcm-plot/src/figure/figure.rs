@@ -1,4 +1,4 @@
-//! Description of a figure: plots side by side, each with panels below one another, each with two
+//! Describes a figure: plots side by side, each with panels below one another, each with two
 //! axes and marks. Nothing here depends on paper or screen.
 
 use super::axis::{Axis, Range};
@@ -19,17 +19,16 @@ pub struct Figure {
     pub caption: String,
     /// Row by row.
     pub plots: Vec<Plot>,
-    /// Maximum number of plots side by side.
+    /// Maximum plot count side by side.
     pub columns: usize,
     pub shared: Shared,
-    /// Total height of the frames of a plot as a fraction of their width.
+    /// Total frame height in a plot relative to the frame width.
     pub aspect: f64,
-    /// Whether plots may shrink to the limit of readability, as in a table of many.
+    /// Whether plots may shrink to the limit of readability, as in a large table.
     pub dense: bool,
 }
 
-/// Axes whose range is common to all plots of a figure; their numbers stand on the outer plots
-/// only.
+/// Axes with the same range in all plots; only outer plots show their numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shared {
     pub x: bool,
@@ -87,7 +86,7 @@ impl Figure {
         self
     }
 
-    /// Returns the figure with another ratio of height to width of its plots.
+    /// Returns the figure with another ratio between plot height and width.
     pub fn aspect(self, aspect: f64) -> Self {
         Self { aspect, ..self }
     }
@@ -118,21 +117,21 @@ impl Figure {
         self
     }
 
-    /// Returns the smallest range with the ranges of all panels; `None` without panels.
+    /// Returns the smallest range that contains every panel's range; `None` without panels.
     fn common_range(&self, along: Along) -> Option<Range> {
         self.panels()
             .map(|(_, panel)| panel.shown(along))
             .reduce(Range::union)
     }
 
-    /// Iterates over all panels, each with the title of its plot.
+    /// Iterates over all panels, each with its plot's title.
     pub fn panels(&self) -> impl Iterator<Item = (&str, &Panel)> {
         self.plots
             .iter()
             .flat_map(|plot| plot.panels.iter().map(|panel| (plot.title.as_str(), panel)))
     }
 
-    /// Returns the legend: an entry for each different key among the marks of all panels.
+    /// Returns the legend: an entry for each different key among all marks.
     pub fn legend(&self) -> Vec<Entry> {
         entries(self.panels().flat_map(|(_, panel)| &panel.marks))
     }
@@ -145,12 +144,12 @@ pub struct Panel {
     pub y: Axis,
     /// Later marks are drawn over earlier ones.
     pub marks: Vec<Mark>,
-    /// Height relative to the other panels of its plot.
+    /// Height relative to the other panels in its plot.
     pub weight: f64,
 }
 
 impl Panel {
-    /// Creates an empty panel of weight 1.
+    /// Creates an empty panel with weight 1.
     pub fn new(x: Axis, y: Axis) -> Self {
         Self {
             x,
@@ -178,12 +177,12 @@ impl Panel {
         self
     }
 
-    /// Returns the panel with another height relative to the other panels of its plot.
+    /// Returns the panel with another height relative to the other panels in its plot.
     pub fn weight(self, weight: f64) -> Self {
         Self { weight, ..self }
     }
 
-    /// Iterates over the dots of all marks.
+    /// Iterates over the dots in all marks.
     pub fn dots(&self) -> impl Iterator<Item = &Dot> {
         self.marks.iter().flat_map(|mark| match mark {
             Mark::Dots(group) => group.dots.as_slice(),
@@ -191,7 +190,7 @@ impl Panel {
         })
     }
 
-    /// Returns the range of an axis: the given range, otherwise the range fitted to the marks of
+    /// Returns the range along an axis: the given range, otherwise the range fitted to the marks in
     /// this panel alone.
     pub fn shown(&self, along: Along) -> Range {
         let axis = match along {
@@ -205,7 +204,7 @@ impl Panel {
 /// Panels below one another with the same horizontal range, and a title.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
-    /// Subject of the panels: `LON → Q`. May be empty.
+    /// Subject: `LON → Q`. May be empty.
     pub title: String,
     /// From top to bottom.
     pub panels: Vec<Panel>,

@@ -1,9 +1,9 @@
-//! Printed widths and file formats of a figure.
+//! Printed widths and file formats.
 
 /// Printed width of a figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ColumnWidth {
-    /// A single column of a two-column journal, 84 mm.
+    /// A single column in a two-column journal, 84 mm.
     Single,
     /// Both columns, 174 mm.
     #[default]
@@ -47,14 +47,14 @@ pub enum FigureFormat {
     Png,
     /// A page as large as the figure, with embedded fonts.
     Pdf,
-    /// The numbers of all marks.
+    /// The numbers in all marks.
     Csv,
 }
 
 impl FigureFormat {
     pub const ALL: [Self; 4] = [Self::Svg, Self::Png, Self::Pdf, Self::Csv];
 
-    /// Returns the extension of file names, without the dot.
+    /// Returns the file extension, without the dot.
     pub fn extension(self) -> &'static str {
         match self {
             Self::Svg => "svg",

@@ -1,4 +1,4 @@
-//! Panels over frequency, and figures with a plot for each of several responses.
+//! Panels over frequency, and figures with a plot for each response.
 
 use std::sync::Arc;
 
@@ -15,15 +15,15 @@ use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 use super::responses::BodeBand;
 use super::role::Role;
 
-/// Background of frequencies at which the remaining mismatch would be noticed.
+/// Background for frequencies at which the remaining mismatch would be noticed.
 const NOTICED: Color = Color::of(Hue::Warning).tint(20);
-/// Confidence band of an identified model.
+/// Confidence band about an identified model.
 const UNCERTAIN: Color = Color::of(Hue::Identified).tint(22);
-/// Height to width of the frames of a single plot, and of each of several.
+/// Frame height relative to width in a single plot, and in several plots.
 const SINGLE_ASPECT: f64 = 0.72;
 const SHARED_ASPECT: f64 = 1.9;
 
-/// Contents of the panels of one response.
+/// Contents of a response's panels.
 pub(super) struct FrequencyPanels<'a> {
     pub(super) curves: &'a [BodeCurve],
     pub(super) references: &'a [ReferenceLine],
@@ -34,12 +34,12 @@ pub(super) struct FrequencyPanels<'a> {
 }
 
 impl FrequencyPanels<'_> {
-    /// Builds the panel of magnitudes or phases with this vertical axis.
+    /// Builds the panel for magnitudes or phases with this vertical axis.
     pub(super) fn panel(&self, pane: Pane, axis: Axis) -> Panel {
         self.converted_panel(pane, axis, |value| value)
     }
 
-    /// Builds a panel with values converted to the unit of its vertical axis.
+    /// Builds a panel with values converted to its vertical unit.
     pub(super) fn converted_panel(&self, pane: Pane, axis: Axis, convert: fn(f64) -> f64) -> Panel {
         let strips = self.strips.iter().map(|&(from, to)| Band {
             range: self.options.in_unit(from, to),
@@ -81,7 +81,7 @@ impl FrequencyPanels<'_> {
         drawn
     }
 
-    /// Returns the reference lines of a panel. A line without frequencies of its own runs over
+    /// Returns a panel's reference lines. A line without its own frequencies runs over
     /// those of the first curve.
     fn reference_marks(&self, pane: Pane, convert: fn(f64) -> f64) -> Vec<Mark> {
         let omega: &[f64] = match self.curves.first() {
@@ -114,8 +114,8 @@ impl FrequencyPanels<'_> {
     }
 }
 
-/// Frequencies of the last curve in the displayed unit: the curves of a plot mostly share theirs,
-/// and the curves of the figure then share them too.
+/// The last curve's frequencies in the displayed unit: curves in a plot mostly share theirs,
+/// and the figure's curves then share them too.
 #[derive(Default)]
 struct SharedFrequencies {
     omega: Arc<[f64]>,
@@ -164,7 +164,7 @@ fn reference_mark(
         .into()
 }
 
-/// Builds a figure of one condition with the plots of `pairs` side by side. Its title names
+/// Builds a condition's figure with a plot for each pair side by side. Its title names
 /// `subject`, if any, the pair if there is only one, and the condition.
 pub(super) fn figure_of_pairs(
     source: &ConditionSource<'_>,
@@ -186,7 +186,7 @@ pub(super) fn figure_of_pairs(
     side_by_side(source.dataset(), pairs, title, plot).caption(source.caption())
 }
 
-/// Builds a figure with the plots of `pairs` side by side. A single plot has no title of its own
+/// Builds a figure with a plot for each pair side by side. A single plot has no title
 /// and is wider.
 pub(super) fn side_by_side(
     dataset: &Dataset,

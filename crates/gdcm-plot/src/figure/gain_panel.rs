@@ -1,4 +1,4 @@
-//! Panel of one quantity of the corrections: optima of the conditions, their bounds, error bars and
+//! Panel for a quantity in the corrections: optima in all conditions, their bounds, error bars and
 //! differences, and the schedule with its bands.
 
 use gdcm_method::schedule::Schedule;
@@ -20,25 +20,25 @@ use super::role::Role;
 
 /// Line without correction.
 const NULL: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
-/// Line of an error bar, and of the part due to identification.
+/// Lines for an error bar, and for its part due to identification.
 const BAR: Stroke = Stroke::solid(Color::of(Hue::Perturbed), 0.6);
 const INNER_BAR: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(50), 2.4);
-/// Maximum extension of the axis by error bars, as a fraction of the range of the dots.
+/// Maximum axis extension by error bars, relative to the range that dots span.
 const BARS_EXTENSION: f64 = 0.5;
-/// Brackets of differences at the same airspeed.
+/// Brackets for differences at the same airspeed.
 const SIGNIFICANT_BRACKET: Stroke = Stroke::solid(Color::of(Hue::Warning), 0.7);
 const OTHER_BRACKET: Stroke = Stroke::solid(Color::DIM, 0.4);
-/// Names of both kinds of brackets in the legend.
+/// Names in the legend.
 pub(super) const SIGNIFICANT: &str = "significant difference, × expected";
 const NOT_SIGNIFICANT: &str = "difference, not significant";
 /// Background of the bounds.
 const BOUNDS: Color = Color::of(Hue::Accent).tint(16);
-/// Width of that background over airspeed \[kt\].
+/// Its width over airspeed \[kt\].
 const BOUNDS_WIDTH_KT: f64 = 3.0;
-/// Width of that background over conditions, which are 1 apart.
+/// Its width over conditions, which are 1 apart.
 const BOUNDS_WIDTH: f64 = 0.7;
 
-/// One quantity of an analysis, with its uncertainty if known.
+/// A quantity in an analysis, with its uncertainty if known.
 pub(super) struct GainPanel<'a> {
     pub(super) quantity: GainQuantity,
     pub(super) analysis: &'a Analysis,
@@ -47,7 +47,7 @@ pub(super) struct GainPanel<'a> {
 }
 
 impl GainPanel<'_> {
-    /// Builds the panel with this label of its vertical axis.
+    /// Builds the panel with this vertical label.
     pub(super) fn panel(&self, label: &str) -> Panel {
         let measure = self.quantity.measure();
         let bars = self.bars();
@@ -129,7 +129,7 @@ impl GainPanel<'_> {
         bars
     }
 
-    /// Returns `[x, lower end, upper end]` of each condition with a bar, in the unit of the
+    /// Returns `[x, lower end, upper end]` for each condition with a bar, in the unit of the
     /// measure.
     fn bar_ends(
         &self,
@@ -142,7 +142,7 @@ impl GainPanel<'_> {
             if let Some(bar) = uncertainty.bar(placed.state.id, scalar)
                 && let Some(interval) = interval(bar, uncertainty.level)
             {
-                // Gains have intervals of their logarithm.
+                // Gains have intervals in logarithms.
                 let [low, high] = interval.map(|end| {
                     if scalar.is_delay() {
                         s_to_ms(end)
@@ -156,7 +156,7 @@ impl GainPanel<'_> {
         ends
     }
 
-    /// Returns, for each airspeed, the difference of two net gains with the largest ratio to its
+    /// Returns, for each airspeed, the difference between two net gains with the largest ratio to its
     /// expected value (M13.4); the significant ones first.
     fn brackets(&self) -> Vec<Brackets> {
         let (Some(uncertainty), GainQuantity::NetGain(pair), Across::Airspeed) =
@@ -179,7 +179,7 @@ impl GainPanel<'_> {
         groups
     }
 
-    /// Returns the brackets of significant differences, or of the others.
+    /// Returns brackets for significant differences, or for the others.
     fn brackets_of(
         &self,
         uncertainty: &Uncertainty,
@@ -194,7 +194,7 @@ impl GainPanel<'_> {
             .collect()
     }
 
-    /// Returns the bracket of a difference, labelled with its ratio if it is significant; `None` if
+    /// Returns the bracket for a difference, labelled with its ratio if it is significant; `None` if
     /// a condition has no result.
     fn bracket(&self, found: &AirspeedDifference, is_significant: bool) -> Option<Bracket> {
         let [first, second] = found.conditions;
@@ -214,7 +214,7 @@ impl GainPanel<'_> {
         })
     }
 
-    /// Returns both bands about the samples of the schedule.
+    /// Returns both bands about the scheduled samples.
     fn bands(&self, schedule: &Schedule, samples: &[[f64; 2]]) -> Vec<Envelope> {
         let Some(bands) = self.uncertainty.and_then(|found| found.bands.as_ref()) else {
             return Vec::new();
@@ -245,7 +245,7 @@ impl GainPanel<'_> {
         vec![confidence, scatter]
     }
 
-    /// Returns the search range of each optimum.
+    /// Returns the search range for each optimum.
     fn bounds(&self) -> Option<Spans> {
         let mut spans = Vec::new();
         for placed in self.results() {
@@ -268,8 +268,8 @@ impl GainPanel<'_> {
         })
     }
 
-    /// Returns a group of dots for each class of conditions; conditions outside the schedule have
-    /// groups of their own.
+    /// Returns a group for each condition class; conditions outside the schedule have
+    /// separate groups.
     fn dots(&self) -> Vec<Dots> {
         let classes = Classes::of(&self.analysis.study.dataset);
         let mut groups: Vec<Dots> = Vec::new();
@@ -289,7 +289,7 @@ impl GainPanel<'_> {
         groups
     }
 
-    /// Returns the optimum of a condition, labelled with its number unless the axis shows it.
+    /// Returns a condition's optimum, labelled with its number unless the axis shows it.
     fn dot(&self, placed: &PlacedResult<'_>) -> Dot {
         let id = placed.state.id;
         let label = match self.across {
@@ -304,7 +304,7 @@ impl GainPanel<'_> {
         }
     }
 
-    /// Returns the style of the class of a condition, without dots.
+    /// Returns the style for a condition's class, without dots.
     fn empty_group(&self, placed: &PlacedResult<'_>, classes: &Classes, name: &str) -> Dots {
         let choice = self.analysis.study.choice(placed.state.id);
         let shape = if classes.is_first_altitude(placed.state) {
@@ -323,15 +323,15 @@ impl GainPanel<'_> {
     }
 }
 
-/// Sample of the schedule with the half-widths of its bands.
+/// Scheduled sample with the half-widths of its bands.
 struct BandSample {
     x: f64,
     value: f64,
-    /// Of the logarithm of the value.
+    /// In the logarithm of the value.
     widths: BandWidths,
 }
 
-/// Returns `[x, lower end, upper end]` of a band at each sample.
+/// Returns `[x, lower end, upper end]` at each sample.
 fn band_points(samples: &[BandSample], half: fn(&BandWidths) -> f64) -> Vec<[f64; 3]> {
     let mut points = Vec::new();
     for BandSample { x, value, widths } in samples {

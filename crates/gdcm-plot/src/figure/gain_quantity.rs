@@ -1,4 +1,4 @@
-//! Quantities of a correction that are drawn over conditions: net gains, channel gains and channel
+//! Quantities that are drawn over conditions: net gains, channel gains and channel
 //! delays.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
@@ -11,10 +11,10 @@ use gdcm_study::study::{Analysis, ConditionAnalysis};
 
 use super::number_text::decimals;
 
-/// Intervals between the samples of a schedule.
+/// Intervals between scheduled samples.
 const SAMPLES: usize = 120;
 
-/// Kind of value on the vertical axis.
+/// Vertical quantity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Measure {
     /// Ratio; 1 without correction.
@@ -41,7 +41,7 @@ impl Measure {
         }
     }
 
-    /// Returns the least height of a plot, in the unit of the measure.
+    /// Returns the least plot height, in the unit of the measure.
     pub fn least_height(self) -> f64 {
         match self {
             Self::Gain => 0.1,
@@ -60,7 +60,7 @@ impl Measure {
         }
     }
 
-    /// Returns the axis label for values of a channel.
+    /// Returns the axis label for channel values.
     pub fn axis_label(self) -> &'static str {
         match self {
             Self::Gain => "Gain [-]",
@@ -79,19 +79,19 @@ pub enum Across {
     Conditions,
 }
 
-/// A quantity of the correction of each condition and of the schedule.
+/// A quantity in each condition's correction and in the schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GainQuantity {
-    /// Net gain of a response.
+    /// Net gain for a response.
     NetGain(Pair),
-    /// Gain of a channel.
+    /// Channel gain.
     Gain(Channel),
-    /// Delay of a channel.
+    /// Channel delay.
     Delay(Channel),
 }
 
 impl GainQuantity {
-    /// Returns the gain or the delay of a channel.
+    /// Returns a channel's gain or delay.
     pub fn of_channel(channel: Channel, measure: Measure) -> Self {
         match measure {
             Measure::Gain => Self::Gain(channel),
@@ -116,7 +116,7 @@ impl GainQuantity {
         }
     }
 
-    /// Returns the corresponding scalar of the uncertainty analysis.
+    /// Returns the corresponding scalar in the uncertainty analysis.
     pub fn scalar(self) -> Scalar {
         match self {
             Self::NetGain(pair) => Scalar::NetGain(pair),
@@ -125,7 +125,7 @@ impl GainQuantity {
         }
     }
 
-    /// Returns the search bounds of the optimum of a condition, in the unit of the measure; `None`
+    /// Returns the search bounds for a condition's optimum, in the unit of the measure; `None`
     /// for a net gain, which has no bounds.
     pub fn bounds(self, result: &ConditionAnalysis) -> Option<[f64; 2]> {
         match self {
@@ -138,7 +138,7 @@ impl GainQuantity {
         }
     }
 
-    /// Samples the scheduled quantity from the lowest to the highest airspeed of the conditions:
+    /// Samples the scheduled quantity from the lowest to the highest airspeed:
     /// `[airspeed, value]` with the airspeed in kt.
     pub(super) fn samples(self, schedule: &Schedule) -> Vec<[f64; 2]> {
         let from = schedule.airspeeds.min_kt;
@@ -152,14 +152,14 @@ impl GainQuantity {
     }
 }
 
-/// Result of a condition at its place on the horizontal axis.
+/// A condition's result at its place on the horizontal axis.
 pub(super) struct PlacedResult<'a> {
     pub(super) x: f64,
     pub(super) state: &'a FlightState,
     pub(super) result: &'a ConditionAnalysis,
 }
 
-/// Returns the results of the conditions that have one, in file order.
+/// Returns the available results, in file order.
 pub(super) fn placed_results(analysis: &Analysis, across: Across) -> Vec<PlacedResult<'_>> {
     let mut placed = Vec::new();
     for (index, condition) in analysis.study.dataset.conditions().iter().enumerate() {

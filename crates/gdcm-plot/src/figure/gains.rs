@@ -15,13 +15,13 @@ use super::gain_quantity::placed_results;
 use super::marks::{Curve, DotShape, Dots, Mark, MarkId};
 use super::role::Role;
 
-/// Height of a plot as a fraction of its width, without and with bars and brackets.
+/// Plot height relative to its width, without and with bars and brackets.
 const ASPECT: f64 = 0.95;
 const ASPECT_WITH_BARS: f64 = 1.3;
-/// Size of the dots of an overlaid variant, relative to the usual dot.
+/// Size of dots for an overlaid variant, relative to the usual dot.
 const VARIANT_DOT: f64 = 0.7;
 
-/// Plots the net gain of each of `pairs` at the optimum of each condition, and the schedule
+/// Plots the net gain for each pair at each condition's optimum, and the schedule
 /// (Figures 6 and 7); with error bars and bands if `uncertainty` has them.
 pub fn net_gain_figure(
     analysis: &Analysis,
@@ -49,7 +49,7 @@ pub fn net_gain_figure(
         .aspect(aspect(uncertainty))
 }
 
-/// Plots gain or delay of each of `channels` at the optimum of each condition, and the schedule
+/// Plots gain or delay in each channel at each condition's optimum, and the schedule
 /// (Figures 3 and 4); with error bars and bands if `uncertainty` has them.
 pub fn channels_figure(
     analysis: &Analysis,
@@ -110,8 +110,8 @@ pub fn all_channels(dataset: &Dataset) -> Vec<Channel> {
     inputs.chain(outputs).collect()
 }
 
-/// Overlays the optima and the schedule of a variant on plots against airspeed, behind their dots:
-/// small open dots, and a dotted line. `quantities` are those of the plots, in their order.
+/// Overlays a variant's optima and schedule on plots against airspeed, behind their dots:
+/// small open dots, and a dotted line. `quantities` are those in the plots, in the same order.
 pub fn add_variant(
     figure: &mut Figure,
     quantities: &[GainQuantity],
@@ -133,7 +133,7 @@ pub fn add_variant(
     }
 }
 
-/// Returns the schedule, if any, and the optima of a variant.
+/// Returns a variant's schedule, if any, and its optima.
 fn variant_marks(quantity: GainQuantity, analysis: &Analysis, name: &str) -> Vec<Mark> {
     let across = Across::Airspeed;
     let stroke = Role::Variant.stroke(false);
@@ -156,8 +156,8 @@ fn variant_marks(quantity: GainQuantity, analysis: &Analysis, name: &str) -> Vec
     marks
 }
 
-/// Reduces plots of net gains for the screen, where labels appear under the pointer: keeps the
-/// label of the condition `selected`, and if differences are shown, the brackets of significant
+/// Reduces net-gain plots for the screen, where labels appear under the pointer: keeps the
+/// label for the condition `selected`, and if differences are shown, the brackets for significant
 /// differences with the labels at their ends.
 pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) {
     for panel in figure.plots.iter_mut().flat_map(|plot| &mut plot.panels) {

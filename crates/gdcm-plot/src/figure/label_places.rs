@@ -1,9 +1,9 @@
-//! Placement of labels around dots, clear of the other dots, of bars and of the other labels.
+//! Places labels around dots, clear of other dots, bars and labels.
 //!
 //! ```text
 //! three times, for each dot:
-//!     try 8 sides at 6 distances; take the place of least cost, given the other labels:
-//!         areas of other labels, of dots and bars, and of the outside under the label
+//!     try 8 sides at 6 distances; take the cheapest place, given the other labels:
+//!         area over other labels, dots, bars and the outside
 //!         leaders across labels
 //!         the line under the label
 //!         other dots nearer to the label than its own
@@ -62,34 +62,34 @@ const DIRECTIONS: [Direction; 8] = [
 /// Distances tried, beyond the radius of the dot \[pt\]; from the second on, a leader connects the
 /// dot to its label.
 const GAPS: [f64; 6] = [1.5, 8.0, 15.0, 22.0, 30.0, 40.0];
-/// Number of passes in which every label is placed again given the others: early labels make room
+/// Passes in which every label is placed again given the others: early labels make room
 /// for late ones.
 const SWEEPS: usize = 3;
 /// With more dots, no labels are placed: they would be unreadable and slow to place.
 const MOST_LABELS: usize = 300;
 
-/// Cost of a square point under a label: of another label, of a dot, of a bar, of the outside.
+/// Cost per square point that a label shares with another label, a dot, a bar or the outside.
 const ON_LABEL: f64 = 40.0;
 const ON_DOT: f64 = 40.0;
 const ON_BAR: f64 = 8.0;
 const OUTSIDE: f64 = 30.0;
-/// Cost of a point of the path under a label.
+/// Cost per point along the path under a label.
 const ON_PATH: f64 = 1.0;
-/// Cost of a point of a leader across a label.
+/// Cost per point along a leader across a label.
 const LEADER_ON_LABEL: f64 = 20.0;
-/// Cost of another dot that is nearer to a label than its own dot.
+/// Cost for each dot that is nearer to a label than its own dot.
 const AMBIGUOUS: f64 = 6.0;
-/// Cost of each direction before the chosen one, and of a point of distance.
+/// Cost for each direction before the chosen direction, and per point from the dot.
 const LATER_DIRECTION: f64 = 0.2;
 const FARTHER: f64 = 0.6;
-/// A label that covers more than this fraction of other labels, dots or the outside is unreadable,
+/// A label with more than this fraction over other labels, dots or the outside is unreadable,
 /// as are those it covers.
 const MOST_COVERED: f64 = 0.12;
-/// Side of the square that stands for a dot, relative to its radius.
+/// Side length for the square that approximates a dot, relative to its radius.
 const DOT_SIDE: f64 = 1.9;
 /// Space kept around other labels \[pt\].
 const LABEL_MARGIN: f64 = 1.0;
-/// Distance between sampled points of a line \[pt\].
+/// Distance between sampled points along a line \[pt\].
 const STEP: f64 = 2.0;
 /// A dot that is nearer to a label by less than this does not mislead \[pt\].
 const SLACK: f64 = 0.5;
@@ -125,7 +125,7 @@ impl LabelledDot {
         )
     }
 
-    /// Returns the distance of a label from the edge of the dot; negative if the label covers it.
+    /// Returns the distance from the edge to a label; negative if the label covers the dot.
     fn distance_to(&self, label: &Area) -> f64 {
         label.distance(self.center) - self.radius
     }
@@ -174,7 +174,7 @@ struct Placing<'a> {
     places: Vec<Option<LabelPlace>>,
 }
 
-/// A label of another dot.
+/// Another dot's label.
 struct OtherLabel {
     place: LabelPlace,
     /// Centre of its dot.
@@ -188,7 +188,7 @@ struct Candidate {
 }
 
 impl Placing<'_> {
-    /// Returns the place of least cost for the label of a dot, given the other labels.
+    /// Returns the cheapest place for a dot's label, given the other labels.
     fn best_place(&self, index: usize) -> Option<LabelPlace> {
         let others = self.other_labels(index);
         let mut best: Option<Candidate> = None;
@@ -221,7 +221,7 @@ impl Placing<'_> {
         others
     }
 
-    /// Returns the full cost of a candidate for the label of a dot.
+    /// Returns the full cost of a candidate for a dot's label.
     fn cost(&self, candidate: &Candidate, index: usize, others: &[OtherLabel]) -> f64 {
         let place = &candidate.place;
         let ambiguity = AMBIGUOUS * self.nearer_dots(&place.area, index) as f64;
@@ -249,17 +249,17 @@ impl Placing<'_> {
             + ON_PATH * on_path
     }
 
-    /// Returns the area of all dots under a label.
+    /// Returns the area that a label shares with dots.
     fn on_dots(&self, label: &Area) -> f64 {
         self.dots.iter().map(|dot| label.overlap(&dot.area())).sum()
     }
 
-    /// Returns the area of a label outside the bounds.
+    /// Returns the part of a label's area outside the bounds.
     fn outside(&self, label: &Area) -> f64 {
         label.size() - label.overlap(&self.around.bounds)
     }
 
-    /// Counts the other dots that are nearer to the label of a dot than the dot itself.
+    /// Counts the other dots that are nearer to a dot's label than the dot itself.
     fn nearer_dots(&self, label: &Area, index: usize) -> usize {
         let own = self.dots[index].distance_to(label);
         self.dots
@@ -283,7 +283,7 @@ impl Placing<'_> {
         worst
     }
 
-    /// Returns the area of other labels, dots and the outside under a label, as a fraction of the
+    /// Returns the area that a label shares with other labels, dots and the outside, relative to the
     /// label.
     fn covered_part(&self, index: usize) -> f64 {
         let Some(place) = self.places[index] else {
@@ -328,7 +328,7 @@ fn candidates(dot: LabelledDot) -> Vec<Candidate> {
     candidates
 }
 
-/// Returns the cost of leaders across labels: of the label's own, and of those of the others.
+/// Returns the cost of leaders across labels: the label's own leader, and other leaders across it.
 fn leaders_on_labels(place: &LabelPlace, center: [f64; 2], others: &[OtherLabel]) -> f64 {
     let mut length = 0.0;
     for other in others {
@@ -345,7 +345,7 @@ fn leaders_on_labels(place: &LabelPlace, center: [f64; 2], others: &[OtherLabel]
     LEADER_ON_LABEL * length
 }
 
-/// Estimates the length of a segment inside `area` \[pt\] from points along it.
+/// Estimates how long a segment runs inside `area` \[pt\], from points along it.
 fn length_inside(area: &Area, from: [f64; 2], to: [f64; 2]) -> f64 {
     let is_left_or_right = from[0].max(to[0]) < area.left || from[0].min(to[0]) > area.right();
     let is_above_or_below = from[1].max(to[1]) < area.top || from[1].min(to[1]) > area.bottom();

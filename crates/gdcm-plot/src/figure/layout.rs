@@ -1,4 +1,4 @@
-//! Placement of the panels of a figure on paper, with their numbers and labels.
+//! Places the panels of a figure on paper, with room for their numbers and labels.
 
 pub use super::letters::width;
 
@@ -8,41 +8,41 @@ use super::figure::{Figure, Plot};
 use super::marks::Along;
 use super::placed::{Placed, Side};
 
-/// Font size of numbers at ticks, of the legend, of the caption and of texts at dots \[pt\]: the
+/// Font size for numbers at ticks, legend, caption and texts at dots \[pt\]: the
 /// minimum that journals accept.
 pub(super) const SMALL_PT: f64 = 7.0;
-/// Font size of axis labels and plot titles \[pt\].
+/// Font size for axis labels and plot titles \[pt\].
 pub(super) const LABEL_PT: f64 = 7.5;
-/// Height of a line of labels \[pt\].
+/// Line height for labels \[pt\].
 pub(super) const LABEL_LINE: f64 = 10.0;
-/// Height of a line of small text \[pt\].
+/// Line height for small text \[pt\].
 pub(super) const SMALL_LINE: f64 = 9.0;
-/// Length of a tick \[pt\].
+/// Tick length \[pt\].
 pub(super) const TICK: f64 = 2.2;
 
 /// Space between plots side by side \[pt\].
 const COLUMN_GAP: f64 = 9.0;
 /// Space between plots below one another \[pt\].
 const ROW_GAP: f64 = 5.0;
-/// Space between the panels of a plot \[pt\].
+/// Space between panels below one another \[pt\].
 const PANEL_GAP: f64 = 4.0;
-/// Room to the right of the frames for half a number \[pt\].
+/// Room for half a number, right of the frames \[pt\].
 const RIGHT: f64 = 6.0;
-/// Minimum width of a plot, including the numbers at its left \[pt\].
+/// Minimum plot width, including the numbers at its left \[pt\].
 const LEAST_WIDTH: f64 = 88.0;
-/// Minimum width of a plot in a dense figure \[pt\].
+/// Minimum plot width in a dense figure \[pt\].
 const LEAST_DENSE_WIDTH: f64 = 40.0;
-/// Minimum width and total height of the frames of a plot \[pt\].
+/// Minimum width and total height for the frames in a plot \[pt\].
 const LEAST_FRAME: f64 = 22.0;
-/// Maximum height of all plots, which leaves room for a caption on an A4 page \[pt\].
+/// Maximum height for all plots, which leaves room for a caption on an A4 page \[pt\].
 const MOST_HEIGHT: f64 = 640.0;
 /// Minimum distance between numbers on a vertical axis \[pt\].
 const VERTICAL_GAP: f64 = 11.0;
-/// Minimum distance between the middles of numbers on a horizontal axis \[pt\].
+/// Minimum distance between number centres on a horizontal axis \[pt\].
 const HORIZONTAL_GAP: f64 = 12.0;
 /// Minimum space between numbers on a horizontal axis \[pt\].
 const NUMBER_SPACE: f64 = 5.0;
-/// Range of an axis in a figure without panels.
+/// Axis range in a figure without panels.
 const EMPTY: Range = Range { min: 0.0, max: 1.0 };
 
 /// Panels at their places.
@@ -57,12 +57,12 @@ impl<'f> Layout<'f> {
     /// Places the panels of `figure` on paper `width_pt` wide, from `top` down.
     ///
     /// ```text
-    /// guess the width of the frames
+    /// guess the frame width
     /// twice:
-    ///     heights of the frames, from their width
-    ///     ticks of the vertical axes, from the heights
+    ///     frame heights, from the width
+    ///     vertical ticks, from the heights
     ///     room for numbers and labels beside each column, from the ticks
-    ///     width of the frames, from the remaining room
+    ///     frame width, from the remaining room
     /// place the panels row by row
     /// ```
     pub(super) fn new(figure: &'f Figure, width_pt: f64, top: f64) -> Self {
@@ -83,7 +83,7 @@ struct PlotTable<'f> {
     figure: &'f Figure,
     columns: usize,
     rows: usize,
-    /// Upper end of the first row, titles included \[pt\].
+    /// Upper end, titles included \[pt\].
     top: f64,
 }
 
@@ -105,7 +105,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the total height of the frames of a plot.
+    /// Returns the total frame height in a plot.
     fn plot_height(&self, frame_width: f64) -> f64 {
         let rows = self.rows as f64;
         let around: f64 = (0..self.rows)
@@ -117,7 +117,7 @@ impl<'f> PlotTable<'f> {
             .max(LEAST_FRAME)
     }
 
-    /// Returns the room above the frames of a row, for titles.
+    /// Returns the room above the frames in a row, for titles.
     fn above(&self, row: usize) -> f64 {
         let has_title = self
             .row(row)
@@ -125,7 +125,7 @@ impl<'f> PlotTable<'f> {
         if has_title { LABEL_LINE + 2.0 } else { 3.0 }
     }
 
-    /// Returns the room below the frames of a row, for numbers and labels.
+    /// Returns the room below the frames in a row, for numbers and labels.
     fn below(&self, row: usize) -> f64 {
         let has_numbers = self.row(row).any(|index| self.has_x_numbers(index));
         if has_numbers {
@@ -135,25 +135,25 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the indices of the plots of a row.
+    /// Returns the plot indices in a row.
     fn row(&self, row: usize) -> std::ops::Range<usize> {
         let from = row * self.columns;
         from..(from + self.columns).min(self.figure.plots.len())
     }
 
-    /// Returns whether the horizontal axis of a plot has numbers: always if it is not shared,
-    /// otherwise at the bottom of each column.
+    /// Returns whether a plot's horizontal axis has numbers: always if it is not shared,
+    /// otherwise at the bottom only.
     fn has_x_numbers(&self, index: usize) -> bool {
         !self.figure.shared.x || index + self.columns >= self.figure.plots.len()
     }
 
-    /// Returns whether the vertical axis of a plot has numbers: always if it is not shared,
-    /// otherwise at the left of each row.
+    /// Returns whether a plot's vertical axis has numbers: always if it is not shared,
+    /// otherwise at the left only.
     fn has_y_numbers(&self, index: usize) -> bool {
         !self.figure.shared.y || index.is_multiple_of(self.columns)
     }
 
-    /// Returns whether the vertical axis of a panel has a label: at the left of each row, and
+    /// Returns whether a panel's vertical axis has a label: at the left of each row, and
     /// wherever its quantity differs from that.
     fn has_y_label(&self, index: usize, panel: usize) -> bool {
         let first = index - index % self.columns;
@@ -174,7 +174,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the horizontal range of all panels of a plot.
+    /// Returns the horizontal range for all panels in a plot.
     fn x_range(&self, index: usize) -> Range {
         self.sharing(index, self.figure.shared.x)
             .iter()
@@ -184,7 +184,7 @@ impl<'f> PlotTable<'f> {
             .unwrap_or(EMPTY)
     }
 
-    /// Returns the vertical range of a panel, counted from the top of its plot.
+    /// Returns the vertical range for a panel, counted from the top of its plot.
     fn y_range(&self, index: usize, panel: usize) -> Range {
         self.sharing(index, self.figure.shared.y)
             .iter()
@@ -194,7 +194,7 @@ impl<'f> PlotTable<'f> {
             .unwrap_or(EMPTY)
     }
 
-    /// Returns the heights of the frames of a plot's panels.
+    /// Returns the frame heights in a plot.
     fn heights(&self, index: usize, plot_height: f64) -> Vec<f64> {
         let panels = &self.figure.plots[index].panels;
         let room = plot_height - PANEL_GAP * panels.len().saturating_sub(1) as f64;
@@ -230,7 +230,7 @@ impl<'f> PlotTable<'f> {
         let is_lowest = panel + 1 == plot.panels.len();
         let range = self.x_range(index);
         let has_numbers = is_lowest && self.has_x_numbers(index);
-        // On narrow frames, the label of the first in a row serves for all.
+        // On narrow frames, the first label in a row serves for all.
         let has_room = LABEL_PT * width(&axis.label) <= frame_width + COLUMN_GAP;
         Side {
             range,
@@ -241,7 +241,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the room at the left of each column of frames, for numbers and labels.
+    /// Returns the room left of each column, for numbers and labels.
     fn gutters(&self, frame_width: f64) -> Vec<f64> {
         let plot_height = self.plot_height(frame_width);
         (0..self.columns)
@@ -284,7 +284,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Places the panels of a plot below one another in the area of its frames.
+    /// Places a plot's panels below one another in the area for its frames.
     fn place_plot(&self, index: usize, frames: Area) -> Vec<Placed<'f>> {
         let plot = &self.figure.plots[index];
         let heights = self.heights(index, frames.height);
@@ -315,18 +315,18 @@ fn widest(ticks: &[Tick]) -> f64 {
 }
 
 /// Returns ticks whose labels do not touch. Their number follows from the width of the labels,
-/// which follows from the number of ticks: two guesses suffice.
+/// which follows from the tick count: two guesses suffice.
 fn horizontal_ticks(axis: &Axis, range: Range, length_pt: f64) -> Vec<Tick> {
     let close = axis.ticks(range, length_pt, HORIZONTAL_GAP);
     let ticks = axis.ticks(range, length_pt, label_gap(&close));
     match &axis.names {
-        // Names have a fixed width: the first guess includes all of them.
+        // Names have a fixed width: the first guess includes all names.
         Some(_) => ticks,
         None => axis.ticks(range, length_pt, label_gap(&ticks)),
     }
 }
 
-/// Returns the distance of ticks \[pt\] at which these labels do not touch.
+/// Returns the tick distance \[pt\] at which these labels do not touch.
 fn label_gap(ticks: &[Tick]) -> f64 {
     (SMALL_PT * widest(ticks) + NUMBER_SPACE).max(HORIZONTAL_GAP)
 }

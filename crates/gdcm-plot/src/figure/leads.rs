@@ -14,16 +14,16 @@ use super::gains::all_channels;
 use super::marks::{Band, Curve, Rule};
 use super::role::Role;
 
-/// Points of a curve.
+/// Points on a curve.
 const POINTS: usize = 240;
 const OTHERS: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(60), 0.8);
 const OUTPUT: Stroke = Stroke::dashed(Color::of(Hue::Accent), 1.6, Dash::Long);
 const INPUT: Stroke = Stroke::dashed(Color::of(Hue::Perturbed), 1.6, Dash::DashDot);
-/// Line and background at the limit of validity.
+/// Line and background at the validity limit.
 const LIMIT: Stroke = Stroke::solid(Color::of(Hue::Warning), 1.2);
 const BEYOND: Color = Color::of(Hue::Warning).tint(14);
 
-/// Plots gain and phase of the delay or lead of each channel, without the gains k, from the band to
+/// Plots gain and phase of the delay or lead in each channel, without the gains k, from the band to
 /// ten times its upper end; the channels of each pair and their combined effect on the response are
 /// emphasised. A row of two plots for each of `pairs`.
 pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
@@ -42,7 +42,7 @@ pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
     figure
 }
 
-/// Delay or lead of some channels as drawn.
+/// Delay or lead in some channels as drawn.
 struct LeadCurve {
     name: String,
     /// Entry in the legend.
@@ -57,7 +57,7 @@ struct PairLeads {
     pair_name: String,
     /// Frequencies \[rad/s\].
     omega: Vec<f64>,
-    /// Of the other channels, of input and output, and of both together.
+    /// For the other channels, for input and output, and for both together.
     curves: Vec<LeadCurve>,
     /// Cost of the leads; `None` without leads.
     price: Option<LeadPrice>,
@@ -150,7 +150,7 @@ impl PairLeads {
     }
 }
 
-/// Returns the delay and the leads of one or two channels in series.
+/// Returns the delay and the leads in one or two channels in series.
 fn dynamics(correction: &ChannelCorrection, channels: &[Channel]) -> GainDelay {
     let delay_s: f64 = channels
         .iter()
@@ -164,7 +164,7 @@ fn dynamics(correction: &ChannelCorrection, channels: &[Channel]) -> GainDelay {
     ])
 }
 
-/// Adds the background of the range beyond the band, with an entry in the legend, and the line at
+/// Adds the background beyond the band, with an entry in the legend, and the line at
 /// which it begins.
 fn with_limit(panel: Panel, price: &LeadPrice) -> Panel {
     let ground = Band {

@@ -13,7 +13,7 @@ pub struct Entry {
     pub sample: Sample,
 }
 
-/// Sample of a mark's style.
+/// Sample in a mark's style.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sample {
     Line(Stroke),
@@ -22,12 +22,12 @@ pub enum Sample {
         color: Color,
         filled: bool,
     },
-    /// A patch of a shaded area.
+    /// A shaded patch.
     Ground(Color),
 }
 
 /// Returns an entry for each different key among `marks`: roles in the order of [`Role::ALL`],
-/// then the other keys in order of appearance.
+/// then the other keys as they appear.
 pub(super) fn entries<'m>(marks: impl Iterator<Item = &'m Mark>) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     for entry in marks.filter_map(entry) {
@@ -40,7 +40,7 @@ pub(super) fn entries<'m>(marks: impl Iterator<Item = &'m Mark>) -> Vec<Entry> {
     entries
 }
 
-/// Returns the entry of a mark; `None` for a mark without a key.
+/// Returns a mark's entry; `None` for a mark without a key.
 fn entry(mark: &Mark) -> Option<Entry> {
     match mark {
         Mark::Curve(curve) => Some(Entry {
@@ -86,7 +86,7 @@ fn entry(mark: &Mark) -> Option<Entry> {
     }
 }
 
-/// Returns the place of a text among the roles; texts that name no role come after all roles.
+/// Returns a text's place among the roles; texts that name no role come after all roles.
 fn rank(text: &str) -> usize {
     // A single physics model takes the place of the nominal model.
     let text = if text == RequirementRole::Physics.name() {

@@ -1,4 +1,4 @@
-//! Letters of the fonts with their widths, and lines of text broken to a width.
+//! Letters in the fonts with their widths, and text broken into lines.
 
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
@@ -12,14 +12,14 @@ pub const FONTS: [(&str, &[u8]); 2] = [
     ("Hack", epaint_default_fonts::HACK_REGULAR),
 ];
 
-/// Distance from the middle of a line of text down to its base line, relative to the font size.
+/// Distance from the middle of a text line down to its base line, relative to the font size.
 pub(super) const HALF_HEIGHT: f64 = 0.34;
 
-/// A glyph of a font.
+/// A glyph in a font.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Letter {
     pub character: char,
-    /// Index of the font in [`FONTS`].
+    /// Font index in [`FONTS`].
     pub font: usize,
     /// Glyph index in that font; 0 for a character that no font has.
     pub glyph: u16,
@@ -27,7 +27,7 @@ pub struct Letter {
     pub advance: f64,
 }
 
-/// Returns the letters of a line of text; characters without a shape are spelled out.
+/// Returns the letters in a text line; characters without a shape are spelled out.
 pub fn letters(words: &str) -> Vec<Letter> {
     let fonts: Vec<FontRef<'_>> = FONTS
         .iter()
@@ -39,7 +39,7 @@ pub fn letters(words: &str) -> Vec<Letter> {
         .collect()
 }
 
-/// Returns the glyph of a character in the first font that has it, otherwise the empty box of the
+/// Returns a character's glyph in the first font that has it, otherwise the empty box in the
 /// first font.
 fn letter(fonts: &[FontRef<'_>], character: char) -> Option<Letter> {
     let found = fonts
@@ -59,13 +59,13 @@ fn letter(fonts: &[FontRef<'_>], character: char) -> Option<Letter> {
     })
 }
 
-/// Returns the width of a line of text, relative to the font size.
+/// Returns the width of a text line, relative to the font size.
 pub fn width(words: &str) -> f64 {
     letters(words).iter().map(|letter| letter.advance).sum()
 }
 
 /// Breaks a text between words into lines no wider than `most`, relative to the font size. A word
-/// that is wider has a line of its own.
+/// that is wider has a line to itself.
 pub(super) fn wrapped(text: &str, most: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ').filter(|word| !word.is_empty()) {

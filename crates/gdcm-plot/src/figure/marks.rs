@@ -1,4 +1,4 @@
-//! Marks of a panel: curves, dots, bars, areas, lines and notes in the units of the panel's axes.
+//! Marks in a panel: curves, dots, bars, areas, lines and notes, in axis units.
 //!
 //! | mark | shape | extends the axes | has numbers | in the legend |
 //! |---|---|---|---|---|
@@ -8,10 +8,10 @@
 //! | [`Envelope`] | area between two lines | if it has edges | yes | yes |
 //! | [`Spans`] | vertical ranges, shaded | no | yes | yes |
 //! | [`Intervals`] | vertical ranges, as lines | no | yes | yes |
-//! | [`Brackets`] | pairs of values at the same x | no | yes | yes |
-//! | [`Band`] | shaded range of x | no | no | yes |
+//! | [`Brackets`] | two values at the same x | no | yes | yes |
+//! | [`Band`] | shaded horizontal range | no | no | yes |
 //! | [`Rule`] | straight line across the panel | no | horizontal with a label | no |
-//! | [`Guide`] | line of the grid, with a label | no | no | no |
+//! | [`Guide`] | grid line with a label | no | no | no |
 //! | [`Note`] | text | no | no | no |
 //!
 //! Coordinates are `[x, y]`. On a logarithmic axis they are the values themselves, not their
@@ -24,7 +24,7 @@ use gdcm_model::dataset::{ConditionId, ModelId};
 use super::axis::Range;
 use super::drawing::{Color, Stroke};
 
-/// Contents of a panel; later marks are drawn over earlier ones.
+/// Content drawn in a panel; later marks lie over earlier marks.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
     Curve(Curve),
@@ -43,7 +43,7 @@ pub enum Mark {
 /// A line through points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Subject, used as the heading of its column of numbers.
+    /// Subject, used as a column heading among the numbers.
     pub name: String,
     /// Text in the legend, if any; marks with the same text share an entry.
     pub key: Option<String>,
@@ -53,10 +53,10 @@ pub struct Curve {
     pub y: Arc<[f64]>,
 }
 
-/// Dots of the same style.
+/// Dots in the same style.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dots {
-    /// Subject, used as the heading of their numbers.
+    /// Subject, used as a heading among the numbers.
     pub name: String,
     /// Text in the legend, if any; marks with the same text share an entry.
     pub key: Option<String>,
@@ -69,7 +69,7 @@ pub struct Dots {
     pub dots: Vec<Dot>,
 }
 
-/// Subject of a dot, by which a window recognises the dot under the pointer.
+/// Subject by which a window recognises the dot under the pointer.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum MarkId {
     Condition(ConditionId),
@@ -101,23 +101,23 @@ pub enum DotShape {
     Plus,
 }
 
-/// Vertical bars of the same style.
+/// Vertical bars in the same style.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bars {
-    /// Heading of their numbers and entry in the legend.
+    /// Heading among the numbers, and entry in the legend.
     pub name: String,
     pub color: Color,
-    /// Width in units of x.
+    /// Width in x units.
     pub width: f64,
-    /// `[x, height]` of each bar; a negative height points downwards.
+    /// `[x, height]`; a negative height points downwards.
     pub bars: Vec<[f64; 2]>,
-    /// Lower end of each bar, for stacking; missing entries are 0.
+    /// Lower ends, for stacking; missing entries are 0.
     pub feet: Vec<f64>,
-    /// Offset from x, to make room for other bars at the same x, in units of x.
+    /// Offset from x, in x units, to make room for other bars at the same x.
     pub beside: f64,
 }
 
-/// A shaded range of the horizontal axis, over the full height of the panel.
+/// A shaded horizontal range, over the full panel height.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
     pub range: Range,
@@ -129,10 +129,10 @@ pub struct Band {
 /// Shaded vertical ranges, each at an x: the search ranges of values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spans {
-    /// Heading of their numbers and entry in the legend.
+    /// Heading among the numbers, and entry in the legend.
     pub name: String,
     pub color: Color,
-    /// Width in units of x.
+    /// Width in x units.
     pub width: f64,
     /// `[x, lower end, upper end]`.
     pub spans: Vec<[f64; 3]>,
@@ -141,10 +141,10 @@ pub struct Spans {
 /// The area between two lines over the same x: tolerance about a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Envelope {
-    /// Heading of its numbers and entry in the legend.
+    /// Heading among the numbers, and entry in the legend.
     pub name: String,
     pub color: Color,
-    /// Style of both lines; `None` for a shaded area without lines. On paper an area with lines
+    /// Line style; `None` for a shaded area without lines. On paper an area with lines
     /// stays white.
     pub edge: Option<Stroke>,
     /// `[x, lower end, upper end]`, ascending in x; an end that is not finite leaves a gap.
@@ -154,7 +154,7 @@ pub struct Envelope {
 /// Confidence intervals, each a vertical line at an x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Intervals {
-    /// Heading of their numbers and entry in the legend.
+    /// Heading among the numbers, and entry in the legend.
     pub name: String,
     pub stroke: Stroke,
     /// `[x, lower end, upper end]`.
@@ -164,7 +164,7 @@ pub struct Intervals {
 /// Brackets, each between two different values at the same x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Brackets {
-    /// Heading of their numbers and entry in the legend.
+    /// Heading among the numbers, and entry in the legend.
     pub name: String,
     pub stroke: Stroke,
     pub brackets: Vec<Bracket>,
@@ -191,7 +191,7 @@ pub struct Rule {
     pub label: String,
 }
 
-/// A line for reading values, such as a line of constant damping ratio.
+/// A line for reading values, such as constant damping ratio.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guide {
     pub points: Vec<[f64; 2]>,
@@ -206,23 +206,23 @@ pub struct Note {
     pub text: String,
 }
 
-/// Position of a note.
+/// Note position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
-    /// Centred about a point in the units of the axes.
+    /// Centred about a point in axis units.
     Value {
         x: f64,
         y: f64,
         /// Whether the text runs upwards.
         upright: bool,
     },
-    /// Corner of the panel.
+    /// Panel corner.
     UpperRight,
-    /// Corner of the panel.
+    /// Panel corner.
     LowerLeft,
 }
 
-/// Direction of an axis.
+/// Axis direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
     X,
@@ -290,7 +290,7 @@ impl Curve {
 }
 
 impl Dots {
-    /// Creates an empty group with this style: filled, of the usual size, without an entry in the
+    /// Creates an empty group with this style: filled, in the usual size, without an entry in the
     /// legend.
     pub fn new(name: impl Into<String>, shape: DotShape, color: Color) -> Self {
         Self {
@@ -387,7 +387,7 @@ impl Rule {
 }
 
 impl Along {
-    /// Returns the coordinate of a point in this direction.
+    /// Returns a point's coordinate in this direction.
     fn coordinate(self, [x, y]: [f64; 2]) -> f64 {
         match self {
             Self::X => x,

@@ -1,22 +1,22 @@
-//! Figures: contents of plots, independent of any screen, and their layout for print.
+//! Figures: their description, independent of any screen, and their layout for print.
 //!
 //! A [`Figure`] has plots side by side, a title, a legend and a caption; a [`Plot`](figure::Plot)
 //! has panels below one another; a [`Panel`] has two axes and [marks]. [`Figure::drawing`] lays it
-//! out at the width of a journal's column, in sizes that are readable in print, and in lines that
+//! out at the width of a journal column, in sizes that are readable in print, and in lines that
 //! are distinguishable without colours; [`Figure::tables`] returns its numbers.
 //!
 //! | files | contents |
 //! |---|---|
-//! | [`figure`], [`marks`], [`legend`] | description of a figure |
+//! | [`figure`], [`marks`], [`legend`] | describe a figure |
 //! | [`axis`], `range`, `ticks`, `display_units`, `number_text` | axes, their ticks and texts |
 //! | [`role`], [`drawing`] | line styles and colours by meaning |
-//! | [`bode`], [`error`], [`gains`], [`assessment`], [`poles`], [`leads`], [`requirements`] | the figure of each view |
-//! | [`condition_source`], [`responses`] | curves of a condition, from models and corrections |
-//! | [`layout`], [`letters`], [`label_places`] | places of panels, letters and labels |
+//! | [`bode`], [`error`], [`gains`], [`assessment`], [`poles`], [`leads`], [`requirements`] | a figure for each view |
+//! | [`condition_source`], [`responses`] | curves for a condition, from models and corrections |
+//! | [`layout`], [`letters`], [`label_places`] | places for panels, letters and labels |
 //! | [`paint`], `paint_axes`, `paint_marks`, `paint_dots`, `paint_words` | shapes at their places |
-//! | [`thinning`], [`tables`] | points left out; numbers of a figure |
+//! | [`thinning`], [`tables`] | points left out; numbers in a figure |
 //!
-//! Every view of the window has a function here that describes its figure, and the command `gdcm
+//! Every view in the window has a function here that describes its figure, and the command `gdcm
 //! figure` calls the same function through [`FigureRequest::figure`].
 //!
 //! ```
@@ -116,28 +116,28 @@ use requirements::{record_history_figure, requirements_figure, test_answers_figu
 /// Kind of figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FigureKind {
-    /// Responses of one condition (Figures 2 and 5).
+    /// Responses in a condition (Figures 2 and 5).
     #[default]
     Bode,
-    /// Errors of these responses as the fit sees them.
+    /// Errors that the fit sees in these responses.
     Error,
-    /// All responses of one condition, small.
+    /// All responses in a condition, small.
     Overview,
     /// Net gains against airspeed (Figures 6 and 7).
     NetGain,
-    /// Gains or delays of the channels (Figures 3 and 4).
+    /// Channel gains or delays (Figures 3 and 4).
     Channels,
-    /// Contributions to the scatter of the net gains.
+    /// Contributions to the scatter in net gains.
     Evidence,
     /// Value of the correction (Figures 8 to 19).
     Assessment,
-    /// Poles of all models of one condition.
+    /// Poles of all models in a condition.
     Poles,
-    /// Delay or lead of each channel of one condition, up to ten times the band.
+    /// Delay or lead in each channel of a condition, up to ten times the band.
     Leads,
-    /// Effect of couplings on their loop and on the poles of a condition.
+    /// Effect of couplings on their loop and on a condition's poles.
     Couplings,
-    /// Phase delay over bandwidth of the attitude responses, or models over time.
+    /// Phase delay over bandwidth in attitude responses, or models over time.
     Requirements,
     /// A response in every condition, coloured by airspeed.
     Airspeeds,
@@ -196,12 +196,12 @@ impl FigureKind {
     }
 }
 
-/// Responses of models over time.
+/// Model responses over time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OverTime {
     /// To a test input.
     Test(Arc<TestAnswers>),
-    /// To a flight record, with the index of the drawn input.
+    /// To a flight record; the index selects the drawn input.
     Record(Arc<RecordHistory>, usize),
 }
 
@@ -212,9 +212,9 @@ pub struct FigureRequest {
     pub kind: FigureKind,
     pub pairs: Vec<Pair>,
     pub channels: Vec<Channel>,
-    /// Quantity of the channels.
+    /// Channel quantity.
     pub measure: Measure,
-    /// Horizontal axis of the channels.
+    /// Horizontal axis for channels.
     pub across: Across,
     /// [`usual_choice`] if `None`.
     pub assessed: Option<AssessmentChoice>,
@@ -238,8 +238,8 @@ impl FigureRequest {
         }
     }
 
-    /// Describes the figure from the analysis or, for a figure of a single condition, from the
-    /// source of that condition; `None` if the source or the contents are missing.
+    /// Describes the figure from the analysis or, for a figure that shows a single condition, from the
+    /// condition's source; `None` if the source or the contents are missing.
     pub fn figure(
         &self,
         analysis: Option<&Analysis>,
@@ -283,7 +283,7 @@ impl FigureRequest {
         ))
     }
 
-    /// Computes modes and zeros of all models, and plots them.
+    /// Computes and plots modes and zeros of all models.
     fn poles_figure(&self, source: &ConditionSource<'_>) -> Option<Figure> {
         let modes = ConditionModes::of(&source.curves.condition, &Unobserved).ok()?;
         let zeros = |id: &ModelId| match self.bode.zeros_of {

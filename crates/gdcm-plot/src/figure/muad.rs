@@ -14,7 +14,7 @@ use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 use super::role::Role;
 
 /// Returns the envelopes about the identified representative among `drawn`, hidden or not: a pilot
-/// does not notice the difference of a response within both. Empty unless the options show them.
+/// does not notice the difference if a response lies within both. Empty unless the options show them.
 pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLine> {
     let identified = drawn
         .iter()
@@ -69,7 +69,7 @@ fn envelope(pane: Pane, label: &str, points: Vec<[f64; 2]>) -> ReferenceLine {
     ReferenceLine::new(pane, ReferenceKind::Envelope, label, Level::Sampled(points))
 }
 
-/// Returns the frequency ranges \[rad/s\] at which the error of the corrected curve among `drawn`
+/// Returns the frequency ranges \[rad/s\] at which the error in the corrected curve among `drawn`
 /// leaves the envelopes. Empty unless the options show them.
 pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
     let corrected = drawn.iter().find(|curve| curve.id == CurveId::Corrected);

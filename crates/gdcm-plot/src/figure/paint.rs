@@ -1,4 +1,4 @@
-//! Painting of a figure on paper, and of a single panel on any canvas: shapes and texts at their
+//! Paints a figure on paper, and a single panel on any canvas: shapes and texts at their
 //! positions.
 
 pub use super::paint_dots::dot_shapes;
@@ -22,14 +22,14 @@ const MARGIN: f64 = 3.0;
 /// Space above the legend and above the caption \[pt\].
 const LEGEND_GAP: f64 = 3.0;
 const CAPTION_GAP: f64 = 1.0;
-/// Line around the frame of a panel.
+/// Line around a panel's frame.
 const FRAME: Stroke = Stroke::solid(Color::DIM, 0.6);
-/// Width of a line sample, and of other samples, in the legend \[pt\].
+/// Widths for a line sample, and for other samples, in the legend \[pt\].
 const LINE_SAMPLE: f64 = 22.0;
 const SAMPLE: f64 = 9.0;
-/// Height of a patch in the legend \[pt\].
+/// Patch height in the legend \[pt\].
 const PATCH: f64 = 6.0;
-/// Space between a sample and its text, and between entries of the legend \[pt\].
+/// Space between a sample and its text, and between entries \[pt\].
 const SAMPLE_GAP: f64 = 4.0;
 const ENTRY_GAP: f64 = 10.0;
 
@@ -44,16 +44,16 @@ const CAPTION: TextStyle = TextStyle {
     color: Color::DIM,
 };
 
-/// Style of a block of text.
+/// Style for a text block.
 struct TextStyle {
     size_pt: f64,
-    /// Height of a line \[pt\].
+    /// Line height \[pt\].
     line_pt: f64,
     color: Color,
 }
 
 impl Figure {
-    /// Lays the figure out on paper of this width and paints it: title, panels, legend and caption
+    /// Lays the figure out on paper with this width and paints it: title, panels, legend and caption
     /// below one another.
     pub fn drawing(&self, width: ColumnWidth) -> Drawing {
         let width_pt = width.mm() * PT_PER_MM;
@@ -75,7 +75,7 @@ impl Figure {
         }
     }
 
-    /// Returns the caption, with the number of labels without room, if any.
+    /// Returns the caption, with a count of labels without room, if any.
     fn printed_caption(&self, labels_left_out: usize) -> String {
         match labels_left_out {
             0 => self.caption.clone(),
@@ -92,7 +92,7 @@ struct Page {
     shapes: Vec<Shape>,
     /// Width between the margins \[pt\].
     inner_pt: f64,
-    /// Lower end of the present contents \[pt\].
+    /// Lower end so far \[pt\].
     bottom: f64,
 }
 
@@ -110,7 +110,7 @@ impl Page {
         }
     }
 
-    /// Paints the panels of a figure; returns the number of labels without room.
+    /// Paints a figure's panels; returns how many labels have no room.
     fn paint_panels(&mut self, figure: &Figure) -> usize {
         let layout = Layout::new(figure, self.inner_pt, self.bottom);
         let mut labels_left_out = 0;
@@ -156,7 +156,7 @@ impl Page {
     }
 }
 
-/// Paints a sample of the legend from its left end in the middle of its line.
+/// Paints a sample from its left end in the middle of its line.
 fn sample_shapes(sample: Sample, [start, y]: [f64; 2], sample_width: f64) -> Vec<Shape> {
     match sample {
         Sample::Line(stroke) => {
@@ -182,17 +182,17 @@ fn sample_shapes(sample: Sample, [start, y]: [f64; 2], sample_width: f64) -> Vec
     }
 }
 
-/// Shapes of a panel.
+/// A painted panel.
 struct PaintedPanel {
     shapes: Vec<Shape>,
-    /// Number of labels without room.
+    /// Labels without room.
     labels_left_out: usize,
 }
 
 /// Paints a panel with its frame, axes and title.
 ///
 /// ```text
-/// clipped to the frame: backgrounds, grid, lines of the marks
+/// clipped to the frame: backgrounds, grid, lines
 /// frame, axes, title
 /// dots, labels and texts, which may cross the frame
 /// ```
@@ -219,7 +219,7 @@ fn paint_with_axes(placed: &Placed<'_>) -> PaintedPanel {
     paint_over_lines(placed, shapes)
 }
 
-/// Adds dots, labels and texts to the lines of a panel.
+/// Adds dots, labels and texts to a panel's lines.
 fn paint_over_lines(placed: &Placed<'_>, mut shapes: Vec<Shape>) -> PaintedPanel {
     let dots = dots_and_labels(placed);
     shapes.extend(dots.shapes);
@@ -238,8 +238,8 @@ fn paint_over_lines(placed: &Placed<'_>, mut shapes: Vec<Shape>) -> PaintedPanel
 }
 
 impl Panel {
-    /// Paints the marks in `frame` \[pt\] with these ranges of x and y and this font size \[pt\];
-    /// also returns the number of labels without room. For a canvas that draws frame, axes and
+    /// Paints the marks in `frame` \[pt\] with these x and y ranges and this font size \[pt\];
+    /// also returns how many labels have no room. For a canvas that draws frame, axes and
     /// grid by itself, and on which areas with edges are shaded.
     pub fn shapes(&self, frame: Area, [x, y]: [Range; 2], letters_pt: f64) -> (Vec<Shape>, usize) {
         let placed = Placed {

@@ -1,4 +1,4 @@
-//! Painting of the axes of a panel: grid, ticks, numbers and labels.
+//! Paints a panel's axes: grid, ticks, numbers and labels.
 
 use super::axis::Axis;
 use super::drawing::{Anchor, Area, Color, Shape, Stroke, Text};
@@ -9,10 +9,10 @@ use super::placed::{Placed, Side};
 
 const TICK_LINE: Stroke = Stroke::solid(Color::DIM, 0.6);
 const GRID: Stroke = Stroke::solid(Color::GRID, 0.4);
-/// Length of a tick without a number, relative to other ticks.
+/// Length without a number, relative to other ticks.
 const MINOR: f64 = 0.6;
 
-/// Paints the grid: a line at each tick, except on an axis of names.
+/// Paints the grid: a line at each tick, except on an axis with names.
 pub(super) fn grid(placed: &Placed<'_>) -> Vec<Shape> {
     let panel = placed.panel;
     let mut lines = Vec::new();
@@ -68,7 +68,7 @@ pub(super) fn horizontal_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shap
     shapes
 }
 
-/// Paints ticks, numbers and label at the left of a frame.
+/// Paints ticks, numbers and label left of a frame.
 pub(super) fn vertical_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for tick in &side.ticks {

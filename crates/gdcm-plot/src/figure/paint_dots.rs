@@ -1,4 +1,4 @@
-//! Painting of dots and of the labels beside dots and brackets.
+//! Paints dots, and the labels beside dots and brackets.
 
 use super::drawing::{Area, Color, Dash, Shape, Stroke, Text};
 use super::label_places::{LabelledDot, Surroundings, place_labels};
@@ -8,11 +8,11 @@ use super::placed::{HOOK, Placed};
 
 /// Radius of the usual dot \[pt\].
 const DOT: f64 = 2.1;
-/// Line width of an open dot, of a cross and of a plus of the usual size \[pt\].
+/// Line width for an open dot, a cross or a plus in the usual size \[pt\].
 const DOT_LINE: f64 = 0.9;
 /// Line from a dot to a label away from it.
 const LEADER: Stroke = Stroke::solid(Color::DIM.tint(60), 0.4);
-/// Height of a line of digits relative to the font size: they have no descenders.
+/// Height of digits relative to the font size: they have no descenders.
 const DIGIT_HEIGHT: f64 = 0.74;
 
 const DIAMOND: [[f64; 2]; 4] = [[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]];
@@ -21,7 +21,7 @@ const TRIANGLE: [[f64; 2]; 3] = [[0.0, -1.3], [1.2, 0.9], [-1.2, 0.9]];
 const CROSS: [[[f64; 2]; 2]; 2] = [[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [1.0, -1.0]]];
 const PLUS: [[[f64; 2]; 2]; 2] = [[[-1.3, 0.0], [1.3, 0.0]], [[0.0, -1.3], [0.0, 1.3]]];
 
-/// Style of a dot.
+/// Dot style.
 #[derive(Clone, Copy)]
 pub(super) struct DotStyle {
     pub(super) shape: DotShape,
@@ -60,7 +60,7 @@ impl DotStyle {
                 stroke: None,
             }
         } else {
-            // The outer edge of the line is as far out as that of a filled dot.
+            // The line ends as far out as a filled dot.
             DotPen {
                 radius: self.radius() - 0.5 * DOT_LINE,
                 fill: Some(Color::WHITE),
@@ -103,7 +103,7 @@ impl DotStyle {
     }
 }
 
-/// Radius, fill and line of the outline of a dot.
+/// Radius, fill and line for a dot's outline.
 struct DotPen {
     radius: f64,
     fill: Option<Color>,
@@ -131,10 +131,10 @@ pub fn dot_shapes(
     style.shapes(center)
 }
 
-/// Dots and labels of a panel.
+/// Painted dots and labels.
 pub(super) struct PaintedDots {
     pub(super) shapes: Vec<Shape>,
-    /// Number of labels without room.
+    /// Labels without room.
     pub(super) labels_left_out: usize,
 }
 
@@ -146,7 +146,7 @@ struct Label<'m> {
 }
 
 /// Paints whole dots if their centre is in the frame, with their labels around them, and the labels
-/// of brackets beside these. Leaders lie below the dots, texts above.
+/// for brackets beside these. Leaders lie below the dots, texts above.
 pub(super) fn dots_and_labels(placed: &Placed<'_>) -> PaintedDots {
     let mut dots = Vec::new();
     let mut labels = Vec::new();
@@ -180,7 +180,7 @@ pub(super) fn dots_and_labels(placed: &Placed<'_>) -> PaintedDots {
     }
 }
 
-/// Adds the visible dots of a group, and their labels.
+/// Adds a group's visible dots, and their labels.
 fn add_dots<'m>(
     placed: &Placed<'_>,
     group: &'m Dots,
@@ -207,7 +207,7 @@ fn add_dots<'m>(
     }
 }
 
-/// Adds the labels of brackets, about the middle of their spines.
+/// Adds bracket labels, about the middle of each spine.
 fn add_bracket_labels<'m>(placed: &Placed<'_>, group: &'m Brackets, labels: &mut Vec<Label<'m>>) {
     for bracket in &group.brackets {
         if let Some(ends) = placed.bracket(bracket) {
@@ -234,7 +234,7 @@ fn labelled_dot(placed: &Placed<'_>, center: [f64; 2], radius: f64, label: &str)
     }
 }
 
-/// Returns the obstacles for the labels of a panel.
+/// Returns the obstacles for labels.
 fn surroundings(placed: &Placed<'_>) -> Surroundings {
     let mut path = Vec::new();
     let mut bars = Vec::new();
@@ -270,12 +270,12 @@ fn surroundings(placed: &Placed<'_>) -> Surroundings {
     }
 }
 
-/// Returns whether the dots of a panel may refer to a curve: solid, with an entry in the legend.
+/// Returns whether dots may refer to a curve: solid, with an entry in the legend.
 fn is_subject_of_dots(curve: &Curve) -> bool {
     curve.key.is_some() && curve.stroke.dash == Dash::Solid
 }
 
-/// Returns the area of a vertical line \[pt\].
+/// Returns the area that a vertical line covers \[pt\].
 fn upright_bar([from, to]: [[f64; 2]; 2], width: f64) -> Area {
     let top = from[1].min(to[1]);
     let bottom = from[1].max(to[1]);

@@ -1,18 +1,18 @@
-//! Painting of the marks that are clipped to the frame of a panel: backgrounds, lines and bars.
+//! Paints the marks that are clipped to a panel's frame: backgrounds, lines and bars.
 
 use super::drawing::{Color, Shape, Stroke};
 use super::marks::{Along, Bars, Brackets, Curve, Envelope, Guide, Intervals, Mark, Spans};
 use super::placed::Placed;
 use super::thinning::{Pixel, thinned};
 
-/// Maximum distance of a thinned line from its original points \[pt\]: a tenth of the thinnest
+/// Maximum distance between a thinned line and its original points \[pt\]: a tenth of the thinnest
 /// line.
 const TOLERANCE: f64 = 0.04;
 const FINEST: Pixel = Pixel {
     width: TOLERANCE,
     tolerance: TOLERANCE,
 };
-/// Positions farther out \[pt\] count as gaps of a curve.
+/// Positions farther out \[pt\] count as gaps.
 const FAR_OUT: f64 = 1e6;
 const GUIDE: Stroke = Stroke::solid(Color::DIM.tint(40), 0.4);
 /// Line around a bar.
@@ -59,7 +59,7 @@ fn span_areas(placed: &Placed<'_>, spans: &Spans) -> Vec<Shape> {
     shapes
 }
 
-/// Paints the area of an envelope between its gaps: along the lower line, and back along the upper
+/// Paints an envelope's area between gaps: along the lower line, and back along the upper
 /// line.
 pub(super) fn envelope_areas(placed: &Placed<'_>, envelope: &Envelope) -> Vec<Shape> {
     let ends: Vec<Option<[[f64; 2]; 2]>> = envelope
@@ -81,7 +81,7 @@ pub(super) fn envelope_areas(placed: &Placed<'_>, envelope: &Envelope) -> Vec<Sh
     areas
 }
 
-/// Returns the runs of at least two values between gaps.
+/// Returns the runs between gaps with at least two values.
 fn runs<T: Copy>(values: &[Option<T>]) -> Vec<Vec<T>> {
     values
         .split(Option::is_none)
@@ -100,7 +100,7 @@ fn rectangle(from: [f64; 2], to: [f64; 2], color: Color, stroke: Option<Stroke>)
     }
 }
 
-/// Paints the lines of a mark, which lie over the grid.
+/// Paints a mark's lines, which lie over the grid.
 pub(super) fn mark_lines(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
     match mark {
         Mark::Curve(curve) => curve_lines(placed, curve),
@@ -121,7 +121,7 @@ pub(super) fn mark_lines(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
     }
 }
 
-/// Paints a curve between its gaps, thinned to the resolution of print.
+/// Paints a curve between its gaps, thinned for print.
 fn curve_lines(placed: &Placed<'_>, curve: &Curve) -> Vec<Shape> {
     let mut positions = Vec::new();
     for point in curve.points() {

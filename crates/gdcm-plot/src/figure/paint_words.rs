@@ -1,4 +1,4 @@
-//! Painting of the texts of a panel: labels of rules and guides, and notes.
+//! Paints a panel's texts: labels at rules and guides, and notes.
 
 use super::drawing::{Anchor, Area, Color, Shape, Text};
 use super::layout::{SMALL_LINE, SMALL_PT};
@@ -6,7 +6,7 @@ use super::letters::{HALF_HEIGHT, width};
 use super::marks::{Along, Guide, Mark, Note, Place, Rule};
 use super::placed::Placed;
 
-/// Paints the label of a rule at its upper or right end, on white, so that curves may run behind
+/// Paints a rule's label at its upper or right end, on white, so that curves may run behind
 /// it.
 pub(super) fn rule_label(placed: &Placed<'_>, rule: &Rule) -> Vec<Shape> {
     if rule.label.is_empty() {
@@ -38,7 +38,7 @@ pub(super) fn rule_label(placed: &Placed<'_>, rule: &Rule) -> Vec<Shape> {
     ]
 }
 
-/// Paints the label of a guide, or a note; `None` for other marks and for a text without room.
+/// Paints a guide's label, or a note; `None` for other marks and for a text without room.
 pub(super) fn mark_words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
     let text = match mark {
         Mark::Guide(guide) => guide_label(placed, guide)?,
@@ -48,7 +48,7 @@ pub(super) fn mark_words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
     Some(Shape::Text(text.colored(Color::DIM)))
 }
 
-/// Returns the label of a guide below its last visible point.
+/// Returns a guide's label below its last visible point.
 fn guide_label(placed: &Placed<'_>, guide: &Guide) -> Option<Text> {
     if guide.label.is_empty() {
         return None;

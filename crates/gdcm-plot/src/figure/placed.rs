@@ -5,9 +5,9 @@ use super::drawing::Area;
 use super::figure::Panel;
 use super::marks::{Along, Bracket};
 
-/// Distance of a bracket from its values \[pt\].
+/// Distance between a bracket and its values \[pt\].
 const BRACKET: f64 = 5.0;
-/// Length of the hooks at both ends of a bracket \[pt\].
+/// Hook length at both ends \[pt\].
 pub(super) const HOOK: f64 = 1.8;
 
 /// A panel at its place.
@@ -24,7 +24,7 @@ pub(super) struct Placed<'f> {
     pub(super) letters_pt: f64,
 }
 
-/// Visible range, ticks and label of an axis.
+/// An axis at its place: visible range, ticks and label.
 #[derive(Debug)]
 pub(super) struct Side {
     pub(super) range: Range,
@@ -48,7 +48,7 @@ impl Side {
     }
 }
 
-/// Ends of a bracket \[pt\], in the order of its values.
+/// Bracket ends \[pt\], in the same order as its values.
 pub(super) struct PlacedBracket {
     /// Ends of the line beside the values.
     pub(super) spine: [[f64; 2]; 2],
@@ -57,7 +57,7 @@ pub(super) struct PlacedBracket {
 }
 
 impl Placed<'_> {
-    /// Returns the position of a point; `None` if an axis cannot show it. A point outside the
+    /// Returns a point's position; `None` if an axis cannot show it. A point outside the
     /// ranges has a position outside the frame.
     pub(super) fn at(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let x = self.panel.x.fraction(x, self.x.range)?;
@@ -79,12 +79,12 @@ impl Placed<'_> {
         }
     }
 
-    /// Returns the positions of both ends of a vertical range `[x, lower end, upper end]`.
+    /// Returns both end positions for a vertical range `[x, lower end, upper end]`.
     pub(super) fn vertical(&self, [x, low, high]: [f64; 3]) -> Option<[[f64; 2]; 2]> {
         Some([self.at([x, low])?, self.at([x, high])?])
     }
 
-    /// Returns the ends of a bracket: to the left of its values, or to their right if there is no
+    /// Returns a bracket's ends: to the left of its values, or to their right if there is no
     /// room to the left.
     pub(super) fn bracket(&self, bracket: &Bracket) -> Option<PlacedBracket> {
         let [from, to] = bracket.ends;

@@ -1,4 +1,4 @@
-//! Poles of every model of one condition in the s-plane, and the zeros of a response.
+//! Poles of every model in a condition in the s-plane, and the zeros of a response.
 
 use nalgebra::Complex;
 
@@ -19,7 +19,7 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Dot, DotShape, Dots, Mark, MarkId, Rule};
 use super::role::Role;
 
-/// Real and imaginary ranges of the slow modes \[rad/s\]: those of the rigid-body modes of a
+/// Real and imaginary ranges for slow modes \[rad/s\]: the rigid-body modes of a
 /// helicopter.
 const SLOW: [Range; 2] = [
     Range {
@@ -31,17 +31,17 @@ const SLOW: [Range; 2] = [
         max: 2.2,
     },
 ];
-/// Margins of the whole s-plane along the real and the imaginary axis, as fractions of the range.
+/// Margins in the whole s-plane along the real and the imaginary axis, relative to the range.
 const MARGINS: [f64; 2] = [0.06, 0.08];
-/// Least width and height of the whole s-plane \[rad/s\].
+/// Least width and height in the whole s-plane \[rad/s\].
 const LEAST: f64 = 1.0;
 
-/// Zeros of a model for the response whose zeros are shown.
+/// Zeros of a model for the selected response.
 type ZerosOf<'a> = &'a dyn Fn(&ModelId) -> Vec<Complex<f64>>;
 
-/// Plots the poles of every model of one condition, all of them and a window of the slow modes;
-/// physics models ×, identified models +. `zeros_of` gives the zeros of a model for the response
-/// selected in the options, if any; `shifts` gives the pole shifts of the physics representative
+/// Plots the poles of every model in a condition, all poles and a window about the slow modes;
+/// physics models ×, identified models +. `zeros_of` gives a model's zeros for the response
+/// selected in the options, if any; `shifts` gives the pole shifts in the physics representative
 /// due to couplings.
 pub fn poles_figure(
     source: &ConditionSource<'_>,
@@ -106,7 +106,7 @@ fn shown_models(source: &ConditionSource<'_>, options: &BodeOptions) -> Vec<Sour
     shown
 }
 
-/// Returns the poles of a model; none if they could not be computed.
+/// Returns a model's poles; none if they could not be computed.
 fn pole_dots(model: &SourceModel, modes: &ConditionModes) -> Dots {
     let shape = match model.id.bundle {
         BundleKind::Physics => DotShape::Cross,
@@ -130,7 +130,7 @@ fn model_dot(model: &SourceModel, value: Complex<f64>) -> Dot {
     }
 }
 
-/// Returns the finite transmission zeros of a response of a model of the condition; none for an
+/// Returns the finite transmission zeros of a response for a model in the condition; none for an
 /// unknown model.
 pub fn zeros_of_model(source: &ConditionSource<'_>, pair: Pair, id: &ModelId) -> Vec<Complex<f64>> {
     match source.curves.condition.model(id.bundle, &id.name) {
@@ -139,7 +139,7 @@ pub fn zeros_of_model(source: &ConditionSource<'_>, pair: Pair, id: &ModelId) ->
     }
 }
 
-/// Returns whether the zeros of a model are shown: of the nominal model and both representatives.
+/// Returns whether a model's zeros are shown: for the nominal model and both representatives.
 fn has_zeros(role: Role) -> bool {
     matches!(
         role,
@@ -147,7 +147,7 @@ fn has_zeros(role: Role) -> bool {
     )
 }
 
-/// Returns the zeros of a response of a model, as circles; they may lie outside the plotted
+/// Returns a model's zeros, as circles; they may lie outside the plotted
 /// ranges.
 fn zero_dots(model: &SourceModel, pair_name: &str, zeros_of: ZerosOf<'_>) -> Dots {
     let key = format!("zeros of {pair_name}, {}", model.role.key(model.rejected));

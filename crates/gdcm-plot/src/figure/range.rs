@@ -1,6 +1,6 @@
-//! Range of values shown along an axis.
+//! Range shown along an axis.
 
-/// Range of values shown along an axis: finite, `min < max`.
+/// Range shown along an axis: finite, `min < max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     pub min: f64,
@@ -46,7 +46,7 @@ impl Range {
         self.max - self.min
     }
 
-    /// Returns the mean of the ends.
+    /// Returns the mean of both ends.
     pub fn middle(self) -> f64 {
         0.5 * (self.min + self.max)
     }

@@ -1,9 +1,9 @@
-//! Reference lines of a response and of its errors: targets, bounds, quantiles and envelopes.
+//! Reference lines for responses and errors: targets, bounds, quantiles and envelopes.
 
 use super::bode_curve::Pane;
 use super::drawing::{Color, Dash, Hue, Stroke};
 
-/// Points of a line that is not straight over `log10 omega`.
+/// Points on a line that is not straight over `log10 omega`.
 const POINTS: usize = 80;
 
 /// Frequency dependence of a reference line.
@@ -31,7 +31,7 @@ impl Level {
         }
     }
 
-    /// Returns points `[log10 omega, value]` of the line between two values of `log10 omega`; of a
+    /// Returns points `[log10 omega, value]` along the line between two values of `log10 omega`; for a
     /// sampled level, all samples.
     pub fn points(&self, from: f64, to: f64) -> Vec<[f64; 2]> {
         match self {
@@ -51,9 +51,9 @@ impl Level {
 /// Meaning of a reference line, in the order in which labels are placed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ReferenceKind {
-    /// Delta gain G or delta delay D, the targets of the fit.
+    /// Delta gain G or delta delay D, the fit's targets.
     Delta,
-    /// Lower or upper bound of the channels.
+    /// Lower or upper channel bound.
     Bound,
     /// Quantile over the band.
     Quantile,
@@ -72,7 +72,7 @@ impl ReferenceKind {
         }
     }
 
-    /// Returns the entry in the legend of a figure, for lines without a label in the plot.
+    /// Returns the entry in a figure's legend, for lines without a label in the plot.
     pub fn key(self) -> &'static str {
         match self {
             Self::Delta => "delta gain, delta delay",

@@ -1,4 +1,4 @@
-//! Requirements: phase delay over bandwidth of every attitude response (M17.1), with the
+//! Requirements: phase delay over bandwidth for every attitude response (M17.1), with the
 //! engineer's level boundaries.
 
 use gdcm_method::requirements::LevelBoundaries;
@@ -22,17 +22,17 @@ const INTERVAL: Stroke = Stroke::solid(Color::DIM, 0.7);
 const LEVEL: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
 /// Upper end of shaded areas \[ms\], above every drawn phase delay.
 const BEYOND_MS: f64 = 1e4;
-/// Strength \[%\] of the widest shaded area, and of the narrowest of many.
+/// Strength \[%\] for the widest shaded area, and at most.
 const BEYOND_TINT: usize = 12;
 const MOST_BEYOND_TINT: usize = 48;
-/// Strength \[%\] of a dot whose numbers rest on the model beyond the band.
+/// Strength \[%\] for a dot whose numbers rest on the model beyond the band.
 const RESTS_TINT: u8 = 45;
 
-/// Names of the numbers of a finding.
+/// Names of numbers in a finding.
 const BANDWIDTH: &str = "omega_bw_rad_s";
 const PHASE_DELAY: &str = "phase_delay_s";
 
-/// Returns the point of a response in the plot, bandwidth \[rad/s\] and phase delay \[ms\], if both
+/// Returns a response's point in the plot, bandwidth \[rad/s\] and phase delay \[ms\], if both
 /// are defined.
 pub fn bandwidth_place(finding: &BandwidthFinding) -> Option<[f64; 2]> {
     let omega_bw_rad_s = finding.omega_bw_rad_s?;
@@ -115,7 +115,7 @@ fn area_beyond(boundary: &LevelBoundary, tint: u8) -> Envelope {
     }
 }
 
-/// Draws the boundaries of an axis as lines.
+/// Draws the boundaries for an axis as lines.
 fn boundaries(levels: &LevelBoundaries, axis: &str) -> Vec<Curve> {
     let mut lines = Vec::new();
     for boundary in levels.of_axis(axis) {
@@ -128,7 +128,7 @@ fn boundaries(levels: &LevelBoundaries, axis: &str) -> Vec<Curve> {
     lines
 }
 
-/// Findings of one response in all conditions.
+/// Findings for a response in all conditions.
 struct PairFindings<'a> {
     requirements: &'a Requirements,
     pair: Pair,
@@ -164,7 +164,7 @@ impl<'a> PairFindings<'a> {
         marks
     }
 
-    /// Draws an arrow from the physics model of each condition to its corrected model.
+    /// Draws an arrow from the physics model to the corrected model in each condition.
     fn arrows(&self) -> Vec<Curve> {
         let points: Vec<[f64; 2]> = self.iter().filter_map(bandwidth_place).collect();
         let spans = spans(&points);
@@ -184,7 +184,7 @@ impl<'a> PairFindings<'a> {
         arrows
     }
 
-    /// Draws the intervals of the phase delays, as vertical lines.
+    /// Draws intervals for phase delays, as vertical lines.
     fn delay_intervals(&self) -> Option<Intervals> {
         let mut ends = Vec::new();
         for finding in self.iter() {
@@ -204,7 +204,7 @@ impl<'a> PairFindings<'a> {
         })
     }
 
-    /// Draws the intervals of the bandwidths, as horizontal lines.
+    /// Draws intervals for bandwidths, as horizontal lines.
     fn bandwidth_intervals(&self) -> Vec<Curve> {
         let mut lines = Vec::new();
         for finding in self.iter() {
@@ -219,7 +219,7 @@ impl<'a> PairFindings<'a> {
         lines
     }
 
-    /// Draws the models of a role whose numbers rest, or do not rest, on the model beyond the
+    /// Draws the models in a role whose numbers rest, or do not rest, on the model beyond the
     /// band.
     fn dots(&self, role: RequirementRole, rests_beyond_band: bool) -> Dots {
         let (shape, color) = dot_style(role);

@@ -1,4 +1,4 @@
-//! Curves of one response: of every model of a condition, or of one model of every condition, and
+//! Curves for a response: every model in a condition, or a model in every condition, and
 //! the uncertainty bands about them.
 
 use std::sync::Arc;
@@ -24,12 +24,12 @@ use super::bode_options::BodeOptions;
 use super::condition_source::ConditionSource;
 use super::role::Role;
 
-/// Room that a fitted range leaves for values outside the band on either side, as a fraction of the
+/// Room that a fitted range leaves for values outside the band on either side, relative to the
 /// height within the band.
 const OUTSIDE_PART: f64 = 0.4;
 
 impl ConditionSource<'_> {
-    /// Returns every curve of one response, hidden curves included; phases are aligned with the
+    /// Returns every curve for a response, hidden curves included; phases are aligned with the
     /// reference. `cache` keeps the numbers, and their addresses, until their sources change.
     pub fn response_curves(
         &self,
@@ -73,17 +73,17 @@ impl ConditionSource<'_> {
     }
 }
 
-/// Presentation of one response of a condition.
+/// Presentation of a condition's response.
 struct Presentation<'a> {
     condition: ConditionId,
     pair: Pair,
     options: &'a BodeOptions,
-    /// Frequencies of all shapes \[rad/s\].
+    /// Frequencies for all shapes \[rad/s\].
     omega: &'a Arc<[f64]>,
 }
 
 impl Presentation<'_> {
-    /// Returns a curve with the numbers of a shape, in the displayed phase and moved by its turns.
+    /// Returns a curve with a shape's numbers, in the displayed phase and moved by its turns.
     fn curve(&self, curve: BodeCurve, shape: &ResponseShape) -> BodeCurve {
         let key = (self.condition, self.pair, curve.id.clone());
         let turns = self.options.turns.get(&key).copied().unwrap_or(0);
@@ -105,7 +105,7 @@ fn displayed_phase(phase_deg: &Arc<[f64]>, unit: PhaseUnit, turns: i32) -> Arc<[
     }
 }
 
-/// Notes in the detail of a curve that its phase was moved up by `turns`.
+/// Notes in a curve's detail that its phase was moved up by `turns`.
 fn noted_turns(mut curve: BodeCurve, turns: i32) -> BodeCurve {
     if turns != 0 {
         let moved = format!("phase {}°", signed(360.0 * f64::from(turns), 0));
@@ -118,7 +118,7 @@ fn noted_turns(mut curve: BodeCurve, turns: i32) -> BodeCurve {
     curve
 }
 
-/// Source of the shapes of one response.
+/// Source for the shapes of a response.
 #[derive(Debug)]
 struct ResponseSource {
     curves: Arc<ConditionCurves>,
@@ -139,11 +139,11 @@ impl ResponseSource {
 #[derive(Debug)]
 struct PhaseReference {
     shape: ResponseShape,
-    /// Number of leading frequencies over which phases are compared.
+    /// Count of leading frequencies over which phases are compared.
     points: usize,
 }
 
-/// Shapes of one response of every model of a condition, kept until their source changes.
+/// A response's shapes for every model in a condition, kept until their source changes.
 #[derive(Debug, Default)]
 pub struct ResponseCache {
     source: Option<ResponseSource>,
@@ -154,7 +154,7 @@ pub struct ResponseCache {
 }
 
 impl ResponseCache {
-    /// Computes the shapes of a response. Phases are aligned with the reference around the band.
+    /// Computes a response's shapes. Phases are aligned with the reference around the band.
     /// Identified models end beyond that range, where they carry no information.
     fn refresh(&mut self, source: ResponseSource, band: BandOfComparison) {
         if let Some(known) = &self.source
@@ -163,7 +163,7 @@ impl ResponseCache {
             return;
         }
         let curves = &source.curves;
-        // The last frequency of a grid may exceed its end by a rounding error.
+        // A grid's last frequency may exceed its end by a rounding error.
         let limit = display_band(band).max() * (1.0 + 1e-9);
         let points = curves.grid.omega().partition_point(|omega| *omega <= limit);
         self.reference = curves
@@ -192,7 +192,7 @@ impl ResponseCache {
             .collect()
     }
 
-    /// Returns the shape of a response, with its phase aligned with the reference.
+    /// Returns a response's shape, with its phase aligned with the reference.
     fn aligned_shape(&self, response: &FrequencyResponse, pair: Pair) -> ResponseShape {
         let shape = ResponseShape::of(response.curve(pair));
         match &self.reference {
@@ -209,7 +209,7 @@ impl ResponseCache {
     }
 }
 
-/// Uncertainty band about the curve of a response.
+/// Uncertainty band about a curve.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodeBand {
     /// Frequencies \[rad/s\], ascending.
@@ -220,7 +220,7 @@ pub struct BodeBand {
     pub phase_deg: Vec<[f64; 2]>,
 }
 
-/// Returns the 95 % band of every identified model among `curves` that is visible, kept and has a
+/// Returns the 95 % band for every identified model among `curves` that is visible, kept and has a
 /// known uncertainty.
 pub fn uncertainty_bands(dataset: &Dataset, pair: Pair, curves: &[BodeCurve]) -> Vec<BodeBand> {
     let mut bands = Vec::new();
@@ -238,7 +238,7 @@ pub fn uncertainty_bands(dataset: &Dataset, pair: Pair, curves: &[BodeCurve]) ->
     bands
 }
 
-/// Returns the band about a curve, at those of its frequencies at which deviations are known.
+/// Returns the band about a curve, at frequencies at which deviations are known.
 fn band_about(curve: &BodeCurve, deviations: &ModelBands, pair: Pair) -> BodeBand {
     let sd_db = &deviations.sd_db()[pair];
     let sd_deg = &deviations.sd_deg()[pair];
@@ -258,17 +258,17 @@ fn band_about(curve: &BodeCurve, deviations: &ModelBands, pair: Pair) -> BodeBan
     band
 }
 
-/// Place of a frequency between two neighbours of a grid.
+/// Place of a frequency between two grid neighbours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct GridPlace {
     /// Index of the lower neighbour.
     lower: usize,
-    /// Distance from the lower neighbour in `log omega`, as a fraction of the interval.
+    /// Distance from the lower neighbour in `log omega`, relative to the interval.
     part: f64,
 }
 
 impl GridPlace {
-    /// Returns the place of `omega` in a grid of ascending frequencies; `None` outside.
+    /// Finds `omega` in a grid with ascending frequencies; `None` outside.
     fn find(grid: &[f64], omega: f64) -> Option<Self> {
         let upper = grid.partition_point(|at| *at <= omega);
         let lower = upper.checked_sub(1)?;
@@ -293,21 +293,21 @@ impl GridPlace {
     }
 }
 
-/// Shape of one response of the model of a condition.
+/// A response's shape for a condition's model.
 #[derive(Debug)]
 struct ModelShape {
     id: ModelId,
     shape: ResponseShape,
 }
 
-/// Source of the shapes of one response in several conditions.
+/// Source for the shapes of a response in several conditions.
 #[derive(Debug)]
 struct AirspeedSource {
     curves: Arc<AcrossCurves>,
     pair: Pair,
 }
 
-/// Shapes of one response of a model of each condition, kept until their source changes.
+/// A response's shapes for a model in each condition, kept until their source changes.
 #[derive(Debug, Default)]
 pub struct AirspeedCache {
     source: Option<AirspeedSource>,
@@ -316,7 +316,7 @@ pub struct AirspeedCache {
 }
 
 impl AirspeedCache {
-    /// Computes the shapes of a response; phases are aligned with the first model.
+    /// Computes a response's shapes; phases are aligned with the first model.
     fn refresh(&mut self, curves: &Arc<AcrossCurves>, pair: Pair) {
         if let Some(known) = &self.source
             && Arc::ptr_eq(&known.curves, curves)
@@ -343,8 +343,8 @@ impl AirspeedCache {
     }
 }
 
-/// Returns one response of a model of each condition, in the colour of its airspeed, under the
-/// correction of `role`. Conditions that lack the model or the correction are skipped.
+/// Returns a response of a model in each condition, coloured by airspeed, under the
+/// correction for `role`. Conditions that lack the model or the correction are skipped.
 pub fn airspeed_curves(
     (dataset, analysis): (&Dataset, Option<&Analysis>),
     role: AcrossRole,
@@ -379,7 +379,7 @@ pub fn airspeed_curves(
     drawn
 }
 
-/// Returns the range that shows all values within the band of frequencies \[rad/s\], and values
+/// Returns the range that shows all values within the frequency band \[rad/s\], and values
 /// outside it as far as they leave room for the former; `None` without finite values.
 pub fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -> Option<Range> {
     let mut all = Vec::new();

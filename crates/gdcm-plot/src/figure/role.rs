@@ -1,4 +1,4 @@
-//! Role of a curve, and its appearance: the same in every figure.
+//! Role of a curve, and its appearance, which is the same in every figure.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,18 +25,18 @@ pub enum Role {
     Scheduled,
     /// Representative physics model with the condition's own correction, without its lead filters.
     WithoutLeads,
-    /// Representative physics model with couplings alone: no gain, delay or lead of a channel.
+    /// Representative physics model with couplings alone: no gain, delay or lead in a channel.
     Coupled,
-    /// Physics model with the correction of a variant of the study, overlaid for comparison.
+    /// Physics model with the correction in a study variant, overlaid for comparison.
     Variant,
-    /// Excluded model of any kind.
+    /// Excluded model.
     Rejected,
     /// A model among those of several conditions, from 0 for the slowest to 255 for the fastest.
     OfAirspeed(u8),
 }
 
 impl Role {
-    /// The roles of a single condition, in the order of a legend.
+    /// The roles in a single condition, in legend order.
     pub const ALL: [Self; 11] = [
         Self::Nominal,
         Self::Perturbed,
@@ -51,7 +51,7 @@ impl Role {
         Self::Rejected,
     ];
 
-    /// Returns the role of a model of a condition at an airspeed \[kt\] between `slowest_kt` and
+    /// Returns the role of a model at an airspeed \[kt\] between `slowest_kt` and
     /// `fastest_kt`.
     pub fn of_airspeed(airspeed_kt: f64, slowest_kt: f64, fastest_kt: f64) -> Self {
         let part = if fastest_kt > slowest_kt {
@@ -73,7 +73,7 @@ impl Role {
         }
     }
 
-    /// Returns the name in the legend of the window.
+    /// Returns the name in the window's legend.
     pub fn name(self) -> &'static str {
         match self {
             Self::Nominal => "nominal",
@@ -102,7 +102,7 @@ impl Role {
         }
     }
 
-    /// Returns the displayed role of a curve: `Rejected` for a rejected curve, except that the
+    /// Returns a curve's displayed role: `Rejected` for a rejected curve, except that the
     /// nominal model stays nominal.
     pub fn shown(self, rejected: bool) -> Self {
         if rejected && self != Self::Nominal {
@@ -142,7 +142,7 @@ impl Role {
         self.line(rejected).printed()
     }
 
-    /// Returns the text in the legend of a figure.
+    /// Returns the text in a figure's legend.
     pub fn key(self, rejected: bool) -> &'static str {
         match self.shown(rejected) {
             Self::Nominal if rejected => "nominal (rejected)",

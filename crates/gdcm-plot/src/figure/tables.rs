@@ -10,7 +10,7 @@ use super::axis::Axis;
 use super::figure::{Figure, Panel};
 use super::marks::{Along, Brackets, Curve, Dots, Mark};
 
-/// Columns of a figure's long table.
+/// Columns in a figure's long table.
 pub const LONG_COLUMNS: [&str; 8] = [
     "figure",
     "panel",
@@ -23,17 +23,17 @@ pub const LONG_COLUMNS: [&str; 8] = [
 ];
 
 impl Figure {
-    /// Returns all numbers as the rows of one table under [`LONG_COLUMNS`], a row for each point:
-    /// the title of the figure, the panel (title of the plot, quantity), the curve, the text beside
-    /// the point, and both coordinates, each after the label of its axis. A labelled horizontal
+    /// Returns all numbers as rows under [`LONG_COLUMNS`], a row for each point:
+    /// the figure's title, the panel (plot title, quantity), the curve, the text beside
+    /// the point, and both coordinates, each after its axis label. A labelled horizontal
     /// line has no x.
     pub fn long_rows(&self) -> impl Iterator<Item = [String; 8]> + '_ {
         self.panels()
             .flat_map(|(title, panel)| panel.long_rows(&self.title, title))
     }
 
-    /// Returns the numbers of each panel: a column for each curve if all share their x, otherwise a
-    /// row for each point. Areas on frequencies of their own have tables of their own, after all
+    /// Returns the numbers in each panel: a column for each curve if all share their x, otherwise a
+    /// row for each point. Areas on other frequencies have separate tables, after all
     /// others. Tables without rows are left out.
     pub fn tables(&self) -> Vec<Table> {
         let mut tables = Vec::new();
@@ -62,7 +62,7 @@ fn without_control_codes(mut table: Table) -> Table {
     table
 }
 
-/// Points of a mark, with the texts beside them.
+/// A mark's points, with the texts beside them.
 struct Series {
     name: String,
     x: Arc<[f64]>,
@@ -98,7 +98,7 @@ impl Series {
         }
     }
 
-    /// Creates a series with both ends of each bracket.
+    /// Creates a series through both ends of each bracket.
     fn from_brackets(group: &Brackets) -> Self {
         let mut points = Vec::new();
         let mut labels = Vec::new();
@@ -114,7 +114,7 @@ impl Series {
         }
     }
 
-    /// Creates the series of the lower and the upper ends of vertical ranges.
+    /// Creates one series for the lower and one for the upper ends of vertical ranges.
     fn from_ends(name: &str, ends: &[[f64; 3]]) -> Vec<Self> {
         let mut lower = Vec::new();
         let mut upper = Vec::new();
@@ -128,7 +128,7 @@ impl Series {
         ]
     }
 
-    /// Returns the series of a mark; none for a mark without numbers.
+    /// Returns a mark's series; none for a mark without numbers.
     fn from_mark(mark: &Mark) -> Vec<Self> {
         match mark {
             Mark::Curve(curve) => vec![Self::from_curve(curve)],
@@ -151,7 +151,7 @@ impl Series {
         label.map(String::as_str).unwrap_or_default()
     }
 
-    /// Returns the number of points.
+    /// Returns the point count.
     fn count(&self) -> usize {
         self.x.len().min(self.y.len())
     }
@@ -176,7 +176,7 @@ impl<'m> Constant<'m> {
 }
 
 impl Panel {
-    /// Returns its name among the numbers, in a plot of this title.
+    /// Returns its name among the numbers, in a plot with this title.
     fn name(&self, plot_title: &str) -> String {
         if plot_title.is_empty() {
             self.y.label.clone()
@@ -185,7 +185,7 @@ impl Panel {
         }
     }
 
-    /// Returns its rows of the long table.
+    /// Returns its rows in the long table.
     fn long_rows(&self, figure_title: &str, plot_title: &str) -> Vec<[String; 8]> {
         let name = self.name(plot_title);
         let mut rows = Vec::new();
@@ -204,7 +204,7 @@ impl Panel {
         rows
     }
 
-    /// Returns curve, label, x and y of each point, followed by the constants.
+    /// Returns curve, label, x and y at each point, followed by the constants.
     fn point_rows(&self) -> Vec<[String; 4]> {
         let series: Vec<Series> = self.marks.iter().flat_map(Series::from_mark).collect();
         rows_of_points(&self.x, &series, &self.constants())
@@ -215,7 +215,7 @@ impl Panel {
     }
 }
 
-/// Returns name, label, x and y of each point, followed by the constants.
+/// Returns name, label, x and y at each point, followed by the constants.
 fn rows_of_points(
     x_axis: &Axis,
     series: &[Series],
@@ -243,10 +243,10 @@ fn rows_of_points(
     rows
 }
 
-/// Tables of a panel.
+/// A panel's tables.
 struct PanelTables {
     main: Table,
-    /// Areas on frequencies other than those of the first curve.
+    /// Areas on other frequencies than the first curve.
     areas: Option<Table>,
 }
 
@@ -344,7 +344,7 @@ fn unit_of(label: &str) -> &str {
     label.rfind(" [").map(|at| &label[at..]).unwrap_or_default()
 }
 
-/// Formats an x: on an axis of names, the name of the nearest place, otherwise the number.
+/// Formats an x: on an axis with names, the nearest name, otherwise the number.
 fn x_cell(axis: &Axis, value: f64) -> String {
     let mut names = axis.names.iter().flatten();
     match names.find(|(at, _)| (at - value).abs() < 0.5) {
@@ -355,7 +355,7 @@ fn x_cell(axis: &Axis, value: f64) -> String {
 
 /// Formats a number at full precision; empty if it is not finite.
 fn number_cell(value: f64) -> String {
-    // Debug writes an exponent, unlike Display, which would write hundreds of zeros.
+    // Debug writes an exponent, unlike Display, which may write hundreds of zeros.
     if value.is_finite() {
         format!("{value:?}")
     } else {

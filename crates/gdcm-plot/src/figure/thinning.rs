@@ -1,18 +1,18 @@
-//! Thinning of lines: leaves out points that would not be seen.
+//! Thins lines: leaves out points that would not be seen.
 
 use std::borrow::Cow;
 
-/// Smallest visible distances, in the units of a plot.
+/// Smallest visible distances, in plot units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
-    /// Width of a column of pixels, in units of x.
+    /// Width of a pixel column, in x units.
     pub width: f64,
-    /// Maximum distance of a thinned line from the curve, in units of y.
+    /// Maximum distance between a thinned line and the curve, in y units.
     pub tolerance: f64,
 }
 
 impl Pixel {
-    /// Splits points, ascending in x, by column of pixels.
+    /// Splits points, ascending in x, by pixel column.
     fn columns(self, points: &[[f64; 2]]) -> impl Iterator<Item = &[[f64; 2]]> {
         let mut rest = points;
         std::iter::from_fn(move || {
@@ -28,8 +28,8 @@ impl Pixel {
     }
 }
 
-/// Returns the points of `run` that must be drawn: the extremes in each column of pixels, and as
-/// many others as keep the lines between them within the tolerance of every value. Both ends stay;
+/// Returns the points in `run` that must be drawn: the extremes in each pixel column, and as
+/// many others as keep the lines between them within tolerance for every value. Both ends stay;
 /// a `run` that does not ascend in x is returned whole.
 pub fn thinned(run: &[[f64; 2]], pixel: Pixel) -> Vec<[f64; 2]> {
     if !run.is_sorted_by(|point, next| point[0] < next[0]) {
@@ -38,7 +38,7 @@ pub fn thinned(run: &[[f64; 2]], pixel: Pixel) -> Vec<[f64; 2]> {
     along_wedges(&column_extremes(run, pixel), pixel.tolerance)
 }
 
-/// Returns the first, the least, the greatest and the last point in each column of pixels, in their
+/// Returns the first, the least, the greatest and the last point in each pixel column, in their
 /// order.
 fn column_extremes(run: &[[f64; 2]], pixel: Pixel) -> Cow<'_, [[f64; 2]]> {
     // Most often no column holds three points, and no point can be omitted.
@@ -59,7 +59,7 @@ fn column_extremes(run: &[[f64; 2]], pixel: Pixel) -> Cow<'_, [[f64; 2]]> {
     Cow::Owned(kept)
 }
 
-/// Returns the indices of the first, the least, the greatest and the last point of a column, in
+/// Returns the indices at the first, the least, the greatest and the last point in a column, in
 /// ascending order without duplicates.
 fn extremes_of_column(points: &[[f64; 2]]) -> impl Iterator<Item = usize> {
     let mut least = 0;
@@ -68,7 +68,7 @@ fn extremes_of_column(points: &[[f64; 2]]) -> impl Iterator<Item = usize> {
         if point[1].total_cmp(&points[least][1]).is_lt() {
             least = index;
         }
-        // The last of several equal points, the first of equal least points.
+        // Equal points: the last greatest point, the first least point.
         if point[1].total_cmp(&points[greatest][1]).is_ge() {
             greatest = index;
         }
@@ -79,7 +79,7 @@ fn extremes_of_column(points: &[[f64; 2]]) -> impl Iterator<Item = usize> {
     indices.into_iter()
 }
 
-/// Slopes of lines from the last kept point that pass within tolerance of all values since.
+/// Slopes at which lines from the last kept point pass all values since within tolerance.
 struct Wedge {
     apex: [f64; 2],
     least_slope: f64,
@@ -96,12 +96,12 @@ impl Wedge {
         }
     }
 
-    /// Returns whether the line to a point passes within tolerance of all values.
+    /// Returns whether the line to a point passes all values within tolerance.
     fn contains(&self, [x, y]: [f64; 2]) -> bool {
         (self.least_slope..=self.greatest_slope).contains(&self.slope_to(x, y))
     }
 
-    /// Removes the slopes that do not pass within tolerance of a point.
+    /// Removes the slopes that do not pass a point within tolerance.
     fn narrow(&mut self, [x, y]: [f64; 2], tolerance: f64) {
         self.least_slope = self.least_slope.max(self.slope_to(x, y - tolerance));
         self.greatest_slope = self.greatest_slope.min(self.slope_to(x, y + tolerance));
@@ -112,17 +112,17 @@ impl Wedge {
     }
 }
 
-/// Returns the points of `run` needed for straight lines between them to stay within `tolerance` of
+/// Returns the points in `run` needed for straight lines between them to stay within `tolerance` at
 /// every omitted value.
 ///
 /// ```text
-/// keep the first point; it is the apex of a wedge of slopes
+/// keep the first point: it is the apex from which a wedge opens
 /// for each further point:
-///     if it lies outside the wedge: keep the point before it, which is the apex of a new wedge
-///     narrow the wedge to the slopes that pass within tolerance of the point
+///     if it lies outside the wedge: keep the point before it, the next apex
+///     narrow the wedge to slopes that pass the point within tolerance
 /// keep the last point
 /// ```
-/// Linear in the number of points. Williams, "An efficient algorithm for the piecewise linear
+/// Linear in the point count. Williams, "An efficient algorithm for the piecewise linear
 /// approximation of planar curves", Computer Graphics and Image Processing 8, 1978.
 fn along_wedges(run: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     let Some((first, rest)) = run.split_first() else {

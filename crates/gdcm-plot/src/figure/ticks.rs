@@ -1,9 +1,9 @@
-//! Ticks of a numeric axis: round values, labelled as densely as their room allows.
+//! Ticks on a numeric axis: round values, labelled as densely as their room allows.
 
 use super::number_text::compact;
 use super::range::Range;
 
-/// Mapping of values to positions along an axis.
+/// Mapping from values to positions along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     /// Linear, with ticks at 1, 2 and 5 times a power of ten.
@@ -31,7 +31,7 @@ impl Tick {
     }
 }
 
-/// Minimum distances between ticks of an axis \[pt\].
+/// Minimum distances between ticks \[pt\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TickGaps {
     /// Between labels.
@@ -44,21 +44,21 @@ pub struct TickGaps {
 
 /// Below this width \[decades\], a logarithmic axis may be labelled at equal steps.
 const LINEAR_BELOW: f64 = 0.9;
-/// Round steps of an angle \[deg\].
+/// Round steps for angles \[deg\].
 const DEGREE_STEPS: [f64; 13] = [
     5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0, 720.0, 1800.0, 3600.0, 7200.0,
 ];
 /// Up to this step \[deg\], angles have decimal steps.
 const DECIMAL_DEGREES: f64 = 2.0;
-/// `log10(10 / 9)`: the narrowest gap between the lines of a decade \[decades\].
+/// `log10(10 / 9)`: the narrowest gap between lines in a decade \[decades\].
 const NINE_TO_TEN: f64 = 0.045_757_490_560_675_115;
-/// Minimum distance of 9 and 10 if all nine lines of a decade are labelled \[pt\]: a row of many
+/// Minimum distance from 9 to 10 if all nine lines in a decade are labelled \[pt\]: a row with many
 /// close numbers is hard to read.
 const NINE_LABELS_GAP: f64 = 44.0;
-/// Share of a step by which a tick may lie outside the range, because of rounding.
+/// Part of a step by which a tick may lie outside the range, after rounding.
 const STEP_SLACK: f64 = 1e-6;
 
-/// Returns the ticks of a numeric axis for `range`, shown on a length of `length_pt`, in ascending
+/// Returns the ticks for `range` shown on a length of `length_pt`, in ascending
 /// order.
 pub fn ticks_of(scale: Scale, range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     let least = gaps.labels * range.width() / length_pt;
@@ -69,7 +69,7 @@ pub fn ticks_of(scale: Scale, range: Range, length_pt: f64, gaps: TickGaps) -> V
     }
 }
 
-/// Returns labelled ticks at the multiples of `step`.
+/// Returns labelled ticks at multiples of `step`.
 fn equal_steps(range: Range, step: f64) -> Vec<Tick> {
     let first = (range.min / step - STEP_SLACK).ceil() as i64;
     let last = (range.max / step + STEP_SLACK).floor() as i64;
@@ -81,7 +81,7 @@ fn equal_steps(range: Range, step: f64) -> Vec<Tick> {
     ticks
 }
 
-/// Returns the smallest round step of an angle \[deg\] that is at least `least`.
+/// Returns the smallest round angle step \[deg\] that is at least `least`.
 fn degree_step(least: f64) -> f64 {
     match DEGREE_STEPS.into_iter().find(|step| *step >= least) {
         Some(step) if least > DECIMAL_DEGREES => step,
@@ -105,7 +105,7 @@ pub(super) fn step_above(least: f64) -> f64 {
     10.0 * power
 }
 
-/// Returns the ticks of a logarithmic axis: those of its decades, or equal steps on a small part
+/// Returns ticks on a logarithmic axis: those in decades, or equal steps on a small part
 /// of a decade if these give more labels.
 fn logarithmic_ticks(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     let decades = range.max.log10() - range.min.log10();
@@ -127,7 +127,7 @@ fn logarithmic_ticks(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> 
     }
 }
 
-/// Density of lines and labels within the decades of a logarithmic axis.
+/// Density of lines and labels within decades.
 struct DecadeLabels {
     /// Whether there is room for labels at 2 and 5.
     has_two_and_five: bool,
@@ -135,12 +135,12 @@ struct DecadeLabels {
     has_nine: bool,
     /// Whether there is room for lines without labels.
     has_lines: bool,
-    /// Decades from a labelled power of ten to the next.
+    /// Decades from each labelled power to the next.
     every: i64,
 }
 
 impl DecadeLabels {
-    /// Chooses the density for decades with a length of `decade_pt`.
+    /// Chooses the density for decades `decade_pt` long.
     fn new(decade_pt: f64, gaps: TickGaps) -> Self {
         Self {
             has_two_and_five: decade_pt * 2f64.log10() >= gaps.labels,

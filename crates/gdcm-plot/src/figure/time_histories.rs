@@ -18,14 +18,14 @@ const INPUT: Stroke = Stroke::solid(Color::of(Hue::Text), 1.2);
 /// Flight data and their corridor.
 const FLOWN: Stroke = Stroke::solid(Color::of(Hue::Text), 1.0);
 const CORRIDOR: Color = Color::of(Hue::Text).tint(14);
-/// Height of the difference from flight, relative to 1 for the record.
+/// Height for the difference from flight, relative to 1 for the record.
 const DIFFERENCE_WEIGHT: f64 = 0.55;
 /// Additional line width outside the corridor \[pt\].
 const OUTSIDE_PT: f64 = 1.8;
-/// Height of a plot as a fraction of its width.
+/// Plot height relative to its width.
 const ASPECT: f64 = 0.4;
 
-/// Returns the line of a model over time: as in a Bode plot, except that the identified line is as
+/// Returns a model's line over time: as in a Bode plot, except that the identified line is as
 /// thin as the others.
 fn model_line(role: RequirementRole) -> Stroke {
     let role = match role {
@@ -89,7 +89,7 @@ fn answer_plot(name: &str, unit: &str, curves: Vec<Curve>) -> Plot {
     Plot::new(label).panel(panel.with_all(curves))
 }
 
-/// Returns an output of each model, the first model on top.
+/// Returns an output for each model, the first model on top.
 fn answer_curves(answers: &TestAnswers, time_s: &[f64], output: usize) -> Vec<Curve> {
     let mut curves = Vec::new();
     for (role, answer) in answers.models.iter().rev() {
@@ -102,7 +102,7 @@ fn answer_curves(answers: &TestAnswers, time_s: &[f64], output: usize) -> Vec<Cu
     curves
 }
 
-/// Plots an input of a record, then each quantity with a tolerance: flight data with their corridor
+/// Plots an input from a record, then each quantity with a tolerance: flight data with their corridor
 /// and the response of each model, above the difference between model and flight, both thick
 /// outside the corridor. Every window starts anew.
 pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: usize) -> Figure {
@@ -163,7 +163,7 @@ enum Shown {
     LessFlight,
 }
 
-/// A sample of a window.
+/// A sample in a window.
 #[derive(Clone, Copy)]
 struct Sample<'a> {
     window: &'a ToleranceCheck,
@@ -202,14 +202,14 @@ impl Sample<'_> {
     }
 }
 
-/// A time of a record \[s\], with its sample. Windows are separate: each ends with a time without
+/// A time in a record \[s\], with its sample. Windows are separate: each ends with a time without
 /// a sample, which leaves a gap.
 struct Instant<'a> {
     time_s: f64,
     sample: Option<Sample<'a>>,
 }
 
-/// Returns the times of all windows, in order.
+/// Returns the times in all windows, in order.
 fn instants(check: &RecordCheck) -> Vec<Instant<'_>> {
     let mut instants = Vec::new();
     for window in &check.windows {
@@ -243,7 +243,7 @@ fn values(check: &RecordCheck, value: impl Fn(Sample<'_>) -> f64) -> Vec<[f64; 2
 }
 
 /// Draws the corridor, flight, and each model with its parts outside the corridor. The corridor is
-/// that of the corrected model, otherwise of the first model.
+/// the corrected model's, otherwise the first model's.
 fn history_marks(history: &QuantityHistory, shown: Shown) -> Vec<Mark> {
     let corrected = history
         .models

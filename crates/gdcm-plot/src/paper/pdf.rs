@@ -80,7 +80,7 @@ impl Page {
         page
     }
 
-    /// Returns a position in the coordinates of the page.
+    /// Returns a position in page coordinates.
     fn at(&self, [x, y]: [f64; 2]) -> [f32; 2] {
         [x as f32, (self.height - y) as f32]
     }
@@ -209,7 +209,7 @@ impl Page {
         self.content.end_text();
     }
 
-    /// Writes letters of the same font.
+    /// Writes letters in a single font.
     fn run(&mut self, run: &[Letter], size_pt: f64) {
         let Some(first) = run.first() else { return };
         let codes: Vec<u8> = run
@@ -227,7 +227,7 @@ fn parts(color: Color) -> [f32; 3] {
     color.rgb().map(|part| f32::from(part) / 255.0)
 }
 
-/// Units per em of a PDF font.
+/// Units per em in a PDF font.
 const UNITS: f64 = 1000.0;
 const IDENTITY: SystemInfo<'static> = SystemInfo {
     registry: Str(b"Adobe"),
@@ -235,10 +235,10 @@ const IDENTITY: SystemInfo<'static> = SystemInfo {
     supplement: 0,
 };
 
-/// The letters used, numbered in order of first use in each font.
+/// The letters used, numbered by their first use in each font.
 #[derive(Default)]
 struct UsedLetters {
-    /// In the order of [`FONTS`].
+    /// In the same order as [`FONTS`].
     fonts: [Used; FONTS.len()],
 }
 
@@ -246,12 +246,12 @@ struct UsedLetters {
 #[derive(Default)]
 struct Used {
     numbers: GlyphRemapper,
-    /// In the order of their numbers, which begin with 1.
+    /// By their numbers, which begin with 1.
     letters: Vec<Letter>,
 }
 
 impl UsedLetters {
-    /// Returns the number of a letter in its font.
+    /// Returns a letter's number in its font.
     fn code(&mut self, letter: &Letter) -> u16 {
         let Used { numbers, letters } = &mut self.fonts[letter.font];
         let is_new = numbers.get(letter.glyph).is_none();
@@ -262,7 +262,7 @@ impl UsedLetters {
         code
     }
 
-    /// Writes the used fonts as objects from `first` on; returns the name and the object of each.
+    /// Writes the used fonts as objects from `first` on; returns the name and object for each.
     fn write(&self, pdf: &mut Pdf, first: Ref) -> io::Result<Vec<(&'static str, Ref)>> {
         let mut next = first;
         let mut written = Vec::new();
@@ -275,7 +275,7 @@ impl UsedLetters {
     }
 }
 
-/// Objects of a font in a file.
+/// A font's objects in a file.
 struct FontObjects {
     font: Ref,
     descendant: Ref,
@@ -285,7 +285,7 @@ struct FontObjects {
 }
 
 impl Used {
-    /// Writes the used part of a font with this index in [`FONTS`]; returns its object.
+    /// Writes the letters used from the font with this index in [`FONTS`]; returns its object.
     fn write(&self, pdf: &mut Pdf, index: usize, next: &mut Ref) -> io::Result<Ref> {
         let (name, bytes) = FONTS[index];
         let objects = FontObjects {
@@ -330,7 +330,7 @@ impl Used {
         Ok(objects.font)
     }
 
-    /// Returns the map from numbers of letters to characters, for searching and copying.
+    /// Returns the map from letter numbers to characters, for searching and copying.
     fn characters(&self) -> Vec<u8> {
         let mut map = UnicodeCmap::<u16>::new(Name(b"Custom"), IDENTITY);
         for letter in &self.letters {
@@ -342,7 +342,7 @@ impl Used {
     }
 }
 
-/// Writes the descriptor of a font.
+/// Writes a font descriptor.
 fn describe(pdf: &mut Pdf, objects: &FontObjects, name: Name<'_>, face: &FontRef<'_>) {
     let metrics = face.metrics(Size::new(UNITS as f32), LocationRef::default());
     let bounds = metrics.bounds.unwrap_or_default();

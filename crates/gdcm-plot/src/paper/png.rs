@@ -163,7 +163,7 @@ fn take_color(context: &mut RenderContext, color: Color) {
     context.set_paint(AlphaColor::from_rgb8(red, green, blue));
 }
 
-/// Fills the outlines of the letters.
+/// Fills the letters' outlines.
 fn write(context: &mut RenderContext, text: &Text, fonts: &[FontRef<'_>]) {
     let turn = if text.upright {
         -std::f64::consts::FRAC_PI_2
@@ -194,10 +194,10 @@ fn write(context: &mut RenderContext, text: &Text, fonts: &[FontRef<'_>]) {
     context.fill_path(&(place * pen.path));
 }
 
-/// Collects outlines of letters side by side, y downwards.
+/// Collects outlines side by side, y downwards.
 struct Pen {
     path: BezPath,
-    /// Start of the letter.
+    /// Where the letter starts.
     x: f64,
 }
 

@@ -11,7 +11,7 @@ use crate::figure::letters::{FONTS, width};
 /// Fallback fonts, similarly wide, for a viewer without ours.
 const OTHER_FONTS: &str = "Helvetica, Arial, sans-serif";
 
-/// Returns the contents of an SVG file.
+/// Returns an SVG file's contents.
 pub fn svg(drawing: &Drawing) -> String {
     let head = format!(
         "xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" {}",
@@ -21,7 +21,7 @@ pub fn svg(drawing: &Drawing) -> String {
 }
 
 /// Returns the drawing as an element for an HTML page, which needs no name space. `name` is the
-/// prefix of its internal references: it must be unique on the page.
+/// prefix for its internal references: it must be unique on the page.
 pub fn inline_svg(drawing: &Drawing, name: &str) -> String {
     let label = escaped(&sanitized(&drawing.title));
     let head = format!(
@@ -70,7 +70,7 @@ struct Svg<'a> {
     text: String,
     /// Prefix for the names of clip areas.
     name: &'a str,
-    /// Number of clip areas so far; their names end with their numbers.
+    /// Clip areas so far; their names end with their numbers.
     clips: usize,
 }
 
@@ -162,7 +162,7 @@ impl Svg<'_> {
     }
 }
 
-/// Returns the path data of a polyline.
+/// Returns path data for a polyline.
 fn path(points: &[[f64; 2]], closed: bool) -> String {
     let mut text = String::new();
     for (index, [x, y]) in points.iter().enumerate() {

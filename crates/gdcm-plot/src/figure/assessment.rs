@@ -86,8 +86,7 @@ pub fn usual_choice(analysis: &Analysis) -> AssessmentChoice {
     }
 }
 
-/// Draws a response's bars over the conditions; conditions without a change are marked as left
-/// out.
+/// Draws a response's bars over the conditions; conditions without a change are marked as left out.
 fn change_panel(dataset: &Dataset, table: &AssessmentTable, pair: Pair) -> Panel {
     let conditions = dataset.conditions();
     let names = conditions
@@ -132,8 +131,7 @@ fn left_out_note(x: f64) -> Note {
     }
 }
 
-/// Tabulates the signed ΔJ for each pair, or a `part` of it, in each condition under
-/// its heading.
+/// Tabulates the signed ΔJ for each pair, or a `part` of it, in each condition under its heading.
 pub fn change_table(
     title: impl Into<String>,
     (dataset, found): (&Dataset, &AssessmentTable),

@@ -125,8 +125,8 @@ impl Axis {
         value.is_finite() && (self.scale != Scale::Logarithmic || value > 0.0)
     }
 
-    /// Returns a value's position along the axis: 0 at the lower end of `range`, 1 at the
-    /// upper end; `None` if the axis cannot show the value.
+    /// Returns a value's position along the axis: 0 at the lower end of `range`, 1 at the upper
+    /// end; `None` if the axis cannot show the value.
     pub(super) fn fraction(&self, value: f64, range: Range) -> Option<f64> {
         if !self.can_show(value) {
             return None;

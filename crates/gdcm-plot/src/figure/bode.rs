@@ -140,8 +140,8 @@ impl ResponsePlot<'_> {
         }
     }
 
-    /// Returns the range that shows the visible curves within the band, or up to the end
-    /// of the range without leads, and is at least `least` high.
+    /// Returns the range that shows the visible curves within the band, or up to the end of the
+    /// range without leads, and is at least `least` high.
     fn fitted(&self, pane: Pane, least: f64) -> Option<Range> {
         let visible: Vec<BodeCurve> = self
             .curves
@@ -174,8 +174,7 @@ impl ResponsePlot<'_> {
         }
     }
 
-    /// Returns the background above the band, where a model with leads is not
-    /// valid.
+    /// Returns the background above the band, where a model with leads is not valid.
     fn invalid_ground(&self, up_to: f64) -> Band {
         Band {
             range: self.options.in_unit(self.band.max(), up_to),
@@ -194,8 +193,8 @@ fn band_ground(band: BandOfComparison, options: &BodeOptions) -> Band {
     }
 }
 
-/// Plots the responses `pairs` of a model in every condition, magnitude above phase, from blue
-/// for the slowest condition to amber for the fastest. `None` if no condition has such a model.
+/// Plots the responses `pairs` of a model in every condition, magnitude above phase, from blue for
+/// the slowest condition to amber for the fastest. `None` if no condition has such a model.
 pub fn airspeeds_figure(
     analysis: &Analysis,
     pairs: &[Pair],
@@ -241,8 +240,8 @@ pub fn airspeeds_figure(
     Some(figure.caption(settings_words(dataset, settings)))
 }
 
-/// Plots every response's magnitude in a condition, outputs down, inputs across, with J
-/// before and after the correction.
+/// Plots every response's magnitude in a condition, outputs down, inputs across, with J before and
+/// after the correction.
 pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> Figure {
     let dataset = source.dataset();
     let plots = dataset
@@ -258,8 +257,7 @@ pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> F
         .aspect(0.55)
 }
 
-/// Plots a response's magnitude, with its J; a star after the title marks a constrained
-/// response.
+/// Plots a response's magnitude, with its J; a star after the title marks a constrained response.
 fn overview_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -> Plot {
     let panels = FrequencyPanels {
         curves: &source.response_curves(pair, options, &mut ResponseCache::default()),

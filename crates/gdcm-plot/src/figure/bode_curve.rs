@@ -31,8 +31,8 @@ pub enum Pane {
     Phase,
 }
 
-/// A frequency response with its name and role; also an error, then with the phase
-/// panel in the unit for phase errors.
+/// A frequency response with its name and role; also an error, then with the phase panel in the
+/// unit for phase errors.
 #[derive(Clone, Debug)]
 pub struct BodeCurve {
     pub id: CurveId,
@@ -92,8 +92,8 @@ impl BodeCurve {
         self.shared_values(pane)
     }
 
-    /// Returns [`Self::values`] with their owner, by whose address a holder recognises
-    /// whether the values are unchanged.
+    /// Returns [`Self::values`] with their owner, by whose address a holder recognises whether the
+    /// values are unchanged.
     pub fn shared_values(&self, pane: Pane) -> &Arc<[f64]> {
         match pane {
             Pane::Magnitude => &self.magnitude_db,

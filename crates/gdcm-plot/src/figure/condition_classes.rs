@@ -9,8 +9,8 @@ use gdcm_study::study::ConditionChoice;
 /// Classes that come first in their order, whatever the others are called.
 const FIRST: [&str; 2] = ["low", "light"];
 
-/// Classes in a dataset. Conditions in the first altitude class are circles,
-/// others diamonds; conditions in the first weight class are filled, others open.
+/// Classes in a dataset. Conditions in the first altitude class are circles, others diamonds;
+/// conditions in the first weight class are filled, others open.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Classes {
     /// `low` or `light` first, then in alphabetical order.

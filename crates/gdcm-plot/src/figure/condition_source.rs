@@ -105,7 +105,7 @@ impl<'a> ConditionSource<'a> {
             .map(|analysis| analysis.representative_name(kind))
     }
 
-    /// Returns the index of the identified model with which the others are aligned and compared: the
+    /// Returns the index of the identified model with which the others are compared: the
     /// representative, or the first model before the bundle is compared.
     pub(super) fn reference(&self) -> usize {
         let name = self.representative(BundleKind::Identified);
@@ -113,8 +113,8 @@ impl<'a> ConditionSource<'a> {
             .unwrap_or(0)
     }
 
-    /// Returns a bundle's models in file order; if a model is isolated, only that model and
-    /// the representative.
+    /// Returns a bundle's models in file order; if a model is isolated, only that model and the
+    /// representative.
     pub(super) fn models(&self, kind: BundleKind, options: &BodeOptions) -> Vec<SourceModel> {
         let bundle = self.curves.condition.bundle(kind);
         let mut models = Vec::new();
@@ -192,8 +192,8 @@ impl<'a> ConditionSource<'a> {
     }
 
     /// Returns the corrected versions of the representative physics model: with the condition's own
-    /// correction, with the scheduled one, without leads if there are leads, with couplings alone if
-    /// there are couplings, and with the correction of an overlaid variant.
+    /// correction, with the scheduled correction, without leads, with couplings alone, and with the
+    /// correction of an overlaid variant; as far as they exist.
     pub(super) fn corrected_models(
         &self,
         pair: Pair,

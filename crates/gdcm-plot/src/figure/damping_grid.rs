@@ -51,7 +51,8 @@ pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide
     guides.into_iter()
 }
 
-/// Returns the rays; a label too near the previous label is left out.
+/// Returns rays for a part of the s-plane up to `reach` \[rad/s\]; a label too near the previous
+/// label is left out.
 fn labelled_rays(real: Range, imaginary: Range, reach: f64) -> Vec<Guide> {
     let mut last_label: Option<[f64; 2]> = None;
     let mut rays = Vec::new();

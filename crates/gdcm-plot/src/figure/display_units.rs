@@ -31,8 +31,8 @@ impl FrequencyUnit {
         }
     }
 
-    /// Formats the angular frequency `omega` \[rad/s\] with symbol and unit: `ω 2.05 rad/s` or
-    /// `f 0.326 Hz`.
+    /// Formats the angular frequency `omega` \[rad/s\] with symbol and unit, such as `ω 2.05 rad/s`
+    /// and `f 0.326 Hz`.
     pub fn readout(self, omega: f64) -> String {
         let quantity = match self {
             Self::RadPerSecond => "ω",

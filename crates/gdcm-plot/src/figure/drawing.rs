@@ -35,13 +35,13 @@ pub enum Shape {
         fill: Option<Color>,
         stroke: Option<Stroke>,
     },
-    /// Text on one line.
+    /// A line of text.
     Text(Text),
     /// Shapes clipped to an area.
     Clipped { area: Area, shapes: Vec<Shape> },
 }
 
-/// Text on one line.
+/// A line of text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
     /// Anchor position on the base line.
@@ -94,7 +94,7 @@ impl Text {
 }
 
 impl Anchor {
-    /// Returns the part before the text's position, relative to its width.
+    /// Returns the part of the text before its position, relative to its width.
     pub fn before(self) -> f64 {
         match self {
             Self::Start => 0.0,
@@ -132,8 +132,7 @@ impl Area {
         self.top + self.height
     }
 
-    /// Returns the point at fractions of width, from the left, and height, from the
-    /// bottom.
+    /// Returns the point at fractions of width, from the left, and height, from the bottom.
     pub fn at(&self, x: f64, y: f64) -> [f64; 2] {
         [self.left + x * self.width, self.bottom() - y * self.height]
     }

@@ -58,8 +58,8 @@ fn error_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -
 }
 
 impl ConditionSource<'_> {
-    /// Returns the errors over the band: for every kept physics model, for the reference as the line
-    /// at zero, and for the representative after each correction. `cache` keeps the numbers
+    /// Returns the errors over the band: for every kept physics model, for the reference as the
+    /// line at zero, and for the representative after each correction. `cache` keeps the numbers
     /// until their sources change.
     pub fn error_curves(
         &self,
@@ -113,8 +113,8 @@ impl ConditionSource<'_> {
         drawn
     }
 
-    /// Returns G and D, the channel bounds, and quantiles of the representative's error
-    /// among `drawn`, hidden or not: the values that the fit derives from it (M6, M7).
+    /// Returns G and D, the channel bounds, and quantiles of the representative's error among
+    /// `drawn`, hidden or not: the values that the fit derives from it (M6, M7).
     pub fn error_references(
         &self,
         pair: Pair,
@@ -148,8 +148,8 @@ impl ConditionSource<'_> {
 struct ErrorShape {
     /// `20 log10 |H_sim| / |H_ref|`.
     mismatch_db: Vec<f64>,
-    /// `Delta phi(H_sim, H_ref)` \[rad\] (M3, M6b): never the difference between two separately unwrapped
-    /// phases.
+    /// `Delta phi(H_sim, H_ref)` \[rad\] (M3, M6b): never the difference between two separately
+    /// unwrapped phases.
     phase: Vec<f64>,
 }
 
@@ -233,8 +233,8 @@ impl ErrorSource {
         Arc::ptr_eq(&self.curves, &other.curves) && self.key == other.key
     }
 
-    /// Computes the error of a response over `omega`, the frequencies in the
-    /// band. `None` if the response or the reference is zero or not finite somewhere in it.
+    /// Computes the error of a response over `omega`, the frequencies in the band. `None` if the
+    /// response or the reference is zero or not finite somewhere in it.
     fn shape(&self, response: &FrequencyResponse, omega: &[f64]) -> Option<ErrorShape> {
         let reference = self.polar(self.curves.identified.get(self.key.reference)?)?;
         ErrorShape::new(
@@ -250,8 +250,8 @@ impl ErrorSource {
         PolarCurve::of(response.curve(self.key.pair).get(self.band_indices())?)
     }
 
-    /// Returns weights for the frequencies `omega`, from the reference's coherence; `None`
-    /// without a coherence.
+    /// Returns weights for the frequencies `omega`, from the reference's coherence; `None` without
+    /// a coherence.
     fn coherence_weights(&self, omega: &[f64]) -> Option<CoherenceWeights> {
         let identified = self.curves.condition.bundle(BundleKind::Identified);
         let flight = &identified.get(self.key.reference)?.dynamics;

@@ -53,9 +53,9 @@ const STACK: [Share; 3] = [
     },
 ];
 
-/// Plots how the scatter splits for each pair, at equal airspeed and about the schedule:
-/// variance shares as stacked bars; below them the scatter, its expected value, and the
-/// unexplained rest with its interval. `None` without error bars, or if no pair has a scatter.
+/// Plots how the scatter splits for each pair, at equal airspeed and about the schedule: variance
+/// shares as stacked bars; below them the scatter, its expected value, and the unexplained rest
+/// with its interval. `None` without error bars, or if no pair has a scatter.
 pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     let uncertainty = analysis.uncertainty.as_ref()?;
     let mut plots = Vec::new();
@@ -104,8 +104,8 @@ fn axis() -> Axis {
     Axis::named("Scatter about", ABOUT)
 }
 
-/// Stacks the variance shares due to trim, identification and the rest; above them the
-/// scatter relative to its expected value.
+/// Stacks the variance shares due to trim, identification and the rest; above them the scatter
+/// relative to its expected value.
 fn shares_panel(scatter: &PairScatter) -> Panel {
     let mut stack = STACK.map(|share| Bars {
         name: share.name.to_owned(),
@@ -149,8 +149,8 @@ fn note(x: f64, y: f64, text: String, upright: bool) -> Note {
     }
 }
 
-/// Plots standard deviations in `ln k_o k_i` in percent: the scatter, its expected value, and
-/// the unexplained rest with its interval at this level.
+/// Plots standard deviations in `ln k_o k_i` in percent: the scatter, its expected value, and the
+/// unexplained rest with its interval at this level.
 fn deviations_panel(scatter: &PairScatter, level: f64) -> Panel {
     let mut total = empty_dots("scatter", DotShape::Circle, Color::INK);
     let mut expected = empty_dots("expected", DotShape::Diamond, Color::of(Hue::Perturbed));

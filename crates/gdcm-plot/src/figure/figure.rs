@@ -1,5 +1,5 @@
-//! Describes a figure: plots side by side, each with panels below one another, each with two
-//! axes and marks. Nothing here depends on paper or screen.
+//! Describes a figure: plots side by side, each with panels below one another, each with two axes
+//! and marks. Nothing here depends on paper or screen.
 
 use super::axis::{Axis, Range};
 use super::legend::{Entry, entries};
@@ -24,11 +24,11 @@ pub struct Figure {
     pub shared: Shared,
     /// Total frame height in a plot relative to the frame width.
     pub aspect: f64,
-    /// Whether plots may shrink to the limit of readability, as in a large table.
+    /// Whether plots may shrink to the limit of readability, as a large table needs.
     pub dense: bool,
 }
 
-/// Axes with the same range in all plots; only outer plots show their numbers.
+/// Axes with the same range in all plots; only the outer plots show their numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shared {
     pub x: bool,

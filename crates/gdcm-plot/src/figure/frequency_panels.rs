@@ -81,8 +81,8 @@ impl FrequencyPanels<'_> {
         drawn
     }
 
-    /// Returns a panel's reference lines. A line without its own frequencies runs over
-    /// those of the first curve.
+    /// Returns a panel's reference lines. A line without its own frequencies runs over those of the
+    /// first curve.
     fn reference_marks(&self, pane: Pane, convert: fn(f64) -> f64) -> Vec<Mark> {
         let omega: &[f64] = match self.curves.first() {
             Some(curve) => &curve.omega,
@@ -114,8 +114,8 @@ impl FrequencyPanels<'_> {
     }
 }
 
-/// The last curve's frequencies in the displayed unit: curves in a plot mostly share theirs,
-/// and the figure's curves then share them too.
+/// The last curve's frequencies in the displayed unit: curves in a plot mostly share theirs, and
+/// the figure's curves then share them too.
 #[derive(Default)]
 struct SharedFrequencies {
     omega: Arc<[f64]>,
@@ -164,8 +164,8 @@ fn reference_mark(
         .into()
 }
 
-/// Builds a condition's figure with a plot for each pair side by side. Its title names
-/// `subject`, if any, the pair if there is only one, and the condition.
+/// Builds a condition's figure with a plot for each pair side by side. Its title names `subject`,
+/// if any, the pair if there is only one, and the condition.
 pub(super) fn figure_of_pairs(
     source: &ConditionSource<'_>,
     pairs: &[Pair],
@@ -186,8 +186,7 @@ pub(super) fn figure_of_pairs(
     side_by_side(source.dataset(), pairs, title, plot).caption(source.caption())
 }
 
-/// Builds a figure with a plot for each pair side by side. A single plot has no title
-/// and is wider.
+/// Builds a figure with a plot for each pair side by side. A single plot has no title and is wider.
 pub(super) fn side_by_side(
     dataset: &Dataset,
     pairs: &[Pair],

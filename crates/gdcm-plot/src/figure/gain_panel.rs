@@ -156,8 +156,8 @@ impl GainPanel<'_> {
         ends
     }
 
-    /// Returns, for each airspeed, the difference between two net gains with the largest ratio to its
-    /// expected value (M13.4); the significant ones first.
+    /// Returns, for each airspeed, the pair of net gains whose difference is largest relative to
+    /// its expected value (M13.4); significant differences come first.
     fn brackets(&self) -> Vec<Brackets> {
         let (Some(uncertainty), GainQuantity::NetGain(pair), Across::Airspeed) =
             (self.uncertainty, self.quantity, self.across)
@@ -194,8 +194,8 @@ impl GainPanel<'_> {
             .collect()
     }
 
-    /// Returns the bracket for a difference, labelled with its ratio if it is significant; `None` if
-    /// a condition has no result.
+    /// Returns the bracket for a difference, labelled with its ratio if it is significant; `None`
+    /// without results in both conditions.
     fn bracket(&self, found: &AirspeedDifference, is_significant: bool) -> Option<Bracket> {
         let [first, second] = found.conditions;
         let first = self.analysis.condition(first)?;
@@ -268,8 +268,8 @@ impl GainPanel<'_> {
         })
     }
 
-    /// Returns a group for each condition class; conditions outside the schedule have
-    /// separate groups.
+    /// Returns a group for each condition class; conditions outside the schedule have separate
+    /// groups.
     fn dots(&self) -> Vec<Dots> {
         let classes = Classes::of(&self.analysis.study.dataset);
         let mut groups: Vec<Dots> = Vec::new();

@@ -1,5 +1,4 @@
-//! Quantities that are drawn over conditions: net gains, channel gains and channel
-//! delays.
+//! Quantities that are drawn over conditions: net gains, channel gains and channel delays.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::Schedule;
@@ -125,8 +124,8 @@ impl GainQuantity {
         }
     }
 
-    /// Returns the search bounds for a condition's optimum, in the unit of the measure; `None`
-    /// for a net gain, which has no bounds.
+    /// Returns the search bounds for a condition's optimum, in the unit of the measure; `None` for
+    /// a net gain, which has no bounds.
     pub fn bounds(self, result: &ConditionAnalysis) -> Option<[f64; 2]> {
         match self {
             Self::NetGain(_) => None,
@@ -138,8 +137,8 @@ impl GainQuantity {
         }
     }
 
-    /// Samples the scheduled quantity from the lowest to the highest airspeed:
-    /// `[airspeed, value]` with the airspeed in kt.
+    /// Samples the scheduled quantity from the lowest to the highest airspeed: `[airspeed, value]`
+    /// with the airspeed in kt.
     pub(super) fn samples(self, schedule: &Schedule) -> Vec<[f64; 2]> {
         let from = schedule.airspeeds.min_kt;
         let to = schedule.airspeeds.max_kt;

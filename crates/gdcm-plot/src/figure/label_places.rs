@@ -62,8 +62,8 @@ const DIRECTIONS: [Direction; 8] = [
 /// Distances tried, beyond the radius of the dot \[pt\]; from the second on, a leader connects the
 /// dot to its label.
 const GAPS: [f64; 6] = [1.5, 8.0, 15.0, 22.0, 30.0, 40.0];
-/// Passes in which every label is placed again given the others: early labels make room
-/// for late ones.
+/// Passes in which every label is placed again, given the others: early labels make room for late
+/// labels.
 const SWEEPS: usize = 3;
 /// With more dots, no labels are placed: they would be unreadable and slow to place.
 const MOST_LABELS: usize = 300;
@@ -82,8 +82,8 @@ const AMBIGUOUS: f64 = 6.0;
 /// Cost for each direction before the chosen direction, and per point from the dot.
 const LATER_DIRECTION: f64 = 0.2;
 const FARTHER: f64 = 0.6;
-/// A label with more than this fraction over other labels, dots or the outside is unreadable,
-/// as are those it covers.
+/// A label with more than this fraction over other labels, dots or the outside is unreadable, as
+/// are those it covers.
 const MOST_COVERED: f64 = 0.12;
 /// Side length for the square that approximates a dot, relative to its radius.
 const DOT_SIDE: f64 = 1.9;
@@ -125,7 +125,8 @@ impl LabelledDot {
         )
     }
 
-    /// Returns the distance from the edge to a label; negative if the label covers the dot.
+    /// Returns the distance from the dot's edge to a label; negative if the label covers its
+    /// centre.
     fn distance_to(&self, label: &Area) -> f64 {
         label.distance(self.center) - self.radius
     }
@@ -254,7 +255,7 @@ impl Placing<'_> {
         self.dots.iter().map(|dot| label.overlap(&dot.area())).sum()
     }
 
-    /// Returns the part of a label's area outside the bounds.
+    /// Returns how much of a label's area lies outside the bounds.
     fn outside(&self, label: &Area) -> f64 {
         label.size() - label.overlap(&self.around.bounds)
     }
@@ -283,8 +284,7 @@ impl Placing<'_> {
         worst
     }
 
-    /// Returns the area that a label shares with other labels, dots and the outside, relative to the
-    /// label.
+    /// Returns the part of a label's area over other labels, dots and the outside.
     fn covered_part(&self, index: usize) -> f64 {
         let Some(place) = self.places[index] else {
             return 0.0;

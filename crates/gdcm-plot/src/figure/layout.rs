@@ -8,8 +8,8 @@ use super::figure::{Figure, Plot};
 use super::marks::Along;
 use super::placed::{Placed, Side};
 
-/// Font size for numbers at ticks, legend, caption and texts at dots \[pt\]: the
-/// minimum that journals accept.
+/// Font size for numbers at ticks, legend, caption and texts at dots \[pt\]: the minimum that
+/// journals accept.
 pub(super) const SMALL_PT: f64 = 7.0;
 /// Font size for axis labels and plot titles \[pt\].
 pub(super) const LABEL_PT: f64 = 7.5;
@@ -24,7 +24,7 @@ pub(super) const TICK: f64 = 2.2;
 const COLUMN_GAP: f64 = 9.0;
 /// Space between plots below one another \[pt\].
 const ROW_GAP: f64 = 5.0;
-/// Space between panels below one another \[pt\].
+/// Space between the panels of a plot \[pt\].
 const PANEL_GAP: f64 = 4.0;
 /// Room for half a number, right of the frames \[pt\].
 const RIGHT: f64 = 6.0;
@@ -83,7 +83,7 @@ struct PlotTable<'f> {
     figure: &'f Figure,
     columns: usize,
     rows: usize,
-    /// Upper end, titles included \[pt\].
+    /// Upper end of the table, titles included \[pt\].
     top: f64,
 }
 
@@ -141,20 +141,20 @@ impl<'f> PlotTable<'f> {
         from..(from + self.columns).min(self.figure.plots.len())
     }
 
-    /// Returns whether a plot's horizontal axis has numbers: always if it is not shared,
-    /// otherwise at the bottom only.
+    /// Returns whether a plot's horizontal axis has numbers: always if it is not shared, otherwise
+    /// at the bottom of its column only.
     fn has_x_numbers(&self, index: usize) -> bool {
         !self.figure.shared.x || index + self.columns >= self.figure.plots.len()
     }
 
-    /// Returns whether a plot's vertical axis has numbers: always if it is not shared,
-    /// otherwise at the left only.
+    /// Returns whether a plot's vertical axis has numbers: always if it is not shared, otherwise at
+    /// the left of its row only.
     fn has_y_numbers(&self, index: usize) -> bool {
         !self.figure.shared.y || index.is_multiple_of(self.columns)
     }
 
-    /// Returns whether a panel's vertical axis has a label: at the left of each row, and
-    /// wherever its quantity differs from that.
+    /// Returns whether a panel's vertical axis has a label: at the left of each row, and wherever
+    /// its quantity differs from that.
     fn has_y_label(&self, index: usize, panel: usize) -> bool {
         let first = index - index % self.columns;
         index == first || self.y_label(index, panel) != self.y_label(first, panel)
@@ -314,8 +314,8 @@ fn widest(ticks: &[Tick]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Returns ticks whose labels do not touch. Their number follows from the width of the labels,
-/// which follows from the tick count: two guesses suffice.
+/// Returns ticks whose labels do not touch. The tick count follows from the label widths, which
+/// follow from the tick count: two guesses suffice.
 fn horizontal_ticks(axis: &Axis, range: Range, length_pt: f64) -> Vec<Tick> {
     let close = axis.ticks(range, length_pt, HORIZONTAL_GAP);
     let ticks = axis.ticks(range, length_pt, label_gap(&close));

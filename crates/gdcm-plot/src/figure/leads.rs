@@ -42,7 +42,7 @@ pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
     figure
 }
 
-/// Delay or lead in some channels as drawn.
+/// Delay or lead in a channel, or in two channels together, as drawn.
 struct LeadCurve {
     name: String,
     /// Entry in the legend.
@@ -164,8 +164,8 @@ fn dynamics(correction: &ChannelCorrection, channels: &[Channel]) -> GainDelay {
     ])
 }
 
-/// Adds the background beyond the band, with an entry in the legend, and the line at
-/// which it begins.
+/// Adds the background beyond the band, with an entry in the legend, and the line at which it
+/// begins.
 fn with_limit(panel: Panel, price: &LeadPrice) -> Panel {
     let ground = Band {
         range: Range::new(price.limit_rad_s, price.above_rad_s()),

@@ -26,8 +26,8 @@ pub enum Sample {
     Ground(Color),
 }
 
-/// Returns an entry for each different key among `marks`: roles in the order of [`Role::ALL`],
-/// then the other keys as they appear.
+/// Returns an entry for each different key among `marks`: roles in the order of [`Role::ALL`], then
+/// the other keys as they appear.
 pub(super) fn entries<'m>(marks: impl Iterator<Item = &'m Mark>) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     for entry in marks.filter_map(entry) {

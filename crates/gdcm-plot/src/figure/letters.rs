@@ -39,8 +39,8 @@ pub fn letters(words: &str) -> Vec<Letter> {
         .collect()
 }
 
-/// Returns a character's glyph in the first font that has it, otherwise the empty box in the
-/// first font.
+/// Returns a character's glyph in the first font that has it, otherwise the empty box in the first
+/// font.
 fn letter(fonts: &[FontRef<'_>], character: char) -> Option<Letter> {
     let found = fonts
         .iter()

@@ -144,8 +144,7 @@ pub struct Envelope {
     /// Heading among the numbers, and entry in the legend.
     pub name: String,
     pub color: Color,
-    /// Line style; `None` for a shaded area without lines. On paper an area with lines
-    /// stays white.
+    /// Line style; `None` for a shaded area without lines. On paper an area with lines stays white.
     pub edge: Option<Stroke>,
     /// `[x, lower end, upper end]`, ascending in x; an end that is not finite leaves a gap.
     pub points: Vec<[f64; 3]>,

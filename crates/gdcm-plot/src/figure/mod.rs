@@ -2,8 +2,8 @@
 //!
 //! A [`Figure`] has plots side by side, a title, a legend and a caption; a [`Plot`](figure::Plot)
 //! has panels below one another; a [`Panel`] has two axes and [marks]. [`Figure::drawing`] lays it
-//! out at the width of a journal column, in sizes that are readable in print, and in lines that
-//! are distinguishable without colours; [`Figure::tables`] returns its numbers.
+//! out at the width of a journal column, in sizes that are readable in print, and in lines that are
+//! distinguishable without colours; [`Figure::tables`] returns its numbers.
 //!
 //! | files | contents |
 //! |---|---|
@@ -238,8 +238,8 @@ impl FigureRequest {
         }
     }
 
-    /// Describes the figure from the analysis or, for a figure that shows a single condition, from the
-    /// condition's source; `None` if the source or the contents are missing.
+    /// Describes the figure from the analysis or, for a figure that shows a single condition, from
+    /// the condition's source; `None` if the source or the contents are missing.
     pub fn figure(
         &self,
         analysis: Option<&Analysis>,

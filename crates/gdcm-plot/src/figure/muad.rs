@@ -14,7 +14,7 @@ use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 use super::role::Role;
 
 /// Returns the envelopes about the identified representative among `drawn`, hidden or not: a pilot
-/// does not notice the difference if a response lies within both. Empty unless the options show them.
+/// does not notice the difference to a response within both. Empty unless the options show them.
 pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLine> {
     let identified = drawn
         .iter()

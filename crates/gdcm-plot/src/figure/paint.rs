@@ -1,5 +1,4 @@
-//! Paints a figure on paper, and a single panel on any canvas: shapes and texts at their
-//! positions.
+//! Paints a figure on paper, and a single panel on any canvas: shapes and texts at their positions.
 
 pub use super::paint_dots::dot_shapes;
 
@@ -53,8 +52,8 @@ struct TextStyle {
 }
 
 impl Figure {
-    /// Lays the figure out on paper with this width and paints it: title, panels, legend and caption
-    /// below one another.
+    /// Lays the figure out on paper with this width and paints it: title, panels, legend and
+    /// caption below one another.
     pub fn drawing(&self, width: ColumnWidth) -> Drawing {
         let width_pt = width.mm() * PT_PER_MM;
         let mut page = Page {
@@ -182,7 +181,7 @@ fn sample_shapes(sample: Sample, [start, y]: [f64; 2], sample_width: f64) -> Vec
     }
 }
 
-/// A painted panel.
+/// Shapes for a panel.
 struct PaintedPanel {
     shapes: Vec<Shape>,
     /// Labels without room.
@@ -238,9 +237,9 @@ fn paint_over_lines(placed: &Placed<'_>, mut shapes: Vec<Shape>) -> PaintedPanel
 }
 
 impl Panel {
-    /// Paints the marks in `frame` \[pt\] with these x and y ranges and this font size \[pt\];
-    /// also returns how many labels have no room. For a canvas that draws frame, axes and
-    /// grid by itself, and on which areas with edges are shaded.
+    /// Paints the marks in `frame` \[pt\] with these x and y ranges and this font size \[pt\]; also
+    /// returns how many labels have no room. For a canvas that draws frame, axes and grid by
+    /// itself, and on which areas with edges are shaded.
     pub fn shapes(&self, frame: Area, [x, y]: [Range; 2], letters_pt: f64) -> (Vec<Shape>, usize) {
         let placed = Placed {
             panel: self,

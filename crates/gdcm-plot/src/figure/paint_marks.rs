@@ -59,8 +59,7 @@ fn span_areas(placed: &Placed<'_>, spans: &Spans) -> Vec<Shape> {
     shapes
 }
 
-/// Paints an envelope's area between gaps: along the lower line, and back along the upper
-/// line.
+/// Paints an envelope's area between gaps: along the lower line, and back along the upper line.
 pub(super) fn envelope_areas(placed: &Placed<'_>, envelope: &Envelope) -> Vec<Shape> {
     let ends: Vec<Option<[[f64; 2]; 2]>> = envelope
         .points

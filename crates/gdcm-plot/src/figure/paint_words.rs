@@ -6,8 +6,7 @@ use super::letters::{HALF_HEIGHT, width};
 use super::marks::{Along, Guide, Mark, Note, Place, Rule};
 use super::placed::Placed;
 
-/// Paints a rule's label at its upper or right end, on white, so that curves may run behind
-/// it.
+/// Paints a rule's label at its upper or right end, on white, so that curves may run behind it.
 pub(super) fn rule_label(placed: &Placed<'_>, rule: &Rule) -> Vec<Shape> {
     if rule.label.is_empty() {
         return Vec::new();

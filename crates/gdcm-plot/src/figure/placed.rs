@@ -57,8 +57,8 @@ pub(super) struct PlacedBracket {
 }
 
 impl Placed<'_> {
-    /// Returns a point's position; `None` if an axis cannot show it. A point outside the
-    /// ranges has a position outside the frame.
+    /// Returns a point's position; `None` if an axis cannot show it. A point outside the ranges has
+    /// a position outside the frame.
     pub(super) fn at(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let x = self.panel.x.fraction(x, self.x.range)?;
         let y = self.panel.y.fraction(y, self.y.range)?;
@@ -84,8 +84,8 @@ impl Placed<'_> {
         Some([self.at([x, low])?, self.at([x, high])?])
     }
 
-    /// Returns a bracket's ends: to the left of its values, or to their right if there is no
-    /// room to the left.
+    /// Returns a bracket's ends: to the left of its values, or to their right if there is no room
+    /// to the left.
     pub(super) fn bracket(&self, bracket: &Bracket) -> Option<PlacedBracket> {
         let [from, to] = bracket.ends;
         let from = self.at([bracket.x, from])?;

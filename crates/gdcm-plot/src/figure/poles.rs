@@ -19,8 +19,7 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Dot, DotShape, Dots, Mark, MarkId, Rule};
 use super::role::Role;
 
-/// Real and imaginary ranges for slow modes \[rad/s\]: the rigid-body modes of a
-/// helicopter.
+/// Real and imaginary ranges for slow modes \[rad/s\]: the rigid-body modes of a helicopter.
 const SLOW: [Range; 2] = [
     Range {
         min: -1.2,
@@ -147,8 +146,7 @@ fn has_zeros(role: Role) -> bool {
     )
 }
 
-/// Returns a model's zeros, as circles; they may lie outside the plotted
-/// ranges.
+/// Returns a model's zeros, as circles; they may lie outside the plotted ranges.
 fn zero_dots(model: &SourceModel, pair_name: &str, zeros_of: ZerosOf<'_>) -> Dots {
     let key = format!("zeros of {pair_name}, {}", model.role.key(model.rejected));
     let color = model.role.stroke(model.rejected).color;

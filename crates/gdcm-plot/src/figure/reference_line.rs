@@ -18,8 +18,8 @@ pub enum Level {
 }
 
 impl Level {
-    /// Returns the value at omega \[rad/s\]. A sampled level has values at its samples only, and
-    /// is NaN elsewhere.
+    /// Returns the value at omega \[rad/s\]. A sampled level has values at its samples only, and is
+    /// NaN elsewhere.
     pub fn at(&self, omega: f64) -> f64 {
         match self {
             Self::Constant(value) => *value,
@@ -31,8 +31,8 @@ impl Level {
         }
     }
 
-    /// Returns points `[log10 omega, value]` along the line between two values of `log10 omega`; for a
-    /// sampled level, all samples.
+    /// Returns points `[log10 omega, value]` along the line between two values of `log10 omega`;
+    /// for a sampled level, all samples.
     pub fn points(&self, from: f64, to: f64) -> Vec<[f64; 2]> {
         match self {
             Self::Constant(value) => vec![[from, *value], [to, *value]],

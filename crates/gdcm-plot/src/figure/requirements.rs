@@ -22,7 +22,7 @@ const INTERVAL: Stroke = Stroke::solid(Color::DIM, 0.7);
 const LEVEL: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
 /// Upper end of shaded areas \[ms\], above every drawn phase delay.
 const BEYOND_MS: f64 = 1e4;
-/// Strength \[%\] for the widest shaded area, and at most.
+/// Strength \[%\] of the widest shaded area; each narrower area adds as much, up to the maximum.
 const BEYOND_TINT: usize = 12;
 const MOST_BEYOND_TINT: usize = 48;
 /// Strength \[%\] for a dot whose numbers rest on the model beyond the band.
@@ -32,8 +32,8 @@ const RESTS_TINT: u8 = 45;
 const BANDWIDTH: &str = "omega_bw_rad_s";
 const PHASE_DELAY: &str = "phase_delay_s";
 
-/// Returns a response's point in the plot, bandwidth \[rad/s\] and phase delay \[ms\], if both
-/// are defined.
+/// Returns a response's point in the plot, bandwidth \[rad/s\] and phase delay \[ms\], if both are
+/// defined.
 pub fn bandwidth_place(finding: &BandwidthFinding) -> Option<[f64; 2]> {
     let omega_bw_rad_s = finding.omega_bw_rad_s?;
     let phase_delay_s = finding.phase_delay_s?;
@@ -51,9 +51,9 @@ pub fn bandwidth_pairs(requirements: &Requirements) -> Vec<Pair> {
     pairs
 }
 
-/// Plots phase delay over bandwidth for each attitude response: a dot for each condition and
-/// model, an arrow from the physics model to the corrected model, available intervals, and the
-/// engineer's levels. Dots whose numbers rest on a model beyond the band are pale.
+/// Plots phase delay over bandwidth for each attitude response: a dot for each condition and model,
+/// an arrow from the physics model to the corrected model, available intervals, and the engineer's
+/// levels. Dots whose numbers rest on a model beyond the band are pale.
 pub fn requirements_figure(
     requirements: &Requirements,
     dataset: &Dataset,
@@ -219,7 +219,7 @@ impl<'a> PairFindings<'a> {
         lines
     }
 
-    /// Draws the models in a role whose numbers rest, or do not rest, on the model beyond the
+    /// Draws the models with this role whose numbers rest, or do not rest, on the model beyond the
     /// band.
     fn dots(&self, role: RequirementRole, rests_beyond_band: bool) -> Dots {
         let (shape, color) = dot_style(role);

@@ -1,5 +1,5 @@
-//! Curves for a response: every model in a condition, or a model in every condition, and
-//! the uncertainty bands about them.
+//! Curves of a response, for every model in a condition or for a model in every condition, and the
+//! uncertainty bands about them.
 
 use std::sync::Arc;
 
@@ -143,7 +143,7 @@ struct PhaseReference {
     points: usize,
 }
 
-/// A response's shapes for every model in a condition, kept until their source changes.
+/// Shapes of a response for every model in a condition, kept until their source changes.
 #[derive(Debug, Default)]
 pub struct ResponseCache {
     source: Option<ResponseSource>,
@@ -293,7 +293,7 @@ impl GridPlace {
     }
 }
 
-/// A response's shape for a condition's model.
+/// Shape of a response for the model in a condition.
 #[derive(Debug)]
 struct ModelShape {
     id: ModelId,
@@ -307,7 +307,7 @@ struct AirspeedSource {
     pair: Pair,
 }
 
-/// A response's shapes for a model in each condition, kept until their source changes.
+/// Shapes of a response for a model in each condition, kept until their source changes.
 #[derive(Debug, Default)]
 pub struct AirspeedCache {
     source: Option<AirspeedSource>,
@@ -343,8 +343,8 @@ impl AirspeedCache {
     }
 }
 
-/// Returns a response of a model in each condition, coloured by airspeed, under the
-/// correction for `role`. Conditions that lack the model or the correction are skipped.
+/// Returns a response of a model in each condition, coloured by airspeed, under the correction for
+/// `role`. Conditions that lack the model or the correction are skipped.
 pub fn airspeed_curves(
     (dataset, analysis): (&Dataset, Option<&Analysis>),
     role: AcrossRole,
@@ -379,8 +379,8 @@ pub fn airspeed_curves(
     drawn
 }
 
-/// Returns the range that shows all values within the frequency band \[rad/s\], and values
-/// outside it as far as they leave room for the former; `None` without finite values.
+/// Returns the range that shows all values within the frequency band \[rad/s\], and values outside
+/// it as far as they leave room for the former; `None` without finite values.
 pub fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -> Option<Range> {
     let mut all = Vec::new();
     let mut inside = Vec::new();

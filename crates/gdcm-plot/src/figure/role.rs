@@ -51,8 +51,7 @@ impl Role {
         Self::Rejected,
     ];
 
-    /// Returns the role of a model at an airspeed \[kt\] between `slowest_kt` and
-    /// `fastest_kt`.
+    /// Returns the role of a model at an airspeed \[kt\] between `slowest_kt` and `fastest_kt`.
     pub fn of_airspeed(airspeed_kt: f64, slowest_kt: f64, fastest_kt: f64) -> Self {
         let part = if fastest_kt > slowest_kt {
             (airspeed_kt - slowest_kt) / (fastest_kt - slowest_kt)
@@ -102,8 +101,8 @@ impl Role {
         }
     }
 
-    /// Returns a curve's displayed role: `Rejected` for a rejected curve, except that the
-    /// nominal model stays nominal.
+    /// Returns a curve's displayed role: `Rejected` for a rejected curve, except that the nominal
+    /// model stays nominal.
     pub fn shown(self, rejected: bool) -> Self {
         if rejected && self != Self::Nominal {
             Self::Rejected

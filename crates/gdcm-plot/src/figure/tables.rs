@@ -23,18 +23,17 @@ pub const LONG_COLUMNS: [&str; 8] = [
 ];
 
 impl Figure {
-    /// Returns all numbers as rows under [`LONG_COLUMNS`], a row for each point:
-    /// the figure's title, the panel (plot title, quantity), the curve, the text beside
-    /// the point, and both coordinates, each after its axis label. A labelled horizontal
-    /// line has no x.
+    /// Returns all numbers as rows under [`LONG_COLUMNS`], a row for each point: the figure's
+    /// title, the panel (plot title, quantity), the curve, the text beside the point, and both
+    /// coordinates, each after its axis label. A labelled horizontal line has no x.
     pub fn long_rows(&self) -> impl Iterator<Item = [String; 8]> + '_ {
         self.panels()
             .flat_map(|(title, panel)| panel.long_rows(&self.title, title))
     }
 
     /// Returns the numbers in each panel: a column for each curve if all share their x, otherwise a
-    /// row for each point. Areas on other frequencies have separate tables, after all
-    /// others. Tables without rows are left out.
+    /// row for each point. Areas on other frequencies have separate tables, after all others.
+    /// Tables without rows are left out.
     pub fn tables(&self) -> Vec<Table> {
         let mut tables = Vec::new();
         let mut tables_of_areas = Vec::new();

@@ -28,9 +28,9 @@ impl Pixel {
     }
 }
 
-/// Returns the points in `run` that must be drawn: the extremes in each pixel column, and as
-/// many others as keep the lines between them within tolerance for every value. Both ends stay;
-/// a `run` that does not ascend in x is returned whole.
+/// Returns the points in `run` that must be drawn: the extremes in each pixel column, and as many
+/// others as keep the lines between them within tolerance for every value. Both ends stay; a `run`
+/// that does not ascend in x is returned whole.
 pub fn thinned(run: &[[f64; 2]], pixel: Pixel) -> Vec<[f64; 2]> {
     if !run.is_sorted_by(|point, next| point[0] < next[0]) {
         return run.to_vec();
@@ -68,7 +68,7 @@ fn extremes_of_column(points: &[[f64; 2]]) -> impl Iterator<Item = usize> {
         if point[1].total_cmp(&points[least][1]).is_lt() {
             least = index;
         }
-        // Equal points: the last greatest point, the first least point.
+        // Among equal values: the first least point, the last greatest point.
         if point[1].total_cmp(&points[greatest][1]).is_ge() {
             greatest = index;
         }

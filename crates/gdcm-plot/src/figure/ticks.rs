@@ -58,8 +58,7 @@ const NINE_LABELS_GAP: f64 = 44.0;
 /// Part of a step by which a tick may lie outside the range, after rounding.
 const STEP_SLACK: f64 = 1e-6;
 
-/// Returns the ticks for `range` shown on a length of `length_pt`, in ascending
-/// order.
+/// Returns the ticks for `range` shown on a length of `length_pt`, in ascending order.
 pub fn ticks_of(scale: Scale, range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     let least = gaps.labels * range.width() / length_pt;
     match scale {
@@ -105,8 +104,8 @@ pub(super) fn step_above(least: f64) -> f64 {
     10.0 * power
 }
 
-/// Returns ticks on a logarithmic axis: those in decades, or equal steps on a small part
-/// of a decade if these give more labels.
+/// Returns ticks on a logarithmic axis: those in decades, or equal steps on a small part of a
+/// decade if these give more labels.
 fn logarithmic_ticks(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     let decades = range.max.log10() - range.min.log10();
     let decade_pt = length_pt / decades;

@@ -25,8 +25,8 @@ const OUTSIDE_PT: f64 = 1.8;
 /// Plot height relative to its width.
 const ASPECT: f64 = 0.4;
 
-/// Returns a model's line over time: as in a Bode plot, except that the identified line is as
-/// thin as the others.
+/// Returns a model's line over time: as in a Bode plot, except that the identified line is as thin
+/// as the others.
 fn model_line(role: RequirementRole) -> Stroke {
     let role = match role {
         RequirementRole::Physics => Role::Representative,
@@ -102,9 +102,9 @@ fn answer_curves(answers: &TestAnswers, time_s: &[f64], output: usize) -> Vec<Cu
     curves
 }
 
-/// Plots an input from a record, then each quantity with a tolerance: flight data with their corridor
-/// and the response of each model, above the difference between model and flight, both thick
-/// outside the corridor. Every window starts anew.
+/// Plots an input from a record, then each quantity with a tolerance: flight data with their
+/// corridor and the response of each model, above the difference between model and flight, both
+/// thick outside the corridor. Every window starts anew.
 pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: usize) -> Figure {
     let mut plots = vec![record_input_plot(history, dataset, input)];
     for quantity in &history.quantities {
@@ -202,8 +202,8 @@ impl Sample<'_> {
     }
 }
 
-/// A time in a record \[s\], with its sample. Windows are separate: each ends with a time without
-/// a sample, which leaves a gap.
+/// A time in a record \[s\], with its sample. Windows are separate: each ends with a time without a
+/// sample, which leaves a gap.
 struct Instant<'a> {
     time_s: f64,
     sample: Option<Sample<'a>>,

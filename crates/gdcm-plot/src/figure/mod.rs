@@ -21,7 +21,8 @@
 //!
 //! ```
 //! use gdcm_plot::figure::axis::Axis;
-//! use gdcm_plot::figure::figure::{Curve, Plot};
+//! use gdcm_plot::figure::figure::Plot;
+//! use gdcm_plot::figure::marks::Curve;
 //! use gdcm_plot::figure::{ColumnWidth, Figure, Panel, Role};
 //!
 //! let omega = [0.5, 1.0, 2.0];

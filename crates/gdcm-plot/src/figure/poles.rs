@@ -83,10 +83,10 @@ fn plane_plot(title: &str, [real, imaginary]: [Range; 2], marks: Vec<Mark>) -> P
 /// Returns the real and imaginary ranges that show all poles and the origin, symmetric about the
 /// real axis.
 fn whole_plane(poles: &[Dots]) -> [Range; 2] {
-    let dots = || poles.iter().flat_map(|group| &group.dots);
+    let dots: Vec<&Dot> = poles.iter().flat_map(|group| &group.dots).collect();
     let empty = Range::new(-1.0, 1.0);
-    let real = Range::of(dots().map(|dot| dot.x)).unwrap_or(empty);
-    let imaginary = Range::of(dots().map(|dot| dot.y)).unwrap_or(empty);
+    let real = Range::of(dots.iter().map(|dot| dot.x)).unwrap_or(empty);
+    let imaginary = Range::of(dots.iter().map(|dot| dot.y)).unwrap_or(empty);
     let reach = imaginary.max.abs().max(imaginary.min.abs());
     [
         real.including(0.0).with_margin(MARGINS[0], LEAST),

@@ -13,6 +13,10 @@ use super::bode_options::BodeOptions;
 use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 use super::role::Role;
 
+/// Indices of the lower and the upper envelope in [`Muad`].
+const LOWER: usize = 0;
+const UPPER: usize = 1;
+
 /// Returns the envelopes about the identified representative among `drawn`, hidden or not: a pilot
 /// does not notice the difference to a response within both. Empty unless the options show them.
 pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLine> {
@@ -26,7 +30,10 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
         return Vec::new();
     }
     let mut lines = Vec::new();
-    for (end, label) in [(0, "unnoticed above, MUAD"), (1, "unnoticed below, MUAD")] {
+    for (end, label) in [
+        (LOWER, "unnoticed above, MUAD"),
+        (UPPER, "unnoticed below, MUAD"),
+    ] {
         let mut magnitude = Vec::new();
         let mut phase = Vec::new();
         for (k, &omega) in curve.omega.iter().enumerate() {
@@ -45,7 +52,10 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
 /// that of the model.
 pub(super) fn muad_among_errors(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let mut lines = Vec::new();
-    for (end, label) in [(0, "unnoticed below, MUAD"), (1, "unnoticed above, MUAD")] {
+    for (end, label) in [
+        (LOWER, "unnoticed below, MUAD"),
+        (UPPER, "unnoticed above, MUAD"),
+    ] {
         let mut magnitude = Vec::new();
         let mut phase = Vec::new();
         for &omega in omega {

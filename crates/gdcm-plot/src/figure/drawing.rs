@@ -9,7 +9,7 @@ pub const PT_PER_MM: f64 = 72.0 / 25.4;
 /// A drawing on white paper, in points from the upper left corner, y downwards.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
-    /// Title in the file.
+    /// Title of the file.
     pub title: String,
     /// Width and height \[pt\].
     pub size: [f64; 2],
@@ -17,10 +17,9 @@ pub struct Drawing {
     pub shapes: Vec<Shape>,
 }
 
-/// A shape in a drawing.
+/// A shape of a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// A polyline.
     Path {
         points: Vec<[f64; 2]>,
         /// Whether the last point connects to the first.
@@ -28,7 +27,6 @@ pub enum Shape {
         fill: Option<Color>,
         stroke: Option<Stroke>,
     },
-    /// A circle.
     Circle {
         center: [f64; 2],
         radius: f64,
@@ -77,7 +75,7 @@ impl Text {
         }
     }
 
-    /// Returns the text with another part of it at its position.
+    /// Returns the text anchored at another part.
     pub fn anchored(self, anchor: Anchor) -> Self {
         Self { anchor, ..self }
     }
@@ -188,7 +186,7 @@ fn outside_distance(value: f64, low: f64, high: f64) -> f64 {
 }
 
 impl Shape {
-    /// Creates a polyline.
+    /// Creates an open polyline without fill.
     pub fn line(points: impl Into<Vec<[f64; 2]>>, stroke: Stroke) -> Self {
         Self::Path {
             points: points.into(),

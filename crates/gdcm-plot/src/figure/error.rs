@@ -208,7 +208,7 @@ impl ErrorShape {
     }
 }
 
-/// Choices on which errors depend.
+/// Choices on which the errors of a response depend.
 #[derive(Clone, Debug, PartialEq)]
 struct ErrorKey {
     pair: Pair,
@@ -221,7 +221,7 @@ struct ErrorKey {
     unit: PhaseErrorUnit,
 }
 
-/// Source for errors.
+/// Source of the errors of a response.
 #[derive(Clone, Debug)]
 struct ErrorSource {
     curves: Arc<ConditionCurves>,
@@ -259,7 +259,7 @@ impl ErrorSource {
         Some(weights[self.key.pair].clone())
     }
 
-    /// Returns the frequency indices in the band.
+    /// Returns the indices of the frequencies in the band.
     fn band_indices(&self) -> std::ops::Range<usize> {
         let omega = self.curves.grid.omega();
         let [min, max] = self.key.band;

@@ -15,7 +15,7 @@ use super::marks::{Bars, DotShape, Dots, Intervals, Note, Place};
 const BAR: f64 = 0.56;
 /// Spacing between dots at the same place.
 const APART: f64 = 0.24;
-/// Interval about the unexplained rest.
+/// Interval of the unexplained rest.
 const INTERVAL: Stroke = Stroke::solid(Color::of(Hue::Nominal).tint(50), 2.4);
 /// Intervals are shown up to this many times the scatter.
 const MOST_SEEN: f64 = 4.0;
@@ -31,7 +31,7 @@ const MIDDLE: f64 = 50.0;
 /// Reference for each scatter, in axis order.
 const ABOUT: [&str; 2] = ["airspeed", "schedule"];
 
-/// A share in the variance, and its colour; in print, shares differ in darkness.
+/// A share of the variance, and its colour; in print, shares differ in darkness.
 struct Share {
     name: &'static str,
     hue: Hue,

@@ -1,4 +1,4 @@
-//! Panel for a quantity in the corrections: optima in all conditions, their bounds, error bars and
+//! Panel of a gain or delay: the optima of all conditions with their bounds, error bars and
 //! differences, and the schedule with its bands.
 
 use gdcm_method::schedule::Schedule;
@@ -28,17 +28,17 @@ const BARS_EXTENSION: f64 = 0.5;
 /// Brackets for differences at the same airspeed.
 const SIGNIFICANT_BRACKET: Stroke = Stroke::solid(Color::of(Hue::Warning), 0.7);
 const OTHER_BRACKET: Stroke = Stroke::solid(Color::DIM, 0.4);
-/// Names in the legend.
+/// Names of both kinds of bracket, in the legend and among the numbers.
 pub(super) const SIGNIFICANT: &str = "significant difference, × expected";
 const NOT_SIGNIFICANT: &str = "difference, not significant";
 /// Background of the bounds.
 const BOUNDS: Color = Color::of(Hue::Accent).tint(16);
-/// Its width over airspeed \[kt\].
+/// Width of that background over airspeed \[kt\].
 const BOUNDS_WIDTH_KT: f64 = 3.0;
-/// Its width over conditions, which are 1 apart.
+/// Width of that background over conditions, which are 1 apart.
 const BOUNDS_WIDTH: f64 = 0.7;
 
-/// A quantity in an analysis, with its uncertainty if known.
+/// A gain or delay in an analysis, with its uncertainty if known.
 pub(super) struct GainPanel<'a> {
     pub(super) quantity: GainQuantity,
     pub(super) analysis: &'a Analysis,
@@ -47,7 +47,7 @@ pub(super) struct GainPanel<'a> {
 }
 
 impl GainPanel<'_> {
-    /// Builds the panel with this vertical label.
+    /// Builds the panel; `label` names the vertical axis.
     pub(super) fn panel(&self, label: &str) -> Panel {
         let measure = self.quantity.measure();
         let bars = self.bars();
@@ -142,7 +142,7 @@ impl GainPanel<'_> {
             if let Some(bar) = uncertainty.bar(placed.state.id, scalar)
                 && let Some(interval) = interval(bar, uncertainty.level)
             {
-                // Gains have intervals in logarithms.
+                // Intervals of gains are intervals of their logarithm.
                 let [low, high] = interval.map(|end| {
                     if scalar.is_delay() {
                         s_to_ms(end)
@@ -327,7 +327,7 @@ impl GainPanel<'_> {
 struct BandSample {
     x: f64,
     value: f64,
-    /// In the logarithm of the value.
+    /// About the logarithm of the value.
     widths: BandWidths,
 }
 

@@ -10,10 +10,10 @@ use gdcm_study::study::{Analysis, ConditionAnalysis};
 
 use super::number_text::decimals;
 
-/// Intervals between scheduled samples.
+/// Number of intervals between the samples of a schedule.
 const SAMPLES: usize = 120;
 
-/// Vertical quantity.
+/// Kind of a quantity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Measure {
     /// Ratio; 1 without correction.
@@ -78,14 +78,12 @@ pub enum Across {
     Conditions,
 }
 
-/// A quantity in each condition's correction and in the schedule.
+/// A quantity that the correction of each condition and the schedule define.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GainQuantity {
-    /// Net gain for a response.
+    /// Net gain of a response.
     NetGain(Pair),
-    /// Channel gain.
     Gain(Channel),
-    /// Channel delay.
     Delay(Channel),
 }
 
@@ -98,7 +96,7 @@ impl GainQuantity {
         }
     }
 
-    /// Returns the kind of its values.
+    /// Returns whether it is a gain or a delay.
     pub fn measure(self) -> Measure {
         match self {
             Self::NetGain(_) | Self::Gain(_) => Measure::Gain,

@@ -135,7 +135,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the plot indices in a row.
+    /// Returns the indices of the plots in a row.
     fn row(&self, row: usize) -> std::ops::Range<usize> {
         let from = row * self.columns;
         from..(from + self.columns).min(self.figure.plots.len())

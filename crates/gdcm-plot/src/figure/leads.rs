@@ -14,7 +14,7 @@ use super::gains::all_channels;
 use super::marks::{Band, Curve, Rule};
 use super::role::Role;
 
-/// Points on a curve.
+/// Number of points of a curve.
 const POINTS: usize = 240;
 const OTHERS: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(60), 0.8);
 const OUTPUT: Stroke = Stroke::dashed(Color::of(Hue::Accent), 1.6, Dash::Long);

@@ -53,7 +53,7 @@ pub struct Curve {
     pub y: Arc<[f64]>,
 }
 
-/// Dots in the same style.
+/// Dots of the same style.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dots {
     /// Subject, used as a heading among the numbers.
@@ -101,7 +101,7 @@ pub enum DotShape {
     Plus,
 }
 
-/// Vertical bars in the same style.
+/// Vertical bars of the same style.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bars {
     /// Heading among the numbers, and entry in the legend.
@@ -205,7 +205,7 @@ pub struct Note {
     pub text: String,
 }
 
-/// Note position.
+/// Position of a note.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
     /// Centred about a point in axis units.
@@ -215,13 +215,11 @@ pub enum Place {
         /// Whether the text runs upwards.
         upright: bool,
     },
-    /// Panel corner.
     UpperRight,
-    /// Panel corner.
     LowerLeft,
 }
 
-/// Axis direction.
+/// Direction of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
     X,
@@ -316,7 +314,7 @@ impl Dots {
         Self { filled, ..self }
     }
 
-    /// Returns the dots with another that does not react to the pointer.
+    /// Returns the group with another dot, which does not react to the pointer.
     pub fn dot(mut self, x: f64, y: f64, label: impl Into<String>) -> Self {
         self.dots.push(Dot {
             x,

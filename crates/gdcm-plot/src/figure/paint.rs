@@ -184,7 +184,7 @@ fn sample_shapes(sample: Sample, [start, y]: [f64; 2], sample_width: f64) -> Vec
 /// Shapes for a panel.
 struct PaintedPanel {
     shapes: Vec<Shape>,
-    /// Labels without room.
+    /// Number of labels without room.
     labels_left_out: usize,
 }
 

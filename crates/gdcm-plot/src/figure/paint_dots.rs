@@ -21,7 +21,7 @@ const TRIANGLE: [[f64; 2]; 3] = [[0.0, -1.3], [1.2, 0.9], [-1.2, 0.9]];
 const CROSS: [[[f64; 2]; 2]; 2] = [[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [1.0, -1.0]]];
 const PLUS: [[[f64; 2]; 2]; 2] = [[[-1.3, 0.0], [1.3, 0.0]], [[0.0, -1.3], [0.0, 1.3]]];
 
-/// Dot style.
+/// Style of a dot.
 #[derive(Clone, Copy)]
 pub(super) struct DotStyle {
     pub(super) shape: DotShape,
@@ -60,7 +60,7 @@ impl DotStyle {
                 stroke: None,
             }
         } else {
-            // The line ends as far out as a filled dot.
+            // The outer edge of the line is as far out as the edge of a filled dot.
             DotPen {
                 radius: self.radius() - 0.5 * DOT_LINE,
                 fill: Some(Color::WHITE),
@@ -134,7 +134,7 @@ pub fn dot_shapes(
 /// Painted dots and labels.
 pub(super) struct PaintedDots {
     pub(super) shapes: Vec<Shape>,
-    /// Labels without room.
+    /// Number of labels without room.
     pub(super) labels_left_out: usize,
 }
 

@@ -28,7 +28,7 @@ const MOST_BEYOND_TINT: usize = 48;
 /// Strength \[%\] for a dot whose numbers rest on the model beyond the band.
 const RESTS_TINT: u8 = 45;
 
-/// Names of numbers in a finding.
+/// Names under which a finding lists its numbers.
 const BANDWIDTH: &str = "omega_bw_rad_s";
 const PHASE_DELAY: &str = "phase_delay_s";
 

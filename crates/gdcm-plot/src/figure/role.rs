@@ -31,7 +31,7 @@ pub enum Role {
     Variant,
     /// Excluded model.
     Rejected,
-    /// A model among those of several conditions, from 0 for the slowest to 255 for the fastest.
+    /// A model of one among several conditions, from 0 for the slowest to 255 for the fastest.
     OfAirspeed(u8),
 }
 

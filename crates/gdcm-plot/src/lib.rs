@@ -3,6 +3,11 @@
 //! **Question answered:** how is a result drawn, on paper and (painted by the window) on the
 //! screen?
 //!
+//! | module | contents |
+//! |---|---|
+//! | [`figure`] | the description of a figure for every view, and its shapes at their places |
+//! | [`paper`] | a painted figure as SVG, PDF or PNG |
+//!
 //! A figure travels in four steps:
 //!
 //! 1. **Described** ([`figure::figure`], [`figure::marks`]): plots with panels, axes and marks in

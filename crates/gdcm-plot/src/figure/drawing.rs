@@ -122,10 +122,12 @@ impl Area {
         }
     }
 
+    /// Returns the right edge, `left + width`.
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
+    /// Returns the lower edge, `top + height`.
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }

@@ -6,8 +6,8 @@ use egui::{FontId, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, ve
 
 use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::drawing::{Area, Shape as Drawn, Stroke as Line, Text};
+use gdcm_plot::figure::legend::Sample;
 use gdcm_plot::figure::paint::dot_shapes;
-use gdcm_plot::figure::role::Sample;
 
 use crate::gui::widgets::palette::Palette;
 

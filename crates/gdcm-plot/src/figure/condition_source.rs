@@ -1,4 +1,5 @@
-//! Sources of the figures of one condition, and the words that describe them.
+//! Source for figures about one condition: its models with their roles, the corrected versions of
+//! the representative, and the words that describe them.
 
 use std::sync::Arc;
 
@@ -13,42 +14,28 @@ use gdcm_study::decisions::settings::Settings;
 use gdcm_study::stages::condition_responses::ConditionCurves;
 use gdcm_study::{ConditionAnalysis, CouplingCorrection, PhaseCorrection, Study};
 
+pub use super::bode_curve::CurveId;
+
 use super::axis::compact;
-use super::bode::BodeOptions;
-use super::responses::BodeCurve;
+use super::bode_curve::BodeCurve;
+use super::bode_options::BodeOptions;
 use super::role::Role;
 
-/// Sources of the figures of one condition.
+/// Source for figures about one condition.
 #[derive(Clone, Copy, Debug)]
 pub struct ConditionSource<'a> {
     /// The dataset with its decisions.
     pub study: &'a Study,
-    /// Result of the condition; without it, the responses can still be shown.
+    /// The condition's result; without it, the responses can still be shown.
     pub analysis: Option<&'a ConditionAnalysis>,
     pub schedule: Option<&'a Schedule>,
-    /// Responses of the models of the condition.
+    /// Responses of the condition's models.
     pub curves: &'a Arc<ConditionCurves>,
-    /// Name and result of an overlaid variant of the study.
+    /// Name of an overlaid study variant, and its result for the condition.
     pub variant: Option<(&'a str, &'a ConditionAnalysis)>,
 }
 
-/// Identity of a curve; unique within a scene.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum CurveId {
-    Model(ModelId),
-    /// Representative physics model with the condition's own correction.
-    Corrected,
-    /// Representative physics model with the scheduled correction.
-    Scheduled,
-    /// Representative physics model with the condition's own correction, without its lead filters.
-    WithoutLeads,
-    /// Representative physics model with couplings alone.
-    Coupled,
-    /// Representative physics model of a variant of the study with the variant's own correction.
-    Variant,
-}
-
-/// A model of the condition that is not suppressed by an isolated one.
+/// A model in the condition that is not suppressed by an isolated model.
 #[derive(Clone, Debug)]
 pub(super) struct SourceModel {
     pub(super) id: ModelId,
@@ -60,10 +47,10 @@ pub(super) struct SourceModel {
     pub(super) hidden: bool,
 }
 
-/// The representative physics model after a correction: a curve still without numbers, and its
-/// source.
+/// The representative physics model after a correction.
 #[derive(Clone, Debug)]
 pub(super) struct CorrectedModel<'a> {
+    /// Curve without points.
     pub(super) curve: BodeCurve,
     /// Result that holds its couplings.
     pub(super) result: &'a ConditionAnalysis,
@@ -72,8 +59,16 @@ pub(super) struct CorrectedModel<'a> {
     pub(super) correction: GainDelay,
 }
 
+/// A corrected version of the representative physics model.
+struct Version<'c> {
+    id: CurveId,
+    role: Role,
+    /// Words after the model's name in its label.
+    words: &'static str,
+    correction: &'c ChannelCorrection,
+}
+
 impl<'a> ConditionSource<'a> {
-    /// Returns the id of the condition.
     pub(super) fn id(&self) -> ConditionId {
         self.curves.condition.id()
     }
@@ -86,22 +81,15 @@ impl<'a> ConditionSource<'a> {
     pub fn ratio_unit(dataset: &Dataset, pair: Pair) -> String {
         let output = &dataset.outputs()[pair.output].unit;
         let input = &dataset.inputs()[pair.input].unit;
-        let bracketed = |unit: &str| {
-            if unit.contains('/') {
-                format!("({unit})")
-            } else {
-                unit.to_owned()
-            }
-        };
         format!("{}/{}", bracketed(output), bracketed(input))
     }
 
-    /// `Condition 10: 60 kt, low altitude, high weight`.
+    /// Returns `Condition 10: 60 kt, low altitude, high weight`.
     pub(super) fn condition_words(&self) -> String {
         condition_words(self.curves.condition.flight_state())
     }
 
-    /// Describes the dataset, the condition, the settings and the rejected models.
+    /// Describes the dataset, the settings and the rejected models.
     pub(super) fn caption(&self) -> String {
         let mut caption = settings_words(self.dataset(), &self.study.settings);
         let rejected = self.study.rejected_names(self.id());
@@ -111,108 +99,101 @@ impl<'a> ConditionSource<'a> {
         caption
     }
 
-    /// Returns the representative of a bundle; `None` before the bundle is compared.
+    /// Returns a bundle's representative; `None` before the bundle is compared.
     fn representative(&self, kind: BundleKind) -> Option<&'a str> {
         self.analysis
             .map(|analysis| analysis.representative_name(kind))
     }
 
-    /// Returns the index of the identified model that the others are aligned and compared with; the
-    /// first if nothing was compared.
+    /// Returns the index of the identified model with which the others are compared: the
+    /// representative, or the first model before the bundle is compared.
     pub(super) fn reference(&self) -> usize {
         let name = self.representative(BundleKind::Identified);
         name.and_then(|name| self.curves.condition.position(BundleKind::Identified, name))
             .unwrap_or(0)
     }
 
-    /// Returns the models of a bundle in file order; if a model is isolated, only that model and
-    /// the representative.
+    /// Returns a bundle's models in file order; if a model is isolated, only that model and the
+    /// representative.
     pub(super) fn models(&self, kind: BundleKind, options: &BodeOptions) -> Vec<SourceModel> {
-        let condition = &self.curves.condition;
-        let representative = self.representative(kind);
-        let isolated = options
-            .isolated
-            .as_ref()
-            .filter(|id| id.condition == condition.id());
-        let is_visible = |name: &str| {
-            isolated.is_none_or(|id| {
-                (id.bundle == kind && id.name == name) || representative == Some(name)
-            })
-        };
-        let of_model = |(index, model): (usize, &Model)| {
-            let id = ModelId::new(condition.id(), kind, &model.name);
-            let role = Role::of_model(
-                kind,
-                model.is_nominal(),
-                representative == Some(&model.name),
-            );
-            let rejected = self.study.is_rejected(&id);
-            let hidden = options.hidden.contains(&role.shown(rejected))
-                || options.hidden_models.contains(&id);
-            SourceModel {
-                id,
-                index,
-                role,
-                rejected,
-                hidden,
+        let bundle = self.curves.condition.bundle(kind);
+        let mut models = Vec::new();
+        for (index, model) in bundle.iter().enumerate() {
+            let id = ModelId::new(self.id(), kind, &model.name);
+            if !self.is_suppressed(&id, options) {
+                models.push(self.source_model(id, index, model, options));
             }
-        };
-        condition
-            .bundle(kind)
-            .iter()
-            .enumerate()
-            .filter(|(_, model)| is_visible(&model.name))
-            .map(of_model)
-            .collect()
+        }
+        models
     }
 
-    /// Creates the curve of a model, still without numbers.
-    pub(super) fn curve_of(&self, model: SourceModel) -> BodeCurve {
-        let SourceModel {
+    /// Returns whether another model in the condition is isolated, and this model does not
+    /// represent its bundle.
+    fn is_suppressed(&self, id: &ModelId, options: &BodeOptions) -> bool {
+        match &options.isolated {
+            Some(isolated) if isolated.condition == id.condition => {
+                isolated != id && self.representative(id.bundle) != Some(id.name.as_str())
+            }
+            _ => false,
+        }
+    }
+
+    fn source_model(
+        &self,
+        id: ModelId,
+        index: usize,
+        model: &Model,
+        options: &BodeOptions,
+    ) -> SourceModel {
+        let represents = self.representative(id.bundle) == Some(id.name.as_str());
+        let role = Role::of_model(id.bundle, model.is_nominal(), represents);
+        let rejected = self.study.is_rejected(&id);
+        let hidden =
+            options.hidden.contains(&role.shown(rejected)) || options.hidden_models.contains(&id);
+        SourceModel {
             id,
             index,
             role,
             rejected,
             hidden,
-        } = model;
-        let detail = self.detail(&id, index);
-        let label = id.name.clone();
-        BodeCurve {
-            label,
-            detail,
-            rejected,
-            hidden,
-            ..BodeCurve::new(CurveId::Model(id), role)
         }
     }
 
-    /// Returns the detail of a model: "ratio 3.68, suggested as an outlier · from run 3".
+    /// Creates a model's curve, without points.
+    pub(super) fn curve_of(&self, model: SourceModel) -> BodeCurve {
+        BodeCurve {
+            label: model.id.name.clone(),
+            detail: self.detail(&model.id, model.index),
+            rejected: model.rejected,
+            hidden: model.hidden,
+            ..BodeCurve::new(CurveId::Model(model.id), model.role)
+        }
+    }
+
+    /// Returns a model's detail: `ratio 3.68, suggested as an outlier · from run 3`.
     fn detail(&self, id: &ModelId, index: usize) -> String {
-        let analysis = self.analysis.filter(|_| id.bundle == BundleKind::Physics);
-        let ratio = analysis
-            .and_then(|analysis| analysis.discontinuity_ratio(&id.name))
-            .map(|ratio| {
-                let verdict = if ratio > SUGGESTION_RATIO {
-                    ", suggested as an outlier"
-                } else {
-                    ""
-                };
-                format!("ratio {ratio:.2}{verdict}")
-            });
-        let source = self.curves.condition.bundle(id.bundle)[index]
-            .source
-            .as_ref();
-        let source = source.map(|source| format!("from {}", source.words()));
-        ratio
-            .into_iter()
-            .chain(source)
-            .collect::<Vec<_>>()
-            .join(" · ")
+        let mut parts = Vec::new();
+        if id.bundle == BundleKind::Physics
+            && let Some(analysis) = self.analysis
+            && let Some(ratio) = analysis.discontinuity_ratio(&id.name)
+        {
+            let verdict = if ratio > SUGGESTION_RATIO {
+                ", suggested as an outlier"
+            } else {
+                ""
+            };
+            parts.push(format!("ratio {ratio:.2}{verdict}"));
+        }
+        let model = &self.curves.condition.bundle(id.bundle)[index];
+        if let Some(source) = &model.source {
+            parts.push(format!("from {}", source.words()));
+        }
+        parts.join(" · ")
     }
 
     /// Returns the corrected versions of the representative physics model: with the condition's own
-    /// correction, with the scheduled one, without leads if there are leads, and with an overlaid
-    /// variant's correction.
+    /// correction, with the scheduled correction, without leads, with couplings alone, and with the
+    /// correction of an overlaid variant; as far as they exist.
     pub(super) fn corrected_models(
         &self,
         pair: Pair,
@@ -221,88 +202,119 @@ impl<'a> ConditionSource<'a> {
         let Some(analysis) = self.analysis else {
             return Vec::new();
         };
-        let of = |result: &'a ConditionAnalysis,
-                  (id, role): (CurveId, Role),
-                  words: &str,
-                  correction: &ChannelCorrection| {
-            let name = result.representative_name(BundleKind::Physics);
-            let model = self.curves.condition.position(BundleKind::Physics, name)?;
-            let gain = correction.net_gain(pair);
-            let delay_ms = s_to_ms(correction.net_delay_s(pair));
-            let detail = format!("net gain {gain:.3}, net delay {delay_ms:.1} ms");
-            let label = format!("{name}, {words}");
-            let hidden = options.hidden.contains(&role);
-            let curve = BodeCurve {
-                label,
-                detail,
-                hidden,
-                ..BodeCurve::new(id, role)
-            };
-            Some(CorrectedModel {
-                curve,
-                result,
-                model,
-                correction: correction.on(pair)?,
-            })
+        let mut models = Vec::new();
+        let own = Version {
+            id: CurveId::Corrected,
+            role: Role::Corrected,
+            words: "corrected",
+            correction: &analysis.correction,
         };
-        let corrected =
-            |id, role, words: &str, correction: &_| of(analysis, (id, role), words, correction);
-        let variant = self.variant.and_then(|(name, result)| {
-            let mut model = of(
-                result,
-                (CurveId::Variant, Role::Variant),
-                "corrected",
-                &result.correction,
-            )?;
-            // The chip names the decisions; the representative model is named in its detail.
-            model.curve.detail = format!("{}; {}", model.curve.label, model.curve.detail);
-            model.curve.label = format!("variant {name}");
-            Some(model)
-        });
-        let own = corrected(
-            CurveId::Corrected,
-            Role::Corrected,
-            "corrected",
-            &analysis.correction,
-        );
-        let scheduled = self.schedule.and_then(|schedule| {
-            let correction = schedule.at_state(self.curves.condition.flight_state());
-            corrected(
-                CurveId::Scheduled,
-                Role::Scheduled,
-                "scheduled",
-                &correction,
-            )
-        });
-        let without = analysis.compensated.as_ref().and_then(|_| {
-            let correction = analysis.correction.clone().without_leads();
-            corrected(
-                CurveId::WithoutLeads,
-                Role::WithoutLeads,
-                "corrected without leads",
-                &correction,
-            )
-        });
-        let coupled = analysis.coupled.as_ref().and_then(|_| {
-            let mut model = corrected(
-                CurveId::Coupled,
-                Role::Coupled,
-                "couplings alone",
-                &analysis.correction,
-            )?;
-            (model.correction, model.curve.detail) = (GainDelay::NONE, String::new());
-            Some(model)
-        });
-        own.into_iter()
-            .chain(scheduled)
-            .chain(without)
-            .chain(coupled)
-            .chain(variant)
-            .collect()
+        models.extend(self.corrected_model(analysis, own, pair, options));
+        if let Some(schedule) = self.schedule {
+            let scheduled = Version {
+                id: CurveId::Scheduled,
+                role: Role::Scheduled,
+                words: "scheduled",
+                correction: &schedule.at_state(self.curves.condition.flight_state()),
+            };
+            models.extend(self.corrected_model(analysis, scheduled, pair, options));
+        }
+        if analysis.compensated.is_some() {
+            let without_leads = Version {
+                id: CurveId::WithoutLeads,
+                role: Role::WithoutLeads,
+                words: "corrected without leads",
+                correction: &analysis.correction.clone().without_leads(),
+            };
+            models.extend(self.corrected_model(analysis, without_leads, pair, options));
+        }
+        if analysis.coupled.is_some() {
+            models.extend(self.coupled_model(analysis, pair, options));
+        }
+        if let Some((name, result)) = self.variant {
+            models.extend(self.variant_model(name, result, pair, options));
+        }
+        models
+    }
+
+    /// Returns a version of the representative physics model of `result`; `None` if the condition
+    /// does not have that model, or if the correction does not apply to the response.
+    fn corrected_model(
+        &self,
+        result: &'a ConditionAnalysis,
+        version: Version<'_>,
+        pair: Pair,
+        options: &BodeOptions,
+    ) -> Option<CorrectedModel<'a>> {
+        let name = result.representative_name(BundleKind::Physics);
+        let model = self.curves.condition.position(BundleKind::Physics, name)?;
+        let gain = version.correction.net_gain(pair);
+        let delay_ms = s_to_ms(version.correction.net_delay_s(pair));
+        let curve = BodeCurve {
+            label: format!("{name}, {}", version.words),
+            detail: format!("net gain {gain:.3}, net delay {delay_ms:.1} ms"),
+            hidden: options.hidden.contains(&version.role),
+            ..BodeCurve::new(version.id, version.role)
+        };
+        Some(CorrectedModel {
+            curve,
+            result,
+            model,
+            correction: version.correction.on(pair)?,
+        })
+    }
+
+    /// Returns the representative physics model with couplings alone.
+    fn coupled_model(
+        &self,
+        analysis: &'a ConditionAnalysis,
+        pair: Pair,
+        options: &BodeOptions,
+    ) -> Option<CorrectedModel<'a>> {
+        let version = Version {
+            id: CurveId::Coupled,
+            role: Role::Coupled,
+            words: "couplings alone",
+            correction: &analysis.correction,
+        };
+        let mut model = self.corrected_model(analysis, version, pair, options)?;
+        model.correction = GainDelay::NONE;
+        model.curve.detail.clear();
+        Some(model)
+    }
+
+    /// Returns the representative physics model in the variant `name`.
+    fn variant_model(
+        &self,
+        name: &str,
+        result: &'a ConditionAnalysis,
+        pair: Pair,
+        options: &BodeOptions,
+    ) -> Option<CorrectedModel<'a>> {
+        let version = Version {
+            id: CurveId::Variant,
+            role: Role::Variant,
+            words: "corrected",
+            correction: &result.correction,
+        };
+        let mut model = self.corrected_model(result, version, pair, options)?;
+        // The label names the variant; the detail names its representative.
+        model.curve.detail = format!("{}; {}", model.curve.label, model.curve.detail);
+        model.curve.label = format!("variant {name}");
+        Some(model)
     }
 }
 
-/// `Condition 10: 60 kt, low altitude, high weight`.
+/// Returns a unit in brackets if it is a quotient: `(deg/s)`.
+fn bracketed(unit: &str) -> String {
+    if unit.contains('/') {
+        format!("({unit})")
+    } else {
+        unit.to_owned()
+    }
+}
+
+/// Returns `Condition 10: 60 kt, low altitude, high weight`.
 pub fn condition_words(FlightState { id, name, .. }: &FlightState) -> String {
     if name.is_empty() {
         format!("Condition {id}")
@@ -311,7 +323,7 @@ pub fn condition_words(FlightState { id, name, .. }: &FlightState) -> String {
     }
 }
 
-/// Describes the dataset and the settings behind every figure of the analysis.
+/// Describes the dataset and the settings behind every figure.
 pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
     let low = compact(settings.band.min());
     let high = compact(settings.band.max());
@@ -342,15 +354,16 @@ pub fn quantity_symbol(quantity: ScheduledQuantity) -> &'static str {
     }
 }
 
-/// Describes the schedule: "polynomial of degree 2 of ln k".
+/// Describes the schedule: `polynomial of degree 2 of ln k`.
 pub fn schedule_words(settings: &ScheduleSettings) -> String {
     let kind = match settings.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree}"),
         ScheduleKind::Table => "table".to_owned(),
     };
     let quantity = quantity_symbol(settings.quantity);
-    let second = settings.second.map_or_else(String::new, |variable| {
-        format!(", with {variable} in the middle of its range")
-    });
+    let second = match settings.second {
+        Some(variable) => format!(", with {variable} in the middle of its range"),
+        None => String::new(),
+    };
     format!("{kind} of {quantity}{second}")
 }

@@ -20,51 +20,41 @@ pub struct Drawing {
 /// A shape of a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// A polyline.
     Path {
         points: Vec<[f64; 2]>,
         /// Whether the last point connects to the first.
         closed: bool,
-        /// Fill colour.
         fill: Option<Color>,
-        /// Line style.
         stroke: Option<Stroke>,
     },
-    /// A circle.
     Circle {
         center: [f64; 2],
         radius: f64,
-        /// Fill colour.
         fill: Option<Color>,
-        /// Line style.
         stroke: Option<Stroke>,
     },
     /// A line of text.
     Text(Text),
     /// Shapes clipped to an area.
-    Clipped {
-        /// The clipping area.
-        area: Area,
-        shapes: Vec<Shape>,
-    },
+    Clipped { area: Area, shapes: Vec<Shape> },
 }
 
 /// A line of text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
-    /// Position of the anchor on the base line.
+    /// Anchor position on the base line.
     pub at: [f64; 2],
     pub words: String,
     /// Font size \[pt\].
     pub size_pt: f64,
-    /// The part of the text at its position.
+    /// The part that lies at the position.
     pub anchor: Anchor,
     /// Whether the text runs upwards.
     pub upright: bool,
     pub color: Color,
 }
 
-/// Part of a text that lies at its position.
+/// Part of a text at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     Start,
@@ -72,8 +62,37 @@ pub enum Anchor {
     End,
 }
 
+impl Text {
+    /// Creates a horizontal text in ink that begins at `at`.
+    pub fn new(at: [f64; 2], words: impl Into<String>, size_pt: f64) -> Self {
+        Self {
+            at,
+            words: words.into(),
+            size_pt,
+            anchor: Anchor::Start,
+            upright: false,
+            color: Color::INK,
+        }
+    }
+
+    /// Returns the text anchored at another part.
+    pub fn anchored(self, anchor: Anchor) -> Self {
+        Self { anchor, ..self }
+    }
+
+    /// Returns the text in another colour.
+    pub fn colored(self, color: Color) -> Self {
+        Self { color, ..self }
+    }
+
+    /// Returns the text running upwards, or horizontally.
+    pub fn upright(self, upright: bool) -> Self {
+        Self { upright, ..self }
+    }
+}
+
 impl Anchor {
-    /// Returns the fraction of the width of a text before its position.
+    /// Returns the part of the text before its position, relative to its width.
     pub fn before(self) -> f64 {
         match self {
             Self::Start => 0.0,
@@ -103,18 +122,17 @@ impl Area {
         }
     }
 
-    /// Returns the right edge.
+    /// Returns the right edge, `left + width`.
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
-    /// Returns the lower edge.
+    /// Returns the lower edge, `top + height`.
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
 
-    /// Returns the point at these fractions of the width from the left and of the height from the
-    /// bottom.
+    /// Returns the point at fractions of width, from the left, and height, from the bottom.
     pub fn at(&self, x: f64, y: f64) -> [f64; 2] {
         [self.left + x * self.width, self.bottom() - y * self.height]
     }
@@ -134,7 +152,7 @@ impl Area {
         (self.left..=self.right()).contains(&x) && (self.top..=self.bottom()).contains(&y)
     }
 
-    /// Returns the area of the rectangle.
+    /// Returns width times height.
     pub fn size(&self) -> f64 {
         self.width * self.height
     }
@@ -149,22 +167,28 @@ impl Area {
         )
     }
 
-    /// Returns the distance of a point from the rectangle; 0 inside.
+    /// Returns the distance from a point to the rectangle; 0 inside.
     pub fn distance(&self, [x, y]: [f64; 2]) -> f64 {
-        let beyond = |value: f64, low: f64, high: f64| (low - value).max(value - high).max(0.0);
-        beyond(x, self.left, self.right()).hypot(beyond(y, self.top, self.bottom()))
+        let dx = outside_distance(x, self.left, self.right());
+        let dy = outside_distance(y, self.top, self.bottom());
+        dx.hypot(dy)
     }
 
     /// Returns the area common to both rectangles; 0 if they do not overlap.
     pub fn overlap(&self, other: &Self) -> f64 {
-        let along = |a: f64, b: f64, c: f64, d: f64| (b.min(d) - a.max(c)).max(0.0);
-        along(self.left, self.right(), other.left, other.right())
-            * along(self.top, self.bottom(), other.top, other.bottom())
+        let width = self.right().min(other.right()) - self.left.max(other.left);
+        let height = self.bottom().min(other.bottom()) - self.top.max(other.top);
+        width.max(0.0) * height.max(0.0)
     }
 }
 
+/// Returns the distance from a value to the interval between `low` and `high`; 0 inside.
+fn outside_distance(value: f64, low: f64, high: f64) -> f64 {
+    (low - value).max(value - high).max(0.0)
+}
+
 impl Shape {
-    /// Creates a polyline.
+    /// Creates an open polyline without fill.
     pub fn line(points: impl Into<Vec<[f64; 2]>>, stroke: Stroke) -> Self {
         Self::Path {
             points: points.into(),
@@ -185,10 +209,10 @@ impl Shape {
     }
 }
 
-/// Meaning of a colour; each theme of the window and paper has its own colour for it.
+/// Meaning of a colour. Paper and each theme in the window have their own colour for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Hue {
-    /// Paper, and the background of plots in the window.
+    /// Paper, and plot backgrounds in the window.
     Background,
     /// Grid lines.
     Grid,
@@ -212,7 +236,7 @@ pub enum Hue {
     Warning,
     /// Proofs and improvements.
     Good,
-    /// From the colour of perturbed models, 0, to the colour of identified models, 255, as in
+    /// From the colour for perturbed models, 0, to the colour for identified models, 255, as in
     /// colour-blind-safe scales.
     OfAirspeed(u8),
 }
@@ -245,12 +269,15 @@ impl Hue {
     }
 }
 
-/// Interpolates between two colours.
+/// Interpolates between two colours: `part` 0 gives `from`, 1 gives `to`.
 fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
-    let mix = |from: u8, to: u8| {
-        (f64::from(from) + part * (f64::from(to) - f64::from(from))).round() as u8
-    };
-    std::array::from_fn(|at| mix(from[at], to[at]))
+    let mut mixed = [0; 3];
+    for (channel, mixed) in mixed.iter_mut().enumerate() {
+        let start = f64::from(from[channel]);
+        let end = f64::from(to[channel]);
+        *mixed = (start + part * (end - start)).round() as u8;
+    }
+    mixed
 }
 
 /// A colour by its meaning and strength.
@@ -296,11 +323,8 @@ impl Color {
 pub enum Dash {
     #[default]
     Solid,
-    /// Long dashes.
     Long,
-    /// Short dashes.
     Short,
-    /// Dots.
     Dotted,
     /// Dashes with a dot between them.
     DashDot,
@@ -309,7 +333,7 @@ pub enum Dash {
 }
 
 impl Dash {
-    /// Returns the lengths of dashes and gaps in turn \[pt\]; empty for a solid line.
+    /// Returns dash and gap lengths in turn \[pt\]; empty for a solid line.
     pub fn pattern_pt(self) -> &'static [f64] {
         match self {
             Self::Solid => &[],
@@ -322,7 +346,7 @@ impl Dash {
     }
 }
 
-/// Colour, width and dashes of a line.
+/// Line style: colour, width and dashes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     pub color: Color,
@@ -350,7 +374,7 @@ impl Stroke {
         }
     }
 
-    /// Returns this line of the window as printed: thinner, because paper resolves more.
+    /// Returns this line as printed: thinner than in the window, because paper resolves more.
     pub fn printed(self) -> Self {
         Self {
             width_pt: Self::PRINTED * self.width_pt,
@@ -358,7 +382,7 @@ impl Stroke {
         }
     }
 
-    /// Width on paper as a fraction of the width in the window.
+    /// Line width on paper relative to the window.
     const PRINTED: f64 = 0.55;
 }
 
@@ -366,21 +390,27 @@ impl Drawing {
     /// Returns the drawing with fewer points: no omitted point is farther than `tolerance_pt` from
     /// its line.
     pub fn thinned(self, tolerance_pt: f64) -> Self {
+        let pixel = Pixel {
+            width: tolerance_pt,
+            tolerance: tolerance_pt,
+        };
         Self {
-            shapes: coarser(
-                self.shapes,
-                Pixel {
-                    width: tolerance_pt,
-                    tolerance: tolerance_pt,
-                },
-            ),
+            shapes: thinned_shapes(self.shapes, pixel),
             ..self
         }
     }
 }
 
-fn coarser(shapes: Vec<Shape>, pixel: Pixel) -> Vec<Shape> {
-    let one = |shape: Shape| match shape {
+/// Thins open polylines, also those that are clipped.
+fn thinned_shapes(shapes: Vec<Shape>, pixel: Pixel) -> Vec<Shape> {
+    shapes
+        .into_iter()
+        .map(|shape| thinned_shape(shape, pixel))
+        .collect()
+}
+
+fn thinned_shape(shape: Shape, pixel: Pixel) -> Shape {
+    match shape {
         Shape::Path {
             points,
             closed: false,
@@ -394,11 +424,10 @@ fn coarser(shapes: Vec<Shape>, pixel: Pixel) -> Vec<Shape> {
         },
         Shape::Clipped { area, shapes } => Shape::Clipped {
             area,
-            shapes: coarser(shapes, pixel),
+            shapes: thinned_shapes(shapes, pixel),
         },
         other => other,
-    };
-    shapes.into_iter().map(one).collect()
+    }
 }
 
 #[cfg(test)]

@@ -1,57 +1,100 @@
-//! Placement of dot labels: around each dot, clear of the other dots, of bars and of the other
-//! labels.
+//! Places labels around dots, clear of other dots, bars and labels.
 //!
 //! ```text
-//! three times, dot by dot:
-//!     of 8 sides and 5 distances take the place of least cost:
-//!         label and its leader over labels, dots, bars, the edge; the line beneath; nearness to another dot; distance
-//! a label that still covers much of another one or of what is in its way is left out
+//! three times, for each dot:
+//!     try 8 sides at 6 distances; take the cheapest place, given the other labels:
+//!         area over other labels, dots, bars and the outside
+//!         leaders across labels
+//!         the line under the label
+//!         other dots nearer to the label than its own
+//!         later side, larger distance
+//! leave out labels that cover too much, the worst first
 //! ```
 //!
 //! The same on the screen and on paper, in points; y runs downwards.
 
 use super::drawing::Area;
 
-/// Directions tried around a dot, the preferred first: fractions of the label's width and height
-/// before the anchor, and the position of the anchor.
-const SIDES: [([f64; 2], [f64; 2]); 8] = [
-    ([0.0, 1.0], [0.7, -0.7]),
-    ([0.0, 0.0], [0.7, 0.7]),
-    ([1.0, 1.0], [-0.7, -0.7]),
-    ([1.0, 0.0], [-0.7, 0.7]),
-    ([0.0, 0.5], [1.0, 0.0]),
-    ([0.5, 1.0], [0.0, -1.0]),
-    ([1.0, 0.5], [-1.0, 0.0]),
-    ([0.5, 0.0], [0.0, 1.0]),
+/// Direction of a label from its dot.
+#[derive(Clone, Copy)]
+struct Direction {
+    /// Fractions of the label's width and height before its anchor.
+    before: [f64; 2],
+    /// Offset of the anchor from the dot, relative to the distance.
+    offset: [f64; 2],
+}
+
+/// Directions tried around a dot, the preferred first.
+const DIRECTIONS: [Direction; 8] = [
+    Direction {
+        before: [0.0, 1.0],
+        offset: [0.7, -0.7],
+    },
+    Direction {
+        before: [0.0, 0.0],
+        offset: [0.7, 0.7],
+    },
+    Direction {
+        before: [1.0, 1.0],
+        offset: [-0.7, -0.7],
+    },
+    Direction {
+        before: [1.0, 0.0],
+        offset: [-0.7, 0.7],
+    },
+    Direction {
+        before: [0.0, 0.5],
+        offset: [1.0, 0.0],
+    },
+    Direction {
+        before: [0.5, 1.0],
+        offset: [0.0, -1.0],
+    },
+    Direction {
+        before: [1.0, 0.5],
+        offset: [-1.0, 0.0],
+    },
+    Direction {
+        before: [0.5, 0.0],
+        offset: [0.0, 1.0],
+    },
 ];
 /// Distances tried, beyond the radius of the dot \[pt\]; from the second on, a leader connects the
 /// dot to its label.
 const GAPS: [f64; 6] = [1.5, 8.0, 15.0, 22.0, 30.0, 40.0];
-/// Number of passes in which every label is placed again given the others: early labels make room
-/// for late ones.
+/// Passes in which every label is placed again, given the others: early labels make room for late
+/// labels.
 const SWEEPS: usize = 3;
 /// With more dots, no labels are placed: they would be unreadable and slow to place.
 const MOST_LABELS: usize = 300;
 
-/// Cost of covering a square point of another label, of a dot, of a bar, or of the area outside,
-/// and of a point of the path's length.
+/// Cost per square point that a label shares with another label, a dot, a bar or the outside.
 const ON_LABEL: f64 = 40.0;
 const ON_DOT: f64 = 40.0;
 const ON_BAR: f64 = 8.0;
 const OUTSIDE: f64 = 30.0;
+/// Cost per point along the path under a label.
 const ON_PATH: f64 = 1.0;
-/// Cost per point of a leader's length on a label.
+/// Cost per point along a leader across a label.
 const LEADER_ON_LABEL: f64 = 20.0;
-/// Cost of being nearer to another dot than to its own.
+/// Cost for each dot that is nearer to a label than its own dot.
 const AMBIGUOUS: f64 = 6.0;
-/// Cost of a later side, and per point of distance.
-const LATER_SIDE: f64 = 0.2;
+/// Cost for each direction before the chosen direction, and per point from the dot.
+const LATER_DIRECTION: f64 = 0.2;
 const FARTHER: f64 = 0.6;
-/// A label that covers more than this fraction of other labels, dots or the area outside is
-/// unreadable, as are those it covers.
+/// A label with more than this fraction over other labels, dots or the outside is unreadable, as
+/// are those it covers.
 const MOST_COVERED: f64 = 0.12;
+/// Side length for the square that approximates a dot, relative to its radius.
+const DOT_SIDE: f64 = 1.9;
+/// Space kept around other labels \[pt\].
+const LABEL_MARGIN: f64 = 1.0;
+/// Distance between sampled points along a line \[pt\].
+const STEP: f64 = 2.0;
+/// A dot that is nearer to a label by less than this does not mislead \[pt\].
+const SLACK: f64 = 0.5;
 
-/// The place of a label.
+/// Place of a label.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelPlace {
     /// Area of the text.
@@ -70,6 +113,25 @@ pub struct LabelledDot {
     pub size: [f64; 2],
 }
 
+impl LabelledDot {
+    /// Approximates the covered area by a square.
+    fn area(&self) -> Area {
+        let width = DOT_SIDE * self.radius;
+        Area::new(
+            self.center[0] - 0.5 * width,
+            self.center[1] - 0.5 * width,
+            width,
+            width,
+        )
+    }
+
+    /// Returns the distance from the dot's edge to a label; negative if the label covers its
+    /// centre.
+    fn distance_to(&self, label: &Area) -> f64 {
+        label.distance(self.center) - self.radius
+    }
+}
+
 /// Obstacles for labels, besides the dots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surroundings {
@@ -82,196 +144,225 @@ pub struct Surroundings {
 
 /// Places the labels of `dots`, in their order; `None` for a label without room.
 pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<LabelPlace>> {
-    let mut places: Vec<Option<LabelPlace>> = vec![None; dots.len()];
+    let mut placing = Placing {
+        dots,
+        around,
+        places: vec![None; dots.len()],
+    };
     let labelled: Vec<usize> = (0..dots.len())
         .filter(|&index| dots[index].size[0] > 0.0)
         .collect();
     if labelled.len() > MOST_LABELS {
-        return places;
+        return placing.places;
     }
     for _ in 0..SWEEPS {
         for &index in &labelled {
-            places[index] = best_place(index, dots, &places, around);
+            placing.places[index] = placing.best_place(index);
         }
     }
     // The worst label goes first: labels that it covered may then stay.
-    loop {
-        let covered = labelled
-            .iter()
-            .map(|&index| (index, covered_part(index, dots, &places, around)));
-        let worst = covered.max_by(|a, b| a.1.total_cmp(&b.1));
-        match worst.filter(|(_, part)| *part > MOST_COVERED) {
-            Some((index, _)) => places[index] = None,
-            None => return places,
-        }
+    while let Some(worst) = placing.most_covering(&labelled) {
+        placing.places[worst] = None;
     }
+    placing.places
 }
 
-/// Returns the fraction of a label that covers other labels, dots and the area outside.
-fn covered_part(
-    index: usize,
-    dots: &[LabelledDot],
-    places: &[Option<LabelPlace>],
-    around: &Surroundings,
-) -> f64 {
-    let Some(place) = places[index] else {
-        return 0.0;
-    };
-    let labels: f64 = others(index, places)
-        .map(|other| place.area.overlap(&other.area))
-        .sum();
-    let on_dots: f64 = dots.iter().map(|dot| place.area.overlap(&dot.area())).sum();
-    (labels + on_dots + outside(&place.area, around)) / place.area.size()
+/// Labels as placed so far.
+struct Placing<'a> {
+    dots: &'a [LabelledDot],
+    around: &'a Surroundings,
+    /// In the order of the dots.
+    places: Vec<Option<LabelPlace>>,
 }
 
-fn others(index: usize, places: &[Option<LabelPlace>]) -> impl Iterator<Item = LabelPlace> + '_ {
-    places
-        .iter()
-        .enumerate()
-        .filter(move |(other, _)| *other != index)
-        .filter_map(|(_, place)| *place)
+/// Another dot's label.
+struct OtherLabel {
+    place: LabelPlace,
+    /// Centre of its dot.
+    center: [f64; 2],
 }
 
-fn outside(area: &Area, around: &Surroundings) -> f64 {
-    area.size() - area.overlap(&around.bounds)
+/// A place to try, and its cost.
+struct Candidate {
+    place: LabelPlace,
+    cost: f64,
 }
 
-fn best_place(
-    index: usize,
-    dots: &[LabelledDot],
-    places: &[Option<LabelPlace>],
-    around: &Surroundings,
-) -> Option<LabelPlace> {
-    let others: Vec<(LabelPlace, [f64; 2])> = places
-        .iter()
-        .zip(dots)
-        .enumerate()
-        .filter(|(other, _)| *other != index)
-        .filter_map(|(_, (place, dot))| Some(((*place)?, dot.center)))
-        .collect();
-    let mut best: Option<(LabelPlace, f64)> = None;
-    for (place, preference) in candidates(dots[index]) {
-        // The distance alone makes most places worse than the best.
-        if best.is_none_or(|(_, least)| preference < least) {
-            let ambiguity = AMBIGUOUS * nearer_dots(&place.area, index, dots) as f64;
-            let leaders = leaders_on_labels(&place, dots[index].center, &others);
-            let cost =
-                preference + ambiguity + leaders + obstruction(&place.area, &others, dots, around);
-            if best.is_none_or(|(_, least)| cost < least) {
-                best = Some((place, cost));
+impl Placing<'_> {
+    /// Returns the cheapest place for a dot's label, given the other labels.
+    fn best_place(&self, index: usize) -> Option<LabelPlace> {
+        let others = self.other_labels(index);
+        let mut best: Option<Candidate> = None;
+        for candidate in candidates(self.dots[index]) {
+            // The preference alone makes most places worse than the best.
+            if !is_better(candidate.cost, &best) {
+                continue;
+            }
+            let cost = self.cost(&candidate, index, &others);
+            if is_better(cost, &best) {
+                let place = candidate.place;
+                best = Some(Candidate { place, cost });
             }
         }
+        best.map(|candidate| candidate.place)
     }
-    best.map(|(place, _)| place)
-}
 
-fn candidates(dot: LabelledDot) -> impl Iterator<Item = (LabelPlace, f64)> {
-    GAPS.into_iter().enumerate().flat_map(move |(ring, gap)| {
-        SIDES
-            .into_iter()
+    fn other_labels(&self, index: usize) -> Vec<OtherLabel> {
+        let mut others = Vec::new();
+        for (other, (place, dot)) in self.places.iter().zip(self.dots).enumerate() {
+            if let Some(place) = place
+                && other != index
+            {
+                others.push(OtherLabel {
+                    place: *place,
+                    center: dot.center,
+                });
+            }
+        }
+        others
+    }
+
+    /// Returns the full cost of a candidate for a dot's label.
+    fn cost(&self, candidate: &Candidate, index: usize, others: &[OtherLabel]) -> f64 {
+        let place = &candidate.place;
+        let ambiguity = AMBIGUOUS * self.nearer_dots(&place.area, index) as f64;
+        let leaders = leaders_on_labels(place, self.dots[index].center, others);
+        candidate.cost + ambiguity + leaders + self.obstruction(&place.area, others)
+    }
+
+    /// Returns the cost of everything under a label.
+    fn obstruction(&self, area: &Area, others: &[OtherLabel]) -> f64 {
+        let on_labels: f64 = others
+            .iter()
+            .map(|other| area.overlap(&other.place.area.expanded(LABEL_MARGIN)))
+            .sum();
+        let on_bars: f64 = self.around.bars.iter().map(|bar| area.overlap(bar)).sum();
+        let on_path: f64 = self
+            .around
+            .path
+            .windows(2)
+            .map(|ends| length_inside(area, ends[0], ends[1]))
+            .sum();
+        ON_LABEL * on_labels
+            + ON_DOT * self.on_dots(area)
+            + ON_BAR * on_bars
+            + OUTSIDE * self.outside(area)
+            + ON_PATH * on_path
+    }
+
+    /// Returns the area that a label shares with dots.
+    fn on_dots(&self, label: &Area) -> f64 {
+        self.dots.iter().map(|dot| label.overlap(&dot.area())).sum()
+    }
+
+    /// Returns how much of a label's area lies outside the bounds.
+    fn outside(&self, label: &Area) -> f64 {
+        label.size() - label.overlap(&self.around.bounds)
+    }
+
+    /// Counts the other dots that are nearer to a dot's label than the dot itself.
+    fn nearer_dots(&self, label: &Area, index: usize) -> usize {
+        let own = self.dots[index].distance_to(label);
+        self.dots
+            .iter()
             .enumerate()
-            .map(move |(side, (before, direction))| {
-                let anchor: [f64; 2] =
-                    std::array::from_fn(|at| dot.center[at] + direction[at] * (dot.radius + gap));
-                let [left, top] = std::array::from_fn(|at| anchor[at] - before[at] * dot.size[at]);
-                let leader = (ring > 0).then_some(anchor);
-                let preference = side as f64 * LATER_SIDE + gap * FARTHER;
-                (
-                    LabelPlace {
-                        area: Area::new(left, top, dot.size[0], dot.size[1]),
-                        leader,
-                    },
-                    preference,
-                )
-            })
-    })
+            .filter(|(other, dot)| *other != index && dot.distance_to(label) + SLACK < own)
+            .count()
+    }
+
+    /// Returns the dot whose label covers the largest part, if that is too much.
+    fn most_covering(&self, labelled: &[usize]) -> Option<usize> {
+        let mut worst = None;
+        let mut most = MOST_COVERED;
+        for &index in labelled {
+            let part = self.covered_part(index);
+            if part > MOST_COVERED && part >= most {
+                worst = Some(index);
+                most = part;
+            }
+        }
+        worst
+    }
+
+    /// Returns the part of a label's area over other labels, dots and the outside.
+    fn covered_part(&self, index: usize) -> f64 {
+        let Some(place) = self.places[index] else {
+            return 0.0;
+        };
+        let mut on_labels = 0.0;
+        for (other, label) in self.places.iter().enumerate() {
+            if let Some(label) = label
+                && other != index
+            {
+                on_labels += place.area.overlap(&label.area);
+            }
+        }
+        (on_labels + self.on_dots(&place.area) + self.outside(&place.area)) / place.area.size()
+    }
 }
 
-fn obstruction(
-    area: &Area,
-    others: &[(LabelPlace, [f64; 2])],
-    dots: &[LabelledDot],
-    around: &Surroundings,
-) -> f64 {
-    let on_labels: f64 = others
-        .iter()
-        .map(|(other, _)| area.overlap(&other.area.expanded(1.0)))
-        .sum();
-    let on_dots: f64 = dots.iter().map(|dot| area.overlap(&dot.area())).sum();
-    let on_bars: f64 = around.bars.iter().map(|bar| area.overlap(bar)).sum();
-    let on_path: f64 = around
-        .path
-        .windows(2)
-        .map(|ends| length_inside(area, ends[0], ends[1]))
-        .sum();
-    ON_LABEL * on_labels
-        + ON_DOT * on_dots
-        + ON_BAR * on_bars
-        + OUTSIDE * outside(area, around)
-        + ON_PATH * on_path
+fn is_better(cost: f64, best: &Option<Candidate>) -> bool {
+    match best {
+        Some(best) => cost < best.cost,
+        None => true,
+    }
 }
 
-/// Returns the cost of crossings between a label and leaders.
-fn leaders_on_labels(
-    place: &LabelPlace,
-    center: [f64; 2],
-    others: &[(LabelPlace, [f64; 2])],
-) -> f64 {
-    let across = |(other, from): &(LabelPlace, [f64; 2])| {
-        let own = place
-            .leader
-            .map_or(0.0, |end| length_inside(&other.area, center, end));
-        own + other
-            .leader
-            .map_or(0.0, |end| length_inside(&place.area, *from, end))
-    };
-    LEADER_ON_LABEL * others.iter().map(across).sum::<f64>()
+/// Returns the places to try around a dot, each with the cost of its direction and distance.
+fn candidates(dot: LabelledDot) -> Vec<Candidate> {
+    let mut candidates = Vec::new();
+    for (ring, gap) in GAPS.into_iter().enumerate() {
+        for (at, direction) in DIRECTIONS.into_iter().enumerate() {
+            let distance = dot.radius + gap;
+            let anchor = [0, 1].map(|axis| dot.center[axis] + direction.offset[axis] * distance);
+            let [left, top] =
+                [0, 1].map(|axis| anchor[axis] - direction.before[axis] * dot.size[axis]);
+            let place = LabelPlace {
+                area: Area::new(left, top, dot.size[0], dot.size[1]),
+                leader: if ring > 0 { Some(anchor) } else { None },
+            };
+            let cost = at as f64 * LATER_DIRECTION + gap * FARTHER;
+            candidates.push(Candidate { place, cost });
+        }
+    }
+    candidates
 }
 
-/// Estimates the length of a segment inside `area` \[pt\].
+/// Returns the cost of leaders across labels: the label's own leader, and other leaders across it.
+fn leaders_on_labels(place: &LabelPlace, center: [f64; 2], others: &[OtherLabel]) -> f64 {
+    let mut length = 0.0;
+    for other in others {
+        let own = match place.leader {
+            Some(end) => length_inside(&other.place.area, center, end),
+            None => 0.0,
+        };
+        let others = match other.place.leader {
+            Some(end) => length_inside(&place.area, other.center, end),
+            None => 0.0,
+        };
+        length += own + others;
+    }
+    LEADER_ON_LABEL * length
+}
+
+/// Estimates how long a segment runs inside `area` \[pt\], from points along it.
 fn length_inside(area: &Area, from: [f64; 2], to: [f64; 2]) -> f64 {
-    /// Distance between the sampled points \[pt\].
-    const STEP: f64 = 2.0;
-    let apart =
-        |at: usize, low: f64, high: f64| from[at].max(to[at]) < low || from[at].min(to[at]) > high;
-    if apart(0, area.left, area.right()) || apart(1, area.top, area.bottom()) {
+    let is_left_or_right = from[0].max(to[0]) < area.left || from[0].min(to[0]) > area.right();
+    let is_above_or_below = from[1].max(to[1]) < area.top || from[1].min(to[1]) > area.bottom();
+    if is_left_or_right || is_above_or_below {
         return 0.0;
     }
     let length = (to[0] - from[0]).hypot(to[1] - from[1]);
     let steps = (length / STEP).ceil().max(1.0);
-    let at = |k: usize| {
+    let mut inside = 0;
+    for k in 0..steps as usize {
         let part = (k as f64 + 0.5) / steps;
-        std::array::from_fn(|at| from[at] + part * (to[at] - from[at]))
-    };
-    let inside = (0..steps as usize)
-        .filter(|&k| area.contains(at(k)))
-        .count();
-    inside as f64 * length / steps
-}
-
-/// Counts the other dots that are nearer to the label of a dot than the dot itself.
-fn nearer_dots(label: &Area, index: usize, dots: &[LabelledDot]) -> usize {
-    /// A dot that is nearer by less than this does not mislead \[pt\].
-    const SLACK: f64 = 0.5;
-    let distance = |dot: &LabelledDot| label.distance(dot.center) - dot.radius;
-    let own = distance(&dots[index]);
-    dots.iter()
-        .enumerate()
-        .filter(|(k, dot)| *k != index && distance(dot) + SLACK < own)
-        .count()
-}
-
-impl LabelledDot {
-    /// Approximates the covered area.
-    fn area(&self) -> Area {
-        let width = 1.9 * self.radius;
-        Area::new(
-            self.center[0] - 0.5 * width,
-            self.center[1] - 0.5 * width,
-            width,
-            width,
-        )
+        let point = [0, 1].map(|axis| from[axis] + part * (to[axis] - from[axis]));
+        if area.contains(point) {
+            inside += 1;
+        }
     }
+    f64::from(inside) * length / steps
 }
 
 #[cfg(test)]

@@ -9,119 +9,167 @@ use gdcm_model::response::GainDelay;
 use super::axis::{Axis, Range};
 use super::condition_source::ConditionSource;
 use super::drawing::{Color, Dash, Hue, Stroke};
-use super::figure::{Band, Curve, Figure, Panel, Plot, Rule};
+use super::figure::{Figure, Panel, Plot};
 use super::gains::all_channels;
+use super::marks::{Band, Curve, Rule};
 use super::role::Role;
 
-/// Points of a curve.
+/// Number of points of a curve.
 const POINTS: usize = 240;
 const OTHERS: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(60), 0.8);
-const OF_OUTPUT: Stroke = Stroke::dashed(Color::of(Hue::Accent), 1.6, Dash::Long);
-const OF_INPUT: Stroke = Stroke::dashed(Color::of(Hue::Perturbed), 1.6, Dash::DashDot);
+const OUTPUT: Stroke = Stroke::dashed(Color::of(Hue::Accent), 1.6, Dash::Long);
+const INPUT: Stroke = Stroke::dashed(Color::of(Hue::Perturbed), 1.6, Dash::DashDot);
+/// Line and background at the validity limit.
 const LIMIT: Stroke = Stroke::solid(Color::of(Hue::Warning), 1.2);
+const BEYOND: Color = Color::of(Hue::Warning).tint(14);
 
-/// Plots gain and phase of the delay or lead of each channel, without the gains k, from the band to
-/// ten times its top; the channels of `pairs` and their combined effect on the response are
-/// emphasised. One row of two plots for each response.
+/// Plots gain and phase of the delay or lead in each channel, without the gains k, from the band to
+/// ten times its upper end; the channels of each pair and their combined effect on the response are
+/// emphasised. A row of two plots for each of `pairs`.
 pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
     let title = format!("Leads · {}", source.condition_words());
     let caption = format!(
         "{} What delay or lead adds to each channel, without the gains k; thin: the other channels.",
         source.caption()
     );
-    let figure = Figure::new(title).caption(caption).columns(2).aspect(0.62);
-    let Some(analysis) = source.analysis else {
-        return figure;
-    };
-    let rows = pairs
-        .iter()
-        .flat_map(|&pair| plots(source, &analysis.correction, pair));
-    figure.plots(rows)
+    let mut figure = Figure::new(title).caption(caption).columns(2).aspect(0.62);
+    if let Some(analysis) = source.analysis {
+        for &pair in pairs {
+            let curves = PairLeads::new(source, &analysis.correction, pair);
+            figure = figure.plots(curves.plots());
+        }
+    }
+    figure
 }
 
-/// Plots gain and phase of one response's channels, with those of the other channels behind them.
-fn plots(source: &ConditionSource<'_>, correction: &ChannelCorrection, pair: Pair) -> [Plot; 2] {
-    let dataset = source.dataset();
-    let band = source.study.settings.band;
-    let (inputs, outputs) = dataset.names_of_channels();
-    let omega = frequencies(band.min(), ABOVE_BAND * band.max());
-    let [output, input] = Channel::of(pair);
-    let of = |channels: &[Channel]| {
-        let lead = |at: usize| {
-            channels
-                .get(at)
-                .and_then(|channel| correction.lead(*channel))
-        };
-        let delay_s: f64 = channels
-            .iter()
-            .map(|channel| correction.pure_delay_s(*channel))
-            .sum();
-        GainDelay::new(1.0, delay_s).led([lead(0), lead(1)])
-    };
-    let others = all_channels(dataset)
-        .into_iter()
-        .filter(|channel| ![output, input].contains(channel));
-    let others = others.map(|channel| {
-        (
-            channel.name(&inputs, &outputs),
-            "other channels".to_owned(),
-            OTHERS,
-            vec![channel],
-        )
-    });
-    let focus = [(input, OF_INPUT), (output, OF_OUTPUT)].map(|(channel, stroke)| {
-        let name = channel.name(&inputs, &outputs);
-        (name.clone(), name, stroke, vec![channel])
-    });
-    let name = dataset.pair_name(pair);
-    let both = (
-        name.clone(),
-        format!("{name}, both"),
-        Role::Corrected.stroke(false),
-        vec![output, input],
-    );
-    let drawn: Vec<_> = others
-        .chain(focus)
-        .chain([both])
-        .map(|(name, key, stroke, channels)| (name, key, stroke, of(&channels)))
-        .collect();
-    let price = correction.leads.as_ref().and_then(LeadPrice::of);
-    let zeros = vec![0.0; omega.len()];
-    let panel = |y: Axis, values: &dyn Fn(GainDelay) -> Vec<f64>| {
-        let curves = drawn.iter().map(|(name, key, stroke, dynamics)| {
-            Curve::new(name, *stroke, omega.clone(), values(*dynamics)).key(key)
+/// Delay or lead in a channel, or in two channels together, as drawn.
+struct LeadCurve {
+    name: String,
+    /// Entry in the legend.
+    key: String,
+    stroke: Stroke,
+    dynamics: GainDelay,
+}
+
+/// Delays and leads around one response.
+struct PairLeads {
+    pair: Pair,
+    pair_name: String,
+    /// Frequencies \[rad/s\].
+    omega: Vec<f64>,
+    /// For the other channels, for input and output, and for both together.
+    curves: Vec<LeadCurve>,
+    /// Cost of the leads; `None` without leads.
+    price: Option<LeadPrice>,
+}
+
+impl PairLeads {
+    fn new(source: &ConditionSource<'_>, correction: &ChannelCorrection, pair: Pair) -> Self {
+        let dataset = source.dataset();
+        let band = source.study.settings.band;
+        let (inputs, outputs) = dataset.names_of_channels();
+        let pair_name = dataset.pair_name(pair);
+        let [output, input] = Channel::of(pair);
+        let mut curves = Vec::new();
+        for channel in all_channels(dataset) {
+            if ![output, input].contains(&channel) {
+                curves.push(LeadCurve {
+                    name: channel.name(&inputs, &outputs),
+                    key: "other channels".to_owned(),
+                    stroke: OTHERS,
+                    dynamics: dynamics(correction, &[channel]),
+                });
+            }
+        }
+        for (channel, stroke) in [(input, INPUT), (output, OUTPUT)] {
+            let name = channel.name(&inputs, &outputs);
+            curves.push(LeadCurve {
+                key: name.clone(),
+                name,
+                stroke,
+                dynamics: dynamics(correction, &[channel]),
+            });
+        }
+        curves.push(LeadCurve {
+            name: pair_name.clone(),
+            key: format!("{pair_name}, both"),
+            stroke: Role::Corrected.stroke(false),
+            dynamics: dynamics(correction, &[output, input]),
         });
-        let panel = Panel::new(Axis::logarithmic("Frequency [rad/s]"), y).with_all(curves);
-        price.iter().fold(panel, beyond)
-    };
-    let gain = panel(
-        Axis::linear("Gain [dB]").including(0.0).at_least(3.0),
-        &|dynamics| dynamics.magnitudes_db(&zeros, &omega).collect(),
-    );
-    let phase = panel(
-        Axis::degrees("Phase [deg]").including(0.0).at_least(10.0),
-        &|dynamics| {
+        Self {
+            pair,
+            pair_name,
+            omega: frequencies(band.min(), ABOVE_BAND * band.max()),
+            curves,
+            price: correction.leads.as_ref().and_then(LeadPrice::of),
+        }
+    }
+
+    /// Plots gain and phase.
+    fn plots(&self) -> [Plot; 2] {
+        let zeros = vec![0.0; self.omega.len()];
+        let gain_axis = Axis::linear("Gain [dB]").including(0.0).at_least(3.0);
+        let gain = self.panel(gain_axis, |dynamics| {
+            dynamics.magnitudes_db(&zeros, &self.omega).collect()
+        });
+        let phase_axis = Axis::degrees("Phase [deg]").including(0.0).at_least(10.0);
+        let phase = self.panel(phase_axis, |dynamics| {
             dynamics
-                .phases(&zeros, &omega)
+                .phases(&zeros, &self.omega)
                 .map(f64::to_degrees)
                 .collect()
-        },
-    );
-    let price = price.as_ref().and_then(|price| price.pair_words(pair));
-    let price = price.map(|words| format!(": {words}")).unwrap_or_default();
-    [
-        Plot::new(format!("{name}, gain of the leads{price}")).panel(gain),
-        Plot::new(format!("{name}, phase")).panel(phase),
-    ]
+        });
+        let name = &self.pair_name;
+        [
+            Plot::new(format!("{name}, gain of the leads{}", self.price_words())).panel(gain),
+            Plot::new(format!("{name}, phase")).panel(phase),
+        ]
+    }
+
+    /// Returns `: ` and the cost of the leads for the response; empty without leads.
+    fn price_words(&self) -> String {
+        let price = self.price.as_ref();
+        match price.and_then(|price| price.pair_words(self.pair)) {
+            Some(words) => format!(": {words}"),
+            None => String::new(),
+        }
+    }
+
+    /// Builds a panel with a curve through the `values` of each delay or lead.
+    fn panel(&self, y: Axis, values: impl Fn(GainDelay) -> Vec<f64>) -> Panel {
+        let mut panel = Panel::new(Axis::logarithmic("Frequency [rad/s]"), y);
+        for curve in &self.curves {
+            let values = values(curve.dynamics);
+            let drawn = Curve::new(&curve.name, curve.stroke, self.omega.clone(), values);
+            panel = panel.with(drawn.key(&curve.key));
+        }
+        match &self.price {
+            Some(price) => with_limit(panel, price),
+            None => panel,
+        }
+    }
 }
 
-/// Adds the background of the range beyond the band, with an entry in the legend, and the line at
-/// which it begins.
-fn beyond(panel: Panel, price: &LeadPrice) -> Panel {
-    let range = Range::new(price.limit_rad_s, price.above_rad_s());
+/// Returns the delay and the leads in one or two channels in series.
+fn dynamics(correction: &ChannelCorrection, channels: &[Channel]) -> GainDelay {
+    let delay_s: f64 = channels
+        .iter()
+        .map(|channel| correction.pure_delay_s(*channel))
+        .sum();
+    let first = channels.first();
+    let second = channels.get(1);
+    GainDelay::new(1.0, delay_s).led([
+        first.and_then(|channel| correction.lead(*channel)),
+        second.and_then(|channel| correction.lead(*channel)),
+    ])
+}
+
+/// Adds the background beyond the band, with an entry in the legend, and the line at which it
+/// begins.
+fn with_limit(panel: Panel, price: &LeadPrice) -> Panel {
     let ground = Band {
-        range,
-        color: Color::of(Hue::Warning).tint(14),
+        range: Range::new(price.limit_rad_s, price.above_rad_s()),
+        color: BEYOND,
         key: price.limit_words(),
     };
     panel
@@ -131,8 +179,10 @@ fn beyond(panel: Panel, price: &LeadPrice) -> Panel {
 
 /// Returns logarithmically spaced frequencies \[rad/s\] between two limits, both included.
 fn frequencies(min: f64, max: f64) -> Vec<f64> {
-    let part = |point: usize| point as f64 / (POINTS - 1) as f64;
-    (0..POINTS)
-        .map(|point| min * (max / min).powf(part(point)))
-        .collect()
+    let mut omega = Vec::new();
+    for point in 0..POINTS {
+        let part = point as f64 / (POINTS - 1) as f64;
+        omega.push(min * (max / min).powf(part));
+    }
+    omega
 }

@@ -1,15 +1,28 @@
-//! Figures: contents of plots, independent of any screen, and their layout for print.
+//! Figures: their description, independent of any screen, and their layout for print.
 //!
 //! A [`Figure`] has plots side by side, a title, a legend and a caption; a [`Plot`](figure::Plot)
-//! has vertically stacked panels; a [`Panel`] has two axes and marks. [`Figure::drawing`] lays it
-//! out at the width of a journal's column, in sizes that are readable in print, and in lines that
-//! are distinguishable without colours; [`Figure::tables`] returns its numbers. Every view of the
-//! window has a function here that builds its figure, and the command `gdcm figure` calls the same
-//! function.
+//! has panels below one another; a [`Panel`] has two axes and [marks]. [`Figure::drawing`] lays it
+//! out at the width of a journal column, in sizes that are readable in print, and in lines that are
+//! distinguishable without colours; [`Figure::tables`] returns its numbers.
+//!
+//! | files | contents |
+//! |---|---|
+//! | [`figure`], [`marks`], [`legend`] | describe a figure |
+//! | [`axis`], `range`, `ticks`, `display_units`, `number_text` | axes, their ticks and texts |
+//! | [`role`], [`drawing`] | line styles and colours by meaning |
+//! | [`bode`], [`error`], [`gains`], [`assessment`], [`poles`], [`leads`], [`requirements`] | a figure for each view |
+//! | [`condition_source`], [`responses`] | curves for a condition, from models and corrections |
+//! | [`layout`], [`letters`], [`label_places`] | places for panels, letters and labels |
+//! | [`paint`], `paint_axes`, `paint_marks`, `paint_dots`, `paint_words` | shapes at their places |
+//! | [`thinning`], [`tables`] | points left out; numbers in a figure |
+//!
+//! Every view in the window has a function here that describes its figure, and the command `gdcm
+//! figure` calls the same function through [`FigureRequest::figure`].
 //!
 //! ```
 //! use gdcm_plot::figure::axis::Axis;
-//! use gdcm_plot::figure::figure::{Curve, Plot};
+//! use gdcm_plot::figure::figure::Plot;
+//! use gdcm_plot::figure::marks::Curve;
 //! use gdcm_plot::figure::{ColumnWidth, Figure, Panel, Role};
 //!
 //! let omega = [0.5, 1.0, 2.0];
@@ -27,41 +40,70 @@ use std::sync::Arc;
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{ModelId, Pair};
 use gdcm_model::progress::Unobserved;
-use gdcm_study::jobs::job::ConditionModes;
+use gdcm_study::jobs::job::{AcrossRole, ConditionModes};
+use gdcm_study::results::analysis::Analysis;
 use gdcm_study::results::assessment_table::AssessmentChoice;
 use gdcm_study::results::condition_answers::{RecordHistory, TestAnswers};
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::requirements::Requirements;
-use gdcm_study::{AcrossRole, Analysis, ConditionAnalysis};
 
+mod arrow;
 pub mod assessment;
 pub mod axis;
 pub mod bode;
+mod bode_curve;
+mod bode_options;
+mod coherence;
+mod condition_classes;
 pub mod condition_source;
+mod couplings;
+mod damping_grid;
+mod display_units;
 pub mod drawing;
 pub mod error;
+mod evidence;
 #[expect(
     clippy::module_inception,
     reason = "the room is named by what it makes"
 )]
 pub mod figure;
+mod figure_format;
+mod frequency_panels;
+mod gain_panel;
+mod gain_quantity;
 pub mod gains;
 pub mod label_places;
 pub mod layout;
 pub mod leads;
+pub mod legend;
+pub mod letters;
+pub mod marks;
+mod muad;
+mod number_text;
 pub mod paint;
+mod paint_axes;
+mod paint_dots;
+mod paint_marks;
+mod paint_words;
+mod placed;
 pub mod poles;
+mod range;
+mod reference_line;
 pub mod requirements;
 pub mod responses;
 pub mod role;
 pub mod tables;
 pub mod thinning;
+mod ticks;
+mod time_histories;
 
 pub use axis::{Range, decimals};
 pub use condition_source::ConditionSource;
 pub use drawing::Color;
-pub use figure::{ColumnWidth, Figure, FigureFormat, Mark, MarkId, Panel};
+pub use figure::{Figure, Panel};
+pub use figure_format::{ColumnWidth, FigureFormat};
 pub use gains::all_channels;
+pub use marks::{Mark, MarkId};
 pub use role::Role;
 
 use assessment::{assessment_figure, evidence_figure, usual_choice};
@@ -75,35 +117,34 @@ use requirements::{record_history_figure, requirements_figure, test_answers_figu
 /// Kind of figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FigureKind {
-    /// Responses of one condition (Figures 2 and 5).
+    /// Responses in a condition (Figures 2 and 5).
     #[default]
     Bode,
-    /// Errors of these responses as the fit sees them.
+    /// Errors that the fit sees in these responses.
     Error,
-    /// All responses of one condition, small.
+    /// All responses in a condition, small.
     Overview,
     /// Net gains against airspeed (Figures 6 and 7).
     NetGain,
-    /// Gains or delays of the channels (Figures 3 and 4).
+    /// Channel gains or delays (Figures 3 and 4).
     Channels,
-    /// Contributions to the scatter of the net gains.
+    /// Contributions to the scatter in net gains.
     Evidence,
     /// Value of the correction (Figures 8 to 19).
     Assessment,
-    /// Poles of all models of one condition.
+    /// Poles of all models in a condition.
     Poles,
-    /// Delay or lead of each channel of one condition, up to ten times the band.
+    /// Delay or lead in each channel of a condition, up to ten times the band.
     Leads,
-    /// Effect of couplings on their loop and on the poles of a condition.
+    /// Effect of couplings on their loop and on a condition's poles.
     Couplings,
-    /// Phase delay over bandwidth of the attitude responses.
+    /// Phase delay over bandwidth in attitude responses, or models over time.
     Requirements,
     /// A response in every condition, coloured by airspeed.
     Airspeeds,
 }
 
 impl FigureKind {
-    /// All kinds.
     pub const ALL: [Self; 12] = [
         Self::Bode,
         Self::Error,
@@ -119,7 +160,7 @@ impl FigureKind {
         Self::Airspeeds,
     ];
 
-    /// Returns its name in commands and file names.
+    /// Returns the name used in commands and file names.
     pub fn name(self) -> &'static str {
         match self {
             Self::Bode => "bode",
@@ -147,7 +188,7 @@ impl FigureKind {
         matches!(self, Self::NetGain | Self::Channels)
     }
 
-    /// Returns whether it is a figure of one condition.
+    /// Returns whether the figure shows a single condition.
     pub fn is_of_condition(self) -> bool {
         matches!(
             self,
@@ -156,43 +197,39 @@ impl FigureKind {
     }
 }
 
-/// Responses of models over time.
+/// Model responses over time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OverTime {
     /// To a test input.
     Test(Arc<TestAnswers>),
-    /// To a flight record, with the index of the drawn input.
+    /// To a flight record; the index selects the drawn input.
     Record(Arc<RecordHistory>, usize),
 }
 
-/// Contents and options of a requested figure.
+/// A request for a figure: its kind, contents and options. Each kind uses the fields that concern
+/// it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FigureRequest {
     pub kind: FigureKind,
-    /// The responses, if the kind needs some.
     pub pairs: Vec<Pair>,
-    /// The channels, if the kind needs some.
     pub channels: Vec<Channel>,
-    /// Quantity of channels.
+    /// Channel quantity.
     pub measure: Measure,
-    /// Horizontal axis.
+    /// Horizontal axis for channels.
     pub across: Across,
-    /// Choice for the assessment; the paper's choice if `None`.
+    /// [`usual_choice`] if `None`.
     pub assessed: Option<AssessmentChoice>,
-    /// The model of each condition, in a figure with one model of each.
+    /// The model that stands for each condition in [`FigureKind::Airspeeds`].
     pub across_role: AcrossRole,
-    /// Options for responses.
     pub bode: BodeOptions,
-    /// Effect of the couplings, for their figure.
     pub couplings: Option<Arc<CouplingsAssessment>>,
-    /// Requirements, for their figure.
     pub requirements: Option<Arc<Requirements>>,
-    /// Responses over time, shown instead of bandwidths.
+    /// Shown in [`FigureKind::Requirements`] instead of bandwidths.
     pub over_time: Option<OverTime>,
 }
 
 impl FigureRequest {
-    /// Creates a figure of these responses and channels with default options.
+    /// Creates a request for these responses and channels with default options.
     pub fn new(kind: FigureKind, pairs: Vec<Pair>, channels: Vec<Channel>) -> Self {
         Self {
             kind,
@@ -202,76 +239,78 @@ impl FigureRequest {
         }
     }
 
-    /// Builds the figure; `None` if its source is missing: the condition's source for a figure of
-    /// one condition, otherwise the analysis.
+    /// Describes the figure from the analysis or, for a figure that shows a single condition, from
+    /// the condition's source; `None` if the source or the contents are missing.
     pub fn figure(
         &self,
         analysis: Option<&Analysis>,
         condition: Option<&ConditionSource<'_>>,
     ) -> Option<Figure> {
-        Some(match self.kind {
-            FigureKind::Bode => bode_figure(condition?, &self.pairs, &self.bode),
-            FigureKind::Error => error_figure(condition?, &self.pairs, &self.bode),
-            FigureKind::Overview => overview_figure(condition?, &self.bode),
+        match self.kind {
+            FigureKind::Bode => Some(bode_figure(condition?, &self.pairs, &self.bode)),
+            FigureKind::Error => Some(error_figure(condition?, &self.pairs, &self.bode)),
+            FigureKind::Overview => Some(overview_figure(condition?, &self.bode)),
             FigureKind::NetGain => {
-                net_gain_figure(analysis?, analysis?.uncertainty.as_deref(), &self.pairs)
+                let analysis = analysis?;
+                let uncertainty = analysis.uncertainty.as_deref();
+                Some(net_gain_figure(analysis, uncertainty, &self.pairs))
             }
-            FigureKind::Channels => {
-                let shown = (self.measure, self.across);
-                channels_figure(
-                    analysis?,
-                    analysis?.uncertainty.as_deref(),
-                    &self.channels,
-                    shown,
-                )
-            }
-            FigureKind::Evidence => return evidence_figure(analysis?, &self.pairs),
+            FigureKind::Channels => self.channels_figure(analysis?),
+            FigureKind::Evidence => evidence_figure(analysis?, &self.pairs),
             FigureKind::Assessment => {
                 let analysis = analysis?;
-                assessment_figure(
-                    analysis,
-                    &self.pairs,
-                    self.assessed.unwrap_or_else(|| usual_choice(analysis)),
-                )
+                let choice = self.assessed.unwrap_or_else(|| usual_choice(analysis));
+                Some(assessment_figure(analysis, &self.pairs, choice))
             }
-            FigureKind::Poles => {
-                let condition = condition?;
-                let modes = ConditionModes::of(&condition.curves.condition, &Unobserved).ok()?;
-                let zeros = |id: &ModelId| match self.bode.zeros_of {
-                    Some(pair) => zeros_of_model(condition, pair, id),
-                    None => Vec::new(),
-                };
-                let shifts = condition
-                    .analysis
-                    .map(ConditionAnalysis::pole_shifts)
-                    .unwrap_or_default();
-                poles_figure(condition, &modes, &self.bode, (&zeros, &shifts))
-            }
-            FigureKind::Leads => leads_figure(condition?, &self.pairs),
-            FigureKind::Requirements => {
-                let study = &analysis?.study;
-                match &self.over_time {
-                    Some(OverTime::Test(answers)) => test_answers_figure(answers, &study.dataset),
-                    Some(OverTime::Record(history, input)) => {
-                        record_history_figure(history, &study.dataset, *input)
-                    }
-                    None => {
-                        let requirements = self.requirements.as_deref()?;
-                        requirements_figure(
-                            requirements,
-                            &study.dataset,
-                            &study.requirements.levels,
-                        )
-                    }
-                }
-            }
+            FigureKind::Poles => self.poles_figure(condition?),
+            FigureKind::Leads => Some(leads_figure(condition?, &self.pairs)),
+            FigureKind::Requirements => self.requirements_figure(analysis?),
             FigureKind::Couplings => {
-                let shown = condition.map(|of| of.curves.condition.id());
-                return couplings_figure(self.couplings.as_deref()?, shown, self.bode.unit);
+                let shown = condition.map(|source| source.curves.condition.id());
+                couplings_figure(self.couplings.as_deref()?, shown, self.bode.unit)
             }
             FigureKind::Airspeeds => {
-                return airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode);
+                airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode)
             }
-        })
+        }
+    }
+
+    fn channels_figure(&self, analysis: &Analysis) -> Option<Figure> {
+        Some(channels_figure(
+            analysis,
+            analysis.uncertainty.as_deref(),
+            &self.channels,
+            (self.measure, self.across),
+        ))
+    }
+
+    /// Computes and plots modes and zeros of all models.
+    fn poles_figure(&self, source: &ConditionSource<'_>) -> Option<Figure> {
+        let modes = ConditionModes::of(&source.curves.condition, &Unobserved).ok()?;
+        let zeros = |id: &ModelId| match self.bode.zeros_of {
+            Some(pair) => zeros_of_model(source, pair, id),
+            None => Vec::new(),
+        };
+        let shifts = match source.analysis {
+            Some(analysis) => analysis.pole_shifts(),
+            None => Vec::new(),
+        };
+        Some(poles_figure(source, &modes, &self.bode, (&zeros, &shifts)))
+    }
+
+    /// Plots models over time if requested, otherwise bandwidths.
+    fn requirements_figure(&self, analysis: &Analysis) -> Option<Figure> {
+        let study = &analysis.study;
+        match &self.over_time {
+            Some(OverTime::Test(answers)) => Some(test_answers_figure(answers, &study.dataset)),
+            Some(OverTime::Record(history, input)) => {
+                Some(record_history_figure(history, &study.dataset, *input))
+            }
+            None => Some(requirements_figure(
+                self.requirements.as_deref()?,
+                &study.dataset,
+                &study.requirements.levels,
+            )),
+        }
     }
 }

@@ -1,5 +1,5 @@
-//! The numbers of a figure at full precision: as one long table for programs, or as a table for
-//! each panel for people.
+//! Numbers of a figure at full precision: as one long table for programs, or as a table for each
+//! panel for people.
 
 use std::sync::Arc;
 
@@ -7,9 +7,10 @@ use gdcm_model::message_text::sanitized;
 use gdcm_study::Table;
 
 use super::axis::Axis;
-use super::figure::{Along, Bracket, Curve, Envelope, Figure, Intervals, Mark, Panel, Spans};
+use super::figure::{Figure, Panel};
+use super::marks::{Along, Brackets, Curve, Dots, Mark};
 
-/// The columns of a figure's long table.
+/// Columns in a figure's long table.
 pub const LONG_COLUMNS: [&str; 8] = [
     "figure",
     "panel",
@@ -22,27 +23,28 @@ pub const LONG_COLUMNS: [&str; 8] = [
 ];
 
 impl Figure {
-    /// Returns all numbers as the rows of one table under [`LONG_COLUMNS`], one for each point: the
-    /// figure's title, the panel (title of the plot, quantity), the curve, the text beside the
-    /// point, and both coordinates, each after the label of its axis. A labelled horizontal line
-    /// has no x.
+    /// Returns all numbers as rows under [`LONG_COLUMNS`], a row for each point: the figure's
+    /// title, the panel (plot title, quantity), the curve, the text beside the point, and both
+    /// coordinates, each after its axis label. A labelled horizontal line has no x.
     pub fn long_rows(&self) -> impl Iterator<Item = [String; 8]> + '_ {
         self.panels()
-            .flat_map(|(title, panel)| panel.long_rows(&self.title, panel.name(title)))
+            .flat_map(|(title, panel)| panel.long_rows(&self.title, title))
     }
 
-    /// Returns the numbers of each panel: one column for each curve if all share their x, otherwise
-    /// one row for each point. Band limits at frequencies of their own follow in separate tables.
+    /// Returns the numbers in each panel: a column for each curve if all share their x, otherwise a
+    /// row for each point. Areas on other frequencies have separate tables, after all others.
+    /// Tables without rows are left out.
     pub fn tables(&self) -> Vec<Table> {
-        let (tables, of_bands): (Vec<Table>, Vec<Option<Table>>) = self
-            .panels()
-            .map(|(title, panel)| panel.tables(title))
-            .unzip();
-        let tables = tables
-            .into_iter()
-            .chain(of_bands.into_iter().flatten())
-            .filter(|table| !table.rows.is_empty());
-        tables.map(without_control_codes).collect()
+        let mut tables = Vec::new();
+        let mut tables_of_areas = Vec::new();
+        for (title, panel) in self.panels() {
+            let numbers = PanelTables::new(panel, title);
+            tables.push(numbers.main);
+            tables_of_areas.extend(numbers.areas);
+        }
+        tables.extend(tables_of_areas);
+        tables.retain(|table| !table.rows.is_empty());
+        tables.into_iter().map(without_control_codes).collect()
     }
 }
 
@@ -53,13 +55,13 @@ fn without_control_codes(mut table: Table) -> Table {
         .columns
         .iter_mut()
         .chain(table.rows.iter_mut().flatten());
-    cells
-        .chain([&mut table.title])
-        .for_each(|text| *text = sanitized(text));
+    for text in cells.chain([&mut table.title]) {
+        *text = sanitized(text);
+    }
     table
 }
 
-/// Listed numbers of a mark: its name, and its points with the texts beside them.
+/// A mark's points, with the texts beside them.
 struct Series {
     name: String,
     x: Arc<[f64]>,
@@ -67,203 +69,273 @@ struct Series {
     labels: Option<Vec<String>>,
 }
 
-/// Name and value of a constant over all x.
-type Constant<'m> = (&'m str, f64);
-
-impl Panel {
-    /// Returns its name among the numbers, in a plot of this title.
-    fn name(&self, title: &str) -> String {
-        if title.is_empty() {
-            self.y.label.clone()
-        } else {
-            format!("{title}, {}", self.y.label)
+impl Series {
+    /// Creates a series from `[x, y]` points without texts.
+    fn new(name: impl Into<String>, points: &[[f64; 2]]) -> Self {
+        Self {
+            name: name.into(),
+            x: points.iter().map(|point| point[0]).collect(),
+            y: points.iter().map(|point| point[1]).collect(),
+            labels: None,
         }
     }
 
-    /// Returns its rows of the long table, in a figure of this title and under this name.
-    fn long_rows<'p>(
-        &'p self,
-        figure_title: &'p str,
-        name: String,
-    ) -> impl Iterator<Item = [String; 8]> + 'p {
-        let mut rows = Vec::new();
-        for series in self.marks.iter().flat_map(series) {
-            for at in 0..series.x.len().min(series.y.len()) {
-                let label = series
-                    .labels
-                    .as_ref()
-                    .and_then(|labels| labels.get(at))
-                    .map_or("", String::as_str);
-                rows.push([
-                    series.name.clone(),
-                    label.to_owned(),
-                    place(&self.x, series.x[at]),
-                    figure(series.y[at]),
-                ]);
+    fn from_curve(curve: &Curve) -> Self {
+        Self {
+            name: curve.name.clone(),
+            x: Arc::clone(&curve.x),
+            y: Arc::clone(&curve.y),
+            labels: None,
+        }
+    }
+
+    fn from_dots(group: &Dots) -> Self {
+        let points: Vec<[f64; 2]> = group.dots.iter().map(|dot| [dot.x, dot.y]).collect();
+        Self {
+            labels: Some(group.dots.iter().map(|dot| dot.label.clone()).collect()),
+            ..Self::new(&group.name, &points)
+        }
+    }
+
+    /// Creates a series through both ends of each bracket.
+    fn from_brackets(group: &Brackets) -> Self {
+        let mut points = Vec::new();
+        let mut labels = Vec::new();
+        for bracket in &group.brackets {
+            for end in bracket.ends {
+                points.push([bracket.x, end]);
+                labels.push(bracket.label.clone());
             }
         }
-        for (line, value) in self.marks.iter().filter_map(constant) {
-            rows.push([line.to_owned(), String::new(), String::new(), figure(value)]);
+        Self {
+            labels: Some(labels),
+            ..Self::new(&group.name, &points)
         }
-        rows.into_iter().map(move |[curve, label, x, y]| {
-            let x_quantity = self.x.label.clone();
-            let y_quantity = self.y.label.clone();
-            [
+    }
+
+    /// Creates one series for the lower and one for the upper ends of vertical ranges.
+    fn from_ends(name: &str, ends: &[[f64; 3]]) -> Vec<Self> {
+        let mut lower = Vec::new();
+        let mut upper = Vec::new();
+        for &[x, low, high] in ends {
+            lower.push([x, low]);
+            upper.push([x, high]);
+        }
+        vec![
+            Self::new(format!("{name}, lower"), &lower),
+            Self::new(format!("{name}, upper"), &upper),
+        ]
+    }
+
+    /// Returns a mark's series; none for a mark without numbers.
+    fn from_mark(mark: &Mark) -> Vec<Self> {
+        match mark {
+            Mark::Curve(curve) => vec![Self::from_curve(curve)],
+            Mark::Dots(group) => vec![Self::from_dots(group)],
+            Mark::Bars(bars) => vec![Self::new(&bars.name, &bars.bars)],
+            Mark::Spans(spans) => Self::from_ends(&spans.name, &spans.spans),
+            Mark::Envelope(envelope) if envelope.edge.is_some() => {
+                envelope.edges().iter().map(Self::from_curve).collect()
+            }
+            Mark::Envelope(envelope) => Self::from_ends(&envelope.name, &envelope.points),
+            Mark::Intervals(intervals) => Self::from_ends(&intervals.name, &intervals.ends),
+            Mark::Brackets(group) => vec![Self::from_brackets(group)],
+            Mark::Rule(_) | Mark::Band(_) | Mark::Guide(_) | Mark::Note(_) => Vec::new(),
+        }
+    }
+
+    /// Returns the text beside a point; empty without one.
+    fn label(&self, point: usize) -> &str {
+        let label = self.labels.as_ref().and_then(|labels| labels.get(point));
+        label.map(String::as_str).unwrap_or_default()
+    }
+
+    /// Returns the point count.
+    fn count(&self) -> usize {
+        self.x.len().min(self.y.len())
+    }
+}
+
+/// A value that holds for all x: a labelled horizontal line.
+struct Constant<'m> {
+    name: &'m str,
+    value: f64,
+}
+
+impl<'m> Constant<'m> {
+    fn from_mark(mark: &'m Mark) -> Option<Self> {
+        match mark {
+            Mark::Rule(rule) if rule.along == Along::Y && !rule.label.is_empty() => Some(Self {
+                name: &rule.label,
+                value: rule.at,
+            }),
+            _ => None,
+        }
+    }
+}
+
+impl Panel {
+    /// Returns its name among the numbers, in a plot with this title.
+    fn name(&self, plot_title: &str) -> String {
+        if plot_title.is_empty() {
+            self.y.label.clone()
+        } else {
+            format!("{plot_title}, {}", self.y.label)
+        }
+    }
+
+    /// Returns its rows in the long table.
+    fn long_rows(&self, figure_title: &str, plot_title: &str) -> Vec<[String; 8]> {
+        let name = self.name(plot_title);
+        let mut rows = Vec::new();
+        for [curve, label, x, y] in self.point_rows() {
+            rows.push([
                 figure_title.to_owned(),
                 name.clone(),
                 curve,
                 label,
-                x_quantity,
+                self.x.label.clone(),
                 x,
-                y_quantity,
+                self.y.label.clone(),
                 y,
-            ]
-        })
-    }
-
-    fn tables(&self, title: &str) -> (Table, Option<Table>) {
-        let (bands, others): (Vec<&Mark>, Vec<&Mark>) = self
-            .marks
-            .iter()
-            .partition(|mark| matches!(mark, Mark::Envelope(of) if of.edge.is_none()));
-        let mut main: Vec<Series> = others.into_iter().flat_map(series).collect();
-        let bands: Vec<Series> = bands.into_iter().flat_map(series).collect();
-        let title = self.name(title);
-        let apart = main
-            .first()
-            .is_some_and(|first| bands.iter().any(|band| band.x != first.x));
-        let of_bands = apart.then(|| self.table(format!("{title}, bands"), &bands, &[]));
-        if !apart {
-            main.extend(bands);
-        }
-        let constants: Vec<Constant<'_>> = self.marks.iter().filter_map(constant).collect();
-        (self.table(title, &main, &constants), of_bands)
-    }
-
-    fn table(&self, title: String, series: &[Series], constants: &[Constant<'_>]) -> Table {
-        let same_x = |first: &Series| {
-            series
-                .iter()
-                .all(|next| next.labels.is_none() && next.x == first.x)
-        };
-        if series.first().is_some_and(same_x) {
-            self.wide(title, series, constants)
-        } else {
-            self.long(title, series, constants)
-        }
-    }
-
-    /// Builds `x | first curve [unit] | second curve [unit] | …`; the series have the same x.
-    fn wide(&self, title: String, series: &[Series], constants: &[Constant<'_>]) -> Table {
-        let unit = unit_of(&self.y.label);
-        let names = series
-            .iter()
-            .map(|series| series.name.as_str())
-            .chain(constants.iter().map(|(name, _)| *name));
-        let headings = names.map(|name| format!("{name}{unit}"));
-        let mut table = Table::new(title, std::iter::once(self.x.label.clone()).chain(headings));
-        let x = series
-            .first()
-            .map(|series| &series.x[..])
-            .unwrap_or_default();
-        for (at, &x) in x.iter().enumerate() {
-            let values = series
-                .iter()
-                .map(|series| series.y.get(at).copied().unwrap_or(f64::NAN));
-            let values = values
-                .chain(constants.iter().map(|(_, value)| *value))
-                .map(figure);
-            table.row(std::iter::once(place(&self.x, x)).chain(values));
-        }
-        table
-    }
-
-    /// Builds `series | label | x | y`.
-    fn long(&self, title: String, series: &[Series], constants: &[Constant<'_>]) -> Table {
-        let mut table = Table::new(title, ["series", "label", &self.x.label, &self.y.label]);
-        for series in series {
-            for (at, (&x, &y)) in series.x.iter().zip(series.y.iter()).enumerate() {
-                let label = series
-                    .labels
-                    .as_ref()
-                    .and_then(|labels| labels.get(at))
-                    .cloned()
-                    .unwrap_or_default();
-                table.row([series.name.clone(), label, place(&self.x, x), figure(y)]);
-            }
-        }
-        for (name, value) in constants {
-            table.row([
-                (*name).to_owned(),
-                String::new(),
-                String::new(),
-                figure(*value),
             ]);
         }
-        table
+        rows
+    }
+
+    /// Returns curve, label, x and y at each point, followed by the constants.
+    fn point_rows(&self) -> Vec<[String; 4]> {
+        let series: Vec<Series> = self.marks.iter().flat_map(Series::from_mark).collect();
+        rows_of_points(&self.x, &series, &self.constants())
+    }
+
+    fn constants(&self) -> Vec<Constant<'_>> {
+        self.marks.iter().filter_map(Constant::from_mark).collect()
     }
 }
 
-fn series(mark: &Mark) -> Vec<Series> {
-    let of = |name: &str, points: Vec<[f64; 2]>, labels| Series {
-        name: name.to_owned(),
-        x: points.iter().map(|point| point[0]).collect(),
-        y: points.iter().map(|point| point[1]).collect(),
-        labels,
-    };
-    let of_curve = |curve: &Curve| Series {
-        name: curve.name.clone(),
-        x: Arc::clone(&curve.x),
-        y: Arc::clone(&curve.y),
-        labels: None,
-    };
-    match mark {
-        Mark::Curve(curve) => vec![of_curve(curve)],
-        Mark::Envelope(of) if of.edge.is_some() => {
-            of.edges().map(|curve| of_curve(&curve)).collect()
+/// Returns name, label, x and y at each point, followed by the constants.
+fn rows_of_points(
+    x_axis: &Axis,
+    series: &[Series],
+    constants: &[Constant<'_>],
+) -> Vec<[String; 4]> {
+    let mut rows = Vec::new();
+    for series in series {
+        for point in 0..series.count() {
+            rows.push([
+                series.name.clone(),
+                series.label(point).to_owned(),
+                x_cell(x_axis, series.x[point]),
+                number_cell(series.y[point]),
+            ]);
         }
-        Mark::Dots(dots) => {
-            let labels = dots.dots.iter().map(|dot| dot.label.clone()).collect();
-            vec![of(
-                &dots.name,
-                dots.dots.iter().map(|dot| [dot.x, dot.y]).collect(),
-                Some(labels),
-            )]
+    }
+    for constant in constants {
+        rows.push([
+            constant.name.to_owned(),
+            String::new(),
+            String::new(),
+            number_cell(constant.value),
+        ]);
+    }
+    rows
+}
+
+/// A panel's tables.
+struct PanelTables {
+    main: Table,
+    /// Areas on other frequencies than the first curve.
+    areas: Option<Table>,
+}
+
+impl PanelTables {
+    fn new(panel: &Panel, plot_title: &str) -> Self {
+        let mut main = Vec::new();
+        let mut areas = Vec::new();
+        for mark in &panel.marks {
+            let is_area = matches!(mark, Mark::Envelope(envelope) if envelope.edge.is_none());
+            if is_area {
+                areas.extend(Series::from_mark(mark));
+            } else {
+                main.extend(Series::from_mark(mark));
+            }
         }
-        Mark::Bars(bars) => vec![of(&bars.name, bars.bars.clone(), None)],
-        Mark::Spans(Spans {
-            name, spans: ends, ..
-        })
-        | Mark::Envelope(Envelope {
-            name, points: ends, ..
-        })
-        | Mark::Intervals(Intervals { name, ends, .. }) => {
-            let end = |(end, at): (&str, usize)| {
-                of(
-                    &format!("{name}, {end}"),
-                    ends.iter().map(|ends| [ends[0], ends[at]]).collect(),
-                    None,
-                )
-            };
-            [("lower", 1), ("upper", 2)].map(end).into()
+        let title = panel.name(plot_title);
+        let mut table_of_areas = None;
+        if let Some(first) = main.first()
+            && areas.iter().any(|area| area.x != first.x)
+        {
+            table_of_areas = Some(table(panel, format!("{title}, bands"), &areas, &[]));
+        } else {
+            main.extend(areas);
         }
-        Mark::Brackets(brackets) => {
-            let both = |of: &Bracket| of.ends.map(|end| ([of.x, end], of.label.clone()));
-            let (points, labels) = brackets.brackets.iter().flat_map(both).unzip();
-            vec![of(&brackets.name, points, Some(labels))]
+        Self {
+            main: table(panel, title, &main, &panel.constants()),
+            areas: table_of_areas,
         }
-        Mark::Rule(_) | Mark::Band(_) | Mark::Guide(_) | Mark::Note(_) => Vec::new(),
     }
 }
 
-/// Returns the label and value of a labelled horizontal line.
-fn constant(mark: &Mark) -> Option<Constant<'_>> {
-    match mark {
-        Mark::Rule(rule) if rule.along == Along::Y && !rule.label.is_empty() => {
-            Some((&rule.label, rule.at))
+/// Builds a wide table if all series have the same x and no texts, otherwise a long table.
+fn table(panel: &Panel, title: String, series: &[Series], constants: &[Constant<'_>]) -> Table {
+    match series.first() {
+        Some(first)
+            if series
+                .iter()
+                .all(|next| next.labels.is_none() && next.x == first.x) =>
+        {
+            wide_table(panel, title, series, constants)
         }
-        _ => None,
+        _ => long_table(panel, title, series, constants),
     }
+}
+
+/// Builds `x | first curve [unit] | second curve [unit] | …` from series with the same x.
+fn wide_table(
+    panel: &Panel,
+    title: String,
+    series: &[Series],
+    constants: &[Constant<'_>],
+) -> Table {
+    let unit = unit_of(&panel.y.label);
+    let mut columns = vec![panel.x.label.clone()];
+    columns.extend(series.iter().map(|series| format!("{}{unit}", series.name)));
+    for constant in constants {
+        columns.push(format!("{}{unit}", constant.name));
+    }
+    let mut table = Table::new(title, columns);
+    let x: &[f64] = match series.first() {
+        Some(first) => &first.x,
+        None => &[],
+    };
+    for (point, &x) in x.iter().enumerate() {
+        let mut cells = vec![x_cell(&panel.x, x)];
+        for series in series {
+            let value = series.y.get(point).copied().unwrap_or(f64::NAN);
+            cells.push(number_cell(value));
+        }
+        for constant in constants {
+            cells.push(number_cell(constant.value));
+        }
+        table.row(cells);
+    }
+    table
+}
+
+/// Builds `series | label | x | y`.
+fn long_table(
+    panel: &Panel,
+    title: String,
+    series: &[Series],
+    constants: &[Constant<'_>],
+) -> Table {
+    let columns = ["series", "label", &panel.x.label, &panel.y.label];
+    let mut table = Table::new(title, columns);
+    for row in rows_of_points(&panel.x, series, constants) {
+        table.row(row);
+    }
+    table
 }
 
 /// Returns ` [dB]` for `Magnitude [dB]`; empty for a label without a unit.
@@ -271,21 +343,18 @@ fn unit_of(label: &str) -> &str {
     label.rfind(" [").map(|at| &label[at..]).unwrap_or_default()
 }
 
-/// Returns the name of a place on an axis of names, including places beside it; otherwise the
-/// number.
-fn place(axis: &Axis, value: f64) -> String {
-    let name = axis
-        .names
-        .iter()
-        .flatten()
-        .find(|(at, _)| (at - value).abs() < 0.5)
-        .map(|(_, name)| name.clone());
-    name.unwrap_or_else(|| figure(value))
+/// Formats an x: on an axis with names, the nearest name, otherwise the number.
+fn x_cell(axis: &Axis, value: f64) -> String {
+    let mut names = axis.names.iter().flatten();
+    match names.find(|(at, _)| (at - value).abs() < 0.5) {
+        Some((_, name)) => name.clone(),
+        None => number_cell(value),
+    }
 }
 
 /// Formats a number at full precision; empty if it is not finite.
-fn figure(value: f64) -> String {
-    // Debug writes an exponent, unlike Display, which would write hundreds of zeros.
+fn number_cell(value: f64) -> String {
+    // Debug writes an exponent, unlike Display, which may write hundreds of zeros.
     if value.is_finite() {
         format!("{value:?}")
     } else {
@@ -296,7 +365,8 @@ fn figure(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::drawing::{Color, Stroke};
-    use super::super::figure::{Bars, Curve, DotShape, Dots, Plot, Rule};
+    use super::super::figure::Plot;
+    use super::super::marks::{Bars, DotShape, Dots, Rule};
     use super::*;
 
     const LINE: Stroke = Stroke::solid(Color::INK, 1.0);

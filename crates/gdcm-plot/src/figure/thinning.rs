@@ -1,29 +1,26 @@
-//! Thinning of lines: points that need not be drawn.
+//! Thins lines: leaves out points that would not be seen.
 
 use std::borrow::Cow;
 
-/// Smallest visible distances, in the units of a plot.
+/// Smallest visible distances, in plot units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
-    /// Width of a column of pixels, in units of x.
+    /// Width of a pixel column, in x units.
     pub width: f64,
-    /// Maximum distance of a line from a curve, in units of y.
+    /// Maximum distance between a thinned line and the curve, in y units.
     pub tolerance: f64,
 }
 
 impl Pixel {
-    /// Splits points, ascending in x, by column of pixels.
+    /// Splits points, ascending in x, by pixel column.
     fn columns(self, points: &[[f64; 2]]) -> impl Iterator<Item = &[[f64; 2]]> {
         let mut rest = points;
         std::iter::from_fn(move || {
             let first = rest.first()?;
             let end = ((first[0] / self.width).floor() + 1.0) * self.width;
+            let inside = rest.iter().position(|point| point[0] >= end);
             // By rounding, the end may fall on the first point itself.
-            let count = rest
-                .iter()
-                .take_while(|point| point[0] < end)
-                .count()
-                .max(1);
+            let count = inside.unwrap_or(rest.len()).max(1);
             let (column, others) = rest.split_at(count);
             rest = others;
             Some(column)
@@ -31,17 +28,17 @@ impl Pixel {
     }
 }
 
-/// Returns the points of `run` that must be drawn: the extremes in each column of pixels, and as
-/// many others as keep the lines between them within the tolerance of every value. Both ends stay;
-/// a `run` that does not ascend in x is returned whole.
+/// Returns the points in `run` that must be drawn: the extremes in each pixel column, and as many
+/// others as keep the lines between them within tolerance for every value. Both ends stay; a `run`
+/// that does not ascend in x is returned whole.
 pub fn thinned(run: &[[f64; 2]], pixel: Pixel) -> Vec<[f64; 2]> {
-    if !run.is_sorted_by(|one, next| one[0] < next[0]) {
+    if !run.is_sorted_by(|point, next| point[0] < next[0]) {
         return run.to_vec();
     }
     along_wedges(&column_extremes(run, pixel), pixel.tolerance)
 }
 
-/// Returns the first, the least, the greatest and the last point in each column of pixels, in their
+/// Returns the first, the least, the greatest and the last point in each pixel column, in their
 /// order.
 fn column_extremes(run: &[[f64; 2]], pixel: Pixel) -> Cow<'_, [[f64; 2]]> {
     // Most often no column holds three points, and no point can be omitted.
@@ -55,52 +52,91 @@ fn column_extremes(run: &[[f64; 2]], pixel: Pixel) -> Cow<'_, [[f64; 2]]> {
     for points in pixel.columns(run) {
         if points.len() <= 2 {
             kept.extend_from_slice(points);
-            continue;
+        } else {
+            kept.extend(extremes_of_column(points).map(|index| points[index]));
         }
-        let by_value = |a: &usize, b: &usize| points[*a][1].total_cmp(&points[*b][1]);
-        let indices = || 0..points.len();
-        let extremes = [indices().min_by(by_value), indices().max_by(by_value)];
-        let mut indices = [
-            0,
-            extremes[0].unwrap_or(0),
-            extremes[1].unwrap_or(0),
-            points.len() - 1,
-        ];
-        indices.sort_unstable();
-        let distinct = indices.chunk_by(|a, b| a == b).map(|same| points[same[0]]);
-        kept.extend(distinct);
     }
     Cow::Owned(kept)
 }
 
-/// Returns the points of `run` needed for straight lines between them to stay within `tolerance` of
+/// Returns the indices at the first, the least, the greatest and the last point in a column, in
+/// ascending order without duplicates.
+fn extremes_of_column(points: &[[f64; 2]]) -> impl Iterator<Item = usize> {
+    let mut least = 0;
+    let mut greatest = 0;
+    for (index, point) in points.iter().enumerate() {
+        if point[1].total_cmp(&points[least][1]).is_lt() {
+            least = index;
+        }
+        // Among equal values: the first least point, the last greatest point.
+        if point[1].total_cmp(&points[greatest][1]).is_ge() {
+            greatest = index;
+        }
+    }
+    let mut indices = vec![0, least, greatest, points.len() - 1];
+    indices.sort_unstable();
+    indices.dedup();
+    indices.into_iter()
+}
+
+/// Slopes at which lines from the last kept point pass all values since within tolerance.
+struct Wedge {
+    apex: [f64; 2],
+    least_slope: f64,
+    greatest_slope: f64,
+}
+
+impl Wedge {
+    /// Starts at a kept point, with every slope.
+    fn new(apex: [f64; 2]) -> Self {
+        Self {
+            apex,
+            least_slope: f64::NEG_INFINITY,
+            greatest_slope: f64::INFINITY,
+        }
+    }
+
+    /// Returns whether the line to a point passes all values within tolerance.
+    fn contains(&self, [x, y]: [f64; 2]) -> bool {
+        (self.least_slope..=self.greatest_slope).contains(&self.slope_to(x, y))
+    }
+
+    /// Removes the slopes that do not pass a point within tolerance.
+    fn narrow(&mut self, [x, y]: [f64; 2], tolerance: f64) {
+        self.least_slope = self.least_slope.max(self.slope_to(x, y - tolerance));
+        self.greatest_slope = self.greatest_slope.min(self.slope_to(x, y + tolerance));
+    }
+
+    fn slope_to(&self, x: f64, y: f64) -> f64 {
+        (y - self.apex[1]) / (x - self.apex[0])
+    }
+}
+
+/// Returns the points in `run` needed for straight lines between them to stay within `tolerance` at
 /// every omitted value.
 ///
 /// ```text
-/// keep the first point
-/// of each next one: the slopes from the point kept last that pass all values since then within tolerance are a wedge
-///     where the next point lies outside of it: keep the point before, and begin a wedge there
+/// keep the first point: it is the apex from which a wedge opens
+/// for each further point:
+///     if it lies outside the wedge: keep the point before it, the next apex
+///     narrow the wedge to slopes that pass the point within tolerance
 /// keep the last point
 /// ```
-/// Linear in the number of points. Williams, "An efficient algorithm for the piecewise linear
+/// Linear in the point count. Williams, "An efficient algorithm for the piecewise linear
 /// approximation of planar curves", Computer Graphics and Image Processing 8, 1978.
 fn along_wedges(run: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     let Some((first, rest)) = run.split_first() else {
         return Vec::new();
     };
     let mut kept = vec![*first];
-    let mut anchor = *first;
+    let mut wedge = Wedge::new(*first);
     let mut previous = *first;
-    let mut slopes = (f64::NEG_INFINITY, f64::INFINITY);
     for point in rest {
-        let slope_to = |y: f64, anchor: [f64; 2]| (y - anchor[1]) / (point[0] - anchor[0]);
-        if !(slopes.0..=slopes.1).contains(&slope_to(point[1], anchor)) {
+        if !wedge.contains(*point) {
             kept.push(previous);
-            anchor = previous;
-            slopes = (f64::NEG_INFINITY, f64::INFINITY);
+            wedge = Wedge::new(previous);
         }
-        slopes.0 = slopes.0.max(slope_to(point[1] - tolerance, anchor));
-        slopes.1 = slopes.1.min(slope_to(point[1] + tolerance, anchor));
+        wedge.narrow(*point, tolerance);
         previous = *point;
     }
     if !rest.is_empty() {

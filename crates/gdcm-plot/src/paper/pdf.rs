@@ -1,4 +1,5 @@
-//! A drawing as PDF: one page as large as the drawing, text as text. No dates, no random names.
+//! A drawing as PDF: a page as large as the drawing, text as text. No dates and no random names, so
+//! that the same drawing makes the same file.
 
 use std::io::{self, Write};
 
@@ -16,25 +17,19 @@ use gdcm_model::message_text::sanitized;
 
 use crate::figure::Color;
 use crate::figure::drawing::{Area, Drawing, Shape, Stroke, Text};
-use crate::figure::layout::{FONTS, Letter, letters, width};
+use crate::figure::letters::{FONTS, Letter, letters, width};
 
-/// Distance of the control points of a cubic curve for a quarter circle, as a fraction of the
-/// radius.
+/// Distance from the ends of a quarter circle to the control points of its cubic curve, relative to
+/// the radius.
 const QUARTER: f64 = 0.552_284_749_830_793_4;
 
-/// Returns the bytes of the file.
+/// Returns the bytes of a PDF file.
+///
+/// # Errors
+/// If a font cannot be reduced to the letters used, or a stream not be compressed.
 pub fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     let [catalog, pages, page, content, info] = [1, 2, 3, 4, 5].map(Ref::new);
-    let mut drawn = Page {
-        content: Content::new(),
-        height: drawing.size[1],
-        used: UsedLetters::default(),
-    };
-    drawn
-        .content
-        .set_line_join(LineJoinStyle::RoundJoin)
-        .set_line_cap(LineCapStyle::ButtCap);
-    drawing.shapes.iter().for_each(|shape| drawn.shape(shape));
+    let drawn = Page::paint(drawing);
     let mut pdf = Pdf::new();
     pdf.catalog(catalog).pages(pages);
     pdf.pages(pages).kids([page]).count(1);
@@ -61,14 +56,31 @@ pub fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     Ok(pdf.finish())
 }
 
-/// Content of the page, in coordinates from its lower left corner up.
+/// A page under construction, in coordinates from its lower left corner up.
 struct Page {
     content: Content,
+    /// \[pt\].
     height: f64,
     used: UsedLetters,
 }
 
 impl Page {
+    fn paint(drawing: &Drawing) -> Self {
+        let mut page = Self {
+            content: Content::new(),
+            height: drawing.size[1],
+            used: UsedLetters::default(),
+        };
+        page.content
+            .set_line_join(LineJoinStyle::RoundJoin)
+            .set_line_cap(LineCapStyle::ButtCap);
+        for shape in &drawing.shapes {
+            page.shape(shape);
+        }
+        page
+    }
+
+    /// Returns a position in page coordinates.
     fn at(&self, [x, y]: [f64; 2]) -> [f32; 2] {
         [x as f32, (self.height - y) as f32]
     }
@@ -119,31 +131,33 @@ impl Page {
                     .rect(x, y, width as f32, height as f32)
                     .clip_nonzero()
                     .end_path();
-                shapes.iter().for_each(|shape| self.shape(shape));
+                for shape in shapes {
+                    self.shape(shape);
+                }
                 self.content.restore_state();
             }
         }
     }
 
     fn circle(&mut self, [x, y]: [f64; 2], radius: f64) {
-        let at = |dx: f64, dy: f64| self.at([x + radius * dx, y + radius * dy]);
-        let quarters =
-            [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].map(|[dx, dy]: [f64; 2]| {
-                // A quarter turn on from (dx, dy) is (-dy, dx).
-                [
-                    at(dx - QUARTER * dy, dy + QUARTER * dx),
-                    at(QUARTER * dx - dy, QUARTER * dy + dx),
-                    at(-dy, dx),
-                ]
-            });
-        let [start_x, start_y] = at(1.0, 0.0);
+        let [start_x, start_y] = self.at([x + radius, y]);
         self.content.move_to(start_x, start_y);
-        for [[x1, y1], [x2, y2], [x3, y3]] in quarters {
+        let starts: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+        for [dx, dy] in starts {
+            // A quarter turn on from (dx, dy) is (-dy, dx).
+            let quarter = [
+                [dx - QUARTER * dy, dy + QUARTER * dx],
+                [QUARTER * dx - dy, QUARTER * dy + dx],
+                [-dy, dx],
+            ];
+            let [[x1, y1], [x2, y2], [x3, y3]] =
+                quarter.map(|[dx, dy]| self.at([x + radius * dx, y + radius * dy]));
             self.content.cubic_to(x1, y1, x2, y2, x3, y3);
         }
         self.content.close_path();
     }
 
+    /// Sets the colours and the line for the next path.
     fn take_paint(&mut self, fill: Option<Color>, stroke: Option<Stroke>) {
         if let Some(color) = fill {
             let [red, green, blue] = parts(color);
@@ -164,6 +178,7 @@ impl Page {
         }
     }
 
+    /// Fills and strokes the present path.
     fn draw(&mut self, fill: Option<Color>, stroke: Option<Stroke>) {
         match (fill, stroke) {
             (Some(_), Some(_)) => self.content.fill_nonzero_and_stroke(),
@@ -188,13 +203,13 @@ impl Page {
             .set_fill_rgb(red, green, blue)
             .set_text_matrix([a, b, c, d, x, y]);
         let letters = letters(&text.words);
-        for run in letters.chunk_by(|one, next| one.font == next.font) {
+        for run in letters.chunk_by(|letter, next| letter.font == next.font) {
             self.run(run, text.size_pt);
         }
         self.content.end_text();
     }
 
-    /// Writes letters of one font.
+    /// Writes letters in a single font.
     fn run(&mut self, run: &[Letter], size_pt: f64) {
         let Some(first) = run.first() else { return };
         let codes: Vec<u8> = run
@@ -207,11 +222,12 @@ impl Page {
     }
 }
 
+/// Returns red, green and blue from 0 to 1.
 fn parts(color: Color) -> [f32; 3] {
     color.rgb().map(|part| f32::from(part) / 255.0)
 }
 
-/// Units per em of a PDF font.
+/// Units per em in a PDF font.
 const UNITS: f64 = 1000.0;
 const IDENTITY: SystemInfo<'static> = SystemInfo {
     registry: Str(b"Adobe"),
@@ -219,22 +235,24 @@ const IDENTITY: SystemInfo<'static> = SystemInfo {
     supplement: 0,
 };
 
-/// The used letters of each font, numbered in order of first use.
+/// The letters used, numbered by their first use in each font.
 #[derive(Default)]
-pub(super) struct UsedLetters {
+struct UsedLetters {
+    /// In the same order as [`FONTS`].
     fonts: [Used; FONTS.len()],
 }
 
+/// The letters used in a font.
 #[derive(Default)]
 struct Used {
     numbers: GlyphRemapper,
-    /// The letters in the order of their numbers, from 1.
+    /// By their numbers, which begin with 1.
     letters: Vec<Letter>,
 }
 
 impl UsedLetters {
-    /// Returns the number of a letter in its font.
-    pub(super) fn code(&mut self, letter: &Letter) -> u16 {
+    /// Returns a letter's number in its font.
+    fn code(&mut self, letter: &Letter) -> u16 {
         let Used { numbers, letters } = &mut self.fonts[letter.font];
         let is_new = numbers.get(letter.glyph).is_none();
         let code = numbers.remap(letter.glyph);
@@ -244,43 +262,55 @@ impl UsedLetters {
         code
     }
 
-    /// Writes the used fonts as objects from `first` on; returns the name and the object of each.
-    pub(super) fn write(&self, pdf: &mut Pdf, first: Ref) -> io::Result<Vec<(&'static str, Ref)>> {
+    /// Writes the used fonts as objects from `first` on; returns the name and object for each.
+    fn write(&self, pdf: &mut Pdf, first: Ref) -> io::Result<Vec<(&'static str, Ref)>> {
         let mut next = first;
         let mut written = Vec::new();
-        for (used, (name, bytes)) in self.fonts.iter().zip(FONTS) {
+        for (index, used) in self.fonts.iter().enumerate() {
             if !used.letters.is_empty() {
-                written.push((name, used.write(pdf, (name, bytes), &mut next)?));
+                written.push((FONTS[index].0, used.write(pdf, index, &mut next)?));
             }
         }
         Ok(written)
     }
 }
 
+/// A font's objects in a file.
+struct FontObjects {
+    font: Ref,
+    descendant: Ref,
+    descriptor: Ref,
+    characters: Ref,
+    file: Ref,
+}
+
 impl Used {
-    fn write(
-        &self,
-        pdf: &mut Pdf,
-        (name, bytes): (&str, &[u8]),
-        next: &mut Ref,
-    ) -> io::Result<Ref> {
-        let [font, descendant, descriptor, characters, file] = std::array::from_fn(|_| next.bump());
+    /// Writes the letters used from the font with this index in [`FONTS`]; returns its object.
+    fn write(&self, pdf: &mut Pdf, index: usize, next: &mut Ref) -> io::Result<Ref> {
+        let (name, bytes) = FONTS[index];
+        let objects = FontObjects {
+            font: next.bump(),
+            descendant: next.bump(),
+            descriptor: next.bump(),
+            characters: next.bump(),
+            file: next.bump(),
+        };
         let subset = subsetter::subset(bytes, 0, &self.numbers).map_err(io::Error::other)?;
         let face = FontRef::new(bytes).map_err(io::Error::other)?;
         // Readers expect six letters and a plus before the name of a font subset.
         let part = format!("GDCMFG+{name}");
         let part = Name(part.as_bytes());
-        pdf.type0_font(font)
+        pdf.type0_font(objects.font)
             .base_font(part)
             .encoding_predefined(Name(b"Identity-H"))
-            .descendant_font(descendant)
-            .to_unicode(characters);
-        let mut cid_font = pdf.cid_font(descendant);
+            .descendant_font(objects.descendant)
+            .to_unicode(objects.characters);
+        let mut cid_font = pdf.cid_font(objects.descendant);
         cid_font
             .subtype(CidFontType::Type2)
             .base_font(part)
             .system_info(IDENTITY)
-            .font_descriptor(descriptor);
+            .font_descriptor(objects.descriptor);
         cid_font
             .default_width(0.0)
             .cid_to_gid_map_predefined(Name(b"Identity"));
@@ -290,44 +320,17 @@ impl Used {
             .map(|letter| (UNITS * letter.advance) as f32);
         cid_font.widths().consecutive(1, advances).finish();
         cid_font.finish();
-        self.describe(pdf, (descriptor, file), part, &face);
-        pdf.stream(characters, &packed(&self.characters())?)
+        describe(pdf, &objects, part, &face);
+        pdf.stream(objects.characters, &packed(&self.characters())?)
             .filter(Filter::FlateDecode);
         let length = i32::try_from(subset.len()).map_err(io::Error::other)?;
-        pdf.stream(file, &packed(&subset)?)
+        pdf.stream(objects.file, &packed(&subset)?)
             .filter(Filter::FlateDecode)
             .pair(Name(b"Length1"), length);
-        Ok(font)
+        Ok(objects.font)
     }
 
-    fn describe(
-        &self,
-        pdf: &mut Pdf,
-        (descriptor, file): (Ref, Ref),
-        name: Name<'_>,
-        face: &FontRef<'_>,
-    ) {
-        let metrics = face.metrics(Size::new(UNITS as f32), LocationRef::default());
-        let bounds = metrics.bounds.unwrap_or_default();
-        pdf.font_descriptor(descriptor)
-            .name(name)
-            .flags(FontFlags::SYMBOLIC)
-            .bbox(Rect::new(
-                bounds.x_min,
-                bounds.y_min,
-                bounds.x_max,
-                bounds.y_max,
-            ))
-            .italic_angle(metrics.italic_angle)
-            .ascent(metrics.ascent)
-            .descent(metrics.descent)
-            .cap_height(metrics.cap_height.unwrap_or(metrics.ascent))
-            // No reader uses it for an embedded font.
-            .stem_v(80.0)
-            .font_file2(file);
-    }
-
-    /// Returns the character of each letter.
+    /// Returns the map from letter numbers to characters, for searching and copying.
     fn characters(&self) -> Vec<u8> {
         let mut map = UnicodeCmap::<u16>::new(Name(b"Custom"), IDENTITY);
         for letter in &self.letters {
@@ -339,8 +342,30 @@ impl Used {
     }
 }
 
+/// Writes a font descriptor.
+fn describe(pdf: &mut Pdf, objects: &FontObjects, name: Name<'_>, face: &FontRef<'_>) {
+    let metrics = face.metrics(Size::new(UNITS as f32), LocationRef::default());
+    let bounds = metrics.bounds.unwrap_or_default();
+    pdf.font_descriptor(objects.descriptor)
+        .name(name)
+        .flags(FontFlags::SYMBOLIC)
+        .bbox(Rect::new(
+            bounds.x_min,
+            bounds.y_min,
+            bounds.x_max,
+            bounds.y_max,
+        ))
+        .italic_angle(metrics.italic_angle)
+        .ascent(metrics.ascent)
+        .descent(metrics.descent)
+        .cap_height(metrics.cap_height.unwrap_or(metrics.ascent))
+        // No reader uses it for an embedded font.
+        .stem_v(80.0)
+        .font_file2(objects.file);
+}
+
 /// Compresses bytes as PDF expects them.
-pub(super) fn packed(bytes: &[u8]) -> io::Result<Vec<u8>> {
+fn packed(bytes: &[u8]) -> io::Result<Vec<u8>> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
     encoder.write_all(bytes)?;
     encoder.finish()

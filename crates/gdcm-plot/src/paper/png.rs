@@ -1,4 +1,4 @@
-//! A drawing as PNG.
+//! A drawing as PNG, with the same pixels on every machine.
 
 use std::io::{self, Write};
 
@@ -14,18 +14,21 @@ use vello_cpu::{Level, Pixmap, RenderContext, RenderSettings, Resources};
 
 use crate::figure::Color;
 use crate::figure::drawing::{Area, Drawing, Shape, Stroke, Text};
-use crate::figure::layout::{FONTS, letters, width};
+use crate::figure::letters::{FONTS, letters, width};
 
 /// Dots per inch, as journals require.
 const DOTS_PER_INCH: f64 = 300.0;
 /// Dots per point.
 const SCALE: f64 = DOTS_PER_INCH / 72.0;
-/// Inches in a metre.
+/// Inches per metre.
 const INCHES_PER_METRE: f64 = 1.0 / 0.0254;
-/// Maximum deviation of a drawn circle from a true one \[pt\].
+/// Maximum distance between a drawn circle and a true circle \[pt\].
 const TOLERANCE: f64 = 0.01;
 
 /// Writes the drawing at 300 dots per inch.
+///
+/// # Errors
+/// The error that prevents writing.
 pub fn write_png(drawing: &Drawing, file: &mut dyn Write) -> io::Result<()> {
     let [width, height] = drawing
         .size
@@ -54,7 +57,7 @@ fn unpacked(error: EncodingError) -> io::Error {
     }
 }
 
-/// Returns red, green and blue of each dot, row by row.
+/// Returns red, green and blue at each dot, row by row.
 fn pixels(drawing: &Drawing, width: u16, height: u16) -> Vec<u8> {
     // Without processor-specific instructions: the same dots everywhere.
     let settings = RenderSettings {
@@ -73,10 +76,9 @@ fn pixels(drawing: &Drawing, width: u16, height: u16) -> Vec<u8> {
         .filter_map(|(_, bytes)| FontRef::new(bytes).ok())
         .collect();
     paint(&mut context, &ground, &fonts);
-    drawing
-        .shapes
-        .iter()
-        .for_each(|shape| paint(&mut context, shape, &fonts));
+    for shape in &drawing.shapes {
+        paint(&mut context, shape, &fonts);
+    }
     context.flush();
     let mut pixmap = Pixmap::new(width, height);
     context.render(&mut pixmap, &mut Resources::new());
@@ -113,7 +115,9 @@ fn paint(context: &mut RenderContext, shape: &Shape, fonts: &[FontRef<'_>]) {
         Shape::Clipped { area, shapes } => {
             let area = Rect::new(area.left, area.top, area.right(), area.bottom());
             context.push_clip_path(&area.to_path(TOLERANCE));
-            shapes.iter().for_each(|shape| paint(context, shape, fonts));
+            for shape in shapes {
+                paint(context, shape, fonts);
+            }
             context.pop_clip_path();
         }
     }
@@ -159,7 +163,7 @@ fn take_color(context: &mut RenderContext, color: Color) {
     context.set_paint(AlphaColor::from_rgb8(red, green, blue));
 }
 
-/// Fills the outlines of the letters.
+/// Fills the letters' outlines.
 fn write(context: &mut RenderContext, text: &Text, fonts: &[FontRef<'_>]) {
     let turn = if text.upright {
         -std::f64::consts::FRAC_PI_2
@@ -190,10 +194,10 @@ fn write(context: &mut RenderContext, text: &Text, fonts: &[FontRef<'_>]) {
     context.fill_path(&(place * pen.path));
 }
 
-/// Collects outlines of letters side by side, y downwards.
+/// Collects outlines side by side, y downwards.
 struct Pen {
     path: BezPath,
-    /// Start of the letter.
+    /// Where the letter starts.
     x: f64,
 }
 

@@ -1,4 +1,4 @@
-//! A drawing as SVG 1.1: lines as paths, text as text. Units are points.
+//! A drawing as SVG 1.1: lines as paths, text as text, lengths in points.
 
 use std::fmt::Write;
 
@@ -6,12 +6,12 @@ use gdcm_model::message_text::sanitized;
 
 use crate::figure::Color;
 use crate::figure::drawing::{Anchor, Area, Drawing, PT_PER_MM, Shape, Stroke, Text};
-use crate::figure::layout::{FONTS, width};
+use crate::figure::letters::{FONTS, width};
 
-/// Fallback fonts of similar width, for a viewer without ours.
+/// Fallback fonts, similarly wide, for a viewer without ours.
 const OTHER_FONTS: &str = "Helvetica, Arial, sans-serif";
 
-/// Returns the text of the file.
+/// Returns an SVG file's contents.
 pub fn svg(drawing: &Drawing) -> String {
     let head = format!(
         "xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" {}",
@@ -20,27 +20,24 @@ pub fn svg(drawing: &Drawing) -> String {
     element(drawing, &head, "frame")
 }
 
-/// Returns the drawing as a part of an HTML page, which knows the element without a name space.
-/// `name` is the prefix of its internal references: it must be unique on the page.
+/// Returns the drawing as an element for an HTML page, which needs no name space. `name` is the
+/// prefix for its internal references: it must be unique on the page.
 pub fn inline_svg(drawing: &Drawing, name: &str) -> String {
     let label = escaped(&sanitized(&drawing.title));
-    element(
-        drawing,
-        &format!(
-            "role=\"img\" aria-label=\"{label}\" {}",
-            size_attributes(drawing)
-        ),
-        name,
-    )
+    let head = format!(
+        "role=\"img\" aria-label=\"{label}\" {}",
+        size_attributes(drawing)
+    );
+    element(drawing, &head, name)
 }
 
 fn size_attributes(drawing: &Drawing) -> String {
-    let [width, height] = drawing.size;
-    let [width_mm, height_mm] = [width, height].map(|length| number(length / PT_PER_MM));
-    let [width, height] = [width, height].map(number);
+    let [width_mm, height_mm] = drawing.size.map(|length| number(length / PT_PER_MM));
+    let [width, height] = drawing.size.map(number);
     format!("width=\"{width_mm}mm\" height=\"{height_mm}mm\" viewBox=\"0 0 {width} {height}\"")
 }
 
+/// Returns the element with these attributes in its head.
 fn element(drawing: &Drawing, head: &str, name: &str) -> String {
     let [width, height] = drawing.size;
     let mut svg = Svg {
@@ -61,20 +58,24 @@ fn element(drawing: &Drawing, head: &str, name: &str) -> String {
         Some(Color::WHITE),
         None,
     ));
-    drawing.shapes.iter().for_each(|shape| svg.shape(shape));
+    for shape in &drawing.shapes {
+        svg.shape(shape);
+    }
     svg.line("</svg>");
     svg.text
 }
 
+/// An element under construction.
 struct Svg<'a> {
     text: String,
-    /// Prefix of the names of clip areas.
+    /// Prefix for the names of clip areas.
     name: &'a str,
-    /// Number of clip areas so far: their numbers end their names.
+    /// Clip areas so far; their names end with their numbers.
     clips: usize,
 }
 
 impl Svg<'_> {
+    /// Adds a line to the text.
     fn line(&mut self, line: &str) {
         self.text.push_str(line);
         self.text.push('\n');
@@ -120,7 +121,9 @@ impl Svg<'_> {
                      <g clip-path=\"url(#{0}{1})\">",
                     self.name, self.clips
                 ));
-                shapes.iter().for_each(|shape| self.shape(shape));
+                for shape in shapes {
+                    self.shape(shape);
+                }
                 self.line("</g>");
             }
         }
@@ -148,7 +151,7 @@ impl Svg<'_> {
         } else {
             String::new()
         };
-        // As long as laid out, with any font of the viewer.
+        // As long as laid out, whatever font the viewer has.
         let length = number(size_pt * width(words));
         let length = format!(" textLength=\"{length}\" lengthAdjust=\"spacingAndGlyphs\"");
         let color = hex(*color);
@@ -159,6 +162,7 @@ impl Svg<'_> {
     }
 }
 
+/// Returns path data for a polyline.
 fn path(points: &[[f64; 2]], closed: bool) -> String {
     let mut text = String::new();
     for (index, [x, y]) in points.iter().enumerate() {
@@ -176,8 +180,13 @@ fn path(points: &[[f64; 2]], closed: bool) -> String {
     text
 }
 
+/// Returns the attributes for fill and line.
 fn paint(fill: Option<Color>, stroke: Option<Stroke>) -> String {
-    let mut text = format!(" fill=\"{}\"", fill.map_or("none".to_owned(), hex));
+    let fill = match fill {
+        Some(color) => hex(color),
+        None => "none".to_owned(),
+    };
+    let mut text = format!(" fill=\"{fill}\"");
     if let Some(Stroke {
         color,
         width_pt,
@@ -203,8 +212,8 @@ fn hex(color: Color) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// Formats a length to a hundredth of a point, below any printer's resolution; without trailing
-/// zeros, and without a minus before zero.
+/// Formats a length \[pt\] to two decimals, below any printer's resolution; without trailing zeros,
+/// and without a minus before zero.
 fn number(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

@@ -1,0 +1,150 @@
+//! Effect of couplings on their loop and on the poles (M16.4).
+
+use nalgebra::Complex;
+
+use gdcm_method::couplings::{LoopMargin, PoleShift};
+use gdcm_model::dataset::ConditionId;
+use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+
+use super::arrow::{arrow, spans};
+use super::axis::{Axis, FrequencyUnit, Range};
+use super::drawing::{Color, Dash, Hue, Stroke};
+use super::figure::{Figure, Panel, Plot};
+use super::marks::{Band, Curve, DotShape, Dots, Mark, Rule};
+use super::role::Role;
+
+const OTHERS: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(60), 0.7);
+const SHOWN: Stroke = Stroke::solid(Color::of(Hue::Corrected), 1.6);
+/// Arrow from a pole to its new position.
+const SHIFT: Stroke = Stroke::solid(Color::of(Hue::Corrected), 1.0);
+const RINGING: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
+const BAND: Color = Color::of(Hue::Accent).tint(12);
+pub(super) const AXIS: Stroke = Stroke::solid(Color::DIM, 0.6);
+/// Largest magnitude of poles shown, relative to the band's upper end.
+const SHOWN_POLES: f64 = 1.5;
+
+/// Plots the least singular value of `I - K H` over frequency for every condition, `shown` on top;
+/// and the poles of that condition's physics representative without and with couplings. Without a
+/// selected condition, shows the condition nearest to ringing; `None` without conditions.
+pub fn couplings_figure(
+    assessment: &CouplingsAssessment,
+    shown: Option<ConditionId>,
+    unit: FrequencyUnit,
+) -> Option<Figure> {
+    let shown = match shown {
+        Some(id) if assessment.conditions.contains_key(&id) => id,
+        _ => nearest_to_ringing(assessment)?,
+    };
+    let title = format!("Couplings: {}", assessment.couplings.name());
+    let figure = Figure::new(title)
+        .caption(assessment.heading())
+        .columns(2)
+        .aspect(0.72)
+        .plot(loop_plot(assessment, shown, unit))
+        .plot(pole_plot(assessment, shown));
+    Some(figure)
+}
+
+/// Returns the condition with the least margin; conditions without a margin come last.
+fn nearest_to_ringing(assessment: &CouplingsAssessment) -> Option<ConditionId> {
+    let ids = assessment.conditions.keys().copied();
+    ids.min_by(|a, b| least_margin(assessment, *a).total_cmp(&least_margin(assessment, *b)))
+}
+
+fn least_margin(assessment: &CouplingsAssessment, id: ConditionId) -> f64 {
+    match assessment.conditions[&id].margin {
+        Some(margin) => margin.least,
+        None => f64::INFINITY,
+    }
+}
+
+/// Plots how far the loop is from ringing.
+fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: FrequencyUnit) -> Plot {
+    let frequencies: Vec<f64> = assessment
+        .omega
+        .iter()
+        .map(|omega| unit.of_omega(*omega))
+        .collect();
+    let band = Band {
+        range: Range::new(
+            unit.of_omega(assessment.band.min()),
+            unit.of_omega(assessment.band.max()),
+        ),
+        color: BAND,
+        key: "band".to_owned(),
+    };
+    let ringing = Rule::horizontal(LoopMargin::CAUTION, RINGING).label("close to ringing");
+    let y = Axis::linear("least singular value of I − K H")
+        .including(0.0)
+        .including(1.0);
+    let mut panel = Panel::new(Axis::logarithmic(unit.axis_label()), y)
+        .over(band)
+        .with(ringing);
+    for (id, condition) in &assessment.conditions {
+        if *id != shown {
+            let values = condition.singular_values.clone();
+            let name = format!("condition {id}");
+            let curve = Curve::new(name, OTHERS, frequencies.clone(), values);
+            panel = panel.with(curve.key("other conditions"));
+        }
+    }
+    let name = format!("condition {shown}");
+    let values = assessment.conditions[&shown].singular_values.clone();
+    let curve = Curve::new(&name, SHOWN, frequencies, values).key(&name);
+    Plot::new("Loop at the sticks").panel(panel.with(curve))
+}
+
+/// Plots the pole shifts near the band.
+fn pole_plot(assessment: &CouplingsAssessment, shown: ConditionId) -> Plot {
+    let most_rad_s = SHOWN_POLES * assessment.band.max();
+    let mut near: Vec<PoleShift> = Vec::new();
+    for shift in assessment.conditions[&shown].poles.iter().flatten() {
+        if shift.after.norm() <= most_rad_s {
+            near.push(*shift);
+        }
+    }
+    let x = Axis::linear("Re λ [rad/s]").including(0.0);
+    let y = Axis::linear("Im λ [rad/s]");
+    let panel = Panel::new(x, y)
+        .with(Rule::vertical(0.0, AXIS))
+        .with_all(pole_shift_marks(&near));
+    Plot::new(format!("Poles of condition {shown}")).panel(panel)
+}
+
+/// Draws the poles without and with couplings, and an arrow from each to its new position.
+pub(super) fn pole_shift_marks(shifts: &[PoleShift]) -> Vec<Mark> {
+    let mut ends = Vec::new();
+    let mut before = Dots::new(
+        "without couplings",
+        DotShape::Cross,
+        Role::Representative.stroke(false).color,
+    )
+    .key("without couplings")
+    .filled(false);
+    let mut after = Dots::new(
+        "with couplings",
+        DotShape::Circle,
+        Role::Corrected.stroke(false).color,
+    )
+    .key("with couplings")
+    .filled(false);
+    for shift in shifts {
+        if let Some(from) = shift.before {
+            ends.push([point(from), point(shift.after)]);
+            before = before.dot(from.re, from.im, "");
+        }
+        after = after.dot(shift.after.re, shift.after.im, "");
+    }
+    let spans = spans(ends.as_flattened());
+    let mut marks: Vec<Mark> = Vec::new();
+    for [from, to] in ends {
+        marks.push(Curve::through("moved", SHIFT, arrow(from, to, spans)).into());
+    }
+    marks.push(before.into());
+    marks.push(after.into());
+    marks
+}
+
+fn point(pole: Complex<f64>) -> [f64; 2] {
+    [pole.re, pole.im]
+}

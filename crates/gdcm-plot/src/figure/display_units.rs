@@ -1,0 +1,92 @@
+//! Units in which responses and their errors are displayed.
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::units::rad_s_to_hz;
+
+use super::number_text::three_digits;
+
+/// Unit for displayed frequencies; internally they are always rad/s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FrequencyUnit {
+    #[default]
+    RadPerSecond,
+    Hertz,
+}
+
+impl FrequencyUnit {
+    /// Returns `rad/s` or `Hz`.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::RadPerSecond => "rad/s",
+            Self::Hertz => "Hz",
+        }
+    }
+
+    /// Converts the angular frequency `omega` \[rad/s\] to this unit.
+    pub fn of_omega(self, omega: f64) -> f64 {
+        match self {
+            Self::RadPerSecond => omega,
+            Self::Hertz => rad_s_to_hz(omega),
+        }
+    }
+
+    /// Formats the angular frequency `omega` \[rad/s\] with symbol and unit, such as `ω 2.05 rad/s`
+    /// and `f 0.326 Hz`.
+    pub fn readout(self, omega: f64) -> String {
+        let quantity = match self {
+            Self::RadPerSecond => "ω",
+            Self::Hertz => "f",
+        };
+        format!(
+            "{quantity} {} {}",
+            three_digits(self.of_omega(omega)),
+            self.symbol()
+        )
+    }
+
+    /// Returns the label for a frequency axis.
+    pub fn axis_label(self) -> String {
+        format!("Frequency [{}]", self.symbol())
+    }
+}
+
+/// Unit for magnitudes of responses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum MagnitudeUnit {
+    #[default]
+    Decibel,
+    /// Output over input, in their units.
+    Ratio,
+}
+
+/// Representation of phases \[deg\].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PhaseUnit {
+    /// Continuous over frequency (M2).
+    #[default]
+    Unwrapped,
+    /// Between −180° and 180°.
+    Wrapped,
+}
+
+/// Unit for phase errors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PhaseErrorUnit {
+    /// Δφ \[deg\].
+    #[default]
+    Degree,
+    /// Δφ/ω \[ms\], the equivalent delay.
+    Millisecond,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frequency_reads_in_its_unit() {
+        assert_eq!(FrequencyUnit::RadPerSecond.readout(2.0494), "ω 2.05 rad/s");
+        assert_eq!(FrequencyUnit::Hertz.readout(2.0494), "f 0.326 Hz");
+    }
+}

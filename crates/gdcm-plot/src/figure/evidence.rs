@@ -1,0 +1,207 @@
+//! Contributions to the scatter in net gains (M13.5).
+
+use gdcm_method::uncertainty::VarianceDecomposition;
+use gdcm_model::dataset::Pair;
+use gdcm_study::results::analysis::Analysis;
+use gdcm_study::stages::uncertainty::{PairScatter, Uncertainty};
+
+use super::axis::{Axis, Range};
+use super::condition_source::{schedule_words, settings_words};
+use super::drawing::{Color, Hue, Stroke};
+use super::figure::{Figure, Panel, Plot};
+use super::marks::{Bars, DotShape, Dots, Intervals, Note, Place};
+
+/// Bar width; places on the axis are 1 apart.
+const BAR: f64 = 0.56;
+/// Spacing between dots at the same place.
+const APART: f64 = 0.24;
+/// Interval of the unexplained rest.
+const INTERVAL: Stroke = Stroke::solid(Color::of(Hue::Nominal).tint(50), 2.4);
+/// Intervals are shown up to this many times the scatter.
+const MOST_SEEN: f64 = 4.0;
+/// The shares end at 100 %; the numbers above them need the rest \[%\].
+const SHARES: Range = Range {
+    min: 0.0,
+    max: 118.0,
+};
+/// Positions for those numbers, and for the note on a missing split \[%\].
+const ABOVE: f64 = 109.0;
+const MIDDLE: f64 = 50.0;
+
+/// Reference for each scatter, in axis order.
+const ABOUT: [&str; 2] = ["airspeed", "schedule"];
+
+/// A share of the variance, and its colour; in print, shares differ in darkness.
+struct Share {
+    name: &'static str,
+    hue: Hue,
+}
+
+/// From the bottom up, in the same order as [`VarianceDecomposition::shares`].
+const STACK: [Share; 3] = [
+    Share {
+        name: "trim",
+        hue: Hue::Perturbed,
+    },
+    Share {
+        name: "identification",
+        hue: Hue::Identified,
+    },
+    Share {
+        name: "unexplained",
+        hue: Hue::Nominal,
+    },
+];
+
+/// Plots how the scatter splits for each pair, at equal airspeed and about the schedule: variance
+/// shares as stacked bars; below them the scatter, its expected value, and the unexplained rest
+/// with its interval. `None` without error bars, or if no pair has a scatter.
+pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
+    let uncertainty = analysis.uncertainty.as_ref()?;
+    let mut plots = Vec::new();
+    for scatter in &uncertainty.scatter {
+        if pairs.contains(&scatter.pair) {
+            let title = analysis.study.dataset.pair_name(scatter.pair);
+            let plot = Plot::new(title)
+                .panel(shares_panel(scatter))
+                .panel(deviations_panel(scatter, uncertainty.level));
+            plots.push(plot);
+        }
+    }
+    if plots.is_empty() {
+        return None;
+    }
+    let figure = Figure::new("What the scatter of the net gains is made of")
+        .caption(caption(analysis, uncertainty))
+        .plots(plots)
+        .columns(5)
+        .shared_x()
+        .shared_y()
+        .aspect(1.9);
+    Some(figure)
+}
+
+/// A split at its place on the axis.
+struct PlacedSplit<'a> {
+    x: f64,
+    split: Option<&'a VarianceDecomposition>,
+}
+
+fn placed_splits(scatter: &PairScatter) -> [PlacedSplit<'_>; 2] {
+    [
+        PlacedSplit {
+            x: 0.0,
+            split: scatter.same_airspeed.as_ref(),
+        },
+        PlacedSplit {
+            x: 1.0,
+            split: scatter.about_schedule.as_ref(),
+        },
+    ]
+}
+
+fn axis() -> Axis {
+    Axis::named("Scatter about", ABOUT)
+}
+
+/// Stacks the variance shares due to trim, identification and the rest; above them the scatter
+/// relative to its expected value.
+fn shares_panel(scatter: &PairScatter) -> Panel {
+    let mut stack = STACK.map(|share| Bars {
+        name: share.name.to_owned(),
+        color: Color::of(share.hue),
+        width: BAR,
+        bars: Vec::new(),
+        feet: Vec::new(),
+        beside: 0.0,
+    });
+    let mut ratios = Vec::new();
+    let mut missing = Vec::new();
+    for PlacedSplit { x, split } in placed_splits(scatter) {
+        let Some(split) = split else {
+            missing.push(note(x, MIDDLE, "no freedom".to_owned(), true));
+            continue;
+        };
+        if let Some(shares) = split.shares() {
+            let mut foot = 0.0;
+            for (bars, share) in stack.iter_mut().zip(shares) {
+                let percent = 100.0 * share;
+                bars.bars.push([x, percent]);
+                bars.feet.push(foot);
+                foot += percent;
+            }
+        }
+        if let Some(ratio) = split.ratio() {
+            ratios.push(note(x, ABOVE, format!("{ratio:.1}×"), false));
+        }
+    }
+    let y = Axis::linear("Variance [%]").showing(Some(SHARES));
+    Panel::new(axis(), y)
+        .with_all(stack)
+        .with_all(ratios)
+        .with_all(missing)
+}
+
+fn note(x: f64, y: f64, text: String, upright: bool) -> Note {
+    Note {
+        at: Place::Value { x, y, upright },
+        text,
+    }
+}
+
+/// Plots standard deviations in `ln k_o k_i` in percent: the scatter, its expected value, and the
+/// unexplained rest with its interval at this level.
+fn deviations_panel(scatter: &PairScatter, level: f64) -> Panel {
+    let mut total = empty_dots("scatter", DotShape::Circle, Color::INK);
+    let mut expected = empty_dots("expected", DotShape::Diamond, Color::of(Hue::Perturbed));
+    expected.filled = false;
+    let mut unexplained = empty_dots("unexplained", DotShape::Square, Color::of(Hue::Nominal));
+    let mut ends = Vec::new();
+    let mut most = 0.0;
+    for PlacedSplit { x, split } in placed_splits(scatter) {
+        let Some(split) = split else {
+            continue;
+        };
+        total = total.dot(x - APART, percent(split.scatter), "");
+        expected = expected.dot(x, percent(split.explained()), "");
+        unexplained = unexplained.dot(x + APART, percent(split.unexplained()), "");
+        if let Some([low, high]) = split.unexplained_interval(level) {
+            ends.push([x + APART, 100.0 * low, 100.0 * high]);
+        }
+        most = f64::max(most, MOST_SEEN * percent(split.scatter));
+    }
+    let mut y = Axis::linear("Scatter [%]").including(0.0).at_least(1.0);
+    for [_, _, high] in &ends {
+        y = y.including(high.min(most));
+    }
+    let mut panel = Panel::new(axis(), y);
+    if !ends.is_empty() {
+        panel = panel.with(Intervals {
+            name: format!("unexplained, interval of {:.0} %", 100.0 * level),
+            stroke: INTERVAL,
+            ends,
+        });
+    }
+    panel.with_all([total, expected, unexplained])
+}
+
+fn empty_dots(name: &str, shape: DotShape, color: Color) -> Dots {
+    Dots::new(name, shape, color).key(name)
+}
+
+/// Converts a variance in `ln k_o k_i` to a standard deviation \[%\].
+fn percent(variance: f64) -> f64 {
+    100.0 * variance.sqrt()
+}
+
+/// Describes how large the differences are, their parts, the schedule and the settings.
+fn caption(analysis: &Analysis, uncertainty: &Uncertainty) -> String {
+    let settings = &analysis.study.settings;
+    format!(
+        "{} Of ln(k_o k_i), about the mean of each airspeed and about the schedule ({}): shares of the variance, and standard \
+         deviations. Trim, identification: expected from the bundles; unexplained: what neither makes. Above the bars: scatter, × expected. {}",
+        uncertainty.differences_in_words(),
+        schedule_words(&settings.schedule),
+        settings_words(&analysis.study.dataset, settings)
+    )
+}

@@ -1,0 +1,217 @@
+//! Panels over frequency, and figures with a plot for each response.
+
+use std::sync::Arc;
+
+use gdcm_model::dataset::{Dataset, Pair};
+
+use super::axis::{Axis, FrequencyUnit};
+use super::bode_curve::{BodeCurve, Pane};
+use super::bode_options::BodeOptions;
+use super::condition_source::ConditionSource;
+use super::drawing::{Color, Hue};
+use super::figure::{Figure, Panel, Plot};
+use super::marks::{Band, Curve, Envelope, Mark, Rule};
+use super::reference_line::{Level, ReferenceKind, ReferenceLine};
+use super::responses::BodeBand;
+use super::role::Role;
+
+/// Background for frequencies at which the remaining mismatch would be noticed.
+const NOTICED: Color = Color::of(Hue::Warning).tint(20);
+/// Confidence band about an identified model.
+const UNCERTAIN: Color = Color::of(Hue::Identified).tint(22);
+/// Frame height relative to width in a single plot, and in several plots.
+const SINGLE_ASPECT: f64 = 0.72;
+const SHARED_ASPECT: f64 = 1.9;
+
+/// Contents of a response's panels.
+pub(super) struct FrequencyPanels<'a> {
+    pub(super) curves: &'a [BodeCurve],
+    pub(super) references: &'a [ReferenceLine],
+    pub(super) bands: &'a [BodeBand],
+    /// Marked frequency ranges \[rad/s\].
+    pub(super) strips: &'a [(f64, f64)],
+    pub(super) options: &'a BodeOptions,
+}
+
+impl FrequencyPanels<'_> {
+    /// Builds the panel for magnitudes or phases with this vertical axis.
+    pub(super) fn panel(&self, pane: Pane, axis: Axis) -> Panel {
+        self.converted_panel(pane, axis, |value| value)
+    }
+
+    /// Builds a panel with values converted to its vertical unit.
+    pub(super) fn converted_panel(&self, pane: Pane, axis: Axis, convert: fn(f64) -> f64) -> Panel {
+        let strips = self.strips.iter().map(|&(from, to)| Band {
+            range: self.options.in_unit(from, to),
+            color: NOTICED,
+            key: "what is left would be noticed".to_owned(),
+        });
+        let bands = self
+            .bands
+            .iter()
+            .map(|band| self.envelope(band, pane, convert));
+        Panel::new(self.options.frequency_axis(), axis)
+            .with_all(strips)
+            .with_all(bands)
+            .with_all(self.visible_curves(pane, convert))
+            .with_all(self.reference_marks(pane, convert))
+    }
+
+    /// Returns the visible curves, the most important last.
+    fn visible_curves(&self, pane: Pane, convert: fn(f64) -> f64) -> Vec<Curve> {
+        let mut visible: Vec<&BodeCurve> =
+            self.curves.iter().filter(|curve| !curve.hidden).collect();
+        visible.sort_by_key(|curve| curve.role.layer(curve.rejected));
+        let mut frequencies = SharedFrequencies::default();
+        let mut drawn = Vec::new();
+        for curve in visible {
+            let x = frequencies.in_unit(&curve.omega, self.options.unit);
+            let y: Vec<f64> = curve
+                .values(pane)
+                .iter()
+                .map(|value| convert(*value))
+                .collect();
+            let key = match curve.role {
+                Role::OfAirspeed(_) => curve.label.as_str(),
+                role => role.key(curve.rejected),
+            };
+            let stroke = curve.role.stroke(curve.rejected);
+            drawn.push(Curve::new(&curve.label, stroke, x, y).key(key));
+        }
+        drawn
+    }
+
+    /// Returns a panel's reference lines. A line without its own frequencies runs over those of the
+    /// first curve.
+    fn reference_marks(&self, pane: Pane, convert: fn(f64) -> f64) -> Vec<Mark> {
+        let omega: &[f64] = match self.curves.first() {
+            Some(curve) => &curve.omega,
+            None => &[],
+        };
+        self.references
+            .iter()
+            .filter(|line| line.pane == pane)
+            .map(|line| reference_mark(line, omega, self.options.unit, convert))
+            .collect()
+    }
+
+    fn envelope(&self, band: &BodeBand, pane: Pane, convert: fn(f64) -> f64) -> Envelope {
+        let values = match pane {
+            Pane::Magnitude => &band.magnitude_db,
+            Pane::Phase => &band.phase_deg,
+        };
+        let mut points = Vec::new();
+        for (omega, [low, high]) in band.omega.iter().zip(values) {
+            let x = self.options.unit.of_omega(*omega);
+            points.push([x, convert(*low), convert(*high)]);
+        }
+        Envelope {
+            name: "band of 95 %".to_owned(),
+            color: UNCERTAIN,
+            edge: None,
+            points,
+        }
+    }
+}
+
+/// The last curve's frequencies in the displayed unit: curves in a plot mostly share theirs, and
+/// the figure's curves then share them too.
+#[derive(Default)]
+struct SharedFrequencies {
+    omega: Arc<[f64]>,
+    converted: Arc<[f64]>,
+}
+
+impl SharedFrequencies {
+    /// Converts frequencies \[rad/s\] to `unit`, which must be the same in every call.
+    fn in_unit(&mut self, omega: &Arc<[f64]>, unit: FrequencyUnit) -> Arc<[f64]> {
+        if !Arc::ptr_eq(&self.omega, omega) {
+            self.omega = Arc::clone(omega);
+            self.converted = omega.iter().map(|omega| unit.of_omega(*omega)).collect();
+        }
+        Arc::clone(&self.converted)
+    }
+}
+
+/// Draws a reference line: as a labelled rule if it is a constant target or bound, otherwise as a
+/// curve over its own frequencies or over `omega` \[rad/s\].
+fn reference_mark(
+    line: &ReferenceLine,
+    omega: &[f64],
+    unit: FrequencyUnit,
+    convert: fn(f64) -> f64,
+) -> Mark {
+    let stroke = line.kind.line().printed();
+    if let Level::Constant(value) = line.level
+        && matches!(line.kind, ReferenceKind::Delta | ReferenceKind::Bound)
+    {
+        return Rule::horizontal(convert(value), stroke)
+            .label(&line.label)
+            .into();
+    }
+    let points: Vec<[f64; 2]> = match &line.level {
+        Level::Sampled(points) => points.clone(),
+        level => omega
+            .iter()
+            .map(|omega| [*omega, level.at(*omega)])
+            .collect(),
+    };
+    let points = points
+        .iter()
+        .map(|[omega, value]| [unit.of_omega(*omega), convert(*value)]);
+    Curve::through(&line.label, stroke, points)
+        .key(line.kind.key())
+        .into()
+}
+
+/// Builds a condition's figure with a plot for each pair side by side. Its title names `subject`,
+/// if any, the pair if there is only one, and the condition.
+pub(super) fn figure_of_pairs(
+    source: &ConditionSource<'_>,
+    pairs: &[Pair],
+    subject: Option<&str>,
+    plot: impl Fn(Pair) -> Plot,
+) -> Figure {
+    let condition = source.condition_words();
+    let single_name = match pairs {
+        [pair] => Some(source.dataset().pair_name(*pair)),
+        _ => None,
+    };
+    let title = match (subject, single_name) {
+        (None, None) => condition,
+        (None, Some(name)) => format!("{name} · {condition}"),
+        (Some(subject), None) => format!("{subject} · {condition}"),
+        (Some(subject), Some(name)) => format!("{subject} of {name} · {condition}"),
+    };
+    side_by_side(source.dataset(), pairs, title, plot).caption(source.caption())
+}
+
+/// Builds a figure with a plot for each pair side by side. A single plot has no title and is wider.
+pub(super) fn side_by_side(
+    dataset: &Dataset,
+    pairs: &[Pair],
+    title: String,
+    plot: impl Fn(Pair) -> Plot,
+) -> Figure {
+    let is_single = pairs.len() == 1;
+    let mut plots = Vec::new();
+    for &pair in pairs {
+        let mut plot = plot(pair);
+        plot.title = if is_single {
+            String::new()
+        } else {
+            dataset.pair_name(pair)
+        };
+        plots.push(plot);
+    }
+    let aspect = if is_single {
+        SINGLE_ASPECT
+    } else {
+        SHARED_ASPECT
+    };
+    Figure::new(title)
+        .columns(5)
+        .aspect(aspect)
+        .shared_x()
+        .plots(plots)
+}

@@ -1,0 +1,164 @@
+//! Envelopes of maximum unnoticeable added dynamics (MUAD, MIL-STD-1797A): about a response, among
+//! its errors, and the frequencies at which a mismatch leaves them.
+//!
+//! The envelopes are defined for model over reference.
+
+use gdcm_method::fidelity::{Muad, leaves};
+use gdcm_model::response::wrap;
+use gdcm_model::units::s_to_ms;
+
+use super::axis::PhaseErrorUnit;
+use super::bode_curve::{BodeCurve, CurveId, Pane};
+use super::bode_options::BodeOptions;
+use super::reference_line::{Level, ReferenceKind, ReferenceLine};
+use super::role::Role;
+
+/// Indices of the lower and the upper envelope in [`Muad`].
+const LOWER: usize = 0;
+const UPPER: usize = 1;
+
+/// Returns the envelopes about the identified representative among `drawn`, hidden or not: a pilot
+/// does not notice the difference to a response within both. Empty unless the options show them.
+pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLine> {
+    let identified = drawn
+        .iter()
+        .find(|curve| curve.role == Role::IdentifiedRepresentative);
+    let Some(curve) = identified else {
+        return Vec::new();
+    };
+    if !options.shows_muad {
+        return Vec::new();
+    }
+    let mut lines = Vec::new();
+    for (end, label) in [
+        (LOWER, "unnoticed above, MUAD"),
+        (UPPER, "unnoticed below, MUAD"),
+    ] {
+        let mut magnitude = Vec::new();
+        let mut phase = Vec::new();
+        for (k, &omega) in curve.omega.iter().enumerate() {
+            let muad = Muad::at(omega);
+            magnitude.push([omega, curve.magnitude_db[k] + muad.magnitude_db[end]]);
+            phase.push([omega, curve.phase_deg[k] + muad.phase_deg[end]]);
+        }
+        lines.push(envelope(Pane::Magnitude, label, magnitude));
+        lines.push(envelope(Pane::Phase, label, phase));
+    }
+    lines
+}
+
+/// Returns the envelopes among errors, over the frequencies `omega` \[rad/s\]. The drawn ratio is
+/// reference over model, so that the magnitude envelopes are mirrored; the drawn phase error is
+/// that of the model.
+pub(super) fn muad_among_errors(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
+    let mut lines = Vec::new();
+    for (end, label) in [
+        (LOWER, "unnoticed below, MUAD"),
+        (UPPER, "unnoticed above, MUAD"),
+    ] {
+        let mut magnitude = Vec::new();
+        let mut phase = Vec::new();
+        for &omega in omega {
+            let muad = Muad::at(omega);
+            magnitude.push([omega, -muad.magnitude_db[end]]);
+            let degrees = muad.phase_deg[end];
+            let error = match unit {
+                PhaseErrorUnit::Degree => degrees,
+                PhaseErrorUnit::Millisecond => s_to_ms(degrees.to_radians() / omega),
+            };
+            phase.push([omega, error]);
+        }
+        lines.push(envelope(Pane::Magnitude, label, magnitude));
+        lines.push(envelope(Pane::Phase, label, phase));
+    }
+    lines
+}
+
+/// Creates an envelope through points `[omega, value]`.
+fn envelope(pane: Pane, label: &str, points: Vec<[f64; 2]>) -> ReferenceLine {
+    ReferenceLine::new(pane, ReferenceKind::Envelope, label, Level::Sampled(points))
+}
+
+/// Returns the frequency ranges \[rad/s\] at which the error in the corrected curve among `drawn`
+/// leaves the envelopes. Empty unless the options show them.
+pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
+    let corrected = drawn.iter().find(|curve| curve.id == CurveId::Corrected);
+    let Some(curve) = corrected else {
+        return Vec::new();
+    };
+    if !options.shows_muad {
+        return Vec::new();
+    }
+    let mut omega = Vec::new();
+    let mut mismatch_db = Vec::new();
+    let mut principal_deg = Vec::new();
+    for (k, &at) in curve.omega.iter().enumerate() {
+        let error_db = curve.magnitude_db[k];
+        if !error_db.is_finite() {
+            // A frequency that does not count has no error.
+            continue;
+        }
+        let phase = curve.phase_deg[k];
+        let radians = match options.phase_error {
+            PhaseErrorUnit::Degree => phase.to_radians(),
+            PhaseErrorUnit::Millisecond => 1e-3 * phase * at,
+        };
+        omega.push(at);
+        mismatch_db.push(-error_db);
+        principal_deg.push(wrap(radians).to_degrees());
+    }
+    leaves(&omega, &mismatch_db, &principal_deg)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+
+    #[test]
+    fn the_envelopes_about_a_response_are_those_of_model_over_reference() {
+        let omega: Arc<[f64]> = [2.0].into();
+        let curve = BodeCurve::new(CurveId::Corrected, Role::IdentifiedRepresentative);
+        let drawn = [curve.with(&omega, &[-6.0].into(), &[-90.0].into())];
+        let options = BodeOptions {
+            shows_muad: true,
+            ..BodeOptions::default()
+        };
+        let muad = Muad::at(2.0);
+        let mut expected = Vec::new();
+        for end in [0, 1] {
+            for value in [-6.0 + muad.magnitude_db[end], -90.0 + muad.phase_deg[end]] {
+                expected.push(Level::Sampled(vec![[2.0, value]]));
+            }
+        }
+        let levels: Vec<Level> = muad_about(&drawn, &options)
+            .into_iter()
+            .map(|line| line.level)
+            .collect();
+        assert_eq!(levels, expected);
+        assert!(
+            muad_about(&drawn, &BodeOptions::default()).is_empty(),
+            "optional"
+        );
+    }
+
+    #[test]
+    fn the_envelopes_of_magnitude_are_mirrored_among_errors() {
+        let muad = Muad::at(2.0);
+        let rules = muad_among_errors(&[2.0], PhaseErrorUnit::Degree);
+        let levels = |pane: Pane| -> Vec<Level> {
+            rules
+                .iter()
+                .filter(|rule| rule.pane == pane)
+                .map(|rule| rule.level.clone())
+                .collect()
+        };
+        let sampled = |value: f64| Level::Sampled(vec![[2.0, value]]);
+        assert_eq!(
+            levels(Pane::Magnitude),
+            muad.magnitude_db.map(|db| sampled(-db))
+        );
+        assert_eq!(levels(Pane::Phase), muad.phase_deg.map(sampled));
+    }
+}

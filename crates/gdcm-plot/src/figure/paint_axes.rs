@@ -1,0 +1,95 @@
+//! Paints a panel's axes: grid, ticks, numbers and labels.
+
+use super::axis::Axis;
+use super::drawing::{Anchor, Area, Color, Shape, Stroke, Text};
+use super::layout::{LABEL_PT, SMALL_PT, TICK};
+use super::letters::{HALF_HEIGHT, width};
+use super::marks::Along;
+use super::placed::{Placed, Side};
+
+const TICK_LINE: Stroke = Stroke::solid(Color::DIM, 0.6);
+const GRID: Stroke = Stroke::solid(Color::GRID, 0.4);
+/// Length without a number, relative to other ticks.
+const MINOR: f64 = 0.6;
+
+/// Paints the grid: a line at each tick, except on an axis with names.
+pub(super) fn grid(placed: &Placed<'_>) -> Vec<Shape> {
+    let panel = placed.panel;
+    let mut lines = Vec::new();
+    for (along, axis, side) in [
+        (Along::X, &panel.x, &placed.x),
+        (Along::Y, &panel.y, &placed.y),
+    ] {
+        if axis.names.is_some() {
+            continue;
+        }
+        for tick in &side.ticks {
+            if let Some(ends) = placed.across(along, tick.value) {
+                lines.push(Shape::line(ends, GRID));
+            }
+        }
+    }
+    lines
+}
+
+/// Paints ticks, numbers and label below a frame.
+pub(super) fn horizontal_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
+    let mut shapes = Vec::new();
+    for tick in &side.ticks {
+        let Some(fraction) = axis.fraction(tick.value, side.range) else {
+            continue;
+        };
+        let [x, y] = frame.at(fraction, 0.0);
+        let length = match tick.label {
+            Some(_) => TICK,
+            None => MINOR * TICK,
+        };
+        shapes.push(Shape::line([[x, y], [x, y + length]], TICK_LINE));
+        if side.has_numbers
+            && let Some(label) = &tick.label
+        {
+            let text = Text::new([x, y + TICK + SMALL_PT], label, SMALL_PT);
+            shapes.push(Shape::Text(text.anchored(Anchor::Middle)));
+        }
+    }
+    if side.has_label {
+        // A label wider than the frame begins at its left edge.
+        let is_wide = LABEL_PT * width(&axis.label) > frame.width;
+        let (part, anchor) = if is_wide {
+            (0.0, Anchor::Start)
+        } else {
+            (0.5, Anchor::Middle)
+        };
+        let [x, y] = frame.at(part, 0.0);
+        let place = [x, y + side.depth + LABEL_PT - 0.5];
+        let text = Text::new(place, &axis.label, LABEL_PT);
+        shapes.push(Shape::Text(text.anchored(anchor)));
+    }
+    shapes
+}
+
+/// Paints ticks, numbers and label left of a frame.
+pub(super) fn vertical_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
+    let mut shapes = Vec::new();
+    for tick in &side.ticks {
+        let Some(fraction) = axis.fraction(tick.value, side.range) else {
+            continue;
+        };
+        let [x, y] = frame.at(0.0, fraction);
+        shapes.push(Shape::line([[x - TICK, y], [x, y]], TICK_LINE));
+        if side.has_numbers
+            && let Some(label) = &tick.label
+        {
+            let place = [x - TICK - 1.5, y + HALF_HEIGHT * SMALL_PT];
+            let text = Text::new(place, label, SMALL_PT);
+            shapes.push(Shape::Text(text.anchored(Anchor::End)));
+        }
+    }
+    if side.has_label {
+        let [x, y] = frame.at(0.0, 0.5);
+        let place = [x - side.depth - 2.5, y];
+        let text = Text::new(place, &axis.label, LABEL_PT);
+        shapes.push(Shape::Text(text.anchored(Anchor::Middle).upright(true)));
+    }
+    shapes
+}

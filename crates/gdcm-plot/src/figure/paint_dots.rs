@@ -1,0 +1,283 @@
+//! Paints dots, and the labels beside dots and brackets.
+
+use super::drawing::{Area, Color, Dash, Shape, Stroke, Text};
+use super::label_places::{LabelledDot, Surroundings, place_labels};
+use super::letters::width;
+use super::marks::{Brackets, Curve, DotShape, Dots, Mark};
+use super::placed::{HOOK, Placed};
+
+/// Radius of the usual dot \[pt\].
+const DOT: f64 = 2.1;
+/// Line width for an open dot, a cross or a plus in the usual size \[pt\].
+const DOT_LINE: f64 = 0.9;
+/// Line from a dot to a label away from it.
+const LEADER: Stroke = Stroke::solid(Color::DIM.tint(60), 0.4);
+/// Height of digits relative to the font size: they have no descenders.
+const DIGIT_HEIGHT: f64 = 0.74;
+
+const DIAMOND: [[f64; 2]; 4] = [[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]];
+const SQUARE: [[f64; 2]; 4] = [[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]];
+const TRIANGLE: [[f64; 2]; 3] = [[0.0, -1.3], [1.2, 0.9], [-1.2, 0.9]];
+const CROSS: [[[f64; 2]; 2]; 2] = [[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [1.0, -1.0]]];
+const PLUS: [[[f64; 2]; 2]; 2] = [[[-1.3, 0.0], [1.3, 0.0]], [[0.0, -1.3], [0.0, 1.3]]];
+
+/// Style of a dot.
+#[derive(Clone, Copy)]
+pub(super) struct DotStyle {
+    pub(super) shape: DotShape,
+    /// Size relative to the usual dot.
+    pub(super) size: f64,
+    pub(super) color: Color,
+    pub(super) filled: bool,
+}
+
+impl DotStyle {
+    /// Paints a dot; all shapes have about the same area.
+    pub(super) fn shapes(self, center: [f64; 2]) -> Vec<Shape> {
+        match self.shape {
+            DotShape::Circle => {
+                let pen = self.pen();
+                vec![Shape::Circle {
+                    center,
+                    radius: pen.radius,
+                    fill: pen.fill,
+                    stroke: pen.stroke,
+                }]
+            }
+            DotShape::Diamond => vec![self.polygon(center, &DIAMOND)],
+            DotShape::Square => vec![self.polygon(center, &SQUARE)],
+            DotShape::Triangle => vec![self.polygon(center, &TRIANGLE)],
+            DotShape::Cross => self.lines(center, CROSS),
+            DotShape::Plus => self.lines(center, PLUS),
+        }
+    }
+
+    fn pen(self) -> DotPen {
+        if self.filled {
+            DotPen {
+                radius: self.radius(),
+                fill: Some(self.color),
+                stroke: None,
+            }
+        } else {
+            // The outer edge of the line is as far out as the edge of a filled dot.
+            DotPen {
+                radius: self.radius() - 0.5 * DOT_LINE,
+                fill: Some(Color::WHITE),
+                stroke: Some(self.line()),
+            }
+        }
+    }
+
+    fn radius(self) -> f64 {
+        DOT * self.size
+    }
+
+    fn line(self) -> Stroke {
+        Stroke::solid(self.color, DOT_LINE * self.size.sqrt())
+    }
+
+    /// Paints a polygon with these corners, relative to the radius.
+    fn polygon(self, center: [f64; 2], corners: &[[f64; 2]]) -> Shape {
+        let pen = self.pen();
+        Shape::Path {
+            points: corners
+                .iter()
+                .map(|corner| moved(center, *corner, pen.radius))
+                .collect(),
+            closed: true,
+            fill: pen.fill,
+            stroke: pen.stroke,
+        }
+    }
+
+    /// Paints two lines with these ends, relative to the radius: a single line that turns back over
+    /// the middle would have no direction there, and its corner no place on the screen.
+    fn lines(self, center: [f64; 2], lines: [[[f64; 2]; 2]; 2]) -> Vec<Shape> {
+        let mut shapes = Vec::new();
+        for ends in lines {
+            let ends = ends.map(|end| moved(center, end, self.radius()));
+            shapes.push(Shape::line(ends, self.line()));
+        }
+        shapes
+    }
+}
+
+/// Radius, fill and line for a dot's outline.
+struct DotPen {
+    radius: f64,
+    fill: Option<Color>,
+    stroke: Option<Stroke>,
+}
+
+/// Returns the point at an offset from `center`, relative to `radius`.
+fn moved([x, y]: [f64; 2], [dx, dy]: [f64; 2], radius: f64) -> [f64; 2] {
+    [x + radius * dx, y + radius * dy]
+}
+
+/// Paints a dot with a shape and a size relative to the usual dot.
+pub fn dot_shapes(
+    center: [f64; 2],
+    (shape, size): (DotShape, f64),
+    color: Color,
+    filled: bool,
+) -> Vec<Shape> {
+    let style = DotStyle {
+        shape,
+        size,
+        color,
+        filled,
+    };
+    style.shapes(center)
+}
+
+/// Painted dots and labels.
+pub(super) struct PaintedDots {
+    pub(super) shapes: Vec<Shape>,
+    /// Number of labels without room.
+    pub(super) labels_left_out: usize,
+}
+
+/// A label to be placed.
+struct Label<'m> {
+    dot: LabelledDot,
+    words: &'m str,
+    color: Color,
+}
+
+/// Paints whole dots if their centre is in the frame, with their labels around them, and the labels
+/// for brackets beside these. Leaders lie below the dots, texts above.
+pub(super) fn dots_and_labels(placed: &Placed<'_>) -> PaintedDots {
+    let mut dots = Vec::new();
+    let mut labels = Vec::new();
+    for mark in &placed.panel.marks {
+        match mark {
+            Mark::Dots(group) => add_dots(placed, group, &mut dots, &mut labels),
+            Mark::Brackets(group) => add_bracket_labels(placed, group, &mut labels),
+            _ => {}
+        }
+    }
+    let labelled: Vec<LabelledDot> = labels.iter().map(|label| label.dot).collect();
+    let places = place_labels(&labelled, &surroundings(placed));
+    let mut leaders = Vec::new();
+    let mut texts = Vec::new();
+    let mut labels_left_out = 0;
+    for (place, label) in places.into_iter().zip(labels) {
+        let Some(place) = place else {
+            labels_left_out += usize::from(!label.words.is_empty());
+            continue;
+        };
+        if let Some(end) = place.leader {
+            leaders.push(Shape::line([label.dot.center, end], LEADER));
+        }
+        let at = [place.area.left, place.area.bottom()];
+        let text = Text::new(at, label.words, placed.letters_pt).colored(label.color);
+        texts.push(Shape::Text(text));
+    }
+    PaintedDots {
+        shapes: leaders.into_iter().chain(dots).chain(texts).collect(),
+        labels_left_out,
+    }
+}
+
+/// Adds a group's visible dots, and their labels.
+fn add_dots<'m>(
+    placed: &Placed<'_>,
+    group: &'m Dots,
+    shapes: &mut Vec<Shape>,
+    labels: &mut Vec<Label<'m>>,
+) {
+    let style = DotStyle {
+        shape: group.shape,
+        size: group.size,
+        color: group.color,
+        filled: group.filled,
+    };
+    for dot in &group.dots {
+        if let Some(center) = placed.at([dot.x, dot.y])
+            && placed.shows(center)
+        {
+            shapes.extend(style.shapes(center));
+            labels.push(Label {
+                dot: labelled_dot(placed, center, DOT, &dot.label),
+                words: &dot.label,
+                color: Color::DIM,
+            });
+        }
+    }
+}
+
+/// Adds bracket labels, about the middle of each spine.
+fn add_bracket_labels<'m>(placed: &Placed<'_>, group: &'m Brackets, labels: &mut Vec<Label<'m>>) {
+    for bracket in &group.brackets {
+        if let Some(ends) = placed.bracket(bracket) {
+            let [from, to] = ends.spine;
+            let middle = [from[0], 0.5 * (from[1] + to[1])];
+            let radius = 0.5 * group.stroke.width_pt;
+            labels.push(Label {
+                dot: labelled_dot(placed, middle, radius, &bracket.label),
+                words: &bracket.label,
+                color: group.stroke.color,
+            });
+        }
+    }
+}
+
+fn labelled_dot(placed: &Placed<'_>, center: [f64; 2], radius: f64, label: &str) -> LabelledDot {
+    LabelledDot {
+        center,
+        radius,
+        size: [
+            placed.letters_pt * width(label),
+            placed.letters_pt * DIGIT_HEIGHT,
+        ],
+    }
+}
+
+/// Returns the obstacles for labels.
+fn surroundings(placed: &Placed<'_>) -> Surroundings {
+    let mut path = Vec::new();
+    let mut bars = Vec::new();
+    for mark in &placed.panel.marks {
+        match mark {
+            Mark::Curve(curve) if path.is_empty() && is_subject_of_dots(curve) => {
+                path = curve
+                    .points()
+                    .filter_map(|point| placed.at(point))
+                    .collect();
+            }
+            Mark::Intervals(intervals) => {
+                for ends in &intervals.ends {
+                    if let Some(ends) = placed.vertical(*ends) {
+                        bars.push(upright_bar(ends, intervals.stroke.width_pt));
+                    }
+                }
+            }
+            Mark::Brackets(group) => {
+                for bracket in &group.brackets {
+                    if let Some(ends) = placed.bracket(bracket) {
+                        bars.push(upright_bar(ends.spine, HOOK));
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    Surroundings {
+        bounds: placed.frame,
+        path,
+        bars,
+    }
+}
+
+/// Returns whether dots may refer to a curve: solid, with an entry in the legend.
+fn is_subject_of_dots(curve: &Curve) -> bool {
+    curve.key.is_some() && curve.stroke.dash == Dash::Solid
+}
+
+/// Returns the area that a vertical line covers \[pt\].
+fn upright_bar([from, to]: [[f64; 2]; 2], width: f64) -> Area {
+    let top = from[1].min(to[1]);
+    let bottom = from[1].max(to[1]);
+    Area::new(from[0] - 0.5 * width, top, width, bottom - top)
+}

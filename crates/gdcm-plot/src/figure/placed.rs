@@ -1,0 +1,109 @@
+//! A panel at its place on paper or on the screen, and the positions of values in it.
+
+use super::axis::{Range, Tick};
+use super::drawing::Area;
+use super::figure::Panel;
+use super::marks::{Along, Bracket};
+
+/// Distance between a bracket and its values \[pt\].
+const BRACKET: f64 = 5.0;
+/// Hook length at both ends \[pt\].
+pub(super) const HOOK: f64 = 1.8;
+
+/// A panel at its place.
+#[derive(Debug)]
+pub(super) struct Placed<'f> {
+    pub(super) panel: &'f Panel,
+    /// Title above the frame. May be empty.
+    pub(super) title: &'f str,
+    /// Where the axes and marks are drawn \[pt\].
+    pub(super) frame: Area,
+    pub(super) x: Side,
+    pub(super) y: Side,
+    /// Font size in the panel \[pt\].
+    pub(super) letters_pt: f64,
+}
+
+/// An axis at its place: visible range, ticks and label.
+#[derive(Debug)]
+pub(super) struct Side {
+    pub(super) range: Range,
+    pub(super) ticks: Vec<Tick>,
+    pub(super) has_numbers: bool,
+    pub(super) has_label: bool,
+    /// Room for the numbers across the axis \[pt\].
+    pub(super) depth: f64,
+}
+
+impl Side {
+    /// Creates an axis without ticks and label.
+    pub(super) fn bare(range: Range) -> Self {
+        Self {
+            range,
+            ticks: Vec::new(),
+            has_numbers: false,
+            has_label: false,
+            depth: 0.0,
+        }
+    }
+}
+
+/// Bracket ends \[pt\], in the same order as its values.
+pub(super) struct PlacedBracket {
+    /// Ends of the line beside the values.
+    pub(super) spine: [[f64; 2]; 2],
+    /// Ends of the hooks, which point to the values.
+    pub(super) hooks: [[f64; 2]; 2],
+}
+
+impl Placed<'_> {
+    /// Returns a point's position; `None` if an axis cannot show it. A point outside the ranges has
+    /// a position outside the frame.
+    pub(super) fn at(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
+        let x = self.panel.x.fraction(x, self.x.range)?;
+        let y = self.panel.y.fraction(y, self.y.range)?;
+        Some(self.frame.at(x, y))
+    }
+
+    /// Returns the ends of the line across the frame at a value.
+    pub(super) fn across(&self, along: Along, value: f64) -> Option<[[f64; 2]; 2]> {
+        match along {
+            Along::X => {
+                let x = self.panel.x.fraction(value, self.x.range)?;
+                Some([self.frame.at(x, 0.0), self.frame.at(x, 1.0)])
+            }
+            Along::Y => {
+                let y = self.panel.y.fraction(value, self.y.range)?;
+                Some([self.frame.at(0.0, y), self.frame.at(1.0, y)])
+            }
+        }
+    }
+
+    /// Returns both end positions for a vertical range `[x, lower end, upper end]`.
+    pub(super) fn vertical(&self, [x, low, high]: [f64; 3]) -> Option<[[f64; 2]; 2]> {
+        Some([self.at([x, low])?, self.at([x, high])?])
+    }
+
+    /// Returns a bracket's ends: to the left of its values, or to their right if there is no room
+    /// to the left.
+    pub(super) fn bracket(&self, bracket: &Bracket) -> Option<PlacedBracket> {
+        let [from, to] = bracket.ends;
+        let from = self.at([bracket.x, from])?;
+        let to = self.at([bracket.x, to])?;
+        let side = if from[0] - BRACKET < self.frame.left + 1.0 {
+            1.0
+        } else {
+            -1.0
+        };
+        let ends = [from, to];
+        Some(PlacedBracket {
+            spine: ends.map(|[x, y]| [x + side * BRACKET, y]),
+            hooks: ends.map(|[x, y]| [x + side * (BRACKET - HOOK), y]),
+        })
+    }
+
+    /// Returns whether a position is in the frame, or on its edge up to rounding.
+    pub(super) fn shows(&self, position: [f64; 2]) -> bool {
+        self.frame.expanded(0.5).contains(position)
+    }
+}

@@ -1,0 +1,292 @@
+//! Models over time: their responses to a test input, and to a flight record with its tolerance
+//! corridors (M17.2).
+
+use gdcm_method::requirements::tolerance::ToleranceCheck;
+use gdcm_method::requirements::{RecordCheck, TestInputShape};
+use gdcm_model::dataset::Dataset;
+use gdcm_model::units::number;
+use gdcm_study::results::condition_answers::{QuantityHistory, RecordHistory, TestAnswers};
+use gdcm_study::results::requirements::RequirementRole;
+
+use super::axis::Axis;
+use super::drawing::{Color, Hue, Stroke};
+use super::figure::{Figure, Panel, Plot};
+use super::marks::{Curve, Envelope, Mark};
+use super::role::Role;
+
+const INPUT: Stroke = Stroke::solid(Color::of(Hue::Text), 1.2);
+/// Flight data and their corridor.
+const FLOWN: Stroke = Stroke::solid(Color::of(Hue::Text), 1.0);
+const CORRIDOR: Color = Color::of(Hue::Text).tint(14);
+/// Height for the difference from flight, relative to 1 for the record.
+const DIFFERENCE_WEIGHT: f64 = 0.55;
+/// Additional line width outside the corridor \[pt\].
+const OUTSIDE_PT: f64 = 1.8;
+/// Plot height relative to its width.
+const ASPECT: f64 = 0.4;
+
+/// Returns a model's line over time: as in a Bode plot, except that the identified line is as thin
+/// as the others.
+fn model_line(role: RequirementRole) -> Stroke {
+    let role = match role {
+        RequirementRole::Physics => Role::Representative,
+        RequirementRole::Corrected => Role::Corrected,
+        RequirementRole::Scheduled => Role::Scheduled,
+        RequirementRole::Identified => Role::Identified,
+    };
+    role.line(false)
+}
+
+fn empty_panel(label: &str) -> Panel {
+    Panel::new(Axis::linear("time [s]"), Axis::linear(label))
+}
+
+/// Plots a test input, then each output with a curve for each model, over time. The caption gives
+/// the reasons for missing curves.
+pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
+    let time_s = answers.time_s();
+    let input = &dataset.inputs()[answers.input];
+    let stick = Curve::new(&input.name, INPUT, time_s.clone(), answers.signal.clone());
+    let mut plots = vec![answer_plot(&input.name, &input.unit, vec![stick])];
+    for (index, output) in dataset.outputs().iter().enumerate() {
+        let curves = answer_curves(answers, &time_s, index);
+        plots.push(answer_plot(&output.name, &output.unit, curves));
+    }
+    let mut caption = "Linear models from rest; there is no flight here.".to_owned();
+    for (role, answer) in &answers.models {
+        if let Err(why) = answer {
+            caption.push_str(&format!(" No {} model: {why}.", role.name()));
+        }
+    }
+    Figure::new(answers_title(answers, dataset))
+        .caption(caption)
+        .columns(2)
+        .aspect(ASPECT)
+        .plots(plots)
+}
+
+/// Returns `Condition 10: doublet of LON by 1 in for 2 s`.
+fn answers_title(answers: &TestAnswers, dataset: &Dataset) -> String {
+    let input = &dataset.inputs()[answers.input];
+    let shape = match answers.test.shape {
+        TestInputShape::Step => "step",
+        TestInputShape::Doublet => "doublet",
+    };
+    format!(
+        "Condition {}: {shape} of {} by {} {} for {} s",
+        answers.condition,
+        input.name,
+        number(answers.test.size),
+        input.unit,
+        number(answers.test.duration_s)
+    )
+}
+
+fn answer_plot(name: &str, unit: &str, curves: Vec<Curve>) -> Plot {
+    let label = format!("{name} [{unit}]");
+    let mut panel = empty_panel(&label);
+    panel.y = panel.y.including(0.0);
+    Plot::new(label).panel(panel.with_all(curves))
+}
+
+/// Returns an output for each model, the first model on top.
+fn answer_curves(answers: &TestAnswers, time_s: &[f64], output: usize) -> Vec<Curve> {
+    let mut curves = Vec::new();
+    for (role, answer) in answers.models.iter().rev() {
+        if let Ok(answer) = answer {
+            let values: Vec<f64> = answer.column(output).iter().copied().collect();
+            let curve = Curve::new(role.name(), model_line(*role), time_s, values);
+            curves.push(curve.key(role.name()));
+        }
+    }
+    curves
+}
+
+/// Plots an input from a record, then each quantity with a tolerance: flight data with their
+/// corridor and the response of each model, above the difference between model and flight, both
+/// thick outside the corridor. Every window starts anew.
+pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: usize) -> Figure {
+    let mut plots = vec![record_input_plot(history, dataset, input)];
+    for quantity in &history.quantities {
+        if !quantity.models.is_empty() {
+            plots.push(quantity_plot(quantity));
+        }
+    }
+    let held_out = if history.held_out { ", held out" } else { "" };
+    let missing: String = history
+        .missing
+        .iter()
+        .map(|why| format!(" {why}."))
+        .collect();
+    let caption = format!(
+        "Windows of at most 10 s, each from an estimated state; attitudes are integrals of rates from the start of each window. Below: \
+         less flight. Wide: outside the corridor. No qualification: the tests of the table are steps and doublets at given conditions.{missing}"
+    );
+    let title = format!(
+        "Condition {}: {}{held_out}",
+        history.condition, history.record
+    );
+    Figure::new(title)
+        .caption(caption)
+        .columns(2)
+        .aspect(ASPECT)
+        .plots(plots)
+}
+
+fn record_input_plot(history: &RecordHistory, dataset: &Dataset, input: usize) -> Plot {
+    let channel = &dataset.inputs()[input];
+    let label = format!("{} [{}]", channel.name, channel.unit);
+    let flight = &history.flight;
+    let samples: Vec<f64> = flight.inputs.column(input).iter().copied().collect();
+    let curve = Curve::new(&channel.name, INPUT, flight.time_s.clone(), samples);
+    Plot::new(&label).panel(empty_panel(&label).with(curve))
+}
+
+/// Plots a quantity as recorded, and less flight.
+fn quantity_plot(history: &QuantityHistory) -> Plot {
+    let tolerance = &history.tolerance;
+    let label = format!("{} [{}]", tolerance.quantity, history.unit);
+    let less = format!("less flight [{}]", history.unit);
+    let record = empty_panel(&label).with_all(history_marks(history, Shown::Recorded));
+    let difference = empty_panel(&less).with_all(history_marks(history, Shown::LessFlight));
+    let title = format!("{}, {}", tolerance.quantity, tolerance.words());
+    Plot::new(title)
+        .panel(record)
+        .panel(difference.weight(DIFFERENCE_WEIGHT))
+}
+
+/// Presentation of a quantity.
+#[derive(Clone, Copy, PartialEq)]
+enum Shown {
+    Recorded,
+    /// Minus the flown value at the same sample.
+    LessFlight,
+}
+
+/// A sample in a window.
+#[derive(Clone, Copy)]
+struct Sample<'a> {
+    window: &'a ToleranceCheck,
+    index: usize,
+}
+
+impl Sample<'_> {
+    fn flown(self, shown: Shown) -> f64 {
+        self.presented(self.window.flown[self.index], shown)
+    }
+
+    fn simulated(self, shown: Shown) -> f64 {
+        self.presented(self.window.simulated[self.index], shown)
+    }
+
+    /// Returns the simulated value outside the corridor, NaN inside.
+    fn outside(self, shown: Shown) -> f64 {
+        let difference = self.window.simulated[self.index] - self.window.flown[self.index];
+        if difference.abs() > self.width() {
+            self.simulated(shown)
+        } else {
+            f64::NAN
+        }
+    }
+
+    /// Returns the half-width of the corridor.
+    fn width(self) -> f64 {
+        self.window.width[self.index]
+    }
+
+    fn presented(self, value: f64, shown: Shown) -> f64 {
+        match shown {
+            Shown::Recorded => value,
+            Shown::LessFlight => value - self.window.flown[self.index],
+        }
+    }
+}
+
+/// A time in a record \[s\], with its sample. Windows are separate: each ends with a time without a
+/// sample, which leaves a gap.
+struct Instant<'a> {
+    time_s: f64,
+    sample: Option<Sample<'a>>,
+}
+
+/// Returns the times in all windows, in order.
+fn instants(check: &RecordCheck) -> Vec<Instant<'_>> {
+    let mut instants = Vec::new();
+    for window in &check.windows {
+        let count = window.samples();
+        for index in 0..=count {
+            let sample = if index < count {
+                Some(Sample { window, index })
+            } else {
+                None
+            };
+            instants.push(Instant {
+                time_s: window.start_s + index as f64 * window.sample_time_s,
+                sample,
+            });
+        }
+    }
+    instants
+}
+
+/// Returns `[time, value]` over all windows.
+fn values(check: &RecordCheck, value: impl Fn(Sample<'_>) -> f64) -> Vec<[f64; 2]> {
+    let mut values = Vec::new();
+    for instant in instants(check) {
+        let value = match instant.sample {
+            Some(sample) => value(sample),
+            None => f64::NAN,
+        };
+        values.push([instant.time_s, value]);
+    }
+    values
+}
+
+/// Draws the corridor, flight, and each model with its parts outside the corridor. The corridor is
+/// the corrected model's, otherwise the first model's.
+fn history_marks(history: &QuantityHistory, shown: Shown) -> Vec<Mark> {
+    let corrected = history
+        .models
+        .iter()
+        .find(|(role, _)| *role == RequirementRole::Corrected);
+    let Some((_, about)) = corrected.or(history.models.first()) else {
+        return Vec::new();
+    };
+    let mut marks = vec![Mark::from(corridor(about, shown))];
+    if shown == Shown::Recorded {
+        let flown = values(about, |sample| sample.flown(shown));
+        marks.push(Curve::through("flown", FLOWN, flown).key("flown").into());
+    }
+    for (role, check) in history.models.iter().rev() {
+        let line = model_line(*role);
+        let simulated = values(check, |sample| sample.simulated(shown));
+        let curve = Curve::through(role.name(), line, simulated);
+        marks.push(curve.key(role.name()).into());
+        let outside = values(check, |sample| sample.outside(shown));
+        if outside.iter().any(|[_, value]| value.is_finite()) {
+            let wide = Stroke::solid(line.color, line.width_pt + OUTSIDE_PT);
+            let name = format!("{}, outside", role.name());
+            marks.push(Curve::through(name, wide, outside).into());
+        }
+    }
+    marks
+}
+
+fn corridor(check: &RecordCheck, shown: Shown) -> Envelope {
+    let mut points = Vec::new();
+    for Instant { time_s, sample } in instants(check) {
+        points.push(match sample {
+            Some(sample) => {
+                let flown = sample.flown(shown);
+                [time_s, flown - sample.width(), flown + sample.width()]
+            }
+            None => [time_s, f64::NAN, f64::NAN],
+        });
+    }
+    Envelope {
+        name: "corridor".to_owned(),
+        color: CORRIDOR,
+        edge: None,
+        points,
+    }
+}

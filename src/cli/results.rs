@@ -15,7 +15,7 @@ use gdcm_io::exports::{
 use gdcm_io::figure_file::{figure_format, write_figure};
 use gdcm_io::output_set::make_directory;
 use gdcm_io::report_file::{ReportSource, ReportSubject, report as report_of, save_report};
-use gdcm_method::correction::corrected_model::HIGHEST_PADE_ORDER;
+use gdcm_method::correction::pade::HIGHEST_PADE_ORDER;
 use gdcm_method::correction::{Channel, Pade};
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::message_text::{sanitized, sanitized_path};

@@ -9,22 +9,37 @@
 //! input]`, gains are ratios, delays are seconds.
 
 pub mod branch_and_bound;
+pub mod channel_correction;
+pub mod channel_model;
 pub mod channels;
 mod components;
 pub mod conflict;
+mod conflict_search;
+mod conflict_text;
 pub mod corrected_model;
 pub mod delta;
+mod interior_point;
+mod interval;
+pub mod lead_price;
 pub mod leads;
+pub mod pade;
 pub mod problem;
+pub mod quantity;
+pub mod remedy;
+mod rounding;
+mod scaled_objective;
 pub mod sensitivity;
+pub mod solution;
 pub mod solve;
 
 pub use branch_and_bound::search::ProofBudget;
-pub use channels::{Channel, ChannelCorrection, Channels};
-pub use corrected_model::Pade;
-pub use leads::LeadPrice;
-pub use problem::{Bounds, GainObjective, Problem, Quantity};
-pub use solve::{Outcome, Solution};
+pub use channel_correction::ChannelCorrection;
+pub use channels::{Channel, Channels};
+pub use lead_price::LeadPrice;
+pub use pade::Pade;
+pub use problem::{Bounds, Problem};
+pub use quantity::{GainObjective, Quantity};
+pub use solution::{Outcome, Solution};
 
 /// Bounds of the channel gains.
 pub type GainBounds = Bounds;

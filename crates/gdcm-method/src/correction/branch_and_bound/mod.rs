@@ -14,7 +14,7 @@
 //! (interval) branch and bound:
 //!
 //! ```text
-//!  1  best <- local minimum of F from where it is told to start (projected Newton)
+//!  1  best <- local minimum of F from the given start (projected Newton)
 //!  2  open <- { the whole box }
 //!  3  while the least bound of the open nodes < (1 - 2e-10) best (proof), then < 1.01 best (listing), and the budget lasts
 //!  4     node <- the open node of least bound;  listing: monotonicity test, convexity test: without an unknown minimum, close it
@@ -26,14 +26,24 @@
 //! 10  lower bound <- least bound of closed and open nodes
 //! ```
 //!
-//! Hansen and Walster, *Global Optimization Using Interval Analysis* (2004): branching,
-//! monotonicity and convexity tests. Horst and Tuy, *Global Optimization* (1996): best-first branch
-//! and bound, convergence. McCormick (1976), *Mathematical Programming* 10: convex envelopes term
-//! by term. The tangent plane bounds the convex underestimator from any point that Newton's method
-//! reaches, so the bound needs no convergence; its rounding is counted term by term (`Rounded`).
+//! Sources: Hansen and Walster, *Global Optimization Using Interval Analysis* (2004), for
+//! branching, monotonicity and convexity tests; Horst and Tuy, *Global Optimization* (1996), for
+//! best-first branch and bound and its convergence; McCormick (1976), *Mathematical Programming*
+//! 10, for convex envelopes term by term. The tangent plane bounds the convex underestimator from
+//! any point that Newton's method reaches, so the bound needs no convergence; its rounding is
+//! counted term by term (`Rounded`).
 
+mod derivatives;
+mod difference_bounds;
+pub(crate) mod effort;
+mod envelope;
+pub(crate) mod exponential;
+pub(crate) mod newton;
 mod node_exclusion;
 pub(crate) mod objective;
+mod open_nodes;
+pub(crate) mod quadratic;
+pub(crate) mod rounded;
 pub mod search;
 pub(crate) mod term;
 mod underestimator;

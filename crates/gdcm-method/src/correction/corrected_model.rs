@@ -117,7 +117,7 @@ impl CorrectedModel {
     /// # Errors
     /// [`CorrectedModelError`] where a discrete-time delay is not a whole number of samples, or
     /// states or numbers become too many or too large.
-    pub fn of(
+    pub fn new(
         model: &StateSpace,
         correction: &ChannelCorrection,
         pade: Pade,
@@ -429,7 +429,7 @@ mod tests {
     fn the_response_is_the_gain_the_approximant_and_the_models_own() {
         for order in [1, 2, 3, 8] {
             let pade = Pade::new(order).unwrap();
-            let corrected = CorrectedModel::of(&plant(), &correction(), pade).unwrap();
+            let corrected = CorrectedModel::new(&plant(), &correction(), pade).unwrap();
             let states = (
                 corrected.delay_states.inputs.as_slice(),
                 corrected.delay_states.outputs.as_slice(),
@@ -455,7 +455,7 @@ mod tests {
         };
         let pade = Pade::new(2).unwrap();
         let corrected =
-            CorrectedModel::of(&plant().timed(own).unwrap(), &correction(), pade).unwrap();
+            CorrectedModel::new(&plant().timed(own).unwrap(), &correction(), pade).unwrap();
         assert_eq!(
             (corrected.delays_s.inputs.clone(), corrected.model.order()),
             (vec![0.05, 0.0], 7)
@@ -479,7 +479,7 @@ mod tests {
                 .unwrap()
         };
         let pade = Pade::new(2).unwrap();
-        let corrected = CorrectedModel::of(&sampled(0.001), &correction(), pade).unwrap();
+        let corrected = CorrectedModel::new(&sampled(0.001), &correction(), pade).unwrap();
         assert_eq!(
             (corrected.model.order(), corrected.phase_error(12.0)),
             (3 + 30 + 11, 0.0)
@@ -488,7 +488,7 @@ mod tests {
         assert_response(&corrected, &sampled(0.001), |omega, delay_s| {
             Complex::new(0.0, -omega * delay_s).exp()
         });
-        let refused = CorrectedModel::of(&sampled(0.01), &correction(), pade).unwrap_err();
+        let refused = CorrectedModel::new(&sampled(0.01), &correction(), pade).unwrap_err();
         assert_eq!(
             refused,
             CorrectedModelError::PartOfSample {
@@ -497,7 +497,7 @@ mod tests {
                 sample_time_s: 0.01
             }
         );
-        let refused = CorrectedModel::of(&sampled(1e-5), &correction(), pade).unwrap_err();
+        let refused = CorrectedModel::new(&sampled(1e-5), &correction(), pade).unwrap_err();
         assert!(
             matches!(refused, CorrectedModelError::TooManyStates { .. }),
             "{refused}"
@@ -511,7 +511,7 @@ mod tests {
             output_delays_s: vec![0.0; 2],
             ..correction()
         };
-        let corrected = CorrectedModel::of(&plant(), &none, Pade::new(4).unwrap()).unwrap();
+        let corrected = CorrectedModel::new(&plant(), &none, Pade::new(4).unwrap()).unwrap();
         assert_eq!(
             (corrected.model.a(), corrected.phase_error(12.0)),
             (plant().a(), 0.0)
@@ -549,7 +549,7 @@ mod tests {
     fn lead_filters_are_exact_states_of_which_the_gain_at_infinity_is_direct() {
         for (order, states) in [(LeadOrder::First, 1), (LeadOrder::Second, 2)] {
             let correction = led(order);
-            let corrected = CorrectedModel::of(&plant(), &correction, Pade::default()).unwrap();
+            let corrected = CorrectedModel::new(&plant(), &correction, Pade::default()).unwrap();
             assert_eq!(
                 (
                     corrected.lead_states.inputs.as_slice(),
@@ -597,7 +597,7 @@ mod tests {
                 .unwrap()
         };
         let correction = led(LeadOrder::Second);
-        let corrected = CorrectedModel::of(&sampled(0.01), &correction, Pade::default()).unwrap();
+        let corrected = CorrectedModel::new(&sampled(0.01), &correction, Pade::default()).unwrap();
         // 36 rad/s and a step of 10 ms: less than a quarter of a degree for each channel at 12
         // rad/s.
         assert!(
@@ -605,7 +605,8 @@ mod tests {
             "{}",
             corrected.phase_error(12.0)
         );
-        let refused = CorrectedModel::of(&sampled(0.02), &correction, Pade::default()).unwrap_err();
+        let refused =
+            CorrectedModel::new(&sampled(0.02), &correction, Pade::default()).unwrap_err();
         assert!(
             matches!(refused, CorrectedModelError::SlowSamples { .. }),
             "{refused}"

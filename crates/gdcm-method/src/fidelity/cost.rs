@@ -9,11 +9,12 @@ use gdcm_model::response::curve_values::{mean, weighted_median};
 use gdcm_model::response::frequency_response::PolarCurve;
 use gdcm_model::response::median;
 
-/// Weight of the squared magnitude error \[dB^2\], `W_g`.
+/// Weight of the squared magnitude error \[dB^2\], `W_g` (Tischler & Remple 2012, chapter 11).
 const MAGNITUDE_WEIGHT: f64 = 1.0;
 /// Weight of the squared phase error \[deg^2\], `W_p`.
 const PHASE_WEIGHT: f64 = 0.0175;
-/// J up to which a model is acceptable.
+/// J up to which a model is acceptable (Tischler & Remple, "Aircraft and Rotorcraft System
+/// Identification", 2nd ed. 2012, chapter 11; given for the mean over frequency).
 pub const ACCEPTABLE: f64 = 100.0;
 
 /// Common factor of both parts of J.
@@ -25,28 +26,28 @@ pub fn summand(error_db: f64, error_deg: f64) -> f64 {
     COST_SCALE * (MAGNITUDE_WEIGHT * error_db * error_db + PHASE_WEIGHT * error_deg * error_deg)
 }
 
-/// Averages of the squared errors over frequency.
+/// Average of the squared errors over frequency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CostAverage {
-    /// The median (the paper).
+    /// The median (eq. (14) to (19)).
     Median,
     /// The mean (Tischler's original).
     Mean,
 }
 
 impl CostAverage {
-    fn of(self, squares: &mut [f64], weights: Option<&[f64]>) -> f64 {
+    /// Averages the squares, which are overwritten; M4a with weights.
+    fn average(self, squares: &mut [f64], weights: Option<&[f64]>) -> f64 {
         match (self, weights) {
             (CostAverage::Median, None) => median(squares),
             (CostAverage::Mean, None) => mean(squares),
             (CostAverage::Median, Some(weights)) => weighted_median(squares, weights),
             // Divided by the number of frequencies, not by the sum of weights: Tischler's form.
             (CostAverage::Mean, Some(weights)) => {
-                squares
-                    .iter_mut()
-                    .zip(weights)
-                    .for_each(|(square, weight)| *square *= weight);
+                for (square, weight) in squares.iter_mut().zip(weights) {
+                    *square *= weight;
+                }
                 mean(squares)
             }
         }
@@ -63,23 +64,20 @@ pub struct Cost {
 }
 
 impl Cost {
-    /// Computes J from the magnitude errors \[dB\] and the phase errors \[rad\], one of each per
-    /// frequency; `weights` likewise, unless all frequencies weigh the same.
+    /// Computes J from the magnitude errors \[dB\] and the phase errors \[rad\] at each frequency.
     ///
-    /// `scratch` is overwritten.
-    pub fn of(
+    /// `weights` has a weight for each frequency; `None` where all weigh the same.
+    pub fn from_errors(
         magnitude_error_db: impl Iterator<Item = f64>,
         phase_error: impl Iterator<Item = f64>,
         weights: Option<&[f64]>,
         average: CostAverage,
-        scratch: &mut Vec<f64>,
     ) -> Self {
-        scratch.clear();
-        scratch.extend(magnitude_error_db.map(|error| error * error));
-        let magnitude = COST_SCALE * MAGNITUDE_WEIGHT * average.of(scratch, weights);
-        scratch.clear();
-        scratch.extend(phase_error.map(f64::to_degrees).map(|error| error * error));
-        let phase = COST_SCALE * PHASE_WEIGHT * average.of(scratch, weights);
+        let mut squares: Vec<f64> = magnitude_error_db.map(|error| error * error).collect();
+        let magnitude = COST_SCALE * MAGNITUDE_WEIGHT * average.average(&mut squares, weights);
+        squares.clear();
+        squares.extend(phase_error.map(f64::to_degrees).map(|error| error * error));
+        let phase = COST_SCALE * PHASE_WEIGHT * average.average(&mut squares, weights);
         Self { magnitude, phase }
     }
 
@@ -176,50 +174,36 @@ mod tests {
 
     #[test]
     fn a_constant_error_has_the_cost_of_the_definition() {
-        let cost = Cost::of(
-            [2.0; 5].into_iter(),
-            [0.1; 5].into_iter(),
-            None,
-            CostAverage::Median,
-            &mut Vec::new(),
-        );
+        let magnitude = [2.0; 5].into_iter();
+        let phase = [0.1; 5].into_iter();
+        let cost = Cost::from_errors(magnitude, phase, None, CostAverage::Median);
         assert_eq!(cost.magnitude, 80.0);
         // 20 * 0.0175 * (18 / pi)^2, by hand: 11.48966...; a few rounding errors.
         assert!((cost.phase - 0.35 * (18.0 / std::f64::consts::PI).powi(2)).abs() < 1e-12);
     }
 
     #[test]
-    fn the_median_ignores_one_bad_frequency_and_the_mean_does_not() {
-        let error = || [1.0, 1.0, 10.0].into_iter();
-        let none = || [0.0; 3].into_iter();
-        assert_eq!(
-            Cost::of(error(), none(), None, CostAverage::Median, &mut Vec::new()).total(),
-            20.0
-        );
-        assert_eq!(
-            Cost::of(error(), none(), None, CostAverage::Mean, &mut Vec::new()).total(),
-            680.0
-        );
+    fn the_median_ignores_a_bad_frequency_and_the_mean_does_not() {
+        let [median, mean] = [CostAverage::Median, CostAverage::Mean].map(|average| {
+            let magnitude = [1.0, 1.0, 10.0].into_iter();
+            let phase = [0.0; 3].into_iter();
+            Cost::from_errors(magnitude, phase, None, average).total()
+        });
+        assert_eq!(median, 20.0);
+        assert_eq!(mean, 680.0);
     }
 
     #[test]
     fn weights_are_tischlers_in_the_mean_and_a_weighted_median_in_the_median() {
-        let cost = |average| {
+        let [median, mean] = [CostAverage::Median, CostAverage::Mean].map(|average| {
             let magnitude = [1.0, 3.0, 2.0].into_iter();
             let phase = [0.0; 3].into_iter();
-            Cost::of(
-                magnitude,
-                phase,
-                Some(&[0.5, 1.0, 0.25]),
-                average,
-                &mut Vec::new(),
-            )
-            .total()
-        };
-        // 20 / 3 (0.5 + 9 + 1); among the squares 1, 4, 9 half of the total weight of 1.75 is
-        // exceeded at the last.
-        assert!((cost(CostAverage::Mean) - 70.0).abs() < 1e-13);
-        assert_eq!(cost(CostAverage::Median), 180.0);
+            Cost::from_errors(magnitude, phase, Some(&[0.5, 1.0, 0.25]), average).total()
+        });
+        // 20 / 3 (0.5 + 9 + 1).
+        assert!((mean - 70.0).abs() < 1e-13);
+        // Among the squares 1, 4, 9 half of the total weight of 1.75 is exceeded at the last.
+        assert_eq!(median, 180.0);
     }
 }
 
@@ -230,19 +214,21 @@ mod mean_cost_tests {
     use super::{CostAverage, *};
     use crate::fidelity::mismatch::Mismatch;
 
-    #[test]
-    fn it_is_the_cost_of_the_mismatch_with_the_mean() {
-        let curve = |seed: f64| PolarCurve {
+    fn curve(seed: f64) -> PolarCurve {
+        PolarCurve {
             magnitude_db: (0..53)
                 .map(|k| 20.0 * (seed + 0.3 * f64::from(k)).sin())
                 .collect(),
             phase: (0..53)
                 .map(|k| wrap(seed - 0.4 * seed * f64::from(k)))
                 .collect(),
-        };
-        for (a, b) in
-            [(0.1, 0.2), (-3.0, 2.0), (1.0, 1.0), (3.1, -3.1)].map(|(a, b)| (curve(a), curve(b)))
-        {
+        }
+    }
+
+    #[test]
+    fn it_is_the_cost_of_the_mismatch_with_the_mean() {
+        for seeds in [[0.1, 0.2], [-3.0, 2.0], [1.0, 1.0], [3.1, -3.1]] {
+            let [a, b] = seeds.map(curve);
             let expected = Mismatch::new(&a, &b)
                 .cost(&[0.0; 53], GainDelay::NONE, CostAverage::Mean)
                 .total();

@@ -2,14 +2,17 @@
 //! mode tracks across models, and unnoticeable added dynamics.
 
 pub mod absolute_deviations;
+pub mod coherence_weights;
 pub mod cost;
 pub mod distance;
 pub mod mismatch;
 pub mod mode_tracks;
 pub mod muad;
+mod pure_delay;
 
+pub use coherence_weights::CoherenceWeights;
 pub use cost::{ACCEPTABLE, Cost, CostAverage, summand};
 pub use distance::{Discontinuity, SUGGESTION_RATIO};
-pub use mismatch::{CoherenceWeights, Mismatch};
+pub use mismatch::Mismatch;
 pub use mode_tracks::{ModeTrack, mode_tracks};
 pub use muad::{Muad, leaves};

@@ -1,5 +1,5 @@
-//! The correction of a model: one gain and one delay or lead for each channel (M10, M15), and its
-//! effect on a response.
+//! Correction of a model: a gain and a delay or lead for each channel (M10, M15), and its effect on
+//! a response.
 
 use gdcm_model::dataset::Pair;
 use gdcm_model::response::{GainDelay, LeadFilter};
@@ -10,16 +10,16 @@ use super::leads::ChannelLeads;
 /// The correction `M_O H M_I`, each channel `k e^(-tau s)`, eq. (12), or `k L(s)` (M15).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelCorrection {
-    /// Gain of each input channel, m values.
+    /// Input channel gains, m values.
     pub input_gains: Vec<f64>,
-    /// Gain of each output channel, p values.
+    /// Output channel gains, p values.
     pub output_gains: Vec<f64>,
-    /// Delay of each input channel \[s\], m values.
+    /// Input channel delays \[s\], m values.
     pub input_delays_s: Vec<f64>,
-    /// Delay of each output channel \[s\], p values.
+    /// Output channel delays \[s\], p values.
     pub output_delays_s: Vec<f64>,
-    /// Signed delays, whose positive parts are the delays above, and the filters of the negative
-    /// ones; `None` where leads are not requested (M15).
+    /// Signed delays: their positive parts are the delays above, and negative ones have filters.
+    /// `None` where leads are not requested (M15).
     pub leads: Option<ChannelLeads>,
 }
 
@@ -44,18 +44,17 @@ impl ChannelCorrection {
         }
     }
 
-    /// Returns the net gain of a response, `k_o k_i` (M11).
+    /// Returns a response's net gain, `k_o k_i` (M11).
     pub fn net_gain(&self, pair: Pair) -> f64 {
         self.output_gains[pair.output] * self.input_gains[pair.input]
     }
 
-    /// Returns the net delay of a response, `tau_o + tau_i` \[s\]; a negative net delay is a lead
-    /// (M15).
+    /// Returns a response's net delay, `tau_o + tau_i` \[s\]; a negative net delay is a lead (M15).
     pub fn net_delay_s(&self, pair: Pair) -> f64 {
         self.delay_s(Channel::Output(pair.output)) + self.delay_s(Channel::Input(pair.input))
     }
 
-    /// Returns the gain of a channel.
+    /// Returns a channel's gain.
     pub fn gain(&self, channel: Channel) -> f64 {
         match channel {
             Channel::Input(input) => self.input_gains[input],
@@ -63,7 +62,7 @@ impl ChannelCorrection {
         }
     }
 
-    /// Returns the delay of a channel \[s\]; a negative delay is a lead (M15).
+    /// Returns a channel's delay \[s\]; a negative delay is a lead (M15).
     pub fn delay_s(&self, channel: Channel) -> f64 {
         match &self.leads {
             Some(leads) => leads.taus_s[channel],
@@ -71,7 +70,7 @@ impl ChannelCorrection {
         }
     }
 
-    /// Returns the delay of a channel without its lead \[s\].
+    /// Returns a channel's delay without its lead \[s\].
     pub fn pure_delay_s(&self, channel: Channel) -> f64 {
         match channel {
             Channel::Input(input) => self.input_delays_s[input],
@@ -79,7 +78,7 @@ impl ChannelCorrection {
         }
     }
 
-    /// Returns the delay of each channel \[s\]; a negative delay is a lead (M15).
+    /// Returns every channel's delay \[s\]; a negative delay is a lead (M15).
     pub fn signed_delays_s(&self) -> Channels<f64> {
         self.channels(|channel| self.delay_s(channel))
     }
@@ -89,13 +88,12 @@ impl ChannelCorrection {
         Channels::from_fn(self.input_gains.len(), self.output_gains.len(), value)
     }
 
-    /// Returns the lead filter of a channel, if it has one (M15).
+    /// Returns a channel's lead filter, if it has a lead (M15).
     pub fn lead(&self, channel: Channel) -> Option<LeadFilter> {
         self.leads.as_ref()?.filters()[channel]
     }
 
-    /// Returns the correction without its lead filters: its gains and the positive parts of its
-    /// delays.
+    /// Returns the correction without its lead filters: its gains and positive delays.
     pub fn without_leads(self) -> Self {
         Self {
             leads: None,
@@ -104,7 +102,7 @@ impl ChannelCorrection {
     }
 
     /// Returns the factor that the correction applies to a response; `None` where its net gain is
-    /// not positive (possible in a schedule of `k` itself).
+    /// not positive (possible where `k` itself is scheduled).
     pub fn on(&self, pair: Pair) -> Option<GainDelay> {
         let leads = Channel::of(pair).map(|channel| self.lead(channel));
         Some(self.without_leads_on(pair)?.led(leads))

@@ -1,10 +1,10 @@
-//! State-space models of one channel's delay or lead filter.
+//! State-space models for a channel's delay or lead filter.
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use gdcm_model::response::{LeadFilter, LeadOrder};
 
-/// A delay or a lead filter of one channel as a state-space model with one input and one output.
+/// A channel's delay or lead filter as a state-space model with a single input and output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelModel {
     /// System matrix, n x n.
@@ -17,7 +17,7 @@ pub struct ChannelModel {
 }
 
 impl ChannelModel {
-    /// Creates `z^-count`, exactly: a chain of `count` states, each the previous state one sample
+    /// Creates `z^-count`, exactly: a chain with `count` states, each the previous state a sample
     /// later. With `count = 0` it is `y = u`.
     pub fn samples(count: usize) -> Self {
         Self {
@@ -57,8 +57,8 @@ impl ChannelModel {
 
     /// Creates the lead filter in discrete time with this sample time `T` \[s\], by Tustin's rule
     /// `s = 2 (z - 1) / (T (z + 1))`. With `M = (I - A T/2)^-1` the matrices are `M (I + A T/2)`,
-    /// `T M B`, `C M`, `D + C M B T/2`. `None` where `T` puts a pole of the filter on the pole of
-    /// the rule.
+    /// `T M B`, `C M`, `D + C M B T/2`. `None` where `T` puts a filter pole on the pole of the
+    /// rule.
     pub fn sampled_lead(filter: LeadFilter, sample_time_s: f64) -> Option<Self> {
         let Self { a, b, c, d } = Self::lead(filter);
         let one = DMatrix::identity(a.nrows(), a.nrows());

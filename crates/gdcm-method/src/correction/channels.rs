@@ -4,7 +4,7 @@ use std::ops::Index;
 
 use gdcm_model::dataset::{Dataset, Pair};
 
-/// One channel: an input or an output, each with a gain and a delay of its own.
+/// An input or an output, each with its own gain and delay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Channel {
     Input(usize),
@@ -19,7 +19,7 @@ impl Channel {
             .chain((0..outputs).map(Self::Output))
     }
 
-    /// Returns the output and the input of a response.
+    /// Returns a response's output and input.
     pub fn of(pair: Pair) -> [Self; 2] {
         [Self::Output(pair.output), Self::Input(pair.input)]
     }
@@ -29,8 +29,7 @@ impl Channel {
         Self::of(pair).contains(&self)
     }
 
-    /// Returns the name of the channel, or its number (from 1) where the list of names is too
-    /// short.
+    /// Returns the channel's name, or its number (from 1) where the name list is too short.
     pub fn name(self, inputs: &[String], outputs: &[String]) -> String {
         match self {
             Channel::Input(index) => inputs
@@ -44,26 +43,26 @@ impl Channel {
         }
     }
 
-    /// Iterates over all channels of a dataset, the inputs first.
+    /// Iterates over a dataset's channels, the inputs first.
     pub fn all_of(dataset: &Dataset) -> impl Iterator<Item = Self> + use<> {
         Self::all(dataset.inputs().len(), dataset.outputs().len())
     }
 
-    /// Returns the name of the channel in a dataset.
+    /// Returns the channel's name in a dataset.
     pub fn name_in(self, dataset: &Dataset) -> String {
         let (inputs, outputs) = dataset.names_of_channels();
         self.name(&inputs, &outputs)
     }
 }
 
-/// Returns the name of a response: "PED → NY".
+/// Names a response: "PED → NY".
 pub fn pair_name(pair: Pair, inputs: &[String], outputs: &[String]) -> String {
     let input = Channel::Input(pair.input).name(inputs, outputs);
     let output = Channel::Output(pair.output).name(inputs, outputs);
     format!("{input} → {output}")
 }
 
-/// Lists the names of several responses: "A, B and C".
+/// Names several responses: "A, B and C".
 pub fn pair_names(pairs: &[Pair], inputs: &[String], outputs: &[String]) -> String {
     let names: Vec<String> = pairs
         .iter()
@@ -76,17 +75,17 @@ pub fn pair_names(pairs: &[Pair], inputs: &[String], outputs: &[String]) -> Stri
     }
 }
 
-/// One value for each channel.
+/// A value for each channel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Channels<T> {
-    /// Values of the inputs, m.
+    /// Input values, m.
     pub inputs: Vec<T>,
-    /// Values of the outputs, p.
+    /// Output values, p.
     pub outputs: Vec<T>,
 }
 
 impl<T> Channels<T> {
-    /// Computes the value of each channel, the inputs first.
+    /// Computes a value for each channel, the inputs first.
     pub fn from_fn(inputs: usize, outputs: usize, mut value: impl FnMut(Channel) -> T) -> Self {
         Self {
             inputs: (0..inputs)
@@ -98,7 +97,7 @@ impl<T> Channels<T> {
         }
     }
 
-    /// Converts the value of each channel, the inputs first.
+    /// Converts every value, the inputs first.
     pub fn map<U>(&self, mut convert: impl FnMut(Channel, &T) -> U) -> Channels<U> {
         Channels::from_fn(self.inputs.len(), self.outputs.len(), |channel| {
             convert(channel, &self[channel])
@@ -127,7 +126,7 @@ impl<T> Channels<T> {
         Ok(converted)
     }
 
-    /// Returns the value of a channel; `None` where there is no such channel.
+    /// Returns a channel's value; `None` where there is no such channel.
     pub fn get(&self, channel: Channel) -> Option<&T> {
         match channel {
             Channel::Input(input) => self.inputs.get(input),

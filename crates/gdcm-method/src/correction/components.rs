@@ -1,5 +1,5 @@
-//! Channels tied together by constrained products, and the feasible targets of the constrained
-//! entries (stage 1 of M8 and M9).
+//! Channels tied together by constrained products, and the feasible targets for constrained entries
+//! (M8 and M9, stage 1).
 
 use gdcm_model::dataset::Pair;
 
@@ -10,16 +10,17 @@ use super::channels::Channel;
 use super::interval::Interval;
 use super::problem::Problem;
 
-/// Constraints on the channels: sums of coordinates over the constrained entries, in a box.
+/// Constraints on the channels: sums of coordinates for the constrained entries, in a box.
 ///
 /// The channels are *nodes* here, the inputs first: an input's value is its coordinate, an output's
-/// is minus its coordinate, so that a constrained entry prescribes a difference of two nodes.
+/// is minus its coordinate, so that a constrained entry prescribes the difference between two
+/// nodes.
 #[derive(Clone, Debug)]
 pub(crate) struct Constraints {
     pub(crate) outputs: usize,
     pub(crate) inputs: usize,
     pub(crate) entries: Vec<ConstrainedSum>,
-    /// Range of every channel's coordinate.
+    /// Coordinate range, the same for every channel.
     pub(crate) range: Interval,
 }
 
@@ -27,7 +28,7 @@ pub(crate) struct Constraints {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ConstrainedSum {
     pub(crate) pair: Pair,
-    /// Prescribed sum of the two channels' coordinates.
+    /// Prescribed sum over the two channels' coordinates.
     pub(crate) sum: f64,
 }
 
@@ -39,7 +40,7 @@ pub(crate) struct PairNodes {
 }
 
 impl Constraints {
-    /// Collects the constraints of `problem`.
+    /// Collects the constraints in `problem`.
     pub(crate) fn new(problem: &Problem) -> Self {
         let coordinate = problem.coordinate();
         Self {
@@ -66,7 +67,7 @@ impl Constraints {
         self.inputs + self.outputs
     }
 
-    /// Returns the nodes of an entry's input and output.
+    /// Returns the nodes for an entry's input and output.
     pub(crate) fn nodes_of(&self, pair: Pair) -> PairNodes {
         PairNodes {
             input: pair.input,
@@ -74,7 +75,7 @@ impl Constraints {
         }
     }
 
-    /// Returns the channel of a node.
+    /// Returns a node's channel.
     pub(crate) fn channel(&self, node: usize) -> Channel {
         if node < self.inputs {
             Channel::Input(node)
@@ -93,18 +94,17 @@ impl Constraints {
     }
 }
 
-/// Position of a node in its component.
+/// A node's position in its component.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
     pub(crate) component: usize,
-    /// Value of the node where the component's scale is 0. Its rounding is the rounding of the
-    /// constrained sums on the way from the component's first node, and of the ends of the
-    /// component's scale.
+    /// The node's value where the component's scale is 0. Rounding arises in the constrained sums
+    /// between the component's first node and this node, and at both ends of the scale.
     pub(crate) offset: Rounded,
 }
 
 impl Placement {
-    /// Returns the position at the other end of a constrained entry, at the distance `by`.
+    /// Returns the position across a constrained entry, at the distance `by`.
     fn across(self, by: f64) -> Self {
         // A logarithm, or a time in another unit, is rounded once.
         let mut offset = Rounded {
@@ -116,46 +116,46 @@ impl Placement {
     }
 }
 
-/// Nodes of the inputs and of the outputs.
+/// Input nodes and output nodes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Nodes<'a> {
     pub(crate) inputs: &'a [Placement],
     pub(crate) outputs: &'a [Placement],
 }
 
-/// Coordinates of the inputs and of the outputs.
+/// Input coordinates and output coordinates.
 #[derive(Clone, Debug)]
 pub(crate) struct ChannelCoordinates {
     pub(crate) inputs: Vec<f64>,
     pub(crate) outputs: Vec<f64>,
 }
 
-/// Connected components of the bipartite graph of the constrained entries, one free scale each (M8,
+/// Connected components in the bipartite graph of constrained entries, each with a free scale (M8,
 /// structure).
 ///
-/// With the scale `s` of its component a node has the value `offset + s`, so that the sum of a
-/// constrained entry does not depend on `s`: in logarithms of gains, or in delays. A channel
-/// without a constrained entry is a component by itself.
+/// With its component's scale `s` a node has the value `offset + s`, so that a constrained sum does
+/// not depend on `s`: in logarithmic gains, or in delays. A channel without a constrained entry is
+/// a component by itself.
 #[derive(Clone, Debug)]
 pub(crate) struct Components {
     /// The inputs, then the outputs.
     nodes: Vec<Placement>,
     inputs: usize,
-    /// Least scale of each component that keeps its channels inside the box.
+    /// Least scale that keeps the channels inside the box, for each component.
     pub(crate) lower: Vec<f64>,
-    /// Greatest scale of each component that keeps its channels inside the box.
+    /// Greatest scale that keeps the channels inside the box, for each component.
     pub(crate) upper: Vec<f64>,
-    /// Infeasibility of each component: the worst disagreement of a loop, or the width that the box
+    /// Infeasibility of each component: the worst disagreement in a loop, or the width that the box
     /// lacks.
     strain: Vec<f64>,
 }
 
-/// Strain below which a component counts as feasible: well below the 1e-8 of M8, so that the error
-/// of its product stays below 1e-9.
+/// Strain below which a component counts as feasible: well below 1e-8 (M8), so that the error in
+/// its product stays below 1e-9.
 pub(crate) const STRAIN: f64 = 1e-9;
 
 impl Components {
-    /// Finds the components of the constrained entries.
+    /// Finds the components that the constrained entries form.
     pub(crate) fn new(constraints: &Constraints) -> Self {
         let mut placed: Vec<Option<Placement>> = vec![None; constraints.nodes()];
         let mut count = 0;
@@ -188,13 +188,13 @@ impl Components {
         self.lower.len()
     }
 
-    /// Returns the nodes of both sides.
+    /// Returns the nodes on both sides.
     pub(crate) fn nodes(&self) -> Nodes<'_> {
         let (inputs, outputs) = self.nodes.split_at(self.inputs);
         Nodes { inputs, outputs }
     }
 
-    /// Returns the sum of two channels of one component, the same at every scale.
+    /// Returns the sum of two channels in the same component, which is the same at every scale.
     pub(crate) fn sum(&self, pair: Pair) -> f64 {
         self.nodes[pair.input].offset.value - self.nodes[self.inputs + pair.output].offset.value
     }
@@ -204,12 +204,12 @@ impl Components {
         self.strain.iter().all(|strain| *strain <= STRAIN)
     }
 
-    /// Whether the component of an entry is infeasible.
+    /// Whether an entry's component is infeasible.
     fn is_strained(&self, pair: Pair) -> bool {
         self.strain[self.nodes[pair.input].component] > STRAIN
     }
 
-    /// Returns the logarithm (or delay) of each channel at these scales.
+    /// Returns every channel's logarithm (or delay) at these scales.
     pub(crate) fn channels(&self, scales: &[f64]) -> ChannelCoordinates {
         let nodes = self.nodes();
         ChannelCoordinates {
@@ -227,11 +227,11 @@ impl Components {
         }
     }
 
-    /// Moves the zero of every scale to the middle of its interval, so that no channel is far
-    /// outside the box at scale 0.
+    /// Moves every scale's zero to the middle of its interval, so that no channel is far outside
+    /// the box at scale 0.
     fn centre(&mut self, range: Interval) {
-        // A scale at its end differs from the exact value by the rounding of the range's end, and
-        // of the offset subtracted from it.
+        // A scale at its end differs from the exact value by two roundings: the range's end, and
+        // the offset subtracted from it.
         let error = 2.0 * f64::EPSILON * range.low.abs().max(range.high.abs());
         for node in &mut self.nodes {
             let middle = 0.5 * (self.lower[node.component] + self.upper[node.component]);
@@ -242,7 +242,7 @@ impl Components {
         }
     }
 
-    /// Sets the interval of each scale; an empty interval is replaced by its midpoint.
+    /// Sets every scale's interval; an empty interval is replaced by its midpoint.
     fn close_box(&mut self, constraints: &Constraints) {
         self.lower.fill(f64::NEG_INFINITY);
         self.upper.fill(f64::INFINITY);
@@ -264,7 +264,7 @@ impl Components {
         }
     }
 
-    /// Raises the strain of each component to the worst disagreement of its loops.
+    /// Raises every component's strain to the worst disagreement in its loops.
     fn strain_loops(&mut self, constraints: &Constraints) {
         for entry in &constraints.entries {
             let miss = (self.sum(entry.pair) - entry.sum).abs();
@@ -294,11 +294,11 @@ fn place_tied_nodes(placed: &mut [Option<Placement>], constraints: &Constraints)
 /// Feasible sums nearest to the prescribed sums, subject to the box and the loops.
 #[derive(Clone, Debug)]
 pub(crate) struct Reached {
-    /// The constrained entries with their targets, in the order of [`Constraints::entries`].
+    /// The constrained entries with their targets, ordered like [`Constraints::entries`].
     pub(crate) targets: Vec<ConstrainedSum>,
-    /// Components of the constrained entries at their targets.
+    /// Components with the constrained entries at their targets.
     pub(crate) components: Components,
-    /// A point of the box that reaches the targets, a value for each node; `None` where every entry
+    /// A point in the box that reaches the targets, a value for each node; `None` where every entry
     /// is feasible.
     pub(crate) point: Option<Vec<f64>>,
 }
@@ -336,7 +336,7 @@ pub(crate) fn reach<E>(
     })
 }
 
-/// Builds the least squares problem of stage 1 over the infeasible components: one scale for each
+/// Builds the least squares problem for stage 1 over the infeasible components: a scale for each
 /// node, and the ground.
 fn nearest_sums(constraints: &Constraints, asked: &Components) -> Objective {
     let mut lower = Vec::new();

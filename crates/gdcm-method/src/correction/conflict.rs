@@ -6,13 +6,13 @@ use super::channels::Channel;
 use super::problem::Bounds;
 use super::quantity::Quantity;
 
-/// A minimal infeasible set of constrained entries and bounds: without any one of them the rest is
-/// feasible.
+/// A minimal infeasible set of constrained entries and bounds: without any single member the rest
+/// is feasible.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conflict {
     /// Constrained quantity: gains, or delays or signed delays in seconds.
     pub quantity: Quantity,
-    /// The constrained entries: releasing any one of them resolves the conflict.
+    /// The constrained entries: releasing any single entry resolves the conflict.
     pub entries: Vec<Pair>,
     /// The present bounds.
     pub bounds: Bounds,
@@ -23,26 +23,26 @@ pub struct Conflict {
 /// digits so that they still suffice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ConflictKind {
-    /// The entries prescribe a net value of two channels above the value that the upper bound
+    /// The entries prescribe a net value for two channels above the maximum that the upper bound
     /// allows.
     AboveUpper {
         channels: (Channel, Channel),
-        /// Product of gains, or sum of delays, prescribed by the entries.
+        /// Product of gains or sum of delays prescribed by the entries.
         asked: f64,
         /// Least sufficient upper bound.
         upper: f64,
     },
-    /// The entries prescribe a net value of two channels below the value that the lower bound
+    /// The entries prescribe a net value for two channels below the minimum that the lower bound
     /// allows: for delays, phase lead.
     BelowLower {
         channels: (Channel, Channel),
-        /// Product of gains, or (negative) sum of delays, prescribed by the entries.
+        /// Product of gains or (negative) sum of delays prescribed by the entries.
         asked: f64,
         /// Greatest sufficient lower bound; `None` for delays.
         lower: Option<f64>,
     },
-    /// The entries prescribe a ratio of two gains, or a difference of two delays, above the range
-    /// that the bounds allow.
+    /// The entries prescribe a ratio between two gains, or a difference between two delays, above
+    /// the range that the bounds allow.
     TooFarApart {
         /// The channel with the greater value.
         greater: Channel,
@@ -57,10 +57,10 @@ pub enum ConflictKind {
     },
     /// The entries form a loop with contradictory targets: no bound helps.
     Loop {
-        /// Deviation of the loop's product from 1 in dB, or of its sum from 0 in seconds.
+        /// The loop's deviation: its product from 1 in dB, or its sum from 0 in seconds.
         mismatch: f64,
     },
-    /// The entries are infeasible together; rounding hides which of them are the cause.
+    /// The entries are infeasible together; rounding hides the cause.
     Unclear,
 }
 

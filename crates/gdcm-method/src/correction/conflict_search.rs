@@ -22,17 +22,17 @@ pub(crate) struct EntryConflict {
 /// coordinates), with duplicates.
 ///
 /// Stage 1 is a least squares problem, so the misses are a flow: the pull on a channel is passed on
-/// by another missed entry or is stopped by an active bound. Every path of the flow from bound to
-/// bound, and every loop in it, is an infeasible set, and every missed entry is on one of them
-/// (Farkas). Where a part of that set is infeasible by itself, that part is the conflict, and the
-/// entry's own miss is the compromise with it.
+/// by another missed entry or is stopped by an active bound. Every path in the flow from bound to
+/// bound, and every loop, is an infeasible set, and every missed entry is on such a path or loop
+/// (Farkas). Where a part is infeasible by itself, that part is the conflict, and the entry's own
+/// miss is the compromise with it.
 ///
 /// ```text
 /// for each missed entry
 ///     1  loop <- shortest way along the flow from the entry's end back to its start
 ///     2  path <- shortest way from a lower bound to its start, the entry, shortest way from its end to an upper bound
-///     3  the shorter of both, where each of the two bounds counts like an entry
-///     4  its shortest part that the bounds of the two ends do not allow, if any
+///     3  the shorter of both, where each bound counts like an entry
+///     4  its shortest part that the bounds at both ends do not allow, if any
 /// ```
 pub(crate) fn entry_conflicts(
     problem: &Problem,
@@ -49,7 +49,7 @@ pub(crate) fn entry_conflicts(
     for pull in &flow.pulls {
         let missing = pull.weight - (point[pull.to] - point[pull.from]);
         if missing > tolerance {
-            // Three searches over every pull of every channel.
+            // Three searches over every pull on every channel.
             effort.spend((flow.pulls.len() * constraints.nodes()) as u64 / 8);
             effort.check()?;
             if let Some(conflict) = flow.smallest_through(pull) {
@@ -84,33 +84,33 @@ impl Pull {
     }
 }
 
-/// Shape of a sequence of pulls.
+/// Shape of a pull sequence.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Shape {
     Path,
     Loop,
 }
 
-/// Direction of a walk relative to the pulls.
+/// Walking direction relative to the pulls.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Direction {
     Along,
     Against,
 }
 
-/// The missed entries as a directed graph of nodes.
+/// The missed entries as a directed graph.
 struct Flow<'a> {
     problem: &'a Problem,
     constraints: &'a Constraints,
     pulls: Vec<Pull>,
-    /// Whether the lower bound of each node stops the pulls on it.
+    /// Whether the lower bound stops the pulls, for each node.
     at_lower: Vec<bool>,
-    /// Whether the upper bound of each node stops the pulls on it.
+    /// Whether the upper bound stops the pulls, for each node.
     at_upper: Vec<bool>,
 }
 
 impl<'a> Flow<'a> {
-    /// Collects the entries missed at the `point` of stage 1.
+    /// Collects the entries missed at the `point` from stage 1.
     fn new(
         problem: &'a Problem,
         constraints: &'a Constraints,
@@ -122,7 +122,7 @@ impl<'a> Flow<'a> {
         let mut net = vec![0.0; constraints.nodes()];
         for (asked, target) in constraints.entries.iter().zip(&reached.targets) {
             let missing = asked.sum - target.sum;
-            // A miss below this is the rounding of stage 1.
+            // A smaller miss is rounding in stage 1.
             if missing.abs() <= 1e-11 * (1.0 + asked.sum.abs()) {
                 continue;
             }
@@ -158,8 +158,8 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Returns the conflict of the shorter of the shortest loop and the shortest path from bound to
-    /// bound through `pull`; a bound counts like an entry.
+    /// Returns the smaller conflict: the shortest loop through `pull`, or the shortest path through
+    /// it from bound to bound; a bound counts like an entry.
     fn smallest_through(&self, pull: &Pull) -> Option<Conflict> {
         let around = self.shortest_walk(pull.to, Direction::Along, |node| node == pull.from);
         let path = self.path_through(pull);
@@ -187,7 +187,7 @@ impl<'a> Flow<'a> {
         Some(path)
     }
 
-    /// Conflict of the loop of `pull` and the way back `around` it.
+    /// Returns the conflict in the loop that `pull` and the way back `around` it form.
     fn loop_conflict(&self, pull: &Pull, around: Vec<Pull>) -> Conflict {
         let mut pulls = vec![*pull];
         pulls.extend(around);
@@ -203,8 +203,8 @@ impl<'a> Flow<'a> {
         self.conflict(entries, ConflictKind::Loop { mismatch })
     }
 
-    /// Returns the conflict of the shortest proper run of the pulls that the bounds of its two ends
-    /// do not allow. Runs of a loop continue past the last pull into the first again.
+    /// Returns the conflict in the shortest proper run of pulls that the bounds at its two ends do
+    /// not allow. In a loop, runs continue past the last pull into the first again.
     fn smallest_part(&self, pulls: &[Pull], shape: Shape) -> Option<Conflict> {
         let count = pulls.len();
         for length in 1..count {
@@ -228,8 +228,8 @@ impl<'a> Flow<'a> {
         None
     }
 
-    /// Whether the run needs more than the difference between the least value of its first node and
-    /// the greatest value of its last.
+    /// Whether the run needs more than the span from its first node's least value to its last
+    /// node's greatest value.
     fn is_impossible(&self, run: &[Pull]) -> bool {
         let (Some(first), Some(last)) = (run.first(), run.last()) else {
             return false;
@@ -240,7 +240,7 @@ impl<'a> Flow<'a> {
         needed - (most - least) > STRAIN
     }
 
-    /// Conflict of a path from a node at its least value to a node at its greatest.
+    /// Returns the conflict in a path from a node at its least value to a node at its greatest.
     fn path_conflict(&self, path: &[Pull]) -> Conflict {
         let needed: f64 = path.iter().map(|pull| pull.weight).sum();
         let start = path.first().map_or(0, |pull| pull.from);
@@ -273,7 +273,8 @@ impl<'a> Flow<'a> {
         self.conflict(entries, kind)
     }
 
-    /// Conflict of two channels on the same side whose ratio or difference is `asked`.
+    /// Returns the conflict between two channels on the same side whose ratio or difference is
+    /// `asked`.
     fn too_far_apart(&self, greater: Channel, lesser: Channel, asked: f64) -> ConflictKind {
         let quantity = self.problem.quantity;
         let bounds = self.problem.bounds;

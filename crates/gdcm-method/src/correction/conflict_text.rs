@@ -55,7 +55,7 @@ impl Remedy {
     }
 }
 
-/// Names the values that a loop of entries compares.
+/// Names the values compared around a loop.
 fn loop_values(quantity: Quantity) -> &'static str {
     if quantity.is_gain() {
         "ratios"
@@ -64,7 +64,7 @@ fn loop_values(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Formats the mismatch of a loop, given in dB or in seconds.
+/// Formats a loop's mismatch, given in dB or in seconds.
 fn mismatch_size(quantity: Quantity, mismatch: f64) -> String {
     if quantity.is_gain() {
         format!("{} dB", telling(mismatch.abs(), 1))
@@ -83,7 +83,7 @@ fn limit_and_asked_ms(limit_s: f64, asked_s: f64) -> (String, String) {
     told_apart(s_to_ms(limit_s), s_to_ms(asked_s), 1)
 }
 
-/// A conflict with the names of the channels.
+/// A conflict with the channel names.
 struct ConflictText<'a> {
     conflict: &'a Conflict,
     inputs: &'a [String],
@@ -155,7 +155,7 @@ impl ConflictText<'_> {
         format!("{entries} {cannot}: {limit} {release}.")
     }
 
-    /// Describes a net value above twice (or the square of) the upper bound.
+    /// Describes a net value above the upper bound, doubled or squared.
     fn above_upper(&self, channels: (Channel, Channel), asked: f64, upper: f64) -> String {
         let first = self.symbol(channels.0);
         let second = self.symbol(channels.1);
@@ -178,7 +178,7 @@ impl ConflictText<'_> {
         )
     }
 
-    /// Describes a net value below twice (or the square of) the lower bound.
+    /// Describes a net value below the lower bound, doubled or squared.
     fn below_lower(&self, channels: (Channel, Channel), asked: f64, lower: Option<f64>) -> String {
         let first = self.symbol(channels.0);
         let second = self.symbol(channels.1);
@@ -206,7 +206,7 @@ impl ConflictText<'_> {
         }
     }
 
-    /// Describes a ratio of two gains above that of the bounds.
+    /// Describes a gain ratio above the ratio between the bounds.
     fn ratio_too_great(
         &self,
         greater: Channel,
@@ -224,7 +224,7 @@ impl ConflictText<'_> {
         )
     }
 
-    /// Describes a difference of two delays above that of the bounds.
+    /// Describes a delay difference above the difference between the bounds.
     fn difference_too_great(
         &self,
         greater: Channel,

@@ -14,30 +14,30 @@ use super::channel_model::ChannelModel;
 use super::channels::{Channel, Channels};
 use super::pade::Pade;
 
-/// Tolerance, in samples, of a delay from a whole sample count. Computed delays are rounded.
+/// Tolerance, in samples, between a delay and a whole sample count. Computed delays are rounded.
 const SAMPLE_TOLERANCE: f64 = 1e-6;
 
 /// Delay \[s\] below which a delay counts as zero: rounding residues would give states with
 /// enormous entries. At 12 rad/s it changes the phase by less than a millionth of a degree.
 const LEAST_DELAY_S: f64 = 1e-9;
 
-/// `M_O H M_I` without delays: the delays of the correction and of the model itself have become
-/// states (M10, M2a).
+/// `M_O H M_I` without delays: those in the correction and in the model itself have become states
+/// (M10, M2a).
 ///
-/// In continuous time each delayed channel has the states of a Pade approximant, in discrete time
+/// In continuous time each delayed channel has the states for a Pade approximant, in discrete time
 /// one state for each sample, exactly. Gains are exact, and so are lead filters in continuous time
 /// (M15.3); in discrete time these follow Tustin's rule. A channel without delay and lead adds no
-/// state. The states are in the order of the signal: leads and delays of the inputs, the model's
-/// own states, delays and leads of the outputs.
+/// state. The states follow the signal: input leads, input delays, the model's own states, output
+/// delays, output leads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrectedModel {
     /// Four matrices; no delays.
     pub model: StateSpace,
-    /// Delay states of each channel: those of the inputs precede the model's own, those of the
-    /// outputs follow them.
+    /// Delay states for each channel: input states precede the model's own, output states follow
+    /// them.
     pub delay_states: Channels<usize>,
-    /// Lead filter states of each channel: those of the inputs precede all others, those of the
-    /// outputs follow all others.
+    /// Lead filter states for each channel: input states precede all others, output states follow
+    /// all others.
     pub lead_states: Channels<usize>,
     leads: Channels<Option<LeadFilter>>,
     sample_time_s: Option<f64>,
@@ -49,7 +49,7 @@ pub struct CorrectedModel {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", self.words(&[], &[]))]
 pub enum CorrectedModelError {
-    /// A delay of a discrete-time model is not a whole number of samples.
+    /// A discrete-time model's delay is not a whole sample count.
     PartOfSample {
         channel: Channel,
         /// Its delay \[s\].
@@ -109,14 +109,14 @@ impl CorrectedModel {
     /// Applies a correction to the model, with continuous-time delays approximated by `pade`.
     ///
     /// ```text
-    /// 1  state-space model of each channel's delay and lead filter
-    /// 2  gains on the rows and columns of the model's own matrices
+    /// 1  state-space models for each channel's delay and lead filter
+    /// 2  gains on the rows and columns in the model's own matrices
     /// 3  series connection: input leads, input delays, model, output delays, output leads
     /// ```
     ///
     /// # Errors
-    /// [`CorrectedModelError`] where a discrete-time delay is not a whole number of samples, or
-    /// states or numbers become too many or too large.
+    /// [`CorrectedModelError`] where a discrete-time delay is not a whole sample count, or states
+    /// or numbers become too many or too large.
     pub fn new(
         model: &StateSpace,
         correction: &ChannelCorrection,
@@ -158,11 +158,11 @@ impl CorrectedModel {
         })
     }
 
-    /// Computes the greatest phase error \[rad\] of its responses at `omega` \[rad/s\]: the missing
-    /// lag of the approximated delays, or the phase that Tustin's rule removes from the lead
-    /// filters of a discrete-time model.
+    /// Computes the greatest phase error \[rad\] in its responses at `omega` \[rad/s\]: the lag
+    /// that the approximated delays lack, or the phase that Tustin's rule removes from lead filters
+    /// in a discrete-time model.
     ///
-    /// The error of a response is the sum over its two channels.
+    /// A response's error is the sum over its two channels.
     pub fn phase_error(&self, omega: f64) -> f64 {
         match self.sample_time_s {
             Some(sample_time_s) => {
@@ -188,7 +188,7 @@ fn total(states: &Channels<usize>) -> usize {
     states.iter().map(|(_, states)| states).sum()
 }
 
-/// Greatest error \[rad\] of the filters' phases at a warped frequency \[rad/s\].
+/// Returns the greatest error \[rad\] in the filters' phases at a warped frequency \[rad/s\].
 fn greatest_warping_error(filters: &[Option<LeadFilter>], omega: f64, warped: f64) -> f64 {
     filters
         .iter()
@@ -202,7 +202,7 @@ fn longest(delays_s: &[f64]) -> f64 {
     delays_s.iter().copied().fold(0.0, f64::max)
 }
 
-/// Returns the delay of a channel \[s\]: the correction's plus the model's own.
+/// Returns a channel's delay \[s\]: the correction's plus the model's own.
 fn delay_s(channel: Channel, correction: &ChannelCorrection, timing: &Timing) -> f64 {
     let (own_delays_s, index) = match channel {
         Channel::Input(index) => (&timing.input_delays_s, index),
@@ -220,7 +220,7 @@ fn delay_s(channel: Channel, correction: &ChannelCorrection, timing: &Timing) ->
     }
 }
 
-/// Creates the state-space model of a channel's delay.
+/// Creates the state-space model for a channel's delay.
 fn delay_model(
     channel: Channel,
     delay_s: f64,
@@ -251,7 +251,7 @@ fn delay_model(
     Ok(ChannelModel::samples(samples as usize))
 }
 
-/// Creates the state-space model of a channel's lead filter.
+/// Creates the state-space model for a channel's lead filter.
 fn lead_model(
     filter: Option<LeadFilter>,
     sample_time_s: Option<f64>,
@@ -338,8 +338,7 @@ impl Blocks {
             .then(&Self::block_diagonal(&channels.outputs))
     }
 
-    /// Series connection: the outputs of this system drive `next`. The states of this system come
-    /// first.
+    /// Series connection: this system's outputs drive `next`. Its states come first.
     fn then(&self, next: &Self) -> Self {
         let first = self.a.nrows();
         let second = next.a.nrows();
@@ -399,8 +398,8 @@ mod tests {
         }
     }
 
-    /// Compares the matrices with the product of the gains, the model's response and a factor for
-    /// the delays of each channel.
+    /// Compares the matrices with a product: the gains, the model's response and each channel's
+    /// delay factor.
     fn assert_response(
         corrected: &CorrectedModel,
         plant: &StateSpace,
@@ -518,8 +517,7 @@ mod tests {
         );
     }
 
-    /// The plant's correction with a lead of 30 ms on the first input and 50 ms on the second
-    /// output.
+    /// The plant's correction with 30 ms lead on the first input and 50 ms on the second output.
     fn led(order: LeadOrder) -> ChannelCorrection {
         let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 50);
         let design = LeadDesign::new(
@@ -598,8 +596,7 @@ mod tests {
         };
         let correction = led(LeadOrder::Second);
         let corrected = CorrectedModel::new(&sampled(0.01), &correction, Pade::default()).unwrap();
-        // 36 rad/s and a step of 10 ms: less than a quarter of a degree for each channel at 12
-        // rad/s.
+        // 36 rad/s and 10 ms steps: less than 0.25 degrees for each channel at 12 rad/s.
         assert!(
             (0.01..0.5).contains(&corrected.phase_error(12.0).to_degrees()),
             "{}",

@@ -33,7 +33,7 @@ impl GainSource {
     }
 }
 
-/// `G = median |H_ref| / |H_sim|` and `D = median Delta phi(H_sim, H_ref) / omega` of every
+/// `G = median |H_ref| / |H_sim|` and `D = median Delta phi(H_sim, H_ref) / omega` for every
 /// response (M6), and its band delay (M15.2).
 ///
 /// `None` where the ratio is zero or not finite at some frequency, or where no frequency counts.
@@ -51,7 +51,7 @@ pub struct Delta {
 }
 
 impl Delta {
-    /// Computes G and D from the mismatch of two representatives at the frequencies `omega`
+    /// Computes G and D from the mismatch between two representatives at the frequencies `omega`
     /// \[rad/s\].
     pub fn new(mismatch: &PairTable<Option<Mismatch>>, omega: &[f64]) -> Self {
         let phases = mismatch.map(|pair, _| {
@@ -70,7 +70,7 @@ impl Delta {
     }
 }
 
-/// `Delta phi(H_sim, H_ref)` of one response.
+/// `Delta phi(H_sim, H_ref)` for a single response.
 struct MissingPhase<'a> {
     mismatch: &'a Mismatch,
     /// \[rad\] at each frequency.
@@ -92,7 +92,7 @@ impl MissingPhase<'_> {
     }
 }
 
-/// Computes `G = median |H_ref| / |H_sim|` of every response (M6).
+/// Computes `G = median |H_ref| / |H_sim|` for every response (M6).
 pub fn delta_gains(mismatch: &PairTable<Option<Mismatch>>) -> PairTable<Option<f64>> {
     mismatch.map(|_, entry| {
         let entry = entry.as_ref()?;
@@ -100,9 +100,9 @@ pub fn delta_gains(mismatch: &PairTable<Option<Mismatch>>) -> PairTable<Option<f
     })
 }
 
-/// Computes `sum W omega phase / sum W omega^2` \[s\] for a phase \[rad\] at each frequency \[rad/s\]: the
-/// delay that minimises the mean square of the remaining phase (M15.2). Linear in the phase; W = 1
-/// without weights.
+/// Computes `sum W omega phase / sum W omega^2` \[s\] for a phase \[rad\] at each frequency
+/// \[rad/s\]: the delay that minimises the remaining mean square phase (M15.2). Linear in the
+/// phase; W = 1 without weights.
 pub(crate) fn band_delay_s(
     phase: impl Iterator<Item = f64>,
     omega: &[f64],
@@ -162,7 +162,7 @@ fn delays(phase: &[f64], omega: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Selects the mismatches to pool: those marked in `measuring`, or all where none of the marked is
+/// Selects the mismatches to pool: those marked in `measuring`, or all where no marked mismatch is
 /// defined.
 fn pooled<'a>(
     mismatch: &'a PairTable<Option<Mismatch>>,
@@ -180,7 +180,7 @@ fn pooled<'a>(
     pairs.into_iter().filter_map(|pair| mismatch[pair].as_ref())
 }
 
-/// Computes `LB = min(1, q-quantile)` and `UB = max(1, (1-q)-quantile)` of `|H_ref| / |H_sim|`
+/// Computes `LB = min(1, q-quantile)` and `UB = max(1, (1-q)-quantile)` for `|H_ref| / |H_sim|`
 /// pooled over frequency and pairs (M7).
 pub fn gain_bounds(
     mismatch: &PairTable<Option<Mismatch>>,
@@ -193,7 +193,7 @@ pub fn gain_bounds(
     GainBounds { lower, upper }
 }
 
-/// Computes `UB = max(0, (1-q)-quantile)` \[s\] of `Delta phi / omega` pooled over frequency and
+/// Computes `UB = max(0, (1-q)-quantile)` \[s\] for `Delta phi / omega` pooled over frequency and
 /// pairs (M7).
 pub fn delay_upper_s(
     mismatch: &PairTable<Option<Mismatch>>,

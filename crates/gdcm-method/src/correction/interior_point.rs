@@ -1,11 +1,11 @@
-//! Minimum of a sum of squares over its box, by clarabel's interior point method.
+//! Minimum of a least squares objective over its box, by clarabel's interior point method.
 
 use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 
 use super::branch_and_bound::objective::{Curvature, Differentiable, Expansion, Objective};
 use super::problem::ProblemError;
 
-/// Returns a point within about 1e-9 of the minimum of a sum of squares over its box.
+/// Returns a point within about 1e-9 of the minimum over the box.
 ///
 /// # Errors
 /// [`ProblemError::Program`] where clarabel does not report the problem as solved ("almost solved"
@@ -25,7 +25,7 @@ pub(crate) fn interior_point(objective: &Objective) -> Result<Vec<f64>, ProblemE
     Ok(scales)
 }
 
-/// Solves `min s' P s / 2 + q' s` over `lower <= s <= upper` of the free scales; the others stay on
+/// Solves `min s' P s / 2 + q' s` over `lower <= s <= upper` in the free scales; the others stay on
 /// their bound.
 fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, ProblemError> {
     let scales = objective.scales();
@@ -54,7 +54,7 @@ fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, Prob
         .map_err(|reason| ProblemError::Program { reason })
 }
 
-/// Returns the matrix `[I; -I]` of the box constraints of `size` unknowns, 2 size x size.
+/// Returns the box constraint matrix `[I; -I]`, 2 size x size.
 fn box_sides(size: usize) -> CscMatrix<f64> {
     let columns = (0..=size).map(|column| 2 * column).collect();
     let mut rows = Vec::with_capacity(2 * size);

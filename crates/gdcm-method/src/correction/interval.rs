@@ -1,6 +1,6 @@
 //! Intervals of one variable.
 
-/// Interval `low <= u <= high` of one variable.
+/// Interval `low <= u <= high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Interval {
     pub(crate) low: f64,
@@ -24,7 +24,7 @@ impl Interval {
         }
     }
 
-    /// Returns the point of the interval nearest to `u`.
+    /// Returns the nearest point to `u` in the interval.
     pub(crate) fn nearest(self, u: f64) -> f64 {
         u.clamp(self.low, self.high)
     }

@@ -9,14 +9,14 @@ use super::leads::ChannelLeads;
 
 /// Multiple of the band's top at which the gain above the band is reported (M15.6).
 pub const ABOVE_BAND: f64 = 10.0;
-/// Gain that counts as zero when rounded to a tenth of a decibel.
+/// Gain that counts as zero when rounded to 0.1 dB.
 const NOTHING_DB: f64 = 0.05;
 
-/// Validity limit of a model with leads, and the gain that the filters add at ten times that
+/// Validity limit for a model with leads, and the gain that the filters add at ten times that
 /// frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadPrice {
-    /// Top of the band \[rad/s\]: above it the corrected model is not valid.
+    /// Band top \[rad/s\]: above it the corrected model is not valid.
     pub limit_rad_s: f64,
     /// `20 log10 |L|` at [`LeadPrice::above_rad_s`] for each channel \[dB\]; 0 for a channel
     /// without a filter.
@@ -67,9 +67,9 @@ impl LeadPrice {
         format!("not valid above {} rad/s", number(self.limit_rad_s))
     }
 
-    /// Describes the limit and the gain of each channel with a filter: "not valid above 12 rad/s:
+    /// Describes the limit and the gain on each channel with a filter: "not valid above 12 rad/s:
     /// at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on Q; a response gets the gains of its
-    /// input and its output".
+    /// input and its output" (the sum in dB).
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let mut gains = Vec::new();
         for (channel, &gain_db) in self.gains_db.iter() {
@@ -89,8 +89,8 @@ impl LeadPrice {
         )
     }
 
-    /// Describes the added gain of a response: "+18.9 dB at 120 rad/s"; `None` where its channels
-    /// add nothing.
+    /// Describes a response's added gain: "+18.9 dB at 120 rad/s"; `None` where its channels add
+    /// nothing.
     pub fn pair_words(&self, pair: Pair) -> Option<String> {
         let gain_db = self.of_pair_db(pair);
         if gain_db > NOTHING_DB {
@@ -135,7 +135,7 @@ mod tests {
         let [input, output] = [Channel::Input(0), Channel::Output(0)]
             .map(|channel| leads.filters()[channel].expect("a lead").at(120.0).norm());
         let expected = 20.0 * (input * output).log10();
-        // Rounding of a response against the closed form of its magnitude.
+        // Rounding in a response against the closed form for its magnitude.
         assert!(
             (price.of_pair_db(pair) - expected).abs() < 1e-9,
             "{price:?}"

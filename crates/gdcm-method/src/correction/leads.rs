@@ -1,4 +1,4 @@
-//! Lead filters: the filter of a signed delay (M15.3) and the filters of all channels (M15.5).
+//! Lead filters: from signed delays to filters (M15.3), and the filters on all channels (M15.5).
 
 use std::sync::{Arc, OnceLock};
 
@@ -10,14 +10,14 @@ use gdcm_model::response::{LeadFilter, LeadOrder};
 use super::channels::Channels;
 use super::delta::band_delay_s;
 
-/// Settings shared by the lead filters of all channels.
+/// Settings shared by all lead filters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeadSettings {
     pub order: LeadOrder,
-    /// `n`: the lag time constant is `b = 1 / (n omega_B)`, `omega_B` the top of the band.
+    /// `n`: the lag time constant is `b = 1 / (n omega_B)`, `omega_B` the band's top.
     #[serde(rename = "n")]
     pub pole: f64,
-    /// `R_max`: greatest gain of one channel's filter at high frequency (ratio).
+    /// `R_max`: greatest high-frequency gain (ratio) for a channel's filter.
     #[serde(rename = "r_max")]
     pub limit: f64,
 }
@@ -44,7 +44,7 @@ impl Default for LeadSettings {
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadDesign {
     settings: LeadSettings,
-    /// Frequencies of the band \[rad/s\].
+    /// Band frequencies \[rad/s\].
     omega: Arc<[f64]>,
     /// `LB_tau` \[s\].
     lower_s: f64,
@@ -72,7 +72,7 @@ impl LeadDesign {
         &self.omega
     }
 
-    /// Returns `omega_B` \[rad/s\], the top of the band.
+    /// Returns `omega_B` \[rad/s\], the band's top.
     pub fn band_top_rad_s(&self) -> f64 {
         self.omega.last().copied().unwrap_or(1.0)
     }
@@ -91,7 +91,7 @@ impl LeadDesign {
         }
     }
 
-    /// Returns `LB_tau = d(l_max)` \[s\], the least signed delay of a channel.
+    /// Returns `LB_tau = d(l_max)` \[s\], the least signed delay for a channel.
     pub fn lower_s(&self) -> f64 {
         self.lower_s
     }
@@ -101,7 +101,7 @@ impl LeadDesign {
         LeadFilter::new(self.settings.order, lead_s, self.lag_s())
     }
 
-    /// Computes `d(l) = - sum omega arg L / sum omega^2` \[s\], the band delay of the filter with
+    /// Computes `d(l) = - sum omega arg L / sum omega^2` \[s\], the band delay for the filter with
     /// lead time `l` (M15.2): 0 at 0, strictly falling.
     pub fn band_delay_s(&self, lead_s: f64) -> f64 {
         let filter = self.filter_of(lead_s);
@@ -126,8 +126,8 @@ impl LeadDesign {
         band_delay_s(slopes, &self.omega, None)
     }
 
-    /// Returns the filter of a negative signed delay, otherwise `None`. A signed delay below the
-    /// bound gets the filter of `R_max`.
+    /// Returns the filter for a negative signed delay, otherwise `None`. A signed delay below the
+    /// bound gets the filter with gain `R_max`.
     pub fn filter(&self, tau_s: f64) -> Option<LeadFilter> {
         if tau_s < 0.0 {
             Some(self.filter_of(self.lead_s(tau_s)))
@@ -141,9 +141,9 @@ impl LeadDesign {
     ///
     /// ```text
     /// 1  low, high = 0, l_max;  l = tau / d'(0), at most l_max
-    /// 2  miss = d(l) - tau;  low or high = l, by the sign of miss: d falls
-    /// 3  l' = l - miss / d'(l);  the middle of low and high where l' is not between them
-    /// 4  l = l', again from 2, until l changes by less than a relative 1e-9: Newton's error is then the square of that
+    /// 2  miss = d(l) - tau;  low or high = l, by the sign of the miss: d falls
+    /// 3  l' = l - miss / d'(l);  the midpoint where l' is not between low and high
+    /// 4  l = l', again from 2, until l changes by less than a relative 1e-9: Newton's error is then 1e-18
     /// ```
     ///
     /// Newton's method kept inside a bracket (Press et al., "Numerical Recipes", 3rd ed. 2007,
@@ -189,9 +189,9 @@ impl LeadDesign {
 /// Filters, and their curves over the band, are computed on first use, once for all clones.
 #[derive(Clone, Debug)]
 pub struct ChannelLeads {
-    /// Design that gives the filter of a signed delay.
+    /// Design that gives the filter for a signed delay.
     pub design: Arc<LeadDesign>,
-    /// Signed delay of each channel \[s\].
+    /// Signed delay for each channel \[s\].
     pub taus_s: Channels<f64>,
     filters: Arc<OnceLock<Channels<Option<LeadFilter>>>>,
     curves: Arc<OnceLock<Channels<Option<LeadCurve>>>>,
@@ -205,7 +205,7 @@ impl PartialEq for ChannelLeads {
 }
 
 impl ChannelLeads {
-    /// Creates the signed delays \[s\] with the filters of `design`.
+    /// Creates the signed delays \[s\] with filters by `design`.
     pub fn new(design: Arc<LeadDesign>, taus_s: Channels<f64>) -> Self {
         Self {
             design,
@@ -215,19 +215,19 @@ impl ChannelLeads {
         }
     }
 
-    /// Returns the lead filter of each channel; `None` where its signed delay is not negative.
+    /// Returns every channel's lead filter; `None` where its signed delay is not negative.
     pub fn filters(&self) -> &Channels<Option<LeadFilter>> {
         self.filters
             .get_or_init(|| self.taus_s.map(|_, &tau_s| self.design.filter(tau_s)))
     }
 
-    /// Returns the pure delay of each channel \[s\], the positive part of its signed delay.
+    /// Returns every channel's pure delay \[s\], the positive part of its signed delay.
     pub fn delays_s(&self) -> Channels<f64> {
         self.taus_s.map(|_, tau_s| tau_s.max(0.0))
     }
 
-    /// Returns the effect of the filters of a response's two channels at each frequency of the
-    /// design's band; `None` where neither has a filter.
+    /// Returns the effect that the filters on a response's two channels have at each frequency in
+    /// the design's band; `None` where neither has a filter.
     pub fn curve(&self, pair: Pair) -> Option<LeadCurve> {
         let curves = self.curves.get_or_init(|| {
             self.filters().map(|_, filter| {
@@ -243,7 +243,7 @@ impl ChannelLeads {
     }
 }
 
-/// Magnitude \[dB\] and phase \[rad\] of a filter or of two in series.
+/// Magnitude \[dB\] and phase \[rad\] of a filter, or of two in series.
 #[derive(Clone, Debug)]
 pub struct LeadCurve {
     /// `20 log10 |L|` at each frequency.
@@ -321,9 +321,8 @@ mod tests {
             let tau_s = share * design.lower_s();
             let lead_s = design.lead_s(tau_s);
             // Rounding of a sum of 200 phases, whose errors may all have the same sign: 200 times
-            // 2.2e-16, and the same for the divisor. For a lead far below the lag b of its filter
-            // the difference a - b has lost digits: 2.2e-16 b, against a lead of about share times
-            // b.
+            // 2.2e-16, and the same for the divisor. For a lead far below the filter's lag b the
+            // difference a - b has lost digits: 2.2e-16 b, against a lead near share times b.
             let tolerance = 1e-13 + 1e-15 / share;
             prop_assert!((design.band_delay_s(lead_s) / tau_s - 1.0).abs() < tolerance, "{tau_s}");
         }

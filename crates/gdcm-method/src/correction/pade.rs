@@ -4,18 +4,17 @@ use nalgebra::{Complex, DMatrix, DVector, RowDVector};
 
 use super::channel_model::ChannelModel;
 
-/// Highest order of approximation offered.
+/// Highest approximation order offered.
 pub const HIGHEST_PADE_ORDER: usize = 8;
 
-/// Pade approximant `[N/N]` of `e^(-tau s)`: among all rational functions of this order it agrees
+/// Pade approximant `[N/N]` to `e^(-tau s)`: among all rational functions of this order it agrees
 /// in the most derivatives at `s = 0`. Its magnitude is 1 at every frequency; its error is in the
 /// phase only.
 ///
-/// With `z = tau s / 2` it is `(1 - t) / (1 + t)`, where `t` is the N-th convergent of Lambert's
-/// continued fraction `tanh z = z / (1 + z^2 / (3 + z^2 / (5 + ...)))`. The fraction, read as a
-/// ladder of integrators, is a state-space model whose controllability and observability Gramians
-/// are both the identity, whatever the order and the delay, so its entries are of similar
-/// magnitude.
+/// With `z = tau s / 2` it is `(1 - t) / (1 + t)`, where `t` is the N-th convergent in Lambert's
+/// continued fraction `tanh z = z / (1 + z^2 / (3 + z^2 / (5 + ...)))`. The fraction, read as an
+/// integrator ladder, is a state-space model whose controllability and observability Gramians are
+/// both the identity, whatever the order and the delay, so its entries are similar in magnitude.
 ///
 /// Source: NIST Digital Library of Mathematical Functions, 4.39.1 (Lambert's fraction).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +23,7 @@ pub struct Pade {
 }
 
 impl Default for Pade {
-    /// Second order: at `omega tau = 1` the phase error is less than a tenth of a degree.
+    /// Second order: at `omega tau = 1` the phase error is below 0.1 degrees.
     fn default() -> Self {
         Self { order: 2 }
     }
@@ -45,7 +44,7 @@ impl Pade {
         self.order
     }
 
-    /// Creates the state-space model of the approximant for a positive delay \[s\].
+    /// Creates the approximant's state-space model for a positive delay \[s\].
     ///
     /// The ladder is `t = e_1' (L/z + S)^-1 e_1` with `L = diag(1, 3, 5, ...)` and `S` with 1 above
     /// and -1 below the diagonal. With `R = S + e_1 e_1'` and `K = L^(-1/2) R L^(-1/2)` this gives
@@ -68,12 +67,12 @@ impl Pade {
         }
     }
 
-    /// Entry of `K^-1 = L^(1/2) R^-1 L^(1/2)`.
+    /// Returns an entry of `K^-1 = L^(1/2) R^-1 L^(1/2)`.
     fn scaled_inverse(self, row: usize, column: usize) -> f64 {
         ladder_root(row) * ladder_root(column) * self.ladder_inverse(row, column)
     }
 
-    /// Entry of `R^-1`, which is 1, 0 or -1: R is solved from its ends inwards.
+    /// Returns an entry of `R^-1`, which is 1, 0 or -1: R is solved from its ends inwards.
     fn ladder_inverse(self, row: usize, column: usize) -> f64 {
         match (self.has_parity(row), self.has_parity(column)) {
             (true, true) => 1.0,
@@ -83,7 +82,7 @@ impl Pade {
         }
     }
 
-    /// Whether a place, counted from 1, has the parity of the order.
+    /// Whether a place, counted from 1, has the order's parity.
     fn has_parity(self, place: usize) -> bool {
         (place + 1) % 2 == self.order % 2
     }
@@ -92,7 +91,7 @@ impl Pade {
     /// theta_N(j angle / 2)`.
     ///
     /// The denominators are the reverse Bessel polynomials, `theta_n = (2n - 1) theta_(n-1) + z^2
-    /// theta_(n-2)`. The ratio of two consecutive polynomials lies above the real axis, so that
+    /// theta_(n-2)`. The ratio between consecutive polynomials lies above the real axis, so that
     /// their angles add up without an extra turn.
     pub fn phase_error(self, angle: f64) -> f64 {
         let z = Complex::new(0.0, 0.5 * angle);
@@ -106,7 +105,7 @@ impl Pade {
     }
 }
 
-/// Square root of the diagonal entry of `L = diag(1, 3, 5, ...)`.
+/// Returns the square root of a diagonal entry of `L = diag(1, 3, 5, ...)`.
 fn ladder_root(place: usize) -> f64 {
     ((2 * place + 1) as f64).sqrt()
 }

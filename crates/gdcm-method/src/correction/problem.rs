@@ -9,7 +9,7 @@ use super::branch_and_bound::effort::SearchStopped;
 use super::interval::Interval;
 use super::quantity::{Coordinate, GainObjective, Quantity};
 
-/// Least and greatest value of every channel (M7): gains `0 < lower <= upper`, delays \[s\] with
+/// Least and greatest value for every channel (M7): gains `0 < lower <= upper`, delays \[s\] with
 /// `lower` zero, signed delays \[s\] `lower <= 0 <= upper` (M15.4).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "[f64; 2]", into = "[f64; 2]")]
@@ -30,11 +30,11 @@ impl From<Bounds> for [f64; 2] {
     }
 }
 
-/// Mismatch of a loop of constrained delays that counts as agreement \[s\]: half of the last
-/// displayed digit of delays.
+/// Mismatch \[s\] up to which a loop of constrained delays counts as agreeing: half a unit in the
+/// last displayed digit.
 pub const DELAY_AGREEMENT_S: f64 = 5e-5;
 
-/// Problem of the gains (M8), the delays \[s\] (M9) or the signed delays \[s\] (M15.4) of a
+/// Problem for the gains (M8), the delays \[s\] (M9) or the signed delays \[s\] (M15.4) in a
 /// condition's correction.
 ///
 /// ```text
@@ -47,20 +47,20 @@ pub const DELAY_AGREEMENT_S: f64 = 5e-5;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     pub quantity: Quantity,
-    /// Delta gain `G` or delta delay `D` of each response, p x m; an entry with `None` is left out
-    /// of the objective.
+    /// Delta gain `G` or delta delay `D` for each response, p x m; the objective ignores an entry
+    /// with `None`.
     pub delta: PairTable<Option<f64>>,
     /// Entries whose net value is constrained to their delta, p x m.
     pub constrained: PairTable<bool>,
     /// Entries that count in the objective (`w = 1`), p x m.
     pub fitted: PairTable<bool>,
-    /// Bounds of every channel.
+    /// Bounds on every channel.
     pub bounds: Bounds,
-    /// Weight of the departure of the output gains from 1, of the output delays, or of all signed
-    /// delays; `alpha = 0` means the limit `alpha -> 0+`.
+    /// Weight on departures: output gains from 1, output delays from 0, or all signed delays from
+    /// 0; `alpha = 0` means the limit `alpha -> 0+`.
     pub alpha: f64,
-    /// Greatest mismatch of a loop of constrained entries that counts as agreement: dB of gain, or
-    /// seconds of delay.
+    /// Greatest mismatch, in dB or seconds, up to which a loop of constrained entries counts as
+    /// agreeing.
     pub agreement: f64,
 }
 
@@ -78,9 +78,9 @@ pub enum ProblemError {
     Shape {
         quantity: Quantity,
         table: &'static str,
-        /// Outputs and inputs of the table.
+        /// Outputs and inputs in the table.
         found: (usize, usize),
-        /// Outputs and inputs of the deltas.
+        /// Outputs and inputs in the deltas.
         expected: (usize, usize),
     },
     /// A constrained entry has no delta.
@@ -117,7 +117,7 @@ pub enum ProblemError {
         /// The rejected weight.
         alpha: f64,
     },
-    /// The quadratic program of the delays was not solved.
+    /// The quadratic program for the delays was not solved.
     #[error("the quadratic program of the delays was not solved: {reason}")]
     Program {
         /// Status reported by the solver.
@@ -154,7 +154,7 @@ impl From<SearchStopped> for ProblemError {
 /// Delta gains outside this range overflow when squared and summed.
 const GAINS: std::ops::RangeInclusive<f64> = 1e-50..=1e50;
 
-/// Bounds outside this range (180 dB) overflow in the products of the search for a proof.
+/// Bounds outside this range (180 dB) overflow in products during the search for a proof.
 const GAIN_BOUNDS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 /// Delta delays and bounds beyond this \[s\] overflow when squared.
@@ -168,7 +168,7 @@ pub(crate) struct Entry {
 }
 
 impl Problem {
-    /// Creates the problem of eq. (7) that fits every entry: `alpha = 1`, gains compared as ratios,
+    /// Creates the problem in eq. (7) that fits every entry: `alpha = 1`, gains compared as ratios,
     /// no tolerance on loops.
     pub fn gains(
         delta: PairTable<Option<f64>>,
@@ -188,7 +188,7 @@ impl Problem {
         }
     }
 
-    /// Creates the problem of eq. (11) that fits every entry, with `alpha = 1`; all times in
+    /// Creates the problem in eq. (11) that fits every entry, with `alpha = 1`; all times in
     /// seconds.
     pub fn delays(
         delta_s: PairTable<Option<f64>>,
@@ -205,7 +205,8 @@ impl Problem {
         }
     }
 
-    /// Creates the convex program of M15.4 that fits every entry, with `alpha = 1`; all times in seconds.
+    /// Creates the convex program in M15.4 that fits every entry, with `alpha = 1`; all times in
+    /// seconds.
     pub fn signed_delays(
         delta_s: PairTable<Option<f64>>,
         constrained: PairTable<bool>,
@@ -235,7 +236,7 @@ impl Problem {
         }
     }
 
-    /// Checks that a table has the shape of the deltas.
+    /// Checks that a table and the deltas have the same shape.
     fn check_shape(
         &self,
         table: &'static str,
@@ -339,8 +340,7 @@ impl Problem {
     }
 
     /// Returns the coordinate in which the constrained entries are sums. Delays are homogeneous: in
-    /// units of the greatest time of the problem (one second where every time is 0) every number is
-    /// of order 1.
+    /// units of the problem's greatest time (1 s where every time is 0) every number is near 1.
     pub(crate) fn coordinate(&self) -> Coordinate {
         if self.quantity.is_gain() {
             return Coordinate::Logarithm;
@@ -350,7 +350,7 @@ impl Problem {
             .iter()
             .filter_map(|(_, delay_s)| *delay_s)
             .fold(0.0_f64, |most, delay_s| most.max(delay_s.abs()));
-        // A bound far above any channel's possible target does not indicate the size of the answer.
+        // A bound far above any channel's possible target does not indicate the answer's size.
         let unit_s = if asked_s > 0.0 {
             asked_s
         } else {
@@ -361,15 +361,15 @@ impl Problem {
         }
     }
 
-    /// Returns the range of every channel's coordinate.
+    /// Returns the coordinate range, the same for every channel.
     pub(crate) fn range(&self) -> Interval {
         let coordinate = self.coordinate();
         let low = coordinate.coordinate(self.bounds.lower);
         let high = coordinate.coordinate(self.bounds.upper);
         match coordinate {
             Coordinate::Logarithm => Interval { low, high },
-            // No path of constrained entries asks a channel for more than one unit each: a bound
-            // above that never acts.
+            // No path along constrained entries asks a channel for more than a unit for each entry:
+            // a bound above that never acts.
             Coordinate::Time { .. } => {
                 let most = (self.delta.outputs() + self.delta.inputs()) as f64;
                 Interval {

@@ -1,11 +1,11 @@
-//! The quantity of the channels (a gain, a delay or a signed delay), its residuals, and the
-//! coordinate in which the net value of two channels is a sum.
+//! The channels' quantity (a gain, a delay or a signed delay), its residuals, and the coordinate in
+//! which the net value is a sum.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// Measure of the distance between `k_o k_i` and G.
+/// Distance measure between `k_o k_i` and G.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum GainObjective {
     /// `sum w (G - k_o k_i)^2 + alpha sum (k_o - 1)^2`, eq. (7), with the weight `w` 1 for a fitted
@@ -19,7 +19,7 @@ pub enum GainObjective {
     Decibel,
 }
 
-/// Quantity of the channels. The gains of two channels multiply, and delays add.
+/// Quantity of the channels. Gains of two channels multiply, delays add.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Gains, dimensionless, compared as the objective says (eq. (7), M8).
@@ -42,22 +42,22 @@ impl Quantity {
         matches!(self, Self::Gain(_))
     }
 
-    /// Returns the value of a channel without effect: a gain of 1, a delay of 0.
+    /// Returns the value of a channel without effect: gain 1, delay 0.
     pub(crate) fn neutral(self) -> f64 {
         if self.is_gain() { 1.0 } else { 0.0 }
     }
 
-    /// Whether departures of the inputs are regularised besides those of the outputs.
+    /// Whether departures on the inputs are regularised besides those on the outputs.
     pub(crate) fn regularises_inputs(self) -> bool {
         self == Quantity::SignedDelay
     }
 
-    /// Whether the lower bound is adjustable: that of a delay is fixed at 0.
+    /// Whether the lower bound is adjustable: for delays it is fixed at 0.
     pub(crate) fn has_lower_bound(self) -> bool {
         self != Quantity::Delay
     }
 
-    /// Computes the net value of two channels, `k_o k_i` or `tau_o + tau_i`.
+    /// Computes the net value, `k_o k_i` or `tau_o + tau_i`.
     pub(crate) fn net(self, output: f64, input: f64) -> f64 {
         if self.is_gain() {
             output * input
@@ -66,7 +66,7 @@ impl Quantity {
         }
     }
 
-    /// Computes the value of one channel from the net value and the other channel.
+    /// Computes a channel's value from the net value and the other channel.
     pub(crate) fn without(self, net: f64, other: f64) -> f64 {
         if self.is_gain() {
             net / other
@@ -75,7 +75,7 @@ impl Quantity {
         }
     }
 
-    /// Computes the residual of an entry, whose square the objective sums: a ratio, dB or seconds.
+    /// Computes an entry's residual, whose square the objective sums: a ratio, dB or seconds.
     pub(crate) fn miss(self, delta: f64, output: f64, input: f64) -> f64 {
         match self {
             Quantity::Gain(GainObjective::Ratio) => delta - output * input,
@@ -84,7 +84,7 @@ impl Quantity {
         }
     }
 
-    /// Computes the slope of the squared residual in the logarithm of a gain or in a delay.
+    /// Computes the squared residual's slope in a logarithmic gain or in a delay.
     pub(crate) fn slope(self, delta: f64, output: f64, input: f64) -> f64 {
         let net = self.net(output, input);
         match self {
@@ -94,7 +94,7 @@ impl Quantity {
         }
     }
 
-    /// Converts a difference of coordinates to dB or seconds.
+    /// Converts a coordinate difference to dB or seconds.
     pub(crate) fn difference(self, difference: f64, coordinate: Coordinate) -> f64 {
         if self.is_gain() {
             difference * DECIBEL
@@ -103,8 +103,7 @@ impl Quantity {
         }
     }
 
-    /// Converts a slope per unit of the logarithm to a slope per dB, or per second to per
-    /// millisecond.
+    /// Converts a slope per unit logarithm to a slope per dB, or per second to per millisecond.
     pub(crate) fn per_unit(self, slope: f64) -> f64 {
         if self.is_gain() {
             slope / DECIBEL
@@ -124,10 +123,10 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// Coordinate in which the net value of two channels is a sum.
+/// Coordinate in which the net value is a sum over two channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Coordinate {
-    /// Natural logarithm of a gain.
+    /// Natural logarithm.
     Logarithm,
     /// Delay in this unit.
     Time { unit_s: f64 },
@@ -150,7 +149,7 @@ impl Coordinate {
         }
     }
 
-    /// Converts an objective from this coordinate to the objective of gains, or to s².
+    /// Converts an objective from this coordinate to the objective in gains, or to s².
     pub(crate) fn objective(self, objective: f64) -> f64 {
         match self {
             Coordinate::Logarithm => objective,

@@ -28,7 +28,7 @@ pub struct Remedy {
 }
 
 impl Remedy {
-    /// Finds the remedy for the `constraints` of `problem` with these conflicts; `None` where there
+    /// Finds the remedy for the `constraints` in `problem` with these conflicts; `None` where there
     /// is no conflict.
     pub(crate) fn new(
         problem: &Problem,
@@ -62,7 +62,7 @@ impl Remedy {
     }
 }
 
-/// Finds the entries of the conflicts whose release alone makes all others feasible.
+/// Finds the conflicting entries whose release alone makes all others feasible.
 fn sufficient_releases(
     constraints: &Constraints,
     conflicts: &[Conflict],
@@ -86,7 +86,7 @@ fn sufficient_releases(
     Ok(sufficient)
 }
 
-/// Ends of the channels' range that suffice, each with the other end unchanged, in coordinates.
+/// Sufficient ends for the channels' range, each with the other end unchanged, in coordinates.
 #[derive(Default)]
 struct SufficientRange {
     /// Greatest sufficient lower end.
@@ -96,7 +96,7 @@ struct SufficientRange {
 }
 
 impl SufficientRange {
-    /// Finds both ends; none where a loop of constrained entries does not close.
+    /// Finds both ends; none where a loop does not close.
     fn new(constraints: &Constraints) -> Self {
         let components = Components::new(constraints);
         for entry in &constraints.entries {
@@ -106,8 +106,8 @@ impl SufficientRange {
             }
         }
         let nodes = components.nodes();
-        // Greatest width that a component needs, and the sums that its pairs of channels need at
-        // each end.
+        // Greatest width that a component needs, and the sums that its channel pairs need at each
+        // end.
         let mut widest = 0.0_f64;
         let mut lowest = f64::INFINITY;
         let mut highest = f64::NEG_INFINITY;
@@ -136,7 +136,7 @@ impl SufficientRange {
     }
 }
 
-/// Returns the range of the offsets of one component's nodes; `None` where it has none of them.
+/// Returns the offset range over a component's nodes; `None` where it has no such nodes.
 fn offset_range(nodes: &[Placement], component: usize) -> Option<Interval> {
     let mut range: Option<Interval> = None;
     for node in nodes {

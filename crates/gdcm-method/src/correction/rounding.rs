@@ -1,13 +1,13 @@
 //! Rounding of suggested bounds.
 
 /// Rounds `value` to three significant digits in the direction of `round` (`f64::ceil` or
-/// `f64::floor`). A value of three digits up to rounding errors stays as it is.
+/// `f64::floor`). A value with three digits up to rounding errors is not changed.
 pub(super) fn three_digits(value: f64, round: fn(f64) -> f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
     }
     let exponent = value.abs().log10().floor() as i32 - 2;
-    // Negative powers of ten are applied by division: 187 / 100 is 1.87 exactly.
+    // Negative powers are applied by division: 187 / 100 is 1.87 exactly.
     let digits = if exponent < 0 {
         value * 10f64.powi(-exponent)
     } else {

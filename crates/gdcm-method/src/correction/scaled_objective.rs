@@ -1,5 +1,5 @@
-//! The objective of a problem as a function of the scales that its constrained entries leave free
-//! (M8, structure).
+//! A problem's objective as a function of the scales that its constrained entries leave free (M8,
+//! structure).
 
 use super::branch_and_bound::exponential::{CombinedEntries, ProductEntry};
 use super::branch_and_bound::objective::Objective;
@@ -10,7 +10,7 @@ use super::components::Components;
 use super::problem::{Entry, Problem};
 use super::quantity::{Coordinate, GainObjective, Quantity, SQUARED_DECIBEL};
 
-/// Builds the objective of `problem` over the scales of `components`, in the problem's coordinate.
+/// Builds the objective for `problem` over the scales of `components`, in the problem's coordinate.
 pub(crate) fn scaled_objective(problem: &Problem, components: &Components) -> Objective {
     let mut entries = fit_entries(problem, components);
     if problem.alpha > 0.0 {
@@ -61,8 +61,8 @@ fn fit_entries(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     entries
 }
 
-/// Lists the regularised departures of the channels from their neutral value: each is an entry
-/// with the ground as its other scale.
+/// Lists the channels' regularised departures from their neutral value: each is an entry with the
+/// ground as its other scale.
 fn departures(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
     let ground = components.count();
     let delta = problem.quantity.neutral();
@@ -137,9 +137,9 @@ fn ratio_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
 
 /// Returns the objective below which rounding decides, not the search, in the problem's coordinate.
 ///
-/// A billionth of the objective without any correction (the rounding of a sum of squares grows with
-/// the root of the squared numbers), and for the outputs, known to their rounding, the square of
-/// that rounding.
+/// 1e-9 times the objective without any correction (rounding in a sum of squares grows with the
+/// root of the squared numbers), and for the outputs, known to their rounding, that rounding
+/// squared.
 pub(crate) fn rounding_floor(problem: &Problem) -> f64 {
     let coordinate = problem.coordinate();
     let energy: f64 = problem

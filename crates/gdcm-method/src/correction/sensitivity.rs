@@ -24,12 +24,12 @@ pub enum ActiveConstraint {
     UpperBound(Channel),
 }
 
-/// Multiplier of one active constraint.
+/// Multiplier of an active constraint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensitivity {
     pub quantity: Quantity,
     pub restraint: ActiveConstraint,
-    /// Change of the least objective for each dB or ms by which the constrained value or the bound
+    /// Change in the least objective for each dB or ms by which the constrained value or the bound
     /// is raised (to first order).
     pub per_unit: f64,
     /// `per_unit` as a share of the objective; 0 where the objective is 0.
@@ -37,12 +37,11 @@ pub struct Sensitivity {
 }
 
 impl Sensitivity {
-    /// Chooses the step of the description \[dB or ms\]: 1, or a tenth, a hundredth, … of it, so
-    /// that the slope is extrapolated to less than half of the objective, which cannot fall by more
-    /// than all of it.
+    /// Chooses the step for the description \[dB or ms\]: 1, 0.1, 0.01, …, so that the slope is
+    /// extrapolated to at most half the objective, which cannot fall below zero.
     pub fn step(&self) -> f64 {
         const MOST_SHARE: f64 = 0.5;
-        /// The least step is a nanosecond or a millionth of a decibel.
+        /// The least step is a nanosecond or 1e-6 dB.
         const MOST_POWERS: i32 = 6;
         let share = self.share_per_unit.abs();
         for power in 0..MOST_POWERS {
@@ -74,7 +73,7 @@ impl Sensitivity {
         format!("{name} is {change} would lower the objective by about {percent:.2} %.")
     }
 
-    /// Describes the state of a gain and the change by `step` dB that lowers the objective.
+    /// Describes a gain's state and the change by `step` dB that lowers the objective.
     fn gain_change_words(&self, step: &str) -> String {
         let change = if self.per_unit > 0.0 {
             "lowering"
@@ -92,7 +91,7 @@ impl Sensitivity {
         }
     }
 
-    /// Describes the state of a delay and the change by `step` ms that lowers the objective.
+    /// Describes a delay's state and the change by `step` ms that lowers the objective.
     fn delay_change_words(&self, step: &str) -> String {
         match self.restraint {
             ActiveConstraint::Held(_) if self.per_unit > 0.0 => {
@@ -110,10 +109,10 @@ impl Sensitivity {
     }
 }
 
-/// Computes the sensitivity of every constrained entry and of every active bound, the most
-/// expensive first.
+/// Computes the sensitivity for every constrained entry and every active bound, the most expensive
+/// first.
 ///
-/// `solution` is the solution of `problem` ([`super::solve`]).
+/// `solution` solves `problem` ([`super::solve`]).
 pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity> {
     let minimum = ConstrainedMinimum::new(problem, solution);
     let multipliers = Multipliers::new(&minimum);
@@ -159,8 +158,7 @@ fn sensitivity(
     }
 }
 
-/// Computes the slope of the objective in the logarithm of each channel gain, or in each delay;
-/// inputs first.
+/// Computes the objective's slope in each logarithmic channel gain, or in each delay; inputs first.
 fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
     let quantity = problem.quantity;
     let inputs = solution.inputs.len();
@@ -187,12 +185,12 @@ fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
     slopes
 }
 
-/// Computes the Karush-Kuhn-Tucker residual of a solution: the greatest slope of the objective
-/// along which channels could still move together, inside the bounds and with the entries
-/// constrained. For a convex problem zero is a proof.
+/// Computes a solution's Karush-Kuhn-Tucker residual: the greatest objective slope along which
+/// channels could still move together, inside the bounds and with the entries constrained. For a
+/// convex problem zero is a proof.
 ///
-/// In the objective's unit per unit of the channels: for delays s² / s. `solution` is the solution
-/// of `problem` ([`super::solve`]).
+/// In the objective's unit per channel unit: for delays s² / s. `solution` solves `problem`
+/// ([`super::solve`]).
 pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
     let minimum = ConstrainedMinimum::new(problem, solution);
     let mut residual = 0.0_f64;
@@ -212,20 +210,20 @@ struct AtBounds {
     upper: bool,
 }
 
-/// Slope along the common movement of a piece of tied channels.
+/// Slope along the common movement in a piece of tied channels.
 struct Push {
     slope: f64,
     /// Channels whose bounds stop the movement.
     stopping: Vec<usize>,
 }
 
-/// A minimum as a function of its channels: inputs first, then outputs.
+/// A minimum as a function of the channels: inputs first, then outputs.
 struct ConstrainedMinimum {
     inputs: usize,
-    /// Slope of the objective in each channel's value.
+    /// The objective's slope in each channel's value.
     slopes: Vec<f64>,
     at_bounds: Vec<AtBounds>,
-    /// The constrained entries: sums of an input's and an output's value.
+    /// The constrained entries: each fixes the sum over an input and an output.
     held: Vec<Pair>,
 }
 
@@ -252,7 +250,7 @@ impl ConstrainedMinimum {
         }
     }
 
-    /// Finds the groups of channels tied together by constrained entries.
+    /// Groups the channels that constrained entries tie together.
     fn pieces(&self) -> Vec<Vec<usize>> {
         let ties = self
             .held
@@ -266,7 +264,7 @@ impl ConstrainedMinimum {
         if channel < self.inputs { 1.0 } else { -1.0 }
     }
 
-    /// Computes the slope of the objective along the common movement of a piece of tied channels.
+    /// Computes the objective's slope along the common movement in a piece of tied channels.
     fn push(&self, piece: &[usize]) -> Push {
         let slope: f64 = piece
             .iter()
@@ -286,8 +284,8 @@ impl ConstrainedMinimum {
     }
 }
 
-/// Derivatives of the least objective with respect to the target of each constrained entry and to
-/// the active bound of each channel (0 where none is active).
+/// The least objective's derivatives with respect to each constrained entry's target and each
+/// channel's active bound (0 where none is active).
 struct Multipliers {
     entries: Vec<f64>,
     /// Inputs first.
@@ -295,7 +293,7 @@ struct Multipliers {
 }
 
 impl Multipliers {
-    /// Solves `slopes + sum of multipliers = 0`.
+    /// Solves `slopes + sum(multipliers) = 0`.
     ///
     /// The slope that pushes a piece of tied channels against a bound is divided equally among the
     /// channels on that bound; the constrained entries carry the rest, in a loop with the least
@@ -315,7 +313,7 @@ impl Multipliers {
     }
 }
 
-/// Solves for the multipliers of the constrained entries, given those of the bounds.
+/// Solves for the constrained entries' multipliers, given those on the bounds.
 fn entry_multipliers(minimum: &ConstrainedMinimum, bounds: &[f64]) -> Vec<f64> {
     if minimum.held.is_empty() {
         return Vec::new();
@@ -332,9 +330,9 @@ fn entry_multipliers(minimum: &ConstrainedMinimum, bounds: &[f64]) -> Vec<f64> {
             0.0
         }
     });
-    // The squared singular values are the Laplacian's of a bipartite graph of n channels: 0, or at
-    // least 4 / n^2 (Mohar, "Eigenvalues, diameter and mean distance in graphs", 1991). The
-    // tolerance is half of that root.
+    // The squared singular values are the Laplacian eigenvalues for a bipartite graph on n
+    // channels: 0, or at least 4 / n^2 (Mohar, "Eigenvalues, diameter and mean distance in graphs",
+    // 1991). The tolerance is half that root.
     match ties.svd(true, true).solve(&left, 1.0 / channels as f64) {
         Ok(multipliers) => multipliers.iter().copied().collect(),
         Err(_) => Vec::new(),
@@ -351,7 +349,7 @@ pub struct Toggle {
     pub before: f64,
     /// Least objective with the toggle.
     pub after: f64,
-    /// Count of constrained entries that are infeasible with the toggle.
+    /// Infeasible constrained entries with the toggle.
     pub unmatched_after: usize,
     /// Whether the entry itself is feasible, if the toggle constrains it.
     pub matched_after: bool,
@@ -360,8 +358,8 @@ pub struct Toggle {
 }
 
 impl Toggle {
-    /// Returns the change of the objective as a share of the present objective; infinite where that
-    /// is 0 and something changes.
+    /// Returns the objective's change as a share of its present value; infinite where that is 0 and
+    /// something changes.
     pub fn share(&self) -> f64 {
         let change = self.after - self.before;
         if change == 0.0 {
@@ -398,7 +396,7 @@ impl Toggle {
 /// Solves `problem` with every entry that has a delta toggled in turn, row by row, until `stop`
 /// returns true.
 ///
-/// The result is the table for the matrix of entries, to be computed in the background of the live
+/// The result is the table for the entry matrix, to be computed in the background behind the live
 /// solution `solution`. A list shorter than the entries means that it was stopped.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Solution of a problem: the channel values, the proof of their optimality, and the constrained
+//! Solution to a problem: the channel values, the proof that they are optimal, and the constrained
 //! entries that could not be matched.
 
 use gdcm_model::dataset::{Pair, PairTable};
@@ -58,7 +58,7 @@ impl Outcome {
     }
 }
 
-/// One local minimum of the objective.
+/// A local minimum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocalMinimum {
     pub inputs: Vec<f64>,
@@ -70,10 +70,10 @@ pub struct LocalMinimum {
 /// Proof of the least objective.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proof {
-    /// Lower bound of the objective over all channels inside the bounds that meet the targets.
+    /// Lower bound on the objective over all channels inside the bounds that meet the targets.
     pub lower_bound: f64,
-    /// Whether the bound is a proof. The gap is relative to the objective, or to a billionth of
-    /// `sum w G^2` where the objective is smaller: below that, rounding decides.
+    /// Whether the bound is a proof. The gap is relative to the objective, or to 1e-9 `sum w G^2`
+    /// where the objective is smaller: below that, rounding decides.
     pub outcome: Outcome,
     pub nodes: usize,
     /// Distinct local minima within 1 % of the objective, best first; the first is the solution.
@@ -92,11 +92,11 @@ pub struct Unmatched {
     pub delta: f64,
     /// Product or sum to which the entry is constrained instead.
     pub target: f64,
-    /// Excess over the delta: `20 log10 (target / delta)` dB of gain, negative where the correction
-    /// is too weak; or `target - delta` seconds of delay, the additional lead that would be needed.
+    /// Excess over the delta: `20 log10 (target / delta)` dB, negative where the correction is too
+    /// weak; or `target - delta` seconds, the additional lead that would be needed.
     pub excess: f64,
-    /// The conflict; where the entry is not part of it, its miss is the compromise with the entries
-    /// that are.
+    /// The conflict; where it does not contain the entry, the miss is the compromise with the
+    /// conflicting entries.
     pub why: Conflict,
 }
 
@@ -107,8 +107,8 @@ impl Unmatched {
         (self.delta - self.target).to_degrees() * -omega
     }
 
-    /// Describes the miss; for a delay with the remaining phase at `omega_top`, the top of the band
-    /// in rad/s.
+    /// Describes the miss; for a delay with the remaining phase at `omega_top`, the band's top in
+    /// rad/s.
     pub fn words(&self, omega_top: f64, inputs: &[String], outputs: &[String]) -> String {
         let pair = pair_name(self.pair, inputs, outputs);
         match self.quantity {
@@ -149,14 +149,14 @@ impl Unmatched {
     }
 }
 
-/// The channel gains of eq. (7), the channel delays of eq. (11) or the signed delays of M15.4 in
+/// The channel gains (eq. (7)), the channel delays (eq. (11)) or the signed delays (M15.4) in
 /// seconds, with the proof.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     pub quantity: Quantity,
-    /// Value of each input channel, m.
+    /// Input channel values, m.
     pub inputs: Vec<f64>,
-    /// Value of each output channel, p.
+    /// Output channel values, p.
     pub outputs: Vec<f64>,
     /// The objective: in squared ratios, in squared dB, or in s².
     pub objective: f64,
@@ -164,17 +164,16 @@ pub struct Solution {
     /// Product or sum to which each entry is constrained, p x m: its delta where that is feasible
     /// (M8 and M9, stage 1).
     pub targets: PairTable<Option<f64>>,
-    /// Whether every constrained entry meets its delta, within 1e-8 of its logarithm, or of the
-    /// greatest delay in the problem (or a nanosecond, where that is more); or within the tolerance
-    /// of [`Problem::agreement`](super::problem::Problem::agreement) where a loop of entries
-    /// requires it.
+    /// Whether every constrained entry meets its delta, within 1e-8 of its logarithm, or within
+    /// 1e-8 times the problem's greatest delay (at least a nanosecond); or within the tolerance
+    /// [`Problem::agreement`](super::problem::Problem::agreement) where a loop requires it.
     pub matched: bool,
     /// The constrained entries that miss their delta.
     pub unmatched: Vec<Unmatched>,
-    /// The loops of constrained entries that disagree by no more than the tolerance: each is
-    /// constrained to the nearest consistent values.
+    /// The loops that disagree by no more than the tolerance: each is constrained to the nearest
+    /// consistent values.
     pub agreeing: Vec<Conflict>,
-    /// Each infeasible set of constrained entries and bounds, without duplicates; loops first, then
+    /// Each infeasible set (constrained entries and bounds), without duplicates; loops first, then
     /// by their entry count.
     pub conflicts: Vec<Conflict>,
     /// Single changes that would make every constrained entry feasible, where some are not.
@@ -182,7 +181,7 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// Returns the gain, delay or signed delay of each channel.
+    /// Returns every channel's gain, delay or signed delay.
     pub fn channels(&self) -> Channels<f64> {
         Channels {
             inputs: self.inputs.clone(),

@@ -1,5 +1,5 @@
-//! Solution of eq. (7) and (11), and of the program of signed delays (M15.4): the gains or delays
-//! with the least objective, and their proof of optimality.
+//! Solver for eq. (7) and (11), and for signed delays (M15.4): the gains or delays with the least
+//! objective, and the proof that they are optimal.
 
 use gdcm_model::dataset::PairTable;
 use gdcm_model::response::curve_values::mean;
@@ -20,24 +20,24 @@ use super::remedy::Remedy;
 use super::scaled_objective::{rounding_floor, scaled_objective};
 use super::solution::{LocalMinimum, Outcome, Proof, Solution, Unmatched};
 
-/// Residual in natural logarithms, or as a fraction of the greatest delay in the problem, below
-/// which a constrained entry counts as matched (M8).
+/// Residual in natural logarithms, or as a fraction of the problem's greatest delay, below which a
+/// constrained entry counts as matched (M8).
 const MATCHED: f64 = 1e-8;
 
-/// Residual \[s\] below which a constrained delay counts as matched, however small the delays of
-/// the problem are: the rounding difference of two equal phases is not a delay. At the highest
-/// frequency of a band, 1e5 rad/s, it is 0.006 degrees.
+/// Residual \[s\] below which a constrained delay counts as matched, however small the problem's
+/// delays are: the rounding difference between equal phases is not a delay. At the highest band
+/// frequency, 1e5 rad/s, it is 0.006 degrees.
 const MATCHED_DELAY_S: f64 = 1e-9;
 
 /// Finds the channel gains (eq. (7), M8), delays (eq. (11), M9) or signed delays (M15.4) with the
 /// least objective, with a proof that no others are better.
 ///
 /// ```text
-/// 1  targets: the sums nearest to the deltas that the box and the loops of constrained entries allow (stage 1)
+/// 1  targets: the sums nearest to the deltas that the box and the loops allow (stage 1)
 /// 2  objective over the scales that the constrained sums leave free (M8, structure)
 /// 3  global minimum by branch and bound, from a start near it (stage 2)
 /// 4  limit alpha -> 0+ where a common scale is free
-/// 5  misses of stage 1: each with its conflict, and the single changes that would resolve all
+/// 5  misses from stage 1: each with its conflict, and the single changes that would resolve all
 /// ```
 ///
 /// Entries that the bounds or their own loops make infeasible are constrained to the nearest
@@ -124,7 +124,7 @@ fn newton_start(objective: &Objective, quantity: Quantity) -> Result<Vec<f64>, P
     }
 }
 
-/// Minimises a sum of squares over its box.
+/// Minimises a least squares objective over its box.
 fn minimise(
     objective: &Objective,
     quantity: Quantity,
@@ -160,7 +160,7 @@ fn take_alpha_limit(
     });
 }
 
-/// Selects the values of the nodes in one piece of components.
+/// Selects the node values in a piece of components.
 fn select_piece(piece: &[usize], nodes: &[Placement], values: &[f64]) -> Vec<f64> {
     let mut selected = Vec::new();
     for (node, &value) in nodes.iter().zip(values) {
@@ -171,9 +171,9 @@ fn select_piece(piece: &[usize], nodes: &[Placement], values: &[f64]) -> Vec<f64
     selected
 }
 
-/// Returns the shift of a piece's scales (inputs rise, outputs fall) at which the regularised
-/// departures are least: the outputs nearest to a gain of 1 or to zero delay (the inputs, where
-/// there is no output); for signed delays the least sum of all their squares.
+/// Returns the shift for a piece's scales (inputs rise, outputs fall) at which the regularised
+/// departures are least: the outputs nearest to gain 1 or to zero delay (the inputs, where there is
+/// no output); for signed delays the least sum over all their squares.
 fn least_departure_shift(quantity: Quantity, channels: &ChannelCoordinates) -> f64 {
     let ChannelCoordinates { inputs, outputs } = channels;
     if quantity.regularises_inputs() {
@@ -200,7 +200,7 @@ fn least_departure_shift(quantity: Quantity, channels: &ChannelCoordinates) -> f
     (square / sum).ln()
 }
 
-/// Converts the scales of a minimum to gains or delays, and evaluates the objective.
+/// Converts a minimum's scales to gains or delays, and evaluates the objective.
 fn local_minimum(problem: &Problem, components: &Components, scales: &[f64]) -> LocalMinimum {
     let channels = components.channels(scales);
     let inputs = channel_values(problem, &channels.inputs);
@@ -219,7 +219,7 @@ fn channel_values(problem: &Problem, coordinates: &[f64]) -> Vec<f64> {
     let coordinate = problem.coordinate();
     let low = coordinate.coordinate(bounds.lower);
     let high = coordinate.coordinate(bounds.upper);
-    // A few roundings of coordinates of this size.
+    // A few roundings in coordinates this large.
     let rounding = 16.0 * f64::EPSILON * (1.0 + low.abs().max(high.abs()));
     let mut values = Vec::with_capacity(coordinates.len());
     for &at in coordinates {
@@ -234,7 +234,7 @@ fn channel_values(problem: &Problem, coordinates: &[f64]) -> Vec<f64> {
     values
 }
 
-/// Converts the result of the search to gains or delays.
+/// Converts the search result to gains or delays.
 fn proof(problem: &Problem, components: &Components, found: Minima) -> Proof {
     let local_minima: Vec<LocalMinimum> = found
         .minima
@@ -263,7 +263,7 @@ fn proof(problem: &Problem, components: &Components, found: Minima) -> Proof {
 
 /// The constrained entries that stage 1 could not match.
 struct Misses {
-    /// Entries of loops that agree within the tolerance of the problem.
+    /// Entries in loops that agree within the problem's tolerance.
     agreeing: Vec<Unmatched>,
     unmatched: Vec<Unmatched>,
 }
@@ -308,7 +308,7 @@ fn matching_tolerance(coordinate: Coordinate) -> f64 {
     }
 }
 
-/// Conflict of all constrained entries, where none smaller is found.
+/// Returns the conflict between all constrained entries, where none smaller is found.
 fn unclear_conflict(problem: &Problem, constraints: &Constraints) -> Conflict {
     Conflict {
         quantity: problem.quantity,
@@ -344,7 +344,7 @@ fn unmatched(
     }
 }
 
-/// Returns the constraints with the entries of agreeing loops at their targets.
+/// Returns the constraints with entries in agreeing loops at their targets.
 fn settled_loops(
     constraints: &Constraints,
     reached: &Reached,

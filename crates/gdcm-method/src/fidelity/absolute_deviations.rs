@@ -1,5 +1,5 @@
-//! Linear least-absolute-deviations fits with non-negative weights, by a search over the vertices
-//! of the fit and the edges between them.
+//! Linear least-absolute-deviations fits with non-negative weights, by a search over the fit's
+//! vertices and the edges between them.
 
 use std::cmp::Ordering;
 
@@ -24,17 +24,17 @@ pub enum FitError {
 /// with the smallest `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
 ///
 /// ```text
-/// 1  vertex <- vertex of the constraints x_i w = y_i, w_k = 0 that the fit of least squares satisfies best
-/// 2  edge along which the sum falls: release a constraint of the basis, move to where the sum stops falling,
+/// 1  vertex <- where the constraints x_i w = y_i, w_k = 0 meet that the least squares fit satisfies best
+/// 2  edge along which the sum falls: release a constraint in the basis, move to where the sum stops falling,
 ///    add the constraint met there; again from 2
 /// 3  edges along which the sum stays the same: compare all vertices that they lead to; again from 2
 /// 4  where more constraints meet than a basis holds, edges may hide a descent: solve the linear program
 ///    min sum t,  -t <= x w - y <= t,  w >= 0,  and repeat 2 and 3 from the vertex nearest to its solution
 /// ```
 ///
-/// The simplex method of Barrodale and Roberts (SIAM J. Numer. Anal. 10(5), 1973): exact, and
-/// identical on every machine. `x` (rows of equal length) and `y` must not be negative. The search
-/// ends without a result at the first vertex at which it is `cancelled`.
+/// Barrodale and Roberts' simplex method (SIAM J. Numer. Anal. 10(5), 1973): exact, and identical
+/// on every machine. `x` (rows with equal length) and `y` must not be negative. The search ends
+/// without a result at the first vertex at which it is `cancelled`.
 pub fn least_absolute_deviations(
     x: &[Vec<f64>],
     y: &[f64],
@@ -71,7 +71,7 @@ fn best_vertex(
     start: Vertex,
     cancelled: &dyn Fn() -> bool,
 ) -> Result<Vertex, FitError> {
-    /// Far more than the vertices of a face with few unknowns; limits only the run time.
+    /// Far more than the vertices on a face with few unknowns; limits only the run time.
     const MOST_VERTICES: usize = 300;
     let mut best = start.clone();
     let mut equal = vec![start];
@@ -167,11 +167,11 @@ impl Triplets {
 
 /// Deviations and weights below this count as zero; the right-hand sides are scaled to at most 1.
 const ZERO: f64 = 1e-11;
-/// Relative change of the sum of deviations along an edge below which the edge counts as flat.
+/// Relative change in the summed deviations below which an edge counts as flat.
 const FLAT: f64 = 1e-10;
 
 /// The constraints `x_i w = y_i` (the rows) and `w_k = 0` (the weights), counted in this order; a
-/// vertex is the intersection of as many constraints as there are unknowns.
+/// vertex is where as many constraints intersect as there are unknowns.
 struct Fit<'a> {
     /// Row-major.
     x: Vec<f64>,
@@ -184,20 +184,20 @@ struct Fit<'a> {
 struct Vertex {
     /// The weights, non-negative up to rounding.
     weights: Vec<f64>,
-    /// Indices of the constraints: rows first, then weights.
+    /// Constraint indices: rows first, then weights.
     basis: Vec<usize>,
 }
 
-/// Destinations of the edges of a vertex.
+/// Destinations along a vertex's edges.
 enum Neighbours {
-    /// End of an edge along which the deviations decrease.
+    /// End vertex for an edge along which the deviations decrease.
     Better(Vertex),
-    /// Ends of the edges along which the deviations stay the same.
+    /// End vertices for the edges along which the deviations stay the same.
     Equal(Vec<Vertex>),
 }
 
 impl<'a> Fit<'a> {
-    /// Creates the constraints of the fit of `y` by `x`.
+    /// Creates the constraints for fitting `y` by `x`.
     fn new(x: &[Vec<f64>], y: &'a [f64]) -> Self {
         Self {
             x: x.concat(),
@@ -216,7 +216,7 @@ impl<'a> Fit<'a> {
         &self.x[row * self.unknowns..(row + 1) * self.unknowns]
     }
 
-    /// Returns the left-hand side of a constraint at `w`, or its change along a direction `w`.
+    /// Returns a constraint's left-hand side at `w`, or its change along a direction `w`.
     fn left(&self, constraint: usize, w: &[f64]) -> f64 {
         if self.is_weight(constraint) {
             return w[constraint - self.y.len()];
@@ -224,7 +224,7 @@ impl<'a> Fit<'a> {
         self.row(constraint).iter().zip(w).map(|(x, w)| x * w).sum()
     }
 
-    /// Returns the right-hand side of a constraint.
+    /// Returns a constraint's right-hand side.
     fn right(&self, constraint: usize) -> f64 {
         self.y.get(constraint).copied().unwrap_or(0.0)
     }
@@ -238,7 +238,7 @@ impl<'a> Fit<'a> {
         constraint >= self.y.len()
     }
 
-    /// Returns the left-hand sides of some constraints: rows of `x` or of the identity.
+    /// Returns the left-hand sides for some constraints: rows from `x` or the identity.
     fn matrix(&self, constraints: &[usize]) -> DMatrix<f64> {
         DMatrix::from_fn(
             constraints.len(),
@@ -278,12 +278,12 @@ impl<'a> Fit<'a> {
 
 /// An edge that leaves a vertex.
 struct Edge {
-    /// Position of the released constraint in the vertex's basis.
+    /// The released constraint's position in the vertex's basis.
     leaving: usize,
     direction: Vec<f64>,
-    /// Rate of change of the sum of deviations along the edge.
+    /// Rate at which the summed deviations change along the edge.
     slope: f64,
-    /// Largest possible magnitude of that rate.
+    /// Largest possible magnitude for that rate.
     scale: f64,
 }
 
@@ -297,12 +297,12 @@ impl Edge {
     }
 }
 
-/// Intersection of an edge with a constraint.
+/// Intersection of an edge and a constraint.
 struct Crossing {
     constraint: usize,
     /// Distance along the edge.
     step: f64,
-    /// Half the change of the rate at this intersection.
+    /// Half the change in the rate at this intersection.
     change: f64,
 }
 
@@ -315,8 +315,8 @@ impl Crossing {
     }
 }
 
-/// Returns the constraint of the first crossing at which the doubled accumulated changes reach
-/// `rise`: a weighted median, found by bisection rather than by sorting.
+/// Returns the constraint at the first crossing where the doubled accumulated changes reach `rise`:
+/// a weighted median, found by bisection rather than by sorting.
 fn crossing_at(mut crossings: Vec<Crossing>, rise: f64) -> Option<usize> {
     let mut left = crossings.as_mut_slice();
     let mut risen = 0.0;
@@ -372,7 +372,7 @@ impl Vertex {
         }
     }
 
-    /// Returns the intersection of the constraints of a basis; `None` if they do not intersect in a
+    /// Returns the intersection of the constraints in a basis; `None` if they do not intersect in a
     /// point, or at a negative weight.
     fn from_basis(fit: &Fit<'_>, basis: Vec<usize>) -> Option<Self> {
         let matrix = fit.matrix(&basis);
@@ -399,7 +399,7 @@ impl Vertex {
             .all(|(a, b)| (a - b).abs() <= ZERO)
     }
 
-    /// Returns the vertices at the ends of the edges along which the deviations do not grow. Among
+    /// Returns the vertices at the far ends along which the deviations do not grow. Among
     /// descending edges it takes the steepest: with many rows, the first descending edge would need
     /// ten times as many steps.
     fn neighbours(&self, fit: &Fit<'_>) -> Neighbours {
@@ -419,8 +419,8 @@ impl Vertex {
         Neighbours::Equal(equal)
     }
 
-    /// Returns the edges of this vertex: one constraint is released, in either direction; a weight
-    /// only upwards.
+    /// Returns this vertex's edges: a constraint is released, in either direction; a weight only
+    /// upwards.
     fn edges(&self, fit: &Fit<'_>, deviations: &[f64]) -> Vec<Edge> {
         let Some(inverse) = fit.matrix(&self.basis).try_inverse() else {
             return Vec::new();
@@ -448,7 +448,7 @@ impl Vertex {
         edges
     }
 
-    /// Returns the deviation of each constraint, exactly zero for those that define the vertex.
+    /// Returns every constraint's deviation, exactly zero for those that define the vertex.
     fn deviations(&self, fit: &Fit<'_>) -> Vec<f64> {
         let mut deviations: Vec<f64> = (0..fit.count())
             .map(|constraint| fit.deviation(constraint, &self.weights))
@@ -459,7 +459,7 @@ impl Vertex {
         deviations
     }
 
-    /// Returns the vertex along an edge at which the sum of deviations stops falling.
+    /// Returns the vertex along an edge at which the summed deviations stop falling.
     ///
     /// Each row whose deviation changes sign along the edge adds twice its change to the rate; a
     /// weight that reaches zero ends the edge.
@@ -501,11 +501,11 @@ impl Vertex {
     }
 }
 
-/// Rates of change of the sum of deviations along a direction and against it.
+/// Rates at which the summed deviations change along a direction and against it.
 struct EdgeRates {
     along: f64,
     against: f64,
-    /// Largest possible magnitude of the rates.
+    /// Largest possible magnitude for the rates.
     scale: f64,
 }
 
@@ -549,7 +549,7 @@ mod tests {
         assert!((weights[0] - 2.0).abs() < 1e-12 && (weights[1] - 3.0).abs() < 1e-12);
     }
 
-    /// Squared differences of every two offsets, coordinate by coordinate.
+    /// Squared differences between every two offsets, coordinate by coordinate.
     fn squared_differences(offsets: &[[i8; 3]]) -> Vec<Vec<f64>> {
         let mut rows = Vec::new();
         for (place, a) in offsets.iter().enumerate() {

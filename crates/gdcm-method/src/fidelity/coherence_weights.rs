@@ -1,16 +1,16 @@
-//! Weights of the frequencies from the coherence of a measured reference (M4a).
+//! Frequency weights from a measured reference's coherence (M4a).
 
 use gdcm_model::dataset::{Dynamics, Pair, PairTable};
 use gdcm_model::response::curve_values::coherence_at;
 
-/// The frequencies of one response with sufficient coherence, each with its weight.
+/// The frequencies of a response with sufficient coherence, each with its weight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoherenceWeights {
     /// Indices on the grid, ascending.
     places: Vec<usize>,
     /// The weighted frequencies \[rad/s\].
     pub omega: Vec<f64>,
-    /// `W` at each of them.
+    /// `W` at each frequency.
     pub weights: Vec<f64>,
 }
 
@@ -23,7 +23,7 @@ pub fn coherence_weight(coherence: f64) -> f64 {
 
 impl CoherenceWeights {
     /// Selects the frequencies of `omega` \[rad/s\] with a coherence of at least `threshold` in the
-    /// valid band of the response.
+    /// response's valid band.
     pub fn select(
         omega: &[f64],
         coherence: &[f64],
@@ -51,7 +51,7 @@ impl CoherenceWeights {
         selected
     }
 
-    /// Returns the weights of every response of a model; `None` without coherence, so that all
+    /// Returns the weights for every response of a model; `None` without coherence, so that all
     /// frequencies weigh the same.
     pub fn of_model(
         dynamics: &Dynamics,
@@ -68,7 +68,7 @@ impl CoherenceWeights {
         }))
     }
 
-    /// Spreads values at these frequencies over a grid of `points`, NaN elsewhere.
+    /// Spreads values at these frequencies over a grid with `points` points, NaN elsewhere.
     pub fn spread(&self, values: &[f64], points: usize) -> Vec<f64> {
         let mut spread = vec![f64::NAN; points];
         for (&place, &value) in self.places.iter().zip(values) {

@@ -17,16 +17,15 @@ const PHASE_WEIGHT: f64 = 0.0175;
 /// Identification", 2nd ed. 2012, chapter 11; given for the mean over frequency).
 pub const ACCEPTABLE: f64 = 100.0;
 
-/// Common factor of both parts of J.
+/// Common factor in both parts of J.
 const COST_SCALE: f64 = 20.0;
 
-/// Returns the term of J averaged over frequency, at one frequency: `20 (W_g e_dB^2 + W_p e_deg^2)`
-/// (M4).
+/// Returns the term that J averages, at a single frequency: `20 (W_g e_dB^2 + W_p e_deg^2)` (M4).
 pub fn summand(error_db: f64, error_deg: f64) -> f64 {
     COST_SCALE * (MAGNITUDE_WEIGHT * error_db * error_db + PHASE_WEIGHT * error_deg * error_deg)
 }
 
-/// Average of the squared errors over frequency.
+/// Average over the squared errors at all frequencies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CostAverage {
@@ -43,7 +42,7 @@ impl CostAverage {
             (CostAverage::Median, None) => median(squares),
             (CostAverage::Mean, None) => mean(squares),
             (CostAverage::Median, Some(weights)) => weighted_median(squares, weights),
-            // Divided by the number of frequencies, not by the sum of weights: Tischler's form.
+            // Divided by the frequency count, not by the summed weights: Tischler's form.
             (CostAverage::Mean, Some(weights)) => {
                 for (square, weight) in squares.iter_mut().zip(weights) {
                     *square *= weight;
@@ -54,7 +53,7 @@ impl CostAverage {
     }
 }
 
-/// The two parts of J; `J = J_mag + J_phase` (M4). With weights the average is weighted (M4a).
+/// Both parts of J; `J = J_mag + J_phase` (M4). With weights the average is weighted (M4a).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
     /// `J_mag = 20 W_g average(e_dB^2)`.
@@ -81,12 +80,12 @@ impl Cost {
         Self { magnitude, phase }
     }
 
-    /// Returns the factors of the averaged squared errors, `20 W_g` and `20 W_p`, as text.
+    /// Returns the factors on the averaged squared errors, `20 W_g` and `20 W_p`, as text.
     pub fn factors() -> [String; 2] {
         [MAGNITUDE_WEIGHT, PHASE_WEIGHT].map(|weight| format!("{COST_SCALE} · {weight}"))
     }
 
-    /// Returns the averages of the squared errors \[dB^2, deg^2\].
+    /// Returns the averaged squared errors \[dB^2, deg^2\].
     pub fn averages(self) -> [f64; 2] {
         [
             self.magnitude / (COST_SCALE * MAGNITUDE_WEIGHT),
@@ -100,12 +99,12 @@ impl Cost {
     }
 }
 
-/// Computes J of `simulated` against `reference`, on the same frequencies: `J = 20 / N sum_k (W_g
+/// Computes J for `simulated` against `reference`, on the same frequencies: `J = 20 / N sum_k (W_g
 /// e_dB,k^2 + W_p e_deg,k^2)` (M4, M5).
 ///
 /// Equals [`super::mismatch::Mismatch::cost`] with the mean, without gain or delay. Separate for
-/// speed: distances within a bundle of `n` models evaluate it `n (n - 1) / 2` times per response, a
-/// dozen operations per frequency.
+/// speed: distances within a bundle with `n` models evaluate it `n (n - 1) / 2` times per response,
+/// a dozen operations per frequency.
 pub(super) fn mean_cost(simulated: &PolarCurve, reference: &PolarCurve) -> f64 {
     let [magnitude, phase] = Arch::new().dispatch(SquaredDifferences {
         simulated,
@@ -116,8 +115,8 @@ pub(super) fn mean_cost(simulated: &PolarCurve, reference: &PolarCurve) -> f64 {
         * (MAGNITUDE_WEIGHT * magnitude + PHASE_WEIGHT * squared_degrees)
 }
 
-/// Sums over the frequencies of the squared differences of two curves, vectorised (SIMD): the
-/// magnitudes \[dB^2\] and the principal values of the phases \[rad^2\].
+/// Squared differences between two curves, summed over the frequencies, vectorised (SIMD):
+/// magnitudes \[dB^2\] and the phases' principal values \[rad^2\].
 struct SquaredDifferences<'a> {
     simulated: &'a PolarCurve,
     reference: &'a PolarCurve,
@@ -157,7 +156,7 @@ impl WithSimd for SquaredDifferences<'_> {
     }
 }
 
-/// Returns the principal value in (-pi, pi] of a phase difference of two principal values.
+/// Returns the principal value in (-pi, pi] for the difference between two principal values.
 #[inline(always)]
 fn principal<S: Simd>(simd: S, difference: S::f64s) -> S::f64s {
     let turn = simd.splat_f64s(TAU);
@@ -202,7 +201,7 @@ mod tests {
         });
         // 20 / 3 (0.5 + 9 + 1).
         assert!((mean - 70.0).abs() < 1e-13);
-        // Among the squares 1, 4, 9 half of the total weight of 1.75 is exceeded at the last.
+        // Among the squares 1, 4, 9 half the total weight 1.75 is exceeded at the last.
         assert_eq!(median, 180.0);
     }
 }

@@ -25,8 +25,8 @@ pub struct MeasuredPairs {
 }
 
 impl MeasuredPairs {
-    /// Finds the available and the missing responses of the models of a bundle among those marked
-    /// in `measuring`.
+    /// Finds the available and the missing responses in a bundle's models among those marked in
+    /// `measuring`.
     pub fn new(responses: &[PolarResponse], measuring: &PairTable<bool>) -> Self {
         let compared: Vec<Pair> = measuring
             .marked()
@@ -45,7 +45,7 @@ impl MeasuredPairs {
         Self { compared, lacks }
     }
 
-    /// Returns the indices of the models that are not set aside, in bundle order.
+    /// Returns the indices, in bundle order, for the models that are not set aside.
     pub fn compared_models(&self) -> Vec<usize> {
         (0..self.lacks.len())
             .filter(|&model| !self.is_set_aside(model))
@@ -58,21 +58,22 @@ impl MeasuredPairs {
     }
 }
 
-/// The distance of every two models of a bundle (M5): `d(a, b) = sqrt(mean over the measuring pairs
-/// of J(a against b))`, J with the mean over frequency.
+/// The distance between every two models of a bundle (M5): `d(a, b) = sqrt(mean over the measuring
+/// pairs of J(a against b))`, J with the mean over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BundleDistance {
     measured: MeasuredPairs,
-    /// Count of the models that are not set aside.
+    /// Models that are not set aside.
     count: usize,
-    /// Position of each model among them; `None` if set aside.
+    /// Each model's position among them; `None` if set aside.
     places: Vec<Option<usize>>,
     /// Upper triangle by rows, without the models set aside: d(0,1), d(0,2), ..., d(1,2), ...
     distances: Vec<f64>,
 }
 
 impl BundleDistance {
-    /// Creates the table from rows: row `a` is [`distances_from`] model `a` of those not set aside.
+    /// Creates the table from rows: row `a` is [`distances_from`] model `a`, counting only models
+    /// not set aside.
     pub fn from_rows(rows: Vec<Vec<f64>>, measured: MeasuredPairs) -> Self {
         let count = rows.len();
         let mut places = vec![None; measured.lacks.len()];
@@ -100,23 +101,23 @@ impl BundleDistance {
         self.distances.get(row_start + high - low - 1).copied()
     }
 
-    /// Returns the compared responses and the missing ones of each model.
+    /// Returns the compared responses and those that each model lacks.
     pub fn measured(&self) -> &MeasuredPairs {
         &self.measured
     }
 }
 
-/// A model of a bundle for the comparison by distance.
+/// A model to be compared by distance.
 #[derive(Clone, Copy, Debug)]
 pub struct ComparedModel<'a> {
     pub responses: &'a PolarResponse,
-    /// Weights of the frequencies of each response, if measured with coherence (M4a).
+    /// Frequency weights for each response, if measured with coherence (M4a).
     pub coherence_weights: Option<&'a PairTable<CoherenceWeights>>,
 }
 
 impl ComparedModel<'_> {
     /// Computes J with this model as the reference, with the mean over frequency: weighted by its
-    /// coherence, or over all frequencies where none of them has a weight.
+    /// coherence, or over all frequencies where no frequency has a weight.
     fn cost_as_reference(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> f64 {
         let Some(weights) = self.coherence_weights else {
             return mean_cost(a, b);
@@ -134,13 +135,12 @@ impl ComparedModel<'_> {
     }
 }
 
-/// Computes the distances of one model from each of the models after it: independent tasks for a
-/// large bundle.
+/// Computes the distances from a model to each later model: independent tasks for a large bundle.
 ///
-/// J is weighted by the coherence of the reference model (M4a), and in a bundle either model can be
-/// the reference: if one of the two has coherence, J is the mean of both directions, so that a
-/// distance does not depend on the order of the models. A response without any weighted frequency
-/// is compared over all frequencies, because poorly measured models must not look alike.
+/// J is weighted by the reference model's coherence (M4a), and in a bundle either model can be the
+/// reference: if either has coherence, J is the mean over both directions, so that a distance does
+/// not depend on the models' order. A response without any weighted frequency is compared over all
+/// frequencies, because poorly measured models must not look alike.
 pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair]) -> Vec<f64> {
     models[a + 1..]
         .iter()
@@ -157,7 +157,7 @@ fn distance(a: &ComparedModel<'_>, b: &ComparedModel<'_>, compared: &[Pair]) -> 
     (sum / compared.len().max(1) as f64).sqrt()
 }
 
-/// Computes J of a response of `a` against `b`; `None` where either lacks it.
+/// Computes J for a response of `a` against `b`; `None` where either lacks it.
 fn cost_between(a: &ComparedModel<'_>, b: &ComparedModel<'_>, pair: Pair) -> Option<f64> {
     let from = a.responses.curves()[pair].as_ref()?;
     let to = b.responses.curves()[pair].as_ref()?;
@@ -173,7 +173,7 @@ fn cost_between(a: &ComparedModel<'_>, b: &ComparedModel<'_>, pair: Pair) -> Opt
 /// accepted model (M5).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Representative {
-    /// Index of the representative in the bundle.
+    /// The representative's index in the bundle.
     pub model: usize,
     /// `s_a = mean over b != a of d(a, b)` over the accepted models; `None` for a model that is
     /// rejected or set aside. Zero for a single accepted model.
@@ -213,21 +213,21 @@ pub const SUGGESTION_RATIO: f64 = 2.5;
 /// Fewest models in a bundle for the outlier search.
 const LEAST_MODELS: usize = 5;
 
-/// Ratio of each physics model's distance from the others to the distance explained by its
+/// Each physics model's distance from the others, relative to the distance explained by its
 /// perturbation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Discontinuity {
     /// `r_a` for each model: near 1 in a smooth bundle. `None` for a model set aside, and where no
-    /// pair of models has a fitted distance.
+    /// two models have a fitted distance.
     pub ratios: Vec<Option<f64>>,
-    /// Weights of the fit, one for each perturbed coordinate.
+    /// Fitted weights, for each perturbed coordinate.
     pub weights: Vec<CoordinateWeight>,
 }
 
-/// Contribution of one perturbation coordinate to the squared distance.
+/// A perturbation coordinate's contribution to the squared distance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoordinateWeight {
-    /// Name of the coordinate ("airspeed_kt").
+    /// Coordinate name ("airspeed_kt").
     pub name: String,
     /// Its largest magnitude in the bundle, used as the scale.
     pub largest: f64,
@@ -249,7 +249,7 @@ pub enum DiscontinuityError {
     /// A model has no perturbation data.
     #[error("outliers cannot be suggested: model \"{model}\" gives no perturbation")]
     NoPerturbation {
-        /// Name of the model.
+        /// Model name.
         model: String,
     },
     /// All models were linearised at the same trim.
@@ -260,17 +260,17 @@ pub enum DiscontinuityError {
 }
 
 impl Discontinuity {
-    /// Computes the ratios of a whole bundle, including rejected models but not those set aside;
+    /// Computes the ratios in a whole bundle, including rejected models but not those set aside;
     /// `perturbations` are the models' names and trim offsets in bundle order.
     ///
     /// ```text
     /// 1  p: each perturbation coordinate, divided by its largest magnitude in the bundle; 0 where a model lacks it
-    /// 2  fit d(a,b)^2 ~ sum_k w_k (p_ak - p_bk)^2, w >= 0, by least absolute deviations over all pairs of models
+    /// 2  fit d(a,b)^2 ~ sum_k w_k (p_ak - p_bk)^2, w >= 0, by least absolute deviations over all model pairs
     /// 3  r_ab = d(a,b) / sqrt(fitted), r_a = median over b of r_ab; pairs with zero fitted distance are skipped
     /// ```
     ///
-    /// Of equally good fits the fit whose fitted distances are closest to the distances in least
-    /// squares is taken. The fit, over half a million pairs for a thousand models, ends without a
+    /// Among equally good fits it takes the fit whose fitted distances are closest to the distances
+    /// in least squares. The fit, over half a million pairs for a thousand models, ends without a
     /// result once it is `cancelled`.
     pub fn fit(
         distance: &BundleDistance,
@@ -352,18 +352,18 @@ impl Discontinuity {
 }
 
 impl CoordinateWeight {
-    /// Returns the coordinate of a perturbation; 0 where it is missing.
+    /// Returns the coordinate in a perturbation; 0 where it is missing.
     fn value(&self, perturbation: &BTreeMap<String, f64>) -> f64 {
         perturbation.get(&self.name).copied().unwrap_or_default()
     }
 }
 
-/// Perturbation coordinates of the models, scaled to at most 1.
+/// The models' perturbation coordinates, scaled to at most 1.
 #[derive(Debug)]
 struct ScaledCoordinates<'a> {
-    /// Largest magnitude of each coordinate by its name; none is zero.
+    /// Largest magnitude for each coordinate by name; none is zero.
     largest: BTreeMap<&'a str, f64>,
-    /// Coordinates of each model divided by the largest magnitude, in the order of `largest`.
+    /// Each model's coordinates divided by the largest magnitude, in the same order as `largest`.
     models: Vec<Vec<f64>>,
 }
 
@@ -433,7 +433,7 @@ mod tests {
     use super::super::coherence_weights::coherence_weight;
     use super::*;
 
-    /// A response equal to 1, except in the upper half of the band: `upper`, with this coherence.
+    /// A response equal to 1, except in the band's upper half: `upper`, with this coherence.
     fn measured(upper: f64, coherence: f64) -> Dynamics {
         let omega = vec![1.0, 2.99, 3.01, 9.0];
         let magnitude = PairTable::filled(1, 1, vec![1.0, 1.0, upper, upper]);
@@ -482,7 +482,7 @@ mod tests {
         };
         assert_eq!(weighed, turned, "whichever comes first");
         assert!(weighed > 0.0 && weighed < apart);
-        // One direction contributes half of J at the weight 0.879, the other nothing.
+        // One direction contributes J/2 at the weight 0.879, the other nothing.
         assert!((weighed / apart - (0.5 * coherence_weight(0.9)).sqrt()).abs() < 0.01);
     }
 }

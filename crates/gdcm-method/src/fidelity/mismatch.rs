@@ -1,4 +1,4 @@
-//! Mismatch of a response and its reference, frequency by frequency.
+//! Mismatch between a response and its reference, frequency by frequency.
 
 use std::f64::consts::{PI, TAU};
 
@@ -10,23 +10,23 @@ use super::coherence_weights::CoherenceWeights;
 use super::cost::{Cost, CostAverage};
 use super::pure_delay::nearest_pure_delay_s;
 
-/// Difference of a simulated response from its reference, to be reduced by a gain and a delay.
+/// Difference between a simulated response and its reference, to be reduced by a gain and a delay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
     /// `|H_sim|_dB - |H_ref|_dB` at each frequency.
     pub magnitude_db: Vec<f64>,
-    /// Principal value of `arg(H_sim conj H_ref)` \[rad\] at each frequency.
+    /// `arg(H_sim conj H_ref)` \[rad\], principal value at each frequency.
     pub phase: Vec<f64>,
-    /// Weighted frequencies of the errors, if given by the reference's coherence (M4a); otherwise
-    /// the errors cover the whole grid with equal weights.
+    /// Frequencies with weights, if the reference has coherence (M4a); otherwise the errors cover
+    /// the whole grid with equal weights.
     pub coherence_weights: Option<CoherenceWeights>,
-    /// Angle \[rad\], a multiple of 2 pi, that is added to `Delta phi` after phase unwrapping; zero
-    /// for the representatives (M13.1).
+    /// Angle \[rad\], whole turns, that is added to `Delta phi` after phase unwrapping; zero for
+    /// the representatives (M13.1).
     pub turn: f64,
 }
 
 impl Mismatch {
-    /// Computes the difference of `simulated` from `reference`, on the same frequencies.
+    /// Computes the difference between `simulated` and `reference`, on the same frequencies.
     pub fn new(simulated: &PolarCurve, reference: &PolarCurve) -> Self {
         let magnitudes = simulated.magnitude_db.iter().zip(&reference.magnitude_db);
         let phases = simulated.phase.iter().zip(&reference.phase);
@@ -38,8 +38,8 @@ impl Mismatch {
         }
     }
 
-    /// Restricts the difference to the weighted frequencies: all of them without coherence; `None`
-    /// if no frequency has a weight (M4a).
+    /// Restricts the difference to the weighted frequencies: all frequencies without coherence;
+    /// `None` if no frequency has a weight (M4a).
     pub fn coherence_weighted(self, coherence_weights: Option<&CoherenceWeights>) -> Option<Self> {
         let Some(coherence_weights) = coherence_weights else {
             return Some(self);
@@ -55,7 +55,7 @@ impl Mismatch {
         })
     }
 
-    /// Returns the frequencies \[rad/s\] of the errors: the whole grid or the weighted ones.
+    /// Returns the errors' frequencies \[rad/s\]: the whole grid or the weighted frequencies.
     pub fn omega<'a>(&'a self, grid: &'a [f64]) -> &'a [f64] {
         match &self.coherence_weights {
             Some(weights) => &weights.omega,
@@ -71,8 +71,8 @@ impl Mismatch {
         }
     }
 
-    /// Spreads values at the frequencies of the errors over a grid of `points`; NaN at frequencies
-    /// without weight.
+    /// Spreads values at the errors' frequencies over a grid with `points` points; NaN at
+    /// frequencies without weight.
     pub fn on_grid(&self, values: Vec<f64>, points: usize) -> Vec<f64> {
         match &self.coherence_weights {
             None => values,
@@ -80,14 +80,14 @@ impl Mismatch {
         }
     }
 
-    /// Returns the weight of each frequency, unless all weigh the same (M4a).
+    /// Returns each frequency's weight, unless all weigh the same (M4a).
     pub fn weights(&self) -> Option<&[f64]> {
         self.coherence_weights
             .as_ref()
             .map(|weights| weights.weights.as_slice())
     }
 
-    /// Computes J after a correction of the simulated response (M4, M10). The correction removes
+    /// Computes J after a correction to the simulated response (M4, M10). The correction removes
     /// `omega tau` from the phase, and the principal value is used: a zero passed on the other side
     /// of the axis must not cost a whole turn.
     pub fn cost(&self, omega: &[f64], correction: GainDelay, average: CostAverage) -> Cost {
@@ -114,7 +114,7 @@ impl Mismatch {
         multiplied
     }
 
-    /// Picks the values at the frequencies of the errors from a value at each grid point.
+    /// Picks the values at the errors' frequencies from a value at each grid point.
     fn at_errors(&self, values: &[f64]) -> Vec<f64> {
         match &self.coherence_weights {
             Some(weights) => weights.pick(values),
@@ -122,7 +122,7 @@ impl Mismatch {
         }
     }
 
-    /// Whether the unwrapped `Delta phi` of M3 exceeds half a turn somewhere, so that M6b chooses
+    /// Whether the unwrapped `Delta phi` (M3) exceeds half a turn somewhere, so that M6b chooses
     /// the turns.
     pub fn leaves_half_a_turn(&self) -> bool {
         self.unwrapped().iter().any(|phase| phase.abs() > PI)
@@ -155,7 +155,7 @@ impl Mismatch {
         phase
     }
 
-    /// Returns the median \[rad\] of `Delta phi` over its frequencies.
+    /// Returns the median over frequency for `Delta phi` \[rad\].
     pub fn median_phase(&self, omega: &[f64]) -> f64 {
         median(&mut self.phase_difference(omega))
     }
@@ -189,7 +189,7 @@ mod tests {
         assert!(uncorrected.total() > 100.0);
         let correction = GainDelay::new(db_to_ratio(2.0), 0.4);
         let corrected = mismatch.cost(&omega, correction, CostAverage::Mean);
-        // Squares of rounding errors of angles up to 12 * 0.4 rad.
+        // Squared rounding errors in angles up to 12 * 0.4 rad.
         assert!(corrected.total() < 1e-20);
     }
 
@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     fn a_zero_passed_on_the_other_side_costs_no_turn_and_leaves_the_delay_of_the_others() {
-        // 70 ms of lag, and from 2 rad/s a turn in the other direction within a few frequencies.
+        // 70 ms lag, and from 2 rad/s a turn in the other direction within a few frequencies.
         let omega: Vec<f64> = (1..=120).map(|k| 0.1 * f64::from(k)).collect();
         let phase = omega
             .iter()
@@ -224,7 +224,7 @@ mod tests {
             turn: 0.0,
         };
         let cost = mismatch.cost(&omega, GainDelay::new(1.0, -0.07), CostAverage::Median);
-        // Squares of the remainder of the turn at 6 rad/s: e^-160.
+        // The turn's remainder at 6 rad/s, squared: e^-160.
         assert!(cost.phase < 1e-20, "{cost:?}");
         let delays = mismatch
             .phase_difference(&omega)

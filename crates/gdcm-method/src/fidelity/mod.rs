@@ -1,4 +1,4 @@
-//! Agreement of models: the cost J, distances, the representative of a bundle, outliers (M4, M5);
+//! Agreement between models: the cost J, distances, a bundle's representative, outliers (M4, M5);
 //! mode tracks across models, and unnoticeable added dynamics.
 
 pub mod absolute_deviations;

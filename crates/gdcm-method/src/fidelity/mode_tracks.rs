@@ -3,8 +3,8 @@
 //! The matching is an assignment problem with the smallest total cost.
 //!
 //! ```text
-//! 1  potentials u_i of the rows, v_j of the columns, with u_i + v_j <= c_ij, equal where i goes with j
-//! 2  for each row i in turn: grow a tree of columns from i by the least reduced cost c_ij - u_i - v_j (Dijkstra),
+//! 1  row potentials u_i, column potentials v_j, with u_i + v_j <= c_ij, equal where i goes with j
+//! 2  for each row i in turn: grow a column tree from i by the least reduced cost c_ij - u_i - v_j (Dijkstra),
 //!    moving the potentials with it, until a column is free
 //! 3  shift the assignments along the path from i to that column
 //! ```
@@ -16,21 +16,21 @@ use nalgebra::Complex;
 
 use gdcm_model::response::{Mode, median};
 
-/// Distance of a jump from the centre, in spreads of the track: a smooth track over perturbations
-/// to both sides ends at two to three.
+/// Distance between a jump and the centre, in track spreads: a smooth track over perturbations to
+/// both sides ends at two to three.
 const JUMP_SPREADS: f64 = 5.0;
-/// Smallest distance of a jump \[rad/s\]: a smaller shift of a helicopter's slowest mode changes
-/// the response in no band.
+/// Smallest jump \[rad/s\]: a smaller shift in a helicopter's slowest mode changes the response in
+/// no band.
 const LEAST_JUMP_RAD_S: f64 = 0.05;
 
-/// A mode of the reference model and its matches in the other models.
+/// A mode in the reference model and its matches in the other models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeTrack {
-    /// Its index among the modes of the reference model.
+    /// Its index among the reference model's modes.
     pub reference: usize,
-    /// Index of the matched mode of each model; `None` if the model has fewer poles.
+    /// The matched mode's index in each model; `None` if the model has fewer poles.
     pub modes: Vec<Option<usize>>,
-    /// Centre of the poles \[rad/s\]: the medians of the real parts and of the imaginary parts.
+    /// The poles' centre \[rad/s\]: median real part and median imaginary part.
     pub centre: Complex<f64>,
     /// Median distance from the centre \[rad/s\].
     pub spread_rad_s: f64,
@@ -41,8 +41,8 @@ pub struct ModeTrack {
 /// Returns the track of each mode of `models[reference]`, in its order; a conjugate pair has one
 /// track, unless a model matches it with two poles that are not a pair.
 ///
-/// Each model's poles are matched to those of the reference with the smallest sum of distances in
-/// the s-plane (an assignment problem). No tracks if the reference has no modes.
+/// Each model's poles are matched to the reference's poles with the smallest summed distance in the
+/// s-plane (an assignment problem). No tracks if the reference has no modes.
 pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
     let Some(reference_modes) = models.get(reference).copied() else {
         return Vec::new();
@@ -59,7 +59,7 @@ pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
             .zip(&modes)
             .map(|(model, mode)| mode.map(|mode| model[mode].pole))
             .collect();
-        // The conjugate of a mode with a track of its own.
+        // The conjugate mode has its own track.
         let is_mirror =
             reference_mode.pole.im < 0.0 && poles.iter().flatten().all(|pole| pole.im < 0.0);
         if !is_mirror {
@@ -69,7 +69,7 @@ pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
     tracks
 }
 
-/// Measures the track of one mode of the reference from its match in each model.
+/// Measures the track for a reference mode from its match in each model.
 fn track(reference: usize, modes: Vec<Option<usize>>, poles: &[Option<Complex<f64>>]) -> ModeTrack {
     let known: Vec<Complex<f64>> = poles.iter().flatten().copied().collect();
     let mut real_parts: Vec<f64> = known.iter().map(|pole| pole.re).collect();
@@ -95,8 +95,8 @@ fn track(reference: usize, modes: Vec<Option<usize>>, poles: &[Option<Complex<f6
     }
 }
 
-/// Returns the match in `model` of each mode of `reference`; `None` for a mode without a match in a
-/// smaller model.
+/// Returns the match in `model` for each mode in `reference`; `None` for a mode without a match in
+/// a smaller model.
 fn matched(reference: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
     let mut matches = vec![None; reference.len()];
     if reference.len() <= model.len() {
@@ -147,7 +147,7 @@ struct Assignment {
     row_potentials: Vec<f64>,
     /// `v`.
     column_potentials: Vec<f64>,
-    /// The row of each column; `None` for a free column.
+    /// Each column's row; `None` for a free column.
     row_of: Vec<Option<usize>>,
 }
 
@@ -189,7 +189,7 @@ impl Assignment {
         self.shift_assignments(new, &before, last);
     }
 
-    /// Moves the potentials of the tree so that the reduced cost of `next` becomes zero.
+    /// Moves the tree's potentials so that the reduced cost to `next` becomes zero.
     fn shift_potentials(
         &mut self,
         new: usize,
@@ -210,7 +210,7 @@ impl Assignment {
         }
     }
 
-    /// Gives each column of the path back from `last` the row of the previous column, and the first
+    /// Gives each column on the path back from `last` the previous column's row, and the first
     /// column the row `new`.
     fn shift_assignments(&mut self, new: usize, before: &[Option<usize>], last: Option<usize>) {
         let mut at = last;

@@ -1,7 +1,7 @@
 //! Envelopes of maximum unnoticeable added dynamics (MUAD; MIL-STD-1797A, appendix A, 4.2.1.2).
 //!
-//! Pilots do not notice dynamics added to an aircraft's response while the magnitude and phase of
-//! the added factor stay inside
+//! Pilots do not notice dynamics added to an aircraft's response while the added factor's magnitude
+//! and phase stay inside
 //!
 //! ```text
 //! upper magnitude  (3.16 s^2 + 31.61 s + 22.79) / (s^2 + 27.14 s + 1.84)
@@ -13,13 +13,13 @@
 //! Wood & Hodgkinson, "Definition of acceptable levels of mismatch for equivalent systems of
 //! augmented CTOL aircraft", MDC A6792, 1980. Some codes omit the delays or round the coefficients
 //! (0.095, 4.95, 29460, 0.039): the rounding changes less than 0.02 dB and 0.005 deg, the omission
-//! the phase of the delays.
+//! changes the phase by that of the delays.
 
 use nalgebra::Complex;
 
 use gdcm_model::units::ratio_to_db;
 
-/// A ratio of two polynomials of degree 2, highest power first, and a delay \[s\].
+/// A ratio of two quadratic polynomials, highest power first, and a delay \[s\].
 struct Factor {
     numerator: [f64; 3],
     denominator: [f64; 3],
@@ -63,7 +63,7 @@ impl Factor {
     }
 }
 
-/// Evaluates a polynomial of degree 2, highest power first, at `s = j omega`.
+/// Evaluates a quadratic polynomial, highest power first, at `s = j omega`.
 fn polynomial(coefficients: [f64; 3], omega: f64) -> Complex<f64> {
     let s = Complex::new(0.0, omega);
     let [second, first, constant] = coefficients;
@@ -73,9 +73,9 @@ fn polynomial(coefficients: [f64; 3], omega: f64) -> Complex<f64> {
 /// The envelopes at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Muad {
-    /// Lower and upper magnitude of the added dynamics \[dB\].
+    /// Lower and upper magnitude \[dB\] for the added dynamics.
     pub magnitude_db: [f64; 2],
-    /// Lower and upper phase of the added dynamics \[deg\].
+    /// Lower and upper phase \[deg\] for the added dynamics.
     pub phase_deg: [f64; 2],
 }
 
@@ -92,7 +92,7 @@ impl Muad {
         }
     }
 
-    /// Returns the distance of an error to the nearer envelope \[dB and deg\], positive outside,
+    /// Returns the distance from an error to the nearer envelope \[dB and deg\], positive outside,
     /// negative inside.
     fn outside(&self, error_db: f64, error_deg: f64) -> [f64; 2] {
         [
@@ -102,13 +102,13 @@ impl Muad {
     }
 }
 
-/// Returns the distance of an error to the nearer end of `[least, most]`, positive outside.
+/// Returns the distance from an error to the nearer end of `[least, most]`, positive outside.
 fn distance_outside(envelope: [f64; 2], error: f64) -> f64 {
     let [least, most] = envelope;
     (least - error).max(error - most)
 }
 
-/// Returns the ranges of `omega` \[rad/s\] in which a mismatch, model over reference, leaves an
+/// Returns the `omega` ranges \[rad/s\] in which a mismatch, model over reference, leaves an
 /// envelope: ascending and disjoint.
 ///
 /// The errors \[dB\] and \[deg\] are given at the ascending frequencies `omega`; the phase error is
@@ -135,7 +135,7 @@ pub fn leaves(omega: &[f64], error_db: &[f64], error_deg: &[f64]) -> Vec<(f64, f
     merged
 }
 
-/// Returns the ranges of `omega` in which values at these frequencies are positive, interpolated
+/// Returns the `omega` ranges in which values at these frequencies are positive, interpolated
 /// linearly in `ln omega`.
 fn ranges_above_zero(omega: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
     let mut ranges = Vec::new();

@@ -6,7 +6,7 @@ use nalgebra::Complex;
 const STEPS: i32 = 600;
 /// Step between two compared delays \[s\].
 const STEP_S: f64 = 1e-3;
-/// Steps between two delays of the coarse grid.
+/// Steps between two delays in the coarse grid.
 const COARSE: i32 = 16;
 
 /// Delays on a grid: `first_s`, `first_s + step_s`, ...
@@ -17,11 +17,11 @@ struct DelayGrid {
 }
 
 /// Returns the delay \[s\] among -0.600, -0.599 ... 0.600 with the largest likeness `L = sum
-/// cos(phase - omega delay)`, the first of equal ones (M6b).
+/// cos(phase - omega delay)`, the first among equals (M6b).
 ///
 /// ```text
 /// 1  L at every 16th delay
-/// 2  |dL / d delay| <= sum omega: only near coarse delays from which L could rise to the greatest of 1, L at every delay
+/// 2  |dL / d delay| <= sum omega: only near coarse delays from which L could rise to the greatest in step 1, L at every delay
 /// ```
 pub(super) fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
     let coarse_steps: Vec<i32> = (-STEPS..=STEPS + COARSE / 2)
@@ -61,14 +61,14 @@ pub(super) fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
     best_s
 }
 
-/// Returns the delay \[s\] of a step.
+/// Returns the delay \[s\] at a step.
 fn delay_s(step: i32) -> f64 {
     STEP_S * f64::from(step)
 }
 
-/// Computes `sum cos(phase - omega delay)` for each delay of a grid.
+/// Computes `sum cos(phase - omega delay)` for each delay in a grid.
 fn likenesses(phase: &[f64], omega: &[f64], grid: &DelayGrid) -> Vec<f64> {
-    // Rotated from each delay to the next: a sum of cosines takes a dozen times as long.
+    // Rotated from each delay to the next: summing cosines takes a dozen times as long.
     let mut left = Vec::with_capacity(phase.len());
     for (phase, omega) in phase.iter().zip(omega) {
         left.push(Complex::from_polar(1.0, phase - omega * grid.first_s));
@@ -113,7 +113,8 @@ mod tests {
                     .map(|step| likeness(&phase, &omega, 1e-3 * f64::from(step)))
                     .fold(f64::NEG_INFINITY, f64::max);
                 let found = nearest_pure_delay_s(&phase, &omega);
-                // Sums of at most 60 cosines of angles of some hundreds differ in the last digits.
+                // Sums over at most 60 cosines with angles in the hundreds differ in the last
+                // digits.
                 proptest::prop_assert!(likeness(&phase, &omega, found) >= greatest - 1e-10, "{} s", found);
             }
         }

@@ -1,5 +1,4 @@
-//! Value, slope and curvature of a function of one variable: at a point, and their range over an
-//! interval.
+//! Value, slope and curvature at a point, and their range over an interval.
 
 use super::rounded::Rounded;
 
@@ -12,7 +11,7 @@ pub(crate) struct Derivatives {
 }
 
 impl Derivatives {
-    /// Adds a function of `-u` to this function of `u`, both given at their own argument.
+    /// Adds a function of `-u` to this function of `u`, each given at its own argument.
     pub(super) fn plus_mirrored(self, mirrored: Self) -> Self {
         let mut value = self.value;
         value.add(mirrored.value);
@@ -26,11 +25,11 @@ impl Derivatives {
     }
 }
 
-/// Least and greatest value of a derivative over an interval, rounded outward.
+/// Least and greatest derivative over an interval, rounded outward.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Range {
     pub(crate) least: f64,
     pub(crate) most: f64,
-    /// Sum of the magnitudes of the summands, to which rounding errors are proportional.
+    /// Sum of the summands' magnitudes, to which rounding errors are proportional.
     pub(crate) size: f64,
 }

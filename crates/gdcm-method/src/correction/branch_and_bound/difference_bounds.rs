@@ -1,4 +1,4 @@
-//! Parts of the box of the scales, bounded by the differences of every two scales.
+//! Parts of the scale box, bounded by the differences between every two scales.
 
 use crate::correction::interval::Interval;
 
@@ -30,7 +30,7 @@ impl DifferenceBounds {
         Self { count, bounds }
     }
 
-    /// Returns the range of `s_to - s_from`.
+    /// Returns the range for `s_to - s_from`.
     pub(crate) fn range(&self, from: usize, to: usize) -> Interval {
         Interval {
             low: -self.bounds[to * self.count + from],
@@ -38,7 +38,7 @@ impl DifferenceBounds {
         }
     }
 
-    /// Returns the part with `s_to - s_from <= most`, with the implied bounds of every other
+    /// Returns the part with `s_to - s_from <= most`, with the implied bounds on every other
     /// difference; `None` where it is empty.
     pub(crate) fn below(&self, from: usize, to: usize, most: f64) -> Option<Self> {
         let count = self.count;
@@ -53,7 +53,7 @@ impl DifferenceBounds {
                 }
                 let before = self.bounds[i * count + from];
                 let after = self.bounds[to * count + j];
-                // Rounded outward, so that no point of the part is lost.
+                // Rounded outward, so that no point is lost.
                 let implied = before
                     + most
                     + after
@@ -84,12 +84,12 @@ impl DifferenceBounds {
         Self { count, bounds }
     }
 
-    /// Memory of the bounds of `count` scales, in bytes.
+    /// Memory for the bounds on `count` scales, in bytes.
     pub(crate) fn bytes(count: usize) -> usize {
         count * count * size_of::<f64>()
     }
 
-    /// Writes the least and greatest value of each scale.
+    /// Writes each scale's least and greatest value.
     pub(crate) fn write_box(&self, lower: &mut [f64], upper: &mut [f64]) {
         let ground = self.count - 1;
         for scale in 0..ground {

@@ -1,13 +1,12 @@
-//! The work of a search: counted instead of timed, so that results repeat.
+//! Work of a search, counted instead of timed, so that results repeat.
 
 use std::cell::Cell;
 
-/// Error of a search that was stopped from outside.
+/// The search was stopped from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SearchStopped;
 
-/// Counts the work of one search, in evaluations of one term, and polls at intervals whether to
-/// stop.
+/// Counts the work of a search, in evaluations of a term, and polls at intervals whether to stop.
 pub(crate) struct Effort<'a> {
     stop: &'a dyn Fn() -> bool,
     work: Cell<u64>,

@@ -1,12 +1,12 @@
-//! Convex envelope of one exponential over an interval: a line left of a point, the exponential
-//! itself right of it (McCormick 1976).
+//! Convex envelope of an exponential over an interval: a line on the left, the exponential itself
+//! on the right (McCormick 1976).
 
 use super::derivatives::Derivatives;
 use super::exponential::Exponential;
 use super::rounded::Rounded;
 use crate::correction::interval::Interval;
 
-/// Line of a convex envelope: it replaces the exponential left of `until`.
+/// Line of a convex envelope: it replaces the exponential below `until`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
     until: f64,
@@ -17,9 +17,9 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// Finds the line of the envelope of an exponential over an interval: `None` where the
-    /// exponential is convex there, the chord where no line from the left end is a tangent,
-    /// otherwise the tangent.
+    /// Finds the line in an exponential's envelope over an interval: `None` where the exponential
+    /// is convex there, the chord where no line from the left end is a tangent, otherwise the
+    /// tangent.
     pub(super) fn of_envelope(function: &Exponential, over: Interval) -> Option<Self> {
         if function.is_zero() || over.low >= function.inflection() {
             return None;
@@ -33,8 +33,8 @@ impl Line {
         Some(Self::tangent(function, over, &start, end))
     }
 
-    /// Finds the tangent through the left end, by Newton's method from the right side of a bracket:
-    /// any point there is valid, so a near-tangent is enough.
+    /// Finds the tangent through the left end, by Newton's method from a bracket's right side: any
+    /// point there is valid, so a near-tangent is enough.
     fn tangent(
         function: &Exponential,
         over: Interval,
@@ -116,13 +116,13 @@ impl Line {
     }
 }
 
-/// Height at `low` of the tangent at `v`, over the value `start` there: falls as `v` moves right of
-/// the inflection.
+/// Returns the height at `low` by which the tangent at `v` exceeds the value `start`: it falls as
+/// `v` rises beyond the inflection.
 fn overshoot(low: f64, start: &Derivatives, v: f64, at: &Derivatives) -> f64 {
     at.value.value + at.slope.value * (low - v) - start.value.value
 }
 
-/// Evaluates the envelope at `v`: the line, if any, left of its end, otherwise the exponential.
+/// Evaluates the envelope at `v`: the line, if any, up to its end, otherwise the exponential.
 pub(super) fn enveloped(function: &Exponential, line: Option<&Line>, v: f64) -> Derivatives {
     match line {
         Some(line) if v < line.until => line.evaluate(v),

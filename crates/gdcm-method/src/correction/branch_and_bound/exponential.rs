@@ -1,5 +1,5 @@
-//! One exponential term: all entries whose product depends on the same scale difference, as a
-//! single square.
+//! Exponential terms: all entries whose product depends on the same scale difference, as a single
+//! square.
 
 use super::derivatives::{Derivatives, Range};
 use super::rounded::Rounded;
@@ -14,11 +14,11 @@ use crate::correction::interval::Interval;
 pub(crate) struct Exponential {
     pub(super) weight: f64,
     pub(super) centre: f64,
-    /// Bound on the relative rounding of `weight` and `centre`.
+    /// Bound on the relative rounding in `weight` and `centre`.
     rounding: f64,
 }
 
-/// One entry `weight (gain - product e^v)^2`; `error` is the relative error of the product.
+/// An entry `weight (gain - product e^v)^2`; `error` is the product's relative error.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProductEntry {
     weight: f64,
@@ -30,8 +30,8 @@ pub(crate) struct ProductEntry {
 impl ProductEntry {
     /// Creates the entry `weight (gain - e^logarithm e^v)^2`.
     pub(crate) fn new(weight: f64, gain: f64, logarithm: Rounded) -> Self {
-        // The error of the logarithm is the relative error of the product, and the exponential is
-        // accurate to an epsilon.
+        // The logarithm's error is the product's relative error, and the exponential is accurate to
+        // an epsilon.
         Self {
             weight,
             gain,
@@ -48,11 +48,11 @@ impl ProductEntry {
     }
 }
 
-/// A sum of [`ProductEntry`] as one exponential and a constant.
+/// A sum of [`ProductEntry`] as an exponential and a constant.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CombinedEntries {
     pub(crate) exponential: Exponential,
-    /// Minimum of the sum.
+    /// Minimum of the combined entries.
     pub(crate) least: Rounded,
 }
 
@@ -84,8 +84,8 @@ impl CombinedEntries {
             least.add(at_minimum.square());
             worst = worst.max(entry.error);
         }
-        // A sum of n positive terms is exact to n roundings of half an epsilon. The centre is the
-        // quotient of two such sums, with three factors of the product in all.
+        // A sum of n positive terms is exact to n roundings of half an epsilon. The centre is a
+        // quotient of two such sums, in which the product appears three times.
         let rounding = 3.0 * worst + (entries.len() as f64 + 4.0) * f64::EPSILON;
         let exponential = Exponential {
             weight,
@@ -107,7 +107,7 @@ impl Exponential {
         (0.5 * self.centre).ln()
     }
 
-    /// Bounds the relative rounding of `weight`, `centre` and `z = e^v` at `v`: the first two, `v`
+    /// Bounds the relative rounding in `weight`, `centre` and `z = e^v` at `v`: the first two, `v`
     /// as a difference, the exponential and its reciprocal.
     pub(super) fn relative(&self, v: f64) -> f64 {
         self.rounding + (v.abs() + 4.0) * f64::EPSILON

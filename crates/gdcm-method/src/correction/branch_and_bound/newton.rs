@@ -1,4 +1,4 @@
-//! Newton's method for a local minimum over the box of the scales.
+//! Newton's method for a local minimum over the scale box.
 
 use super::effort::Effort;
 use super::objective::{Curvature, Differentiable, Expansion, ScaleBox};
@@ -6,16 +6,16 @@ use super::objective::{Curvature, Differentiable, Expansion, ScaleBox};
 /// A projected Newton method.
 ///
 /// ```text
-/// 1  quadratic model of the function at the present point; its minimum over the box is the step
+/// 1  quadratic model at the present point; its minimum over the box is the step
 /// 2  the longest halving of the step that decreases the function
 /// 3  end where the step is at rounding, or the caller has seen enough
 /// ```
 ///
-/// Each step minimises the model over the box exactly, so that the set of active bounds is right as
-/// soon as the model is. Clipping an unconstrained step instead stalls at corners.
+/// Each step minimises the model over the box exactly, so that the active bounds are right as soon
+/// as the model is. Clipping an unconstrained step instead stalls at corners.
 pub(crate) struct Newton<'a> {
     effort: &'a Effort<'a>,
-    /// Expansion of the function at the last point.
+    /// Expansion at the last point.
     pub(crate) reached: Expansion,
     trial: Expansion,
     model: QuadraticModel,
@@ -60,8 +60,8 @@ impl<'a> Newton<'a> {
             let Some(step) = self.minimise_model(function, scales) else {
                 return;
             };
-            // This near to the minimum, three steps end at the rounding of the slopes, also across
-            // the end of an envelope.
+            // This near to the minimum, three steps end at the slopes' rounding, also across an
+            // envelope's end.
             if step.has_true_curvature && step.decrease <= 1e-13 * self.reached.value.value.abs() {
                 near += 1;
             }
@@ -121,7 +121,7 @@ impl<'a> Newton<'a> {
             if self.trial.value.value <= here.value - 1e-4 * fraction * decrease + noise {
                 scales.copy_from_slice(&self.next);
                 std::mem::swap(&mut self.reached, &mut self.trial);
-                // A step below the rounding of the scales is the last.
+                // A step below the scales' rounding is the last.
                 return fraction * longest > 1e-15;
             }
             fraction *= 0.5;
@@ -149,27 +149,27 @@ impl<'a> Newton<'a> {
 struct ModelStep {
     /// Decrease of the model.
     decrease: f64,
-    /// Whether the curvature of the model is that of the function, not its magnitude.
+    /// Whether the model has the function's curvature, not its magnitude.
     has_true_curvature: bool,
 }
 
-/// The quadratic model of a step over the box: `minimise` fills `step`.
+/// The quadratic model for a step over the box: `minimise` fills `step`.
 #[derive(Clone, Debug)]
 struct QuadraticModel {
     scales: usize,
-    /// Least step of each scale, at most 0.
+    /// Least step for each scale, at most 0.
     low: Vec<f64>,
-    /// Greatest step of each scale, at least 0.
+    /// Greatest step for each scale, at least 0.
     high: Vec<f64>,
     step: Vec<f64>,
-    /// Slope of the model after the step.
+    /// The model's slope after the step.
     slope: Vec<f64>,
     /// Scales that no active bound holds, in rising order.
     free: Vec<usize>,
     is_free: Vec<bool>,
-    /// Cholesky factor of the free part of the Hessian, row-major.
+    /// Cholesky factor for the free part of the Hessian, row-major.
     factor: Vec<f64>,
-    /// Move of each free scale to the minimum without bounds.
+    /// Move to the minimum without bounds, for each free scale.
     move_to: Vec<f64>,
 }
 
@@ -243,7 +243,7 @@ impl QuadraticModel {
         Some(-change)
     }
 
-    /// Work of one pass: a Cholesky factorisation of the free part, and products with the whole
+    /// Work of a pass: a Cholesky factorisation of the free part, and products with the whole
     /// Hessian.
     fn work(&self) -> u64 {
         let free = self.is_free.iter().filter(|is_free| **is_free).count() as u64;
@@ -298,7 +298,7 @@ impl QuadraticModel {
         Some(())
     }
 
-    /// Returns the part of the move that the box allows.
+    /// Returns the part that the box allows.
     fn longest_step(&self) -> AllowedMove {
         let mut fraction = 1.0;
         let mut blocking = None;
@@ -366,6 +366,6 @@ struct AllowedMove {
 /// A bound that ends a move.
 struct Blocking {
     scale: usize,
-    /// Step of the scale at its bound.
+    /// Step at which the scale reaches its bound.
     end: f64,
 }

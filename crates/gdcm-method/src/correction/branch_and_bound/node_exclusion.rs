@@ -14,11 +14,11 @@ use crate::correction::interval::Interval;
 /// The objective with the structure needed by the exclusion tests.
 pub(super) struct NodeExclusion<'a> {
     objective: &'a Objective,
-    /// Reference scale of each scale: the ground, or the first scale of its floating piece.
+    /// Reference for each scale: the ground, or the first scale in its floating piece.
     base: Vec<usize>,
-    /// Scales whose bounds can stop each scale: the ground, or the others of its floating piece.
+    /// Scales whose bounds can stop each scale: the ground, or the others in its floating piece.
     stops: Vec<Vec<usize>>,
-    /// Pieces of scales that are not tied to the ground.
+    /// Scale pieces that are not tied to the ground.
     floating: Vec<Vec<usize>>,
 }
 
@@ -46,7 +46,7 @@ impl<'a> NodeExclusion<'a> {
         }
     }
 
-    /// Work of one test: the range of every slope, or the Hessian and its Cholesky factorisation.
+    /// Work of a test: the range of every slope, or the Hessian and its Cholesky factorisation.
     pub(super) fn work(&self) -> u64 {
         let scales = self.objective.scales() as u64;
         4 * self.objective.terms.len() as u64 + scales * scales * scales / 96
@@ -66,9 +66,9 @@ impl<'a> NodeExclusion<'a> {
         false
     }
 
-    /// Whether the region contains no local minimum other than `minimum`: over the hull of both,
-    /// the scales whose slope keeps its sign are on their bound at any local minimum, and the
-    /// objective is convex in the others.
+    /// Whether the region contains no local minimum other than `minimum`: over their hull, the
+    /// scales whose slope keeps its sign are on their bound at any local minimum, and the objective
+    /// is convex in the others.
     pub(super) fn has_only(&self, region: &DifferenceBounds, minimum: &[f64]) -> bool {
         let hull = region.hull(minimum);
         let slopes = self.slope_ranges(&hull);
@@ -100,7 +100,7 @@ impl<'a> NodeExclusion<'a> {
         region.range(from, to).high >= self.objective.upper[to] - self.objective.lower[from] - 1e-12
     }
 
-    /// Bounds the slope in each scale over the region; `size` sums the sizes of the terms' slopes.
+    /// Bounds the slope in each scale over the region; `size` sums over the terms' slopes.
     fn slope_ranges(&self, region: &DifferenceBounds) -> Vec<Range> {
         let mut ranges = vec![Range::default(); self.objective.scales()];
         for term in &self.objective.terms {
@@ -121,7 +121,7 @@ impl<'a> NodeExclusion<'a> {
     /// Bounds the objective from below over a region on which it is convex, from its gradient and
     /// Hessian next to `minimum`. `None` where these give no bound.
     pub(super) fn bound_at(&self, minimum: &[f64], at: &Expansion) -> Option<f64> {
-        // Far above the error of the scales, far below a change that matters to the curvature.
+        // Far above the scales' error, far below a change that matters to the curvature.
         const WITHIN: f64 = 0.01;
         let least = self.least_hessian(|term| {
             let u = term.difference(minimum);
@@ -147,8 +147,8 @@ impl<'a> NodeExclusion<'a> {
         quadratic_bound(at, &reach, WITHIN, |scale| push[scale] > 0.0)
     }
 
-    /// Guaranteed magnitude of the slope that pushes the scale against its active bound; otherwise
-    /// 0.
+    /// Returns the guaranteed slope magnitude that pushes the scale against its active bound;
+    /// otherwise 0.
     fn push(&self, minimum: &[f64], at: &Expansion, scale: usize) -> f64 {
         let slope = at.gradient[scale];
         let is_stopped = if slope > 0.0 {
@@ -163,9 +163,9 @@ impl<'a> NodeExclusion<'a> {
         }
     }
 
-    /// Chooses the reference scale of each floating piece: a fixed scale or, where bounds push, the
-    /// scale pushed hardest. The slopes of the scales without push lean on it; `None` where its
-    /// push does not outweigh them.
+    /// Chooses a reference scale for each floating piece: a fixed scale or, where bounds push, the
+    /// scale pushed hardest. Slopes in scales without push lean on it; `None` where its push does
+    /// not outweigh them.
     fn anchors(&self, at: &Expansion, push: &[f64]) -> Option<Vec<usize>> {
         let mut anchors = Vec::new();
         for piece in &self.floating {
@@ -194,7 +194,7 @@ impl<'a> NodeExclusion<'a> {
     }
 
     /// Builds the Hessian from every term's least curvature over its range. The gradient's error is
-    /// the sum of the magnitudes behind its diagonal.
+    /// the sum over the magnitudes behind its diagonal.
     fn least_hessian(&self, range: impl Fn(&Term) -> Interval) -> Expansion {
         let mut least = Expansion::zero(self.objective.scales());
         for term in &self.objective.terms {
@@ -211,14 +211,13 @@ impl<'a> NodeExclusion<'a> {
     /// positive semidefinite matrix.
     fn is_convex_in(&self, region: &DifferenceBounds, mut free: Vec<usize>) -> bool {
         let least = self.least_hessian(|term| region.range(term.from, term.to));
-        // The reference scale of a floating piece does not move.
+        // A floating piece's reference scale does not move.
         free.retain(|&scale| self.base[scale] != scale);
         free.is_empty() || reduced(&least, &free).cholesky().is_some()
     }
 }
 
-/// Adds a term's range of the slope, and the rounding of both sums: each is below the sum of the
-/// sizes.
+/// Adds a term's slope range, and the rounding in both sums: each is below the summed sizes.
 fn add_range(sum: &mut Range, slope: Range) {
     sum.least += slope.least;
     sum.most += slope.most;
@@ -233,9 +232,9 @@ fn sign(slope: &Range) -> i8 {
     i8::from(slope.least > 0.0) - i8::from(slope.most < 0.0)
 }
 
-/// Returns the Hessian in the `free` scales, less a margin for the rounding of its sums (up to n
-/// terms) and of its factorisation (n (n + 1) roundings of the diagonal: Higham, *Accuracy and
-/// Stability of Numerical Algorithms*, 2002, theorem 10.3).
+/// Returns the Hessian in the `free` scales, less a margin for rounding in its sums (up to n terms)
+/// and in its factorisation (n (n + 1) roundings on the diagonal: Higham, *Accuracy and Stability
+/// of Numerical Algorithms*, 2002, theorem 10.3).
 fn reduced(hessian: &Expansion, free: &[usize]) -> DMatrix<f64> {
     let scales = hessian.gradient.len();
     let roundings = ((scales + 1) * (scales + 2)) as f64;

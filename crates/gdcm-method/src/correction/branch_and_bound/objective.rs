@@ -1,10 +1,10 @@
-//! The objective as a function of the scales, after elimination of the constraints.
+//! The objective as a function of the scales, after the constraints are eliminated.
 
 use super::rounded::Rounded;
 use super::term::Term;
 
-/// Value, gradient and Hessian (row-major) of a function of the scales, with bounds on the rounding
-/// of value and gradient.
+/// Value, gradient and Hessian (row-major) in the scales, with bounds on the rounding in value and
+/// gradient.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Expansion {
     pub(crate) value: Rounded,
@@ -32,7 +32,7 @@ impl Expansion {
         self.hessian.fill(0.0);
     }
 
-    /// Adds slope and curvature of a term; its value is added separately.
+    /// Adds a term's slope and curvature; its value is added separately.
     pub(crate) fn add(&mut self, term: &Term, slope: Rounded, curvature: f64) {
         let scales = self.gradient.len();
         let from = term.from;
@@ -56,7 +56,7 @@ impl Expansion {
     }
 }
 
-/// Treatment of the curvature of a concave term.
+/// Treatment of concave curvature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Curvature {
     True,
@@ -69,29 +69,29 @@ pub(crate) trait Differentiable {
     /// Writes value, gradient and Hessian at `scales`.
     fn expand(&self, scales: &[f64], curvature: Curvature, into: &mut Expansion);
 
-    /// Work of one expansion ([`super::effort::Effort`]).
+    /// Work of an expansion ([`super::effort::Effort`]).
     fn work(&self) -> u64;
 }
 
-/// The box `lower <= s <= upper` of the scales, the ground last.
+/// The scale box `lower <= s <= upper`, the ground last.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ScaleBox<'a> {
     pub(crate) lower: &'a [f64],
     pub(crate) upper: &'a [f64],
 }
 
-/// `constant + sum of terms`, over the box of the scales.
+/// `constant + sum(terms)`, over the scale box.
 ///
-/// Scale `n - 1` is the *ground*: it is 0, so a term with it is a function of one scale only.
+/// Scale `n - 1` is the *ground*: it is 0, so a term with it depends on a single scale.
 #[derive(Clone, Debug)]
 pub(crate) struct Objective {
-    /// Least value of each scale, the ground last.
+    /// Least value for each scale, the ground last.
     pub(crate) lower: Vec<f64>,
-    /// Greatest value of each scale, the ground last.
+    /// Greatest value for each scale, the ground last.
     pub(crate) upper: Vec<f64>,
     /// At most one term for each two scales.
     pub(crate) terms: Vec<Term>,
-    /// Part of the objective that does not depend on the scales.
+    /// Part that does not depend on the scales.
     pub(crate) constant: Rounded,
 }
 
@@ -106,7 +106,7 @@ impl Objective {
         self.lower.len() - 1
     }
 
-    /// Returns the whole box of the scales.
+    /// Returns the whole box.
     pub(crate) fn bounds(&self) -> ScaleBox<'_> {
         ScaleBox {
             lower: &self.lower,
@@ -114,7 +114,7 @@ impl Objective {
         }
     }
 
-    /// Returns the point of the box nearest to 0.
+    /// Returns the point in the box nearest to 0.
     pub(crate) fn nearest_to_zero(&self) -> Vec<f64> {
         self.lower
             .iter()
@@ -133,7 +133,7 @@ impl Objective {
         self.constant.value + sum
     }
 
-    /// Finds the pieces of scales that terms tie together but not to the ground: their scales are
+    /// Finds the scale pieces that terms tie together but not to the ground: their scales are
     /// determined up to a common shift.
     pub(crate) fn floating_pieces(&self) -> Vec<Vec<usize>> {
         let ties = self.terms.iter().map(|term| [term.from, term.to]);
@@ -142,11 +142,11 @@ impl Objective {
         pieces
     }
 
-    /// Takes the limit `alpha -> 0+`: moves each floating piece of `scales` by one common amount,
-    /// as far as the box allows.
+    /// Takes the limit `alpha -> 0+`: moves each floating piece in `scales` by a common amount, as
+    /// far as the box allows.
     ///
     /// `shift(piece, scales)` returns the shift without the box. The fit does not depend on it, so
-    /// it is set by the departure of the outputs' gains or delays (M8, M9).
+    /// it is set by the departures on the outputs (M8, M9).
     pub(crate) fn shift_floating_pieces(
         &self,
         scales: &mut [f64],
@@ -186,8 +186,8 @@ impl Differentiable for Objective {
     }
 }
 
-/// Finds the connected pieces of a graph of `count` nodes with these edges: the members of each, in
-/// rising order.
+/// Finds the connected pieces in a graph on `count` nodes with these edges: each lists its members
+/// in rising order.
 pub(crate) fn connected_pieces(
     count: usize,
     edges: impl Iterator<Item = [usize; 2]>,

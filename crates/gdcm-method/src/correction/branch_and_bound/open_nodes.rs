@@ -7,7 +7,7 @@ use super::difference_bounds::DifferenceBounds;
 
 /// A part of the box that is still to be searched.
 pub(super) struct Node {
-    /// Lower bound of the objective over the part.
+    /// Lower bound on the objective over the part.
     pub(super) bound: f64,
     pub(super) region: DifferenceBounds,
     /// Start of the search for the underestimator's minimum.
@@ -40,16 +40,15 @@ pub(super) struct OpenNodes {
     heap: BinaryHeap<Node>,
     /// Greatest node count that fits into the memory.
     most: usize,
-    /// Least bound of the nodes refused for lack of memory.
+    /// Least bound over the nodes refused for lack of memory.
     refused: f64,
 }
 
 impl OpenNodes {
-    /// Creates an empty heap of nodes with `scales` scales each, in at most `bytes` bytes; a single
-    /// node always fits.
+    /// Creates an empty heap for nodes with `scales` scales each, in at most `bytes` bytes; a
+    /// single node always fits.
     pub(super) fn new(scales: usize, bytes: usize) -> Self {
-        // Twice the overhead of an allocation, and the growth of the heap, which doubles its
-        // memory.
+        // Twice the overhead of an allocation, and the heap's growth, which doubles its memory.
         let node_bytes = DifferenceBounds::bytes(scales)
             + scales * size_of::<f64>()
             + 32
@@ -80,7 +79,8 @@ impl OpenNodes {
         self.heap.pop()
     }
 
-    /// Returns the least bound of all nodes, including refused ones; infinite where there are none.
+    /// Returns the least bound over all nodes, including refused nodes; infinite where there are
+    /// none.
     pub(super) fn least_bound(&self) -> f64 {
         match self.heap.peek() {
             Some(node) => node.bound.min(self.refused),
@@ -108,7 +108,7 @@ mod tests {
             }
             kept += 1;
         }
-        // 400 differences of 8 bytes, and the rest of a node.
+        // 400 differences with 8 bytes each, and the rest of a node.
         assert!((9..=12).contains(&kept), "{kept}");
         assert_eq!(open.least_bound(), 100.0 - f64::from(kept));
         assert_eq!(

@@ -4,7 +4,7 @@
 use super::rounded::Rounded;
 use super::term::{Function, Term, TermSum};
 
-/// One entry of a least squares objective: `weight (delta - offset - (s_input - s_output))^2`.
+/// An entry of a least squares objective: `weight (delta - offset - (s_input - s_output))^2`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SquareEntry {
     /// Index of the output's scale.
@@ -12,9 +12,9 @@ pub(crate) struct SquareEntry {
     /// Index of the input's scale (the ground, for an output's own departure).
     pub(crate) input: usize,
     pub(crate) weight: f64,
-    /// Target of the entry.
+    /// The entry's target.
     pub(crate) delta: f64,
-    /// Value of the entry where both scales are 0.
+    /// The entry's value where both scales are 0.
     pub(crate) offset: Rounded,
 }
 
@@ -60,14 +60,14 @@ struct SquareGroup {
     weight: f64,
     /// `sum weight difference`.
     moment: f64,
-    /// Greatest magnitude of a difference.
+    /// Greatest difference in magnitude.
     size: f64,
-    /// Greatest error of a difference.
+    /// Greatest error in a difference.
     error: f64,
 }
 
 impl SquareGroup {
-    /// Adds an entry of this weight.
+    /// Adds an entry with this weight.
     fn add(&mut self, weight: f64, difference: Rounded) {
         self.count += 1.0;
         self.weight += weight;
@@ -77,7 +77,7 @@ impl SquareGroup {
     }
 
     /// Returns the scale difference at the group's minimum: a quotient of sums, and no more
-    /// accurate than the worst of its entries.
+    /// accurate than its worst entry.
     fn centre(&self) -> Rounded {
         Rounded {
             value: self.moment / self.weight,
@@ -95,7 +95,7 @@ impl SquareGroup {
 }
 
 /// Combines entries over `scales` scales to one quadratic term for each two scales that share an
-/// entry; the constant is the sum of all residuals at the minima of the terms.
+/// entry; the constant is the sum over all residuals at the terms' minima.
 pub(crate) fn quadratic_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
     let mut groups = vec![SquareGroup::default(); scales * scales];
     for entry in entries {

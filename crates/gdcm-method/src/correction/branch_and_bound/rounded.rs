@@ -6,7 +6,7 @@ use std::ops::Neg;
 ///
 /// Sums carry a running error bound (Higham, *Accuracy and Stability of Numerical Algorithms*,
 /// 2002, section 3.3): each addition rounds its result by at most half an epsilon. A whole epsilon
-/// is counted, which covers the rounding of the bound itself.
+/// is counted, which covers rounding in the bound itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Rounded {
     pub(crate) value: f64,

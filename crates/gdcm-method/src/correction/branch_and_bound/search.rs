@@ -14,7 +14,7 @@ const NEAR: f64 = 1.01;
 /// Relative gap at which branching stops, to end safely below [`PROOF`].
 const AIM: f64 = 2e-10;
 
-/// A local minimum of the objective.
+/// A local minimum.
 #[derive(Clone, Debug)]
 pub(crate) struct Minimum {
     pub(crate) scales: Vec<f64>,
@@ -22,12 +22,12 @@ pub(crate) struct Minimum {
     pub(crate) value: f64,
 }
 
-/// Result of a search.
+/// Search result.
 #[derive(Clone, Debug)]
 pub(crate) struct Minima {
     /// Distinct local minima within 1 % of the best, best first.
     pub(crate) minima: Vec<Minimum>,
-    /// Lower bound of the objective over the whole box.
+    /// Lower bound on the objective over the whole box.
     pub(crate) lower_bound: f64,
     /// `(best - lower_bound) / max(best, floor)`.
     pub(crate) gap: f64,
@@ -38,8 +38,8 @@ pub(crate) struct Minima {
     pub(crate) all_minima: bool,
 }
 
-/// Finds the global minimum of `objective` over its box, with a rigorous lower bound ([`super`] has
-/// the algorithm).
+/// Finds the global minimum for `objective` over its box, with a rigorous lower bound ([`super`]
+/// has the algorithm).
 ///
 /// Newton's method begins at `start`; `floor` is the objective, set by rounding, below which the
 /// gap is no longer relative.
@@ -58,7 +58,7 @@ pub(crate) fn search(
     Ok(search.into_minima())
 }
 
-/// State of a search; the line numbers of its methods are those of the algorithm in [`super`].
+/// A search in progress; its methods cite the line numbers in the algorithm ([`super`]).
 struct Search<'a> {
     objective: &'a Objective,
     exclusion: NodeExclusion<'a>,
@@ -66,9 +66,9 @@ struct Search<'a> {
     floor: f64,
     effort: &'a Effort<'a>,
     newton: Newton<'a>,
-    /// Distinct local minima, in the order of their discovery.
+    /// Distinct local minima, in the order found.
     minima: Vec<Minimum>,
-    /// Least value of the minima.
+    /// Least value among the minima.
     best: f64,
     open: OpenNodes,
     /// Least bound of the closed nodes.
@@ -78,12 +78,12 @@ struct Search<'a> {
     proven_at: Option<u64>,
     /// Whether every closed node is known to contain no unknown local minimum.
     all_minima: bool,
-    /// Box of the present node: least value of each scale.
+    /// Present node's box: least value for each scale.
     lower: Vec<f64>,
-    /// Box of the present node: greatest value of each scale.
+    /// Present node's box: greatest value for each scale.
     upper: Vec<f64>,
-    /// Curvature of an underestimator beyond its node: well above the objective's own, so that the
-    /// part of the box next to a minimum is bounded by its own edge.
+    /// Curvature of underestimators beyond their node: well above the objective's own, so that a
+    /// node next to a minimum is bounded by its own edge.
     beyond: f64,
 }
 
@@ -141,7 +141,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether the budget of the proof, of the listing or of memory is used up.
+    /// Whether the budget for the proof, the listing or memory is used up.
     fn is_spent(&self) -> bool {
         let spent = self.effort.spent();
         let is_listing_spent = match self.proven_at {
@@ -151,7 +151,7 @@ impl<'a> Search<'a> {
         is_listing_spent || spent >= self.budget.work || self.open.is_full()
     }
 
-    /// Divisor of the relative gap.
+    /// Divisor in the relative gap.
     fn denominator(&self) -> f64 {
         self.best.max(self.floor)
     }
@@ -288,8 +288,8 @@ impl<'a> Search<'a> {
         self.best = self.best.min(value);
     }
 
-    /// Whether two minima are duplicates: equal up to 1e-6, or the curvature of the terms at
-    /// `known` raises the objective between them by no more than the aimed gap.
+    /// Whether two minima are duplicates: equal up to 1e-6, or the terms' curvature at `known`
+    /// raises the objective between them by no more than the aimed gap.
     fn is_same(&self, known: &[f64], found: &[f64]) -> bool {
         let mut longest = 0.0_f64;
         let mut rise = 0.0;
@@ -357,8 +357,8 @@ impl<'a> Search<'a> {
     }
 
     /// Line 9: branches where the node's bound loses most. Where nothing is lost or the best is
-    /// already proven, separates convex from concave parts first, and then reduces the variation of
-    /// the slopes.
+    /// already proven, separates convex from concave parts first, and then reduces the slopes'
+    /// variation.
     fn branch(
         &mut self,
         underestimator: &Underestimator<'_>,
@@ -398,7 +398,7 @@ impl<'a> Search<'a> {
         self.close(bound);
     }
 
-    /// Splits off the parts beyond each end of a concave interval, as seen from `start`, and keeps
+    /// Splits off the parts beyond each end in a concave interval, as seen from `start`, and keeps
     /// the rest as one node.
     fn split_concave(
         &mut self,
@@ -476,7 +476,7 @@ pub(crate) const PROOF: f64 = 1e-9;
 /// Budget of the search for a proof, counted instead of timed so that results repeat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProofBudget {
-    /// Total work, in evaluations of one term of the objective (20 to 30 ns on one core). A step in
+    /// Total work, in evaluations of a term of the objective (20 to 30 ns on a core). A step in
     /// progress is completed.
     pub work: u64,
     /// Work after the proof, to find every other local minimum within 1 %.

@@ -1,12 +1,11 @@
-//! Terms of the objective: functions of the difference of two scales, with bounds on their
-//! rounding.
+//! Terms of the objective: functions of a scale difference, with bounds on their rounding.
 
 use super::derivatives::{Derivatives, Range};
 use super::exponential::Exponential;
 use super::rounded::Rounded;
 use crate::correction::interval::Interval;
 
-/// One term of the objective, a function of `u = s_to - s_from`.
+/// A term of the objective, a function of `u = s_to - s_from`.
 #[derive(Clone, Debug)]
 pub(crate) struct Term {
     /// Index of the subtracted scale.
@@ -30,27 +29,27 @@ pub(crate) struct TermSum {
     pub(crate) constant: Rounded,
 }
 
-/// A function of one scale difference.
+/// A function of a scale difference.
 #[derive(Clone, Debug)]
 pub(crate) enum Function {
     /// `weight (u - centre)^2`: gains compared in dB, and delays.
     Quadratic {
         weight: f64,
         centre: Rounded,
-        /// Relative error of the weight.
+        /// Relative error in the weight.
         relative: f64,
     },
     /// `forward` in `u` plus `backward` in `-u`: gains compared as ratios.
     Exponential {
         forward: Exponential,
         backward: Exponential,
-        /// The only interval of `u` on which the sum is concave.
+        /// The only interval on which the sum is concave.
         concave: Option<Interval>,
     },
 }
 
 impl Function {
-    /// Creates the sum of two exponentials, and finds the interval on which it is concave.
+    /// Creates the sum from two exponentials, and finds the interval on which it is concave.
     pub(crate) fn exponential(forward: Exponential, backward: Exponential) -> Self {
         Function::Exponential {
             forward,
@@ -104,7 +103,7 @@ impl Function {
         }
     }
 
-    /// Returns the end of the concave interval on the side of `u`; `None` where `u` is inside that
+    /// Returns the concave interval's end on the side of `u`; `None` where `u` is inside that
     /// interval, or the end outside the open interval `within`.
     pub(crate) fn concave_end(&self, u: f64, within: Interval) -> Option<f64> {
         let Function::Exponential {
@@ -188,8 +187,8 @@ impl Function {
     }
 }
 
-/// Finds the only interval of `u` on which the sum of two exponentials is concave, never too
-/// narrow; `None` where the sum is convex everywhere.
+/// Finds the only interval on which the sum of two exponentials is concave, never too narrow;
+/// `None` where the sum is convex everywhere.
 ///
 /// With `z = e^u` the curvature times `z^2 / 2` is the quartic `2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2
 /// R2`. Its coefficients change sign twice, so it has no or two positive roots (Descartes); its
@@ -218,7 +217,7 @@ fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<Int
         return None;
     }
     // Beyond the two inflections `ln(c1 / 2)` and `-ln(c2 / 2)` both curvatures have the same sign;
-    // between them one of the exponentials is concave.
+    // between them a single exponential is concave.
     let reach = 1.0 + (forward.inflection() + backward.inflection()).abs();
     let left = convex_end(forward, backward, deepest - reach, deepest);
     let right = convex_end(forward, backward, deepest + reach, deepest);
@@ -260,9 +259,9 @@ fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
     z
 }
 
-/// Finds the end of the concave interval between `outside` and `inside` by bisection, and returns
-/// the convex side of the bracket. The sum is not surely convex at `inside`; `outside` is moved
-/// further away until it is surely convex there.
+/// Finds the concave interval's end between `outside` and `inside` by bisection, and returns the
+/// bracket's convex side. The sum is not surely convex at `inside`; `outside` is moved further away
+/// until it is surely convex there.
 fn convex_end(forward: &Exponential, backward: &Exponential, outside: f64, inside: f64) -> f64 {
     let mut convex = outside;
     let mut other = inside;

@@ -30,13 +30,13 @@ fn excess(figure: &Exact, computed: f64) -> f64 {
     (figure - exact(computed)).to_f64().value()
 }
 
-/// Exact logarithms of the gains.
+/// Exact logarithmic gains.
 struct Logarithms {
     inputs: Vec<Exact>,
     outputs: Vec<Exact>,
 }
 
-/// Exact value of a node.
+/// A node's exact value.
 fn exact_node(node: &Placement, scales: &[f64]) -> Exact {
     exact(node.offset.value) + exact(scales[node.component])
 }
@@ -61,8 +61,8 @@ impl Sample {
         }
     }
 
-    /// Exact logarithms of the gains: an input's is its component's scale, a constrained output's
-    /// follows from its entry.
+    /// Computes exact logarithmic gains: an input's is its component's scale, a constrained
+    /// output's follows from its entry.
     fn logarithms(&self, scales: &[f64]) -> Logarithms {
         let nodes = self.components.nodes();
         let inputs: Vec<Exact> = nodes
@@ -84,7 +84,7 @@ impl Sample {
         Logarithms { inputs, outputs }
     }
 
-    /// Exact square of an entry's residual, a ratio or in dB.
+    /// Computes the exact square for an entry's residual, a ratio or in dB.
     fn exact_square(&self, delta: f64, logarithm: &Exact) -> Exact {
         let miss = match self.problem.quantity {
             Quantity::Gain(GainObjective::Ratio) => exact(delta) - logarithm.exp(),
@@ -107,7 +107,7 @@ impl Sample {
         sum
     }
 
-    /// The point of the box at these shares of its width.
+    /// Returns the point in the box at these shares along its width.
     fn at(&self, shares: &[f64]) -> Vec<f64> {
         let ends = self
             .objective
@@ -119,8 +119,8 @@ impl Sample {
             .collect()
     }
 
-    /// Part of the box that contains `inside`: every difference is cut at a share of the width on
-    /// either side of it.
+    /// Returns a part of the box that contains `inside`: every difference is cut at a share along
+    /// the width on either side.
     fn region(&self, inside: &[f64], width: f64) -> DifferenceBounds {
         let mut region = DifferenceBounds::from_box(&self.objective.lower, &self.objective.upper);
         for from in 0..inside.len() {

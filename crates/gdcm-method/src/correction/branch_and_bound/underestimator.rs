@@ -1,5 +1,5 @@
-//! A convex underestimator of the objective over one node (part of the box of the scales), and its
-//! lower bounds.
+//! A convex underestimator of the objective over a node (part of the scale box), and its lower
+//! bounds.
 
 use super::derivatives::Derivatives;
 use super::difference_bounds::DifferenceBounds;
@@ -17,11 +17,11 @@ struct EnvelopeLines {
     backward: Option<Line>,
 }
 
-/// Underestimator of one term over the range of its difference.
+/// Underestimator of a term over the range of its difference.
 ///
-/// Newton's method keeps to the box of the node only, so beyond the range the underestimator
-/// continues along its tangent and bends up: any convex continuation is valid, and this one keeps
-/// the minimum near.
+/// Newton's method keeps to the node's box only, so beyond the range the underestimator continues
+/// along its tangent and bends up: any convex continuation is valid, and this one keeps the minimum
+/// near.
 #[derive(Clone, Copy, Debug)]
 struct TermUnder {
     /// `None` where the term is convex over the node and is its own underestimator.
@@ -71,12 +71,12 @@ impl TermUnder {
     }
 }
 
-/// End of a term's concave interval.
+/// Where a term's concave interval ends.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ConcaveEnd {
     pub(super) from: usize,
     pub(super) to: usize,
-    /// Value of `s_to - s_from`.
+    /// `s_to - s_from`.
     pub(super) at: f64,
     /// Distance from the present difference.
     distance: f64,
@@ -88,7 +88,7 @@ struct RankedTerm<'a> {
     rank: f64,
 }
 
-/// Returns the term of the greatest rank, the last of equal ones.
+/// Returns the term with the greatest rank, the last among equals.
 fn highest<'a>(terms: impl Iterator<Item = RankedTerm<'a>>) -> Option<RankedTerm<'a>> {
     terms.max_by(|a, b| a.rank.total_cmp(&b.rank))
 }
@@ -97,7 +97,7 @@ fn highest<'a>(terms: impl Iterator<Item = RankedTerm<'a>>) -> Option<RankedTerm
 pub(crate) struct Underestimator<'a> {
     objective: &'a Objective,
     unders: Vec<TermUnder>,
-    /// Curvature outside the ranges of the differences.
+    /// Curvature outside the differences' ranges.
     beyond: f64,
 }
 
@@ -106,7 +106,7 @@ impl<'a> Underestimator<'a> {
     pub(crate) const WORK_PER_TERM: u64 = 12;
 
     /// Creates the underestimator of `objective` over `region`, with curvature `beyond` outside the
-    /// ranges of the differences.
+    /// differences' ranges.
     pub(crate) fn new(objective: &'a Objective, region: &DifferenceBounds, beyond: f64) -> Self {
         let unders = objective
             .terms
@@ -154,8 +154,8 @@ impl<'a> Underestimator<'a> {
         }
     }
 
-    /// Finds the terms that are not convex over the node but convex at `scales`, each with the end
-    /// of its concave interval, furthest end first. The parts beyond the ends are easily bounded,
+    /// Finds the terms that are not convex over the node but convex at `scales`, each with its
+    /// concave interval's end, furthest end first. The parts beyond the ends are easily bounded,
     /// and the rest is convex in these terms.
     pub(super) fn concave_ends(&self, scales: &[f64]) -> Vec<ConcaveEnd> {
         let mut ends = Vec::new();
@@ -175,7 +175,7 @@ impl<'a> Underestimator<'a> {
     }
 
     /// Returns the term whose slope varies most over the node, weighted with its range: it hides
-    /// the sign of a scale's slope, or the uniqueness of the minimum.
+    /// the sign of a scale's slope, or that the minimum is unique.
     pub(crate) fn widest_slope(&self) -> Option<&'a Term> {
         let terms = self.objective.terms.iter().zip(&self.unders);
         let variations = terms.map(|(term, under)| {
@@ -188,7 +188,7 @@ impl<'a> Underestimator<'a> {
         highest(variations).map(|widest| widest.term)
     }
 
-    /// Evaluates the underestimator of a term, also outside its range.
+    /// Evaluates a term's underestimator, also outside its range.
     fn at(&self, term: &Term, under: &TermUnder, scales: &[f64]) -> Derivatives {
         let u = term.difference(scales);
         let end = under.range.nearest(u);
@@ -230,7 +230,7 @@ impl Differentiable for Underestimator<'_> {
 }
 
 /// Bounds a convex function over a box from below, by its tangent plane at `scales` (inside the
-/// box), less the rounding of the value, of every slope and of their sum.
+/// box), less the rounding in the value, in every slope and in their sum.
 pub(super) fn tangent_bound(scales: &[f64], at: &Expansion, bounds: ScaleBox<'_>) -> f64 {
     let mut bound = at.value.value - at.value.error;
     for scale in 0..scales.len() {
@@ -241,7 +241,7 @@ pub(super) fn tangent_bound(scales: &[f64], at: &Expansion, bounds: ScaleBox<'_>
         bound -= down.max(up);
     }
     // Each of the n + 1 differences rounds a figure between the value and the bound; each product
-    // four times, of their sum.
+    // rounds four times, relative to their sum.
     bound - (scales.len() as f64 + 5.0) * f64::EPSILON * at.value.value.abs().max(bound.abs())
 }
 
@@ -268,7 +268,7 @@ pub(super) fn quadratic_bound(
     }
     let farthest = sum * reach.iter().fold(0.0_f64, |most, reach| most.max(*reach));
     if farthest <= within {
-        // A millionth above the parabola's depth covers the rounding of the sum and of the inverse.
+        // A millionth above the parabola's depth covers rounding in the sum and in the inverse.
         let bound = at.value.value - at.value.error - 0.5 * sum * sum * (1.0 + 1e-6);
         Some(bound - 4.0 * f64::EPSILON * bound.abs())
     } else {
@@ -342,8 +342,8 @@ mod tests {
                 underestimator.expand(&scales, Curvature::True, &mut at);
                 let value = objective.value(&scales);
                 prop_assert!(at.value.value - at.value.error <= value, "{} is above {}", at.value.value, value);
-                // The difference is measured from node 0 to node 1: the slope of node 1 falls as
-                // the scale of node 0 rises.
+                // The difference is measured from node 0 to node 1: the slope in node 1 falls as
+                // scale 0 rises.
                 let rounding = 1e-9 * (1.0 + steepness.abs().min(1e9));
                 prop_assert!(at.gradient[1] <= steepness + rounding, "{} after {}", at.gradient[1], steepness);
                 steepness = at.gradient[1];

@@ -11,7 +11,7 @@ use super::conflict::{Conflict, ConflictKind};
 use super::problem::Problem;
 use super::rounding::three_digits;
 
-/// A missed entry with the smallest conflict behind it.
+/// A missed entry with the smallest conflict that explains it.
 #[derive(Clone, Debug)]
 pub(crate) struct EntryConflict {
     pub(crate) missed: Pair,
@@ -103,9 +103,9 @@ struct Flow<'a> {
     problem: &'a Problem,
     constraints: &'a Constraints,
     pulls: Vec<Pull>,
-    /// Whether the lower bound stops the pulls, for each node.
+    /// For each node, whether its lower bound stops the pulls.
     at_lower: Vec<bool>,
-    /// Whether the upper bound stops the pulls, for each node.
+    /// For each node, whether its upper bound stops the pulls.
     at_upper: Vec<bool>,
 }
 

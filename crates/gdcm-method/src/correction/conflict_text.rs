@@ -139,18 +139,20 @@ impl ConflictText<'_> {
                 asked,
                 upper,
                 lower,
-            } => match conflict.quantity {
-                Quantity::Gain(_) => self.ratio_too_great(
-                    greater,
-                    lesser,
-                    asked,
-                    &format!(
-                        "set the upper bound to {upper}, or the lower bound to {}, or",
-                        lower.unwrap_or(conflict.bounds.lower)
-                    ),
-                ),
-                _ => self.difference_too_great(greater, lesser, asked, upper),
-            },
+            } if conflict.quantity.is_gain() => {
+                let lower = lower.unwrap_or(conflict.bounds.lower);
+                let limit = self.ratio_too_great(greater, lesser, asked);
+                format!(
+                    "{limit}; set the upper bound to {upper}, or the lower bound to {lower}, or"
+                )
+            }
+            ConflictKind::TooFarApart {
+                greater,
+                lesser,
+                asked,
+                upper,
+                ..
+            } => self.difference_too_great(greater, lesser, asked, upper),
         };
         format!("{entries} {cannot}: {limit} {release}.")
     }
@@ -207,20 +209,14 @@ impl ConflictText<'_> {
     }
 
     /// Describes a gain ratio above the ratio between the bounds.
-    fn ratio_too_great(
-        &self,
-        greater: Channel,
-        lesser: Channel,
-        asked: f64,
-        remedies: &str,
-    ) -> String {
+    fn ratio_too_great(&self, greater: Channel, lesser: Channel, asked: f64) -> String {
         let greater = self.symbol(greater);
         let lesser = self.symbol(lesser);
         let low = self.conflict.bounds.lower;
         let high = self.conflict.bounds.upper;
         let (most, asked) = told_apart(high / low, asked, 3);
         format!(
-            "with {greater} <= {high:.3} and {lesser} >= {low:.3} their ratio is at most {most}, not {asked}; {remedies}"
+            "with {greater} <= {high:.3} and {lesser} >= {low:.3} their ratio is at most {most}, not {asked}"
         )
     }
 

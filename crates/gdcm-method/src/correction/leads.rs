@@ -143,7 +143,7 @@ impl LeadDesign {
     /// 1  low, high = 0, l_max;  l = tau / d'(0), at most l_max
     /// 2  miss = d(l) - tau;  low or high = l, by the sign of the miss: d falls
     /// 3  l' = l - miss / d'(l);  the midpoint where l' is not between low and high
-    /// 4  l = l', again from 2, until l changes by less than a relative 1e-9: Newton's error is then 1e-18
+    /// 4  l = l', again from 2, until l changes by less than a relative 1e-9: the error is then about the square
     /// ```
     ///
     /// Newton's method kept inside a bracket (Press et al., "Numerical Recipes", 3rd ed. 2007,

@@ -109,7 +109,7 @@ impl Sensitivity {
     }
 }
 
-/// Computes the sensitivity for every constrained entry and every active bound, the most expensive
+/// Computes the sensitivity to every constrained entry and every active bound, the most expensive
 /// first.
 ///
 /// `solution` solves `problem` ([`super::solve`]).
@@ -349,7 +349,7 @@ pub struct Toggle {
     pub before: f64,
     /// Least objective with the toggle.
     pub after: f64,
-    /// Infeasible constrained entries with the toggle.
+    /// Count of infeasible constrained entries with the toggle.
     pub unmatched_after: usize,
     /// Whether the entry itself is feasible, if the toggle constrains it.
     pub matched_after: bool,

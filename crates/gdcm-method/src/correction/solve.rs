@@ -171,7 +171,7 @@ fn select_piece(piece: &[usize], nodes: &[Placement], values: &[f64]) -> Vec<f64
     selected
 }
 
-/// Returns the shift for a piece's scales (inputs rise, outputs fall) at which the regularised
+/// Returns the shift of a piece's scales (inputs rise, outputs fall) at which the regularised
 /// departures are least: the outputs nearest to gain 1 or to zero delay (the inputs, where there is
 /// no output); for signed delays the least sum over all their squares.
 fn least_departure_shift(quantity: Quantity, channels: &ChannelCoordinates) -> f64 {

@@ -24,7 +24,7 @@ pub enum FitError {
 /// with the smallest `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
 ///
 /// ```text
-/// 1  vertex <- where the constraints x_i w = y_i, w_k = 0 meet that the least squares fit satisfies best
+/// 1  vertex <- intersection of those constraints x_i w = y_i, w_k = 0 that the least squares fit satisfies best
 /// 2  edge along which the sum falls: release a constraint in the basis, move to where the sum stops falling,
 ///    add the constraint met there; again from 2
 /// 3  edges along which the sum stays the same: compare all vertices that they lead to; again from 2
@@ -399,7 +399,7 @@ impl Vertex {
             .all(|(a, b)| (a - b).abs() <= ZERO)
     }
 
-    /// Returns the vertices at the far ends along which the deviations do not grow. Among
+    /// Returns the end vertices of the edges along which the deviations do not grow. Among
     /// descending edges it takes the steepest: with many rows, the first descending edge would need
     /// ten times as many steps.
     fn neighbours(&self, fit: &Fit<'_>) -> Neighbours {

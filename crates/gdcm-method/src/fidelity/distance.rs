@@ -63,7 +63,7 @@ impl MeasuredPairs {
 #[derive(Clone, Debug, PartialEq)]
 pub struct BundleDistance {
     measured: MeasuredPairs,
-    /// Models that are not set aside.
+    /// Count of models that are not set aside.
     count: usize,
     /// Each model's position among them; `None` if set aside.
     places: Vec<Option<usize>>,

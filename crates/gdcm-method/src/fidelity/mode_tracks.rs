@@ -59,7 +59,7 @@ pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
             .zip(&modes)
             .map(|(model, mode)| mode.map(|mode| model[mode].pole))
             .collect();
-        // The conjugate mode has its own track.
+        // The track of the conjugate mode covers both.
         let is_mirror =
             reference_mode.pole.im < 0.0 && poles.iter().flatten().all(|pole| pole.im < 0.0);
         if !is_mirror {

@@ -164,8 +164,8 @@ impl<'a> NodeExclusion<'a> {
     }
 
     /// Chooses a reference scale for each floating piece: a fixed scale or, where bounds push, the
-    /// scale pushed hardest. Slopes in scales without push lean on it; `None` where its push does
-    /// not outweigh them.
+    /// scale pushed hardest. Slopes in scales that no bound pushes lean on it; `None` where its
+    /// push does not outweigh them.
     fn anchors(&self, at: &Expansion, push: &[f64]) -> Option<Vec<usize>> {
         let mut anchors = Vec::new();
         for piece in &self.floating {

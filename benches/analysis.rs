@@ -77,10 +77,10 @@ fn stages(criterion: &mut Criterion) {
             .iter(|| BundleMetrics::of(condition, &responses, &measuring, (&grid, None), &alone));
     });
     group.bench_function("ratios", |bencher| {
-        bencher.iter(|| Discontinuity::of(&figures.physics, &perturbations, &|| false))
+        bencher.iter(|| Discontinuity::fit(&figures.physics, &perturbations, &|| false))
     });
     group.bench_function("G and D", |bencher| {
-        bencher.iter(|| Delta::of(&mismatch, grid.omega()))
+        bencher.iter(|| Delta::new(&mismatch, grid.omega()))
     });
     group.bench_function("bounds", |bencher| {
         bencher.iter(|| {

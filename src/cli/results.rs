@@ -15,7 +15,7 @@ use gdcm_io::export::{
 use gdcm_io::files::corrections_file::{result_paths, write_results};
 use gdcm_io::output_set::make_directory;
 use gdcm_io::report::{ReportSource, ReportSubject, report as report_of, save_report};
-use gdcm_method::correction::corrected_model::HIGHEST_PADE_ORDER;
+use gdcm_method::correction::pade::HIGHEST_PADE_ORDER;
 use gdcm_method::correction::{Channel, Pade};
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::message_text::{sanitized, sanitized_path};

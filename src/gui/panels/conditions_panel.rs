@@ -6,7 +6,7 @@ use egui::{
     vec2,
 };
 
-use gdcm_method::correction::solve::Unmatched;
+use gdcm_method::correction::solution::Unmatched;
 use gdcm_method::fidelity::Cost;
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Pair};

@@ -1,7 +1,8 @@
 //! Verdict: whether the corrected model holds, and the next step if it does not.
 
 use gdcm_method::correction::LeadPrice;
-use gdcm_method::correction::conflict::{ConflictKind, Remedy};
+use gdcm_method::correction::conflict::ConflictKind;
+use gdcm_method::correction::remedy::Remedy;
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
 use gdcm_model::response::median;

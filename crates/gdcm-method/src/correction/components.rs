@@ -1,74 +1,110 @@
-//! Channels tied together by constrained products, and the feasible targets of the constrained
-//! entries (stage 1).
+//! Channels tied together by constrained products, and the feasible targets for constrained entries
+//! (M8 and M9, stage 1).
 
 use gdcm_model::dataset::Pair;
 
+use super::branch_and_bound::objective::Objective;
+use super::branch_and_bound::rounded::Rounded;
+use super::branch_and_bound::term::{Function, Term};
+use super::channels::Channel;
+use super::interval::Interval;
 use super::problem::Problem;
-use crate::correction::branch_and_bound::objective::Objective;
-use crate::correction::branch_and_bound::term::{Function, Rounded, Term};
 
-/// Constraints on the channels: sums of coordinates over the constrained entries, in a box.
+/// Constraints on the channels: sums of coordinates for the constrained entries, in a box.
 ///
 /// The channels are *nodes* here, the inputs first: an input's value is its coordinate, an output's
-/// is minus its coordinate, so that a constrained entry prescribes a difference of two nodes.
+/// is minus its coordinate, so that a constrained entry prescribes the difference between two
+/// nodes.
 #[derive(Clone, Debug)]
-pub(crate) struct Held {
+pub(crate) struct Constraints {
     pub(crate) outputs: usize,
     pub(crate) inputs: usize,
-    /// Each constrained entry with its delta as a sum of coordinates.
-    pub(crate) entries: Vec<(Pair, f64)>,
-    /// Least and greatest value of every channel.
-    pub(crate) range: (f64, f64),
+    pub(crate) entries: Vec<ConstrainedSum>,
+    /// Coordinate range, the same for every channel.
+    pub(crate) range: Interval,
 }
 
-impl Held {
-    /// Constraints of `problem`.
-    pub(crate) fn of(problem: &Problem) -> Self {
+/// A constrained entry.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ConstrainedSum {
+    pub(crate) pair: Pair,
+    /// Prescribed sum over the two channels' coordinates.
+    pub(crate) sum: f64,
+}
+
+/// Nodes of a response's two channels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PairNodes {
+    pub(crate) input: usize,
+    pub(crate) output: usize,
+}
+
+impl Constraints {
+    /// Collects the constraints in `problem`.
+    pub(crate) fn new(problem: &Problem) -> Self {
         let coordinate = problem.coordinate();
         Self {
             outputs: problem.delta.outputs(),
             inputs: problem.delta.inputs(),
             entries: problem
-                .held_entries()
-                .map(|(pair, delta)| (pair, coordinate.of(delta)))
+                .constrained_entries()
+                .map(|entry| ConstrainedSum {
+                    pair: entry.pair,
+                    sum: coordinate.coordinate(entry.delta),
+                })
                 .collect(),
             range: problem.range(),
         }
     }
 
-    /// Number of nodes.
+    /// Returns the same channels with other constraints.
+    pub(crate) fn with_entries(&self, entries: Vec<ConstrainedSum>) -> Self {
+        Self { entries, ..*self }
+    }
+
+    /// Node count.
     pub(crate) fn nodes(&self) -> usize {
         self.inputs + self.outputs
     }
 
-    /// Nodes of an entry's input and output.
-    pub(crate) fn nodes_of(&self, pair: Pair) -> (usize, usize) {
-        (pair.input, self.inputs + pair.output)
+    /// Returns the nodes for an entry's input and output.
+    pub(crate) fn nodes_of(&self, pair: Pair) -> PairNodes {
+        PairNodes {
+            input: pair.input,
+            output: self.inputs + pair.output,
+        }
     }
 
-    /// Least and greatest value of a node.
-    pub(crate) fn ends(&self, node: usize) -> (f64, f64) {
-        let (low, high) = self.range;
+    /// Returns a node's channel.
+    pub(crate) fn channel(&self, node: usize) -> Channel {
         if node < self.inputs {
-            (low, high)
+            Channel::Input(node)
         } else {
-            (-high, -low)
+            Channel::Output(node - self.inputs)
+        }
+    }
+
+    /// Returns the range of a node's value.
+    pub(crate) fn node_range(&self, node: usize) -> Interval {
+        if node < self.inputs {
+            self.range
+        } else {
+            self.range.mirrored()
         }
     }
 }
 
-/// Position of a node in its component.
+/// A node's position in its component.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
     pub(crate) component: usize,
-    /// Value of the node where the component's scale is 0. Its rounding is the rounding of the
-    /// constrained sums on the way from the component's first node, and of the ends of the
-    /// component's scale.
+    /// The node's value where the component's scale is 0. Rounding arises in the constrained sums
+    /// between the component's first node and this node, and at both ends of the scale.
     pub(crate) offset: Rounded,
 }
 
 impl Placement {
-    /// Position of the node at the other end of a constrained entry, at the distance `by`.
+    /// Returns the position across a constrained entry, at the distance `by`.
     fn across(self, by: f64) -> Self {
         // A logarithm, or a time in another unit, is rounded once.
         let mut offset = Rounded {
@@ -80,34 +116,48 @@ impl Placement {
     }
 }
 
-/// Connected components of the bipartite graph of the constrained entries, one free scale each (M8,
+/// Input nodes and output nodes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Nodes<'a> {
+    pub(crate) inputs: &'a [Placement],
+    pub(crate) outputs: &'a [Placement],
+}
+
+/// Input coordinates and output coordinates.
+#[derive(Clone, Debug)]
+pub(crate) struct ChannelCoordinates {
+    pub(crate) inputs: Vec<f64>,
+    pub(crate) outputs: Vec<f64>,
+}
+
+/// Connected components in the bipartite graph of constrained entries, each with a free scale (M8,
 /// structure).
 ///
-/// With the scale `s` of its component a node has the value `offset + s`, so that the sum of a
-/// constrained entry does not depend on `s`: in logarithms of gains, or in delays. A channel
-/// without a constrained entry is a component of its own.
+/// With its component's scale `s` a node has the value `offset + s`, so that a constrained sum does
+/// not depend on `s`: in logarithmic gains, or in delays. A channel without a constrained entry is
+/// a component by itself.
 #[derive(Clone, Debug)]
 pub(crate) struct Components {
     /// The inputs, then the outputs.
     nodes: Vec<Placement>,
     inputs: usize,
-    /// Least scale of each component that keeps its channels inside the box.
+    /// Least scale that keeps the channels inside the box, for each component.
     pub(crate) lower: Vec<f64>,
-    /// Greatest scale of each component that keeps its channels inside the box.
+    /// Greatest scale that keeps the channels inside the box, for each component.
     pub(crate) upper: Vec<f64>,
-    /// Infeasibility of each component: the worst disagreement of a loop, or the width that the box
+    /// Infeasibility of each component: the worst disagreement in a loop, or the width that the box
     /// lacks.
     strain: Vec<f64>,
 }
 
-/// Strain below which a component counts as feasible: well below the 1e-8 of M8, so that the error
-/// of its product stays below 1e-9.
+/// Strain below which a component counts as feasible: well below 1e-8 (M8), so that the error in
+/// its product stays below 1e-9.
 pub(crate) const STRAIN: f64 = 1e-9;
 
 impl Components {
-    /// Components of the constrained entries.
-    pub(crate) fn new(held: &Held) -> Self {
-        let mut placed: Vec<Option<Placement>> = vec![None; held.nodes()];
+    /// Finds the components that the constrained entries form.
+    pub(crate) fn new(constraints: &Constraints) -> Self {
+        let mut placed: Vec<Option<Placement>> = vec![None; constraints.nodes()];
         let mut count = 0;
         for node in 0..placed.len() {
             if placed[node].is_none() {
@@ -116,38 +166,35 @@ impl Components {
                     offset: Rounded::default(),
                 });
                 count += 1;
-                spread(&mut placed, held);
+                place_tied_nodes(&mut placed, constraints);
             }
         }
         let mut components = Self {
             nodes: placed.into_iter().flatten().collect(),
-            inputs: held.inputs,
+            inputs: constraints.inputs,
             lower: vec![f64::NEG_INFINITY; count],
             upper: vec![f64::INFINITY; count],
             strain: vec![0.0; count],
         };
-        components.close_box(held);
-        components.centre(held.range);
-        components.close_box(held);
-        for (pair, sum) in &held.entries {
-            let miss = (components.sum(*pair) - sum).abs();
-            let strain = &mut components.strain[components.nodes[pair.input].component];
-            *strain = strain.max(miss);
-        }
+        components.close_box(constraints);
+        components.centre(constraints.range);
+        components.close_box(constraints);
+        components.strain_loops(constraints);
         components
     }
 
-    /// Number of components.
+    /// Component count.
     pub(crate) fn count(&self) -> usize {
         self.lower.len()
     }
 
-    /// Nodes of the inputs and of the outputs.
-    pub(crate) fn sides(&self) -> (&[Placement], &[Placement]) {
-        self.nodes.split_at(self.inputs)
+    /// Returns the nodes on both sides.
+    pub(crate) fn nodes(&self) -> Nodes<'_> {
+        let (inputs, outputs) = self.nodes.split_at(self.inputs);
+        Nodes { inputs, outputs }
     }
 
-    /// Sum of two channels of one component, the same at every scale.
+    /// Returns the sum of two channels in the same component, which is the same at every scale.
     pub(crate) fn sum(&self, pair: Pair) -> f64 {
         self.nodes[pair.input].offset.value - self.nodes[self.inputs + pair.output].offset.value
     }
@@ -157,23 +204,35 @@ impl Components {
         self.strain.iter().all(|strain| *strain <= STRAIN)
     }
 
-    /// Logarithm (or delay) of each input and of each output at these scales.
-    pub(crate) fn channels(&self, scales: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let value = |node: &Placement| node.offset.value + scales[node.component];
-        let (inputs, outputs) = self.sides();
-        // Subtracted from zero, so that no zero is negative.
-        (
-            inputs.iter().map(value).collect(),
-            outputs.iter().map(|node| 0.0 - value(node)).collect(),
-        )
+    /// Whether an entry's component is infeasible.
+    fn is_strained(&self, pair: Pair) -> bool {
+        self.strain[self.nodes[pair.input].component] > STRAIN
+    }
+
+    /// Returns every channel's logarithm (or delay) at these scales.
+    pub(crate) fn channels(&self, scales: &[f64]) -> ChannelCoordinates {
+        let nodes = self.nodes();
+        ChannelCoordinates {
+            inputs: nodes
+                .inputs
+                .iter()
+                .map(|node| node.offset.value + scales[node.component])
+                .collect(),
+            // Subtracted from zero, so that no zero is negative.
+            outputs: nodes
+                .outputs
+                .iter()
+                .map(|node| 0.0 - (node.offset.value + scales[node.component]))
+                .collect(),
+        }
     }
 
     /// Moves every scale's zero to the middle of its interval, so that no channel is far outside
     /// the box at scale 0.
-    fn centre(&mut self, (low, high): (f64, f64)) {
-        // A scale at its end differs from the exact value by the rounding of `low` or `high`, and
-        // of the offset subtracted from it.
-        let error = 2.0 * f64::EPSILON * low.abs().max(high.abs());
+    fn centre(&mut self, range: Interval) {
+        // A scale at its end differs from the exact value by two roundings: the range's end, and
+        // the offset subtracted from it.
+        let error = 2.0 * f64::EPSILON * range.low.abs().max(range.high.abs());
         for node in &mut self.nodes {
             let middle = 0.5 * (self.lower[node.component] + self.upper[node.component]);
             node.offset.add(Rounded {
@@ -183,38 +242,48 @@ impl Components {
         }
     }
 
-    /// Sets the interval of each scale; an empty interval is replaced by its midpoint.
-    fn close_box(&mut self, held: &Held) {
+    /// Sets every scale's interval; an empty interval is replaced by its midpoint.
+    fn close_box(&mut self, constraints: &Constraints) {
         self.lower.fill(f64::NEG_INFINITY);
         self.upper.fill(f64::INFINITY);
         for (index, node) in self.nodes.iter().enumerate() {
-            let (least, most) = held.ends(index);
+            let range = constraints.node_range(index);
             let lower = &mut self.lower[node.component];
             let upper = &mut self.upper[node.component];
-            *lower = lower.max(least - node.offset.value);
-            *upper = upper.min(most - node.offset.value);
+            *lower = lower.max(range.low - node.offset.value);
+            *upper = upper.min(range.high - node.offset.value);
         }
         for component in 0..self.count() {
             let lacking = self.lower[component] - self.upper[component];
             if lacking > 0.0 {
                 self.strain[component] = lacking;
                 let middle = 0.5 * (self.lower[component] + self.upper[component]);
-                (self.lower[component], self.upper[component]) = (middle, middle);
+                self.lower[component] = middle;
+                self.upper[component] = middle;
             }
+        }
+    }
+
+    /// Raises every component's strain to the worst disagreement in its loops.
+    fn strain_loops(&mut self, constraints: &Constraints) {
+        for entry in &constraints.entries {
+            let miss = (self.sum(entry.pair) - entry.sum).abs();
+            let strain = &mut self.strain[self.nodes[entry.pair.input].component];
+            *strain = strain.max(miss);
         }
     }
 }
 
 /// Places every node that constrained entries tie to a placed node, along a spanning tree.
-fn spread(placed: &mut [Option<Placement>], held: &Held) {
+fn place_tied_nodes(placed: &mut [Option<Placement>], constraints: &Constraints) {
     let mut grown = true;
     while grown {
         grown = false;
-        for (pair, sum) in &held.entries {
-            let (input, output) = held.nodes_of(*pair);
+        for entry in &constraints.entries {
+            let PairNodes { input, output } = constraints.nodes_of(entry.pair);
             match (placed[input], placed[output]) {
-                (Some(known), None) => placed[output] = Some(known.across(-sum)),
-                (None, Some(known)) => placed[input] = Some(known.across(*sum)),
+                (Some(known), None) => placed[output] = Some(known.across(-entry.sum)),
+                (None, Some(known)) => placed[input] = Some(known.across(entry.sum)),
                 _ => continue,
             }
             grown = true;
@@ -225,12 +294,12 @@ fn spread(placed: &mut [Option<Placement>], held: &Held) {
 /// Feasible sums nearest to the prescribed sums, subject to the box and the loops.
 #[derive(Clone, Debug)]
 pub(crate) struct Reached {
-    /// Each constrained entry with its target, in the order of `entries`.
-    pub(crate) targets: Vec<(Pair, f64)>,
-    /// Components of the constrained entries at their targets.
+    /// The constrained entries with their targets, ordered like [`Constraints::entries`].
+    pub(crate) targets: Vec<ConstrainedSum>,
+    /// Components with the constrained entries at their targets.
     pub(crate) components: Components,
-    /// A point of the box that reaches the targets, a value for each node; only where an entry is
-    /// infeasible.
+    /// A point in the box that reaches the targets, a value for each node; `None` where every entry
+    /// is feasible.
     pub(crate) point: Option<Vec<f64>>,
 }
 
@@ -240,35 +309,26 @@ pub(crate) struct Reached {
 /// Feasible components keep the prescribed sums exactly. `minimise` returns the minimum of a sum of
 /// squares over a box; it is only called where an entry is infeasible.
 pub(crate) fn reach<E>(
-    held: &Held,
+    constraints: &Constraints,
     minimise: impl FnOnce(&Objective) -> Result<Vec<f64>, E>,
 ) -> Result<Reached, E> {
-    let asked = Components::new(held);
+    let asked = Components::new(constraints);
     if asked.are_possible() {
         return Ok(Reached {
-            targets: held.entries.clone(),
+            targets: constraints.entries.clone(),
             components: asked,
             point: None,
         });
     }
-    let strained = |pair: Pair| asked.strain[asked.nodes[pair.input].component] > STRAIN;
-    let point = minimise(&nearest(held, strained))?;
-    let target = |&(pair, delta): &(Pair, f64)| {
-        let (input, output) = held.nodes_of(pair);
-        (
-            pair,
-            if strained(pair) {
-                point[input] - point[output]
-            } else {
-                delta
-            },
-        )
-    };
-    let targets: Vec<(Pair, f64)> = held.entries.iter().map(target).collect();
-    let components = Components::new(&Held {
-        entries: targets.clone(),
-        ..*held
-    });
+    let point = minimise(&nearest_sums(constraints, &asked))?;
+    let mut targets = constraints.entries.clone();
+    for target in &mut targets {
+        if asked.is_strained(target.pair) {
+            let nodes = constraints.nodes_of(target.pair);
+            target.sum = point[nodes.input] - point[nodes.output];
+        }
+    }
+    let components = Components::new(&constraints.with_entries(targets.clone()));
     Ok(Reached {
         targets,
         components,
@@ -276,36 +336,41 @@ pub(crate) fn reach<E>(
     })
 }
 
-/// The least squares problem of stage 1: one scale for each node, and the ground.
-fn nearest(held: &Held, strained: impl Fn(Pair) -> bool) -> Objective {
-    let ends = (0..held.nodes())
-        .map(|node| held.ends(node))
-        .chain([(0.0, 0.0)]);
-    let (lower, upper) = ends.unzip();
-    let terms = held
-        .entries
-        .iter()
-        .filter(|(pair, _)| strained(*pair))
-        .map(|&(pair, delta)| {
-            let (to, from) = held.nodes_of(pair);
+/// Builds the least squares problem for stage 1 over the infeasible components: a scale for each
+/// node, and the ground.
+fn nearest_sums(constraints: &Constraints, asked: &Components) -> Objective {
+    let mut lower = Vec::new();
+    let mut upper = Vec::new();
+    for node in 0..constraints.nodes() {
+        let range = constraints.node_range(node);
+        lower.push(range.low);
+        upper.push(range.high);
+    }
+    lower.push(0.0);
+    upper.push(0.0);
+    let mut terms = Vec::new();
+    for entry in &constraints.entries {
+        if asked.is_strained(entry.pair) {
+            let nodes = constraints.nodes_of(entry.pair);
             let centre = Rounded {
-                value: delta,
+                value: entry.sum,
                 error: 0.0,
             };
-            Term {
-                from,
-                to,
+            terms.push(Term {
+                from: nodes.output,
+                to: nodes.input,
                 function: Function::Quadratic {
                     weight: 1.0,
                     centre,
                     relative: 0.0,
                 },
-            }
-        });
+            });
+        }
+    }
     Objective {
         lower,
         upper,
-        terms: terms.collect(),
+        terms,
         constant: Rounded::default(),
     }
 }

@@ -1,39 +1,43 @@
 //! A corrected model as matrices (M10), with delays replaced by rational functions where states are
 //! required.
 
-use nalgebra::{Complex, DMatrix, DVector, RowDVector};
+use nalgebra::DMatrix;
 
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::dataset::limits::MOST_STATES;
 use gdcm_model::dataset::state_space::{StateSpaceError, Timing};
-use gdcm_model::response::{LeadFilter, LeadOrder};
+use gdcm_model::response::LeadFilter;
 use gdcm_model::units::number;
 
-use super::channels::{Channel, ChannelCorrection, Channels};
+use super::channel_correction::ChannelCorrection;
+use super::channel_model::ChannelModel;
+use super::channels::{Channel, Channels};
+use super::pade::Pade;
 
-/// Tolerance, in samples, of a delay from a whole number of samples. Computed delays are rounded.
+/// Tolerance, in samples, between a delay and a whole sample count. Computed delays are rounded.
 const SAMPLE_TOLERANCE: f64 = 1e-6;
 
 /// Delay \[s\] below which a delay counts as zero: rounding residues would give states with
 /// enormous entries. At 12 rad/s it changes the phase by less than a millionth of a degree.
 const LEAST_DELAY_S: f64 = 1e-9;
 
-/// `M_O H M_I` without delays: the delays of the correction and of the model itself have become
-/// states (M10, M2a).
+/// `M_O H M_I` without delays: those in the correction and in the model itself have become states
+/// (M10, M2a).
 ///
-/// In continuous time each delayed channel has the states of a Pade approximant, in discrete time
+/// In continuous time each delayed channel has the states for a Pade approximant, in discrete time
 /// one state for each sample, exactly. Gains are exact, and so are lead filters in continuous time
 /// (M15.3); in discrete time these follow Tustin's rule. A channel without delay and lead adds no
-/// state. States of the inputs come first, then the model's, then the outputs'.
+/// state. The states follow the signal: input leads, input delays, the model's own states, output
+/// delays, output leads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrectedModel {
     /// Four matrices; no delays.
     pub model: StateSpace,
-    /// Number of delay states of each channel: those of the inputs precede the model's own, those
-    /// of the outputs follow them.
+    /// Delay states for each channel: input states precede the model's own, output states follow
+    /// them.
     pub delay_states: Channels<usize>,
-    /// Number of lead filter states of each channel: those of the inputs precede all others, those
-    /// of the outputs follow all others.
+    /// Lead filter states for each channel: input states precede all others, output states follow
+    /// all others.
     pub lead_states: Channels<usize>,
     leads: Channels<Option<LeadFilter>>,
     sample_time_s: Option<f64>,
@@ -45,7 +49,7 @@ pub struct CorrectedModel {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", self.words(&[], &[]))]
 pub enum CorrectedModelError {
-    /// A delay of a discrete-time model is not a whole number of samples.
+    /// A discrete-time model's delay is not a whole sample count.
     PartOfSample {
         channel: Channel,
         /// Its delay \[s\].
@@ -62,7 +66,7 @@ pub enum CorrectedModelError {
     },
     /// The delays need more states than a model may have.
     TooManyStates {
-        /// Number of states needed.
+        /// States needed.
         states: usize,
     },
     /// A product is not finite.
@@ -89,15 +93,13 @@ impl CorrectedModelError {
                 sample_time_s,
                 longest_s,
             } => format!(
-                "its sample time of {} s is too long for the lead filters; at most {} s, half of their lag, is allowed",
+                "the sample time of {} s is too long for the lead filters; at most {} s, half of their lag, is allowed",
                 number(*sample_time_s),
                 number(*longest_s)
             ),
-            Self::TooManyStates { states } => {
-                format!(
-                    "with its delays as states it would have {states} of them; at most {MOST_STATES} are written"
-                )
-            }
+            Self::TooManyStates { states } => format!(
+                "the model with its delays as states needs {states} states; at most {MOST_STATES} are written"
+            ),
             Self::Matrices(error) => error.to_string(),
         }
     }
@@ -106,46 +108,42 @@ impl CorrectedModelError {
 impl CorrectedModel {
     /// Applies a correction to the model, with continuous-time delays approximated by `pade`.
     ///
+    /// ```text
+    /// 1  state-space models for each channel's delay and lead filter
+    /// 2  gains on the rows and columns in the model's own matrices
+    /// 3  series connection: input leads, input delays, model, output delays, output leads
+    /// ```
+    ///
     /// # Errors
-    /// [`CorrectedModelError`] where a discrete-time delay is not a whole number of samples, or
-    /// states or numbers become too many or too large.
-    pub fn of(
+    /// [`CorrectedModelError`] where a discrete-time delay is not a whole sample count, or states
+    /// or numbers become too many or too large.
+    pub fn new(
         model: &StateSpace,
         correction: &ChannelCorrection,
         pade: Pade,
     ) -> Result<Self, CorrectedModelError> {
         let timing = model.timing();
-        let sampling = timing.sample_time_s;
+        let sample_time_s = timing.sample_time_s;
         let delays_s = correction.channels(|channel| delay_s(channel, correction, timing));
-        let delays =
-            delays_s.try_map(|channel, &delay_s| delay_model(channel, delay_s, sampling, pade))?;
-        let leads = correction
-            .leads
-            .as_ref()
-            .map(|leads| leads.filters().clone())
-            .unwrap_or_default();
-        let lead_models = leads.try_map(|_, filter| lead_model(*filter, sampling))?;
-        let [delay_states, lead_states] =
-            [&delays, &lead_models].map(|models| models.map(|_, model| model.order()));
-        let added = delay_states
-            .iter()
-            .chain(lead_states.iter())
-            .map(|(_, states)| states);
-        let states = added.sum::<usize>() + model.order();
+        let delays = delays_s
+            .try_map(|channel, &delay_s| delay_model(channel, delay_s, sample_time_s, pade))?;
+        let leads = match &correction.leads {
+            Some(leads) => leads.filters().clone(),
+            None => Channels::default(),
+        };
+        let lead_models = leads.try_map(|_, filter| lead_model(*filter, sample_time_s))?;
+        let delay_states = delays.map(|_, model| model.order());
+        let lead_states = lead_models.map(|_, model| model.order());
+        let states = total(&delay_states) + total(&lead_states) + model.order();
         if states > MOST_STATES {
             return Err(CorrectedModelError::TooManyStates { states });
         }
-        let between = |models: &Channels<ChannelModel>, inner: &Blocks| {
-            Blocks::block_diagonal(&models.inputs)
-                .then(inner)
-                .then(&Blocks::block_diagonal(&models.outputs))
-        };
-        let mut whole = between(&delays, &Blocks::of_gained(model, correction));
+        let mut whole = Blocks::with_gains(model, correction).between(&delays);
         if correction.leads.is_some() {
-            whole = between(&lead_models, &whole);
+            whole = whole.between(&lead_models);
         }
         let timing = Timing {
-            sample_time_s: sampling,
+            sample_time_s,
             ..Timing::default()
         };
         let model = StateSpace::new(whole.a, whole.b, whole.c, whole.d)?.timed(timing)?;
@@ -154,44 +152,66 @@ impl CorrectedModel {
             delay_states,
             lead_states,
             leads,
-            sample_time_s: sampling,
+            sample_time_s,
             delays_s,
             pade,
         })
     }
 
-    /// Greatest phase error \[rad\] of its responses at `omega` \[rad/s\]: the missing lag of the
-    /// approximated delays, or the phase that Tustin's rule removes from the lead filters of a
-    /// discrete-time model.
+    /// Computes the greatest phase error \[rad\] in its responses at `omega` \[rad/s\]: the lag
+    /// that the approximated delays lack, or the phase that Tustin's rule removes from lead filters
+    /// in a discrete-time model.
+    ///
+    /// A response's error is the sum over its two channels.
     pub fn phase_error(&self, omega: f64) -> f64 {
-        if let Some(sample_time_s) = self.sample_time_s {
-            // Frequency warped by Tustin's rule.
-            let warped = (0.5 * omega * sample_time_s).tan() * 2.0 / sample_time_s;
-            let error = |filter: &LeadFilter| (filter.phase(warped) - filter.phase(omega)).abs();
-            let greatest = |filters: &[Option<LeadFilter>]| {
-                filters.iter().flatten().map(error).fold(0.0, f64::max)
-            };
-            return greatest(&self.leads.inputs) + greatest(&self.leads.outputs);
+        match self.sample_time_s {
+            Some(sample_time_s) => {
+                // Frequency warped by Tustin's rule.
+                let warped = (0.5 * omega * sample_time_s).tan() * 2.0 / sample_time_s;
+                greatest_warping_error(&self.leads.inputs, omega, warped)
+                    + greatest_warping_error(&self.leads.outputs, omega, warped)
+            }
+            // The error grows with the delay.
+            None => {
+                self.pade
+                    .phase_error(omega * longest(&self.delays_s.inputs))
+                    + self
+                        .pade
+                        .phase_error(omega * longest(&self.delays_s.outputs))
+            }
         }
-        // The error grows with the delay, and the error of a response is the sum over its two
-        // channels.
-        let longest = |delays_s: &[f64]| delays_s.iter().copied().fold(0.0, f64::max);
-        let error = |delays_s: &[f64]| self.pade.phase_error(omega * longest(delays_s));
-        error(&self.delays_s.inputs) + error(&self.delays_s.outputs)
     }
 }
 
-/// Delay of a channel \[s\]: the correction's plus the model's own.
+/// Sums a count over all channels.
+fn total(states: &Channels<usize>) -> usize {
+    states.iter().map(|(_, states)| states).sum()
+}
+
+/// Returns the greatest error \[rad\] in the filters' phases at a warped frequency \[rad/s\].
+fn greatest_warping_error(filters: &[Option<LeadFilter>], omega: f64, warped: f64) -> f64 {
+    filters
+        .iter()
+        .flatten()
+        .map(|filter| (filter.phase(warped) - filter.phase(omega)).abs())
+        .fold(0.0, f64::max)
+}
+
+/// Longest delay \[s\].
+fn longest(delays_s: &[f64]) -> f64 {
+    delays_s.iter().copied().fold(0.0, f64::max)
+}
+
+/// Returns a channel's delay \[s\]: the correction's plus the model's own.
 fn delay_s(channel: Channel, correction: &ChannelCorrection, timing: &Timing) -> f64 {
-    let (own_s, at) = match channel {
-        Channel::Input(at) => (&timing.input_delays_s, at),
-        Channel::Output(at) => (&timing.output_delays_s, at),
+    let (own_delays_s, index) = match channel {
+        Channel::Input(index) => (&timing.input_delays_s, index),
+        Channel::Output(index) => (&timing.output_delays_s, index),
     };
-    let own_s = own_s
-        .as_ref()
-        .and_then(|own_s| own_s.get(at))
-        .copied()
-        .unwrap_or(0.0);
+    let own_s = match own_delays_s {
+        Some(own_delays_s) => own_delays_s.get(index).copied().unwrap_or(0.0),
+        None => 0.0,
+    };
     let delay_s = correction.pure_delay_s(channel) + own_s;
     if delay_s < LEAST_DELAY_S {
         0.0
@@ -200,7 +220,7 @@ fn delay_s(channel: Channel, correction: &ChannelCorrection, timing: &Timing) ->
     }
 }
 
-/// State-space model of a channel's delay.
+/// Creates the state-space model for a channel's delay.
 fn delay_model(
     channel: Channel,
     delay_s: f64,
@@ -231,21 +251,25 @@ fn delay_model(
     Ok(ChannelModel::samples(samples as usize))
 }
 
-/// State-space model of a channel's lead filter.
+/// Creates the state-space model for a channel's lead filter.
 fn lead_model(
     filter: Option<LeadFilter>,
     sample_time_s: Option<f64>,
 ) -> Result<ChannelModel, CorrectedModelError> {
-    let (Some(filter), Some(sample_time_s)) = (filter, sample_time_s) else {
-        return Ok(filter.map_or_else(|| ChannelModel::samples(0), ChannelModel::lead));
+    let Some(filter) = filter else {
+        return Ok(ChannelModel::samples(0));
+    };
+    let Some(sample_time_s) = sample_time_s else {
+        return Ok(ChannelModel::lead(filter));
     };
     let longest_s = 0.5 * filter.lag_s;
-    let sampled =
-        ChannelModel::sampled_lead(filter, sample_time_s).filter(|_| sample_time_s <= longest_s);
-    sampled.ok_or(CorrectedModelError::SlowSamples {
-        sample_time_s,
-        longest_s,
-    })
+    match ChannelModel::sampled_lead(filter, sample_time_s) {
+        Some(model) if sample_time_s <= longest_s => Ok(model),
+        _ => Err(CorrectedModelError::SlowSamples {
+            sample_time_s,
+            longest_s,
+        }),
+    }
 }
 
 /// Four matrices, in continuous or discrete time.
@@ -257,8 +281,8 @@ struct Blocks {
 }
 
 impl Blocks {
-    /// The model with the channels' gains, without any delay.
-    fn of_gained(model: &StateSpace, correction: &ChannelCorrection) -> Self {
+    /// Creates the model with the channels' gains, without any delay.
+    fn with_gains(model: &StateSpace, correction: &ChannelCorrection) -> Self {
         let mut blocks = Self {
             a: model.a().clone(),
             b: model.b().clone(),
@@ -276,7 +300,7 @@ impl Blocks {
         blocks
     }
 
-    /// Parallel channels as one block-diagonal system, each with its own delay.
+    /// Combines parallel channels to one block-diagonal system.
     fn block_diagonal(channels: &[ChannelModel]) -> Self {
         let states = channels.iter().map(ChannelModel::order).sum();
         let count = channels.len();
@@ -286,29 +310,35 @@ impl Blocks {
             c: DMatrix::zeros(count, states),
             d: DMatrix::zeros(count, count),
         };
-        let mut at = 0;
-        for (channel, delay) in channels.iter().enumerate() {
-            let order = delay.order();
+        let mut first = 0;
+        for (channel, model) in channels.iter().enumerate() {
+            let order = model.order();
             blocks
                 .a
-                .view_mut((at, at), (order, order))
-                .copy_from(&delay.a);
+                .view_mut((first, first), (order, order))
+                .copy_from(&model.a);
             blocks
                 .b
-                .view_mut((at, channel), (order, 1))
-                .copy_from(&delay.b);
+                .view_mut((first, channel), (order, 1))
+                .copy_from(&model.b);
             blocks
                 .c
-                .view_mut((channel, at), (1, order))
-                .copy_from(&delay.c);
-            blocks.d[(channel, channel)] = delay.d;
-            at += order;
+                .view_mut((channel, first), (1, order))
+                .copy_from(&model.c);
+            blocks.d[(channel, channel)] = model.d;
+            first += order;
         }
         blocks
     }
 
-    /// Series connection: the outputs of this system drive `next`. The states of this system come
-    /// first.
+    /// Connects the input channels before this system and the output channels after it.
+    fn between(&self, channels: &Channels<ChannelModel>) -> Self {
+        Self::block_diagonal(&channels.inputs)
+            .then(self)
+            .then(&Self::block_diagonal(&channels.outputs))
+    }
+
+    /// Series connection: this system's outputs drive `next`. Its states come first.
     fn then(&self, next: &Self) -> Self {
         let first = self.a.nrows();
         let second = next.a.nrows();
@@ -334,176 +364,12 @@ impl Blocks {
     }
 }
 
-/// Highest order of approximation offered.
-pub const HIGHEST_PADE_ORDER: usize = 8;
-
-/// Pade approximant `[N/N]` of `e^(-tau s)`: among all rational functions of this order it agrees
-/// in the most derivatives at `s = 0`. Its magnitude is 1 at every frequency; its error is in the
-/// phase only.
-///
-/// With `z = tau s / 2` it is `(1 - t) / (1 + t)`, where `t` is the N-th convergent of Lambert's
-/// continued fraction `tanh z = z / (1 + z^2 / (3 + z^2 / (5 + ...)))`. The fraction, read as a
-/// ladder of integrators, is a state-space model whose controllability and observability Gramians
-/// are both the identity, whatever the order and the delay, so its entries are of similar
-/// magnitude.
-///
-/// Source: NIST Digital Library of Mathematical Functions, 4.39.1 (Lambert's fraction).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pade {
-    order: usize,
-}
-
-impl Default for Pade {
-    /// Second order: at `omega tau = 1` the phase error is less than a tenth of a degree.
-    fn default() -> Self {
-        Self { order: 2 }
-    }
-}
-
-impl Pade {
-    /// Returns the approximant of this order, if it is from 1 to [`HIGHEST_PADE_ORDER`].
-    pub fn new(order: usize) -> Option<Self> {
-        (1..=HIGHEST_PADE_ORDER)
-            .contains(&order)
-            .then_some(Self { order })
-    }
-
-    /// Order `N`, the number of states.
-    pub fn order(self) -> usize {
-        self.order
-    }
-
-    /// Returns the state-space model of the approximant of a positive delay \[s\].
-    ///
-    /// The ladder is `t = e_1' (L/z + S)^-1 e_1` with `L = diag(1, 3, 5, ...)` and `S` with 1 above
-    /// and -1 below the diagonal. With `R = S + e_1 e_1'` and `K = L^(-1/2) R L^(-1/2)` this gives
-    /// `A = -(2/tau) K^-1`, `B = 2/sqrt(tau) K^-1 e_1`, `C = 2/sqrt(tau) e_1' K^-1`, `D = (-1)^N`.
-    pub fn model(self, delay_s: f64) -> ChannelModel {
-        let root = |place: usize| ((2 * place + 1) as f64).sqrt();
-        let inverse =
-            |row: usize, column: usize| root(row) * root(column) * self.ladder_inverse(row, column);
-        let gain = 2.0 / delay_s.sqrt();
-        ChannelModel {
-            a: DMatrix::from_fn(self.order, self.order, |row, column| {
-                -2.0 / delay_s * inverse(row, column)
-            }),
-            b: DVector::from_fn(self.order, |row, _| gain * inverse(row, 0)),
-            c: RowDVector::from_fn(self.order, |_, column| gain * inverse(0, column)),
-            d: if self.order.is_multiple_of(2) {
-                1.0
-            } else {
-                -1.0
-            },
-        }
-    }
-
-    /// Entry of `R^-1`, which is 1, 0 or -1: R is solved from its ends inwards.
-    fn ladder_inverse(self, row: usize, column: usize) -> f64 {
-        // Whether a place, counted from 1, has the parity of the order.
-        let is_of_order = |place: usize| (place + 1) % 2 == self.order % 2;
-        match (is_of_order(row), is_of_order(column)) {
-            (true, true) => 1.0,
-            (true, false) if column < row => 1.0,
-            (false, true) if column > row => -1.0,
-            _ => 0.0,
-        }
-    }
-
-    /// Missing lag \[rad\] of the approximant at `angle = omega tau`: `angle - 2 arg theta_N(j
-    /// angle / 2)`.
-    ///
-    /// The denominators are the reverse Bessel polynomials, `theta_n = (2n - 1) theta_(n-1) + z^2
-    /// theta_(n-2)`. The ratio of two consecutive polynomials lies above the real axis, so that
-    /// their angles add up without an extra turn.
-    pub fn phase_error(self, angle: f64) -> f64 {
-        let z = Complex::new(0.0, 0.5 * angle);
-        let mut ratio = 1.0 + z;
-        let mut lag = ratio.arg();
-        for n in 2..=self.order {
-            ratio = (2 * n - 1) as f64 + z * z / ratio;
-            lag += ratio.arg();
-        }
-        angle - 2.0 * lag
-    }
-}
-
-/// A delay or a lead filter of one channel as a state-space model with one input and one output.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ChannelModel {
-    /// System matrix, n x n.
-    pub a: DMatrix<f64>,
-    /// Input column, n values.
-    pub b: DVector<f64>,
-    /// Output row, n values.
-    pub c: RowDVector<f64>,
-    pub d: f64,
-}
-
-impl ChannelModel {
-    /// `z^-count`, exactly: `count` states, each of which delays the previous state by one sample.
-    /// With `count = 0` it is `y = u`.
-    pub fn samples(count: usize) -> Self {
-        Self {
-            a: DMatrix::from_fn(count, count, |row, column| f64::from(row == column + 1)),
-            b: DVector::from_fn(count, |row, _| f64::from(row == 0)),
-            c: RowDVector::from_fn(count, |_, column| f64::from(column + 1 == count)),
-            d: f64::from(count == 0),
-        }
-    }
-
-    /// State-space model of a lead filter in continuous time, exactly (M15.3). With `w1 = 1 / a`,
-    /// `w2 = 1 / b`, the second order has `A = [0 1; -w2^2 -sqrt(2) w2]`, `B = [0; 1]`, `C = [R
-    /// (w1^2 - w2^2)  R sqrt(2) (w1 - w2)]`, `D = R`; the first order has `A = -w2`, `B = 1`, `C =
-    /// R (w1 - w2)`, `D = R`.
-    pub fn lead(filter: LeadFilter) -> Self {
-        const ROOT: f64 = std::f64::consts::SQRT_2;
-        let w1 = filter.zero_rad_s();
-        let w2 = filter.lag_rad_s();
-        let r = filter.gain_at_infinity();
-        match filter.order {
-            LeadOrder::First => Self {
-                a: DMatrix::from_element(1, 1, -w2),
-                b: DVector::from_element(1, 1.0),
-                c: RowDVector::from_element(1, r * (w1 - w2)),
-                d: r,
-            },
-            LeadOrder::Second => Self {
-                a: DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -w2 * w2, -ROOT * w2]),
-                b: DVector::from_column_slice(&[0.0, 1.0]),
-                c: RowDVector::from_row_slice(&[r * (w1 * w1 - w2 * w2), r * ROOT * (w1 - w2)]),
-                d: r,
-            },
-        }
-    }
-
-    /// State-space model of the lead filter in discrete time with this sample time \[s\], by
-    /// Tustin's rule `s = 2 (z - 1) / (T (z + 1))`: with `M = (I - A T/2)^-1` it is `M (I + A
-    /// T/2)`, `T M B`, `C M`, `D + C M B T/2`. `None` where `T` puts a pole of the filter on the
-    /// pole of the rule.
-    pub fn sampled_lead(filter: LeadFilter, sample_time_s: f64) -> Option<Self> {
-        let Self { a, b, c, d } = Self::lead(filter);
-        let one = DMatrix::identity(a.nrows(), a.nrows());
-        let half = 0.5 * sample_time_s * &a;
-        let inverse = (&one - &half).try_inverse()?;
-        let direct = (&c * &inverse * &b).sum() * 0.5 * sample_time_s;
-        Some(Self {
-            a: &inverse * (&one + &half),
-            b: sample_time_s * &inverse * b,
-            c: &c * inverse,
-            d: d + direct,
-        })
-    }
-
-    /// Number of states.
-    pub fn order(&self) -> usize {
-        self.b.len()
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use nalgebra::Complex;
+
     use gdcm_model::dataset::{Band, Dynamics, Pair};
-    use gdcm_model::response::{FrequencyGrid, PreparedModel};
+    use gdcm_model::response::{FrequencyGrid, LeadOrder, PreparedModel};
 
     use super::super::leads::{ChannelLeads, LeadDesign, LeadSettings};
     use super::*;
@@ -532,8 +398,8 @@ mod tests {
         }
     }
 
-    /// Compares the matrices with the product of the gains, the model's response and a factor for
-    /// the delays of each channel.
+    /// Compares the matrices with a product: the gains, the model's response and each channel's
+    /// delay factor.
     fn assert_response(
         corrected: &CorrectedModel,
         plant: &StateSpace,
@@ -562,7 +428,7 @@ mod tests {
     fn the_response_is_the_gain_the_approximant_and_the_models_own() {
         for order in [1, 2, 3, 8] {
             let pade = Pade::new(order).unwrap();
-            let corrected = CorrectedModel::of(&plant(), &correction(), pade).unwrap();
+            let corrected = CorrectedModel::new(&plant(), &correction(), pade).unwrap();
             let states = (
                 corrected.delay_states.inputs.as_slice(),
                 corrected.delay_states.outputs.as_slice(),
@@ -588,7 +454,7 @@ mod tests {
         };
         let pade = Pade::new(2).unwrap();
         let corrected =
-            CorrectedModel::of(&plant().timed(own).unwrap(), &correction(), pade).unwrap();
+            CorrectedModel::new(&plant().timed(own).unwrap(), &correction(), pade).unwrap();
         assert_eq!(
             (corrected.delays_s.inputs.clone(), corrected.model.order()),
             (vec![0.05, 0.0], 7)
@@ -612,7 +478,7 @@ mod tests {
                 .unwrap()
         };
         let pade = Pade::new(2).unwrap();
-        let corrected = CorrectedModel::of(&sampled(0.001), &correction(), pade).unwrap();
+        let corrected = CorrectedModel::new(&sampled(0.001), &correction(), pade).unwrap();
         assert_eq!(
             (corrected.model.order(), corrected.phase_error(12.0)),
             (3 + 30 + 11, 0.0)
@@ -621,7 +487,7 @@ mod tests {
         assert_response(&corrected, &sampled(0.001), |omega, delay_s| {
             Complex::new(0.0, -omega * delay_s).exp()
         });
-        let refused = CorrectedModel::of(&sampled(0.01), &correction(), pade).unwrap_err();
+        let refused = CorrectedModel::new(&sampled(0.01), &correction(), pade).unwrap_err();
         assert_eq!(
             refused,
             CorrectedModelError::PartOfSample {
@@ -630,7 +496,7 @@ mod tests {
                 sample_time_s: 0.01
             }
         );
-        let refused = CorrectedModel::of(&sampled(1e-5), &correction(), pade).unwrap_err();
+        let refused = CorrectedModel::new(&sampled(1e-5), &correction(), pade).unwrap_err();
         assert!(
             matches!(refused, CorrectedModelError::TooManyStates { .. }),
             "{refused}"
@@ -644,15 +510,14 @@ mod tests {
             output_delays_s: vec![0.0; 2],
             ..correction()
         };
-        let corrected = CorrectedModel::of(&plant(), &none, Pade::new(4).unwrap()).unwrap();
+        let corrected = CorrectedModel::new(&plant(), &none, Pade::new(4).unwrap()).unwrap();
         assert_eq!(
             (corrected.model.a(), corrected.phase_error(12.0)),
             (plant().a(), 0.0)
         );
     }
 
-    /// The plant's correction with a lead of 30 ms on the first input and 50 ms on the second
-    /// output.
+    /// The plant's correction with 30 ms lead on the first input and 50 ms on the second output.
     fn led(order: LeadOrder) -> ChannelCorrection {
         let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 50);
         let design = LeadDesign::new(
@@ -682,7 +547,7 @@ mod tests {
     fn lead_filters_are_exact_states_of_which_the_gain_at_infinity_is_direct() {
         for (order, states) in [(LeadOrder::First, 1), (LeadOrder::Second, 2)] {
             let correction = led(order);
-            let corrected = CorrectedModel::of(&plant(), &correction, Pade::default()).unwrap();
+            let corrected = CorrectedModel::new(&plant(), &correction, Pade::default()).unwrap();
             assert_eq!(
                 (
                     corrected.lead_states.inputs.as_slice(),
@@ -730,116 +595,18 @@ mod tests {
                 .unwrap()
         };
         let correction = led(LeadOrder::Second);
-        let corrected = CorrectedModel::of(&sampled(0.01), &correction, Pade::default()).unwrap();
-        // 36 rad/s and a step of 10 ms: less than a quarter of a degree for each channel at 12
-        // rad/s.
+        let corrected = CorrectedModel::new(&sampled(0.01), &correction, Pade::default()).unwrap();
+        // 36 rad/s and 10 ms steps: less than 0.25 degrees for each channel at 12 rad/s.
         assert!(
             (0.01..0.5).contains(&corrected.phase_error(12.0).to_degrees()),
             "{}",
             corrected.phase_error(12.0)
         );
-        let refused = CorrectedModel::of(&sampled(0.02), &correction, Pade::default()).unwrap_err();
+        let refused =
+            CorrectedModel::new(&sampled(0.02), &correction, Pade::default()).unwrap_err();
         assert!(
             matches!(refused, CorrectedModelError::SlowSamples { .. }),
             "{refused}"
         );
-    }
-
-    /// The approximant by its polynomials: `P(-x) / P(x)`, `P(x) = sum of (2N - k)! / (k! (N - k)!)
-    /// x^k`.
-    fn by_polynomials(order: usize, x: Complex<f64>) -> Complex<f64> {
-        let factorial = |n: usize| (1..=n).map(|k| k as f64).product::<f64>();
-        let coefficient =
-            |k: usize| factorial(2 * order - k) / (factorial(k) * factorial(order - k));
-        let value = |x: Complex<f64>| {
-            (0..=order)
-                .rev()
-                .fold(Complex::from(0.0), |sum, k| sum * x + coefficient(k))
-        };
-        value(-x) / value(x)
-    }
-
-    fn response(model: &ChannelModel, s: Complex<f64>) -> Complex<f64> {
-        let n = model.order();
-        let pencil = DMatrix::from_fn(n, n, |row, column| {
-            let a = Complex::from(model.a[(row, column)]);
-            if row == column { s - a } else { -a }
-        });
-        let state = pencil.lu().solve(&model.b.map(Complex::from)).unwrap();
-        (model.c.map(Complex::from) * state)[0] + model.d
-    }
-
-    #[test]
-    fn the_states_are_the_polynomials() {
-        for order in 1..=HIGHEST_PADE_ORDER {
-            for delay_s in [1e-4, 0.02, 3.0, 60.0] {
-                let model = Pade::new(order).unwrap().model(delay_s);
-                for angle in [1e-3, 0.3, 1.0, 4.0, 15.0, 80.0] {
-                    let s = Complex::new(0.0, angle / delay_s);
-                    let found = response(&model, s);
-                    let expected = by_polynomials(order, s * delay_s);
-                    assert!(
-                        (found - expected).norm() < 1e-12,
-                        "{order}, {delay_s} s, {angle}: {found} {expected}"
-                    );
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn both_gramians_are_the_identity() {
-        for order in 1..=HIGHEST_PADE_ORDER {
-            let model = Pade::new(order).unwrap().model(0.07);
-            let scale = model.a.amax();
-            let left = &model.a + model.a.transpose();
-            assert!(
-                (&left + &model.b * model.b.transpose()).amax() < 1e-14 * scale,
-                "{order}"
-            );
-            assert!(
-                (&left + model.c.transpose() * &model.c).amax() < 1e-14 * scale,
-                "{order}"
-            );
-        }
-    }
-
-    #[test]
-    fn the_phase_error_is_that_of_the_response_followed_over_frequency() {
-        for order in 1..=HIGHEST_PADE_ORDER {
-            let pade = Pade::new(order).unwrap();
-            let mut followed = 0.0;
-            let mut before = Complex::from(1.0);
-            // Steps far below half a turn, up to where the approximant has long stopped lagging.
-            for step in 1..=4000 {
-                let angle = f64::from(step) * 0.01;
-                let error = by_polynomials(order, Complex::new(0.0, angle))
-                    * Complex::new(0.0, angle).exp();
-                followed += (error / before).arg();
-                before = error;
-                assert!(
-                    (pade.phase_error(angle) - followed).abs() < 1e-10,
-                    "{order}, {angle}"
-                );
-            }
-        }
-        assert_eq!((Pade::new(0), Pade::new(9)), (None, None));
-    }
-
-    #[test]
-    fn samples_come_out_as_many_steps_later() {
-        for count in 0..4 {
-            let model = ChannelModel::samples(count);
-            assert_eq!(model.order(), count);
-            let mut x = DVector::zeros(count);
-            let mut out = Vec::new();
-            for u in [1.0, 2.0, 3.0, 4.0, 5.0] {
-                out.push((&model.c * &x).sum() + model.d * u);
-                x = &model.a * &x + &model.b * u;
-            }
-            let delayed: Vec<f64> =
-                [0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0][3 - count..][..5].to_vec();
-            assert_eq!(out, delayed, "{count} samples");
-        }
     }
 }

@@ -14,17 +14,17 @@ use crate::fidelity::{CoherenceWeights, Mismatch};
 /// Source models of G; D always comes from the representatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum GainSource {
-    /// The two representatives (the paper).
+    /// The two representatives (eq. (5)).
     #[default]
     #[serde(rename = "representatives")]
     Representatives,
-    /// Every pair of a kept physics model and a kept identified model: `G = exp(mean of ln G)`.
+    /// Every pair of a kept physics model and a kept identified model: `G = exp(mean(ln G))`.
     #[serde(rename = "mean")]
     MeanOfPairs,
 }
 
 impl GainSource {
-    /// "the representatives", "the mean over all kept pairs".
+    /// Describes the source: "the representatives".
     pub fn words(self) -> &'static str {
         match self {
             Self::Representatives => "the representatives",
@@ -33,7 +33,7 @@ impl GainSource {
     }
 }
 
-/// `G = median |H_ref| / |H_sim|` and `D = median Delta phi(H_sim, H_ref) / omega` of every
+/// `G = median |H_ref| / |H_sim|` and `D = median Delta phi(H_sim, H_ref) / omega` for every
 /// response (M6), and its band delay (M15.2).
 ///
 /// `None` where the ratio is zero or not finite at some frequency, or where no frequency counts.
@@ -51,46 +51,72 @@ pub struct Delta {
 }
 
 impl Delta {
-    /// Computes G and D from the mismatch of two representatives.
-    pub fn of(mismatch: &PairTable<Option<Mismatch>>, omega: &[f64]) -> Self {
-        let phases =
-            mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.phase_difference(omega)));
-        let of_each = |value: fn(&Mismatch, &[f64], &[f64]) -> f64| {
-            mismatch.map(|pair, entry| {
-                let entry = entry.as_ref()?;
-                let phase = phases[pair].as_ref()?;
-                Some(value(entry, phase, entry.omega(omega)))
+    /// Computes G and D from the mismatch between two representatives at the frequencies `omega`
+    /// \[rad/s\].
+    pub fn new(mismatch: &PairTable<Option<Mismatch>>, omega: &[f64]) -> Self {
+        let phases = mismatch.map(|pair, _| {
+            let entry = mismatch[pair].as_ref()?;
+            Some(MissingPhase {
+                mismatch: entry,
+                phase: entry.phase_difference(omega),
+                omega: entry.omega(omega),
             })
-        };
+        });
         Self {
             gain: delta_gains(mismatch),
-            delay_s: of_each(|entry, phase, omega| entry.median(&mut delays(phase, omega))),
-            band_delay_s: of_each(|entry, phase, omega| {
-                band_delay_s(phase.iter().copied(), omega, entry.weights())
-            }),
+            delay_s: phases.map(|_, entry| Some(entry.as_ref()?.median_delay_s())),
+            band_delay_s: phases.map(|_, entry| Some(entry.as_ref()?.band_delay_s())),
         }
     }
 }
 
-/// `G = median |H_ref| / |H_sim|` of every response (M6).
-pub fn delta_gains(mismatch: &PairTable<Option<Mismatch>>) -> PairTable<Option<f64>> {
-    mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.median(&mut ratios(entry))))
+/// `Delta phi(H_sim, H_ref)` for a single response.
+struct MissingPhase<'a> {
+    mismatch: &'a Mismatch,
+    /// \[rad\] at each frequency.
+    phase: Vec<f64>,
+    /// \[rad/s\].
+    omega: &'a [f64],
 }
 
-/// `sum W omega phase / sum W omega^2` \[s\] for a phase \[rad\] at each frequency \[rad/s\]: the
-/// delay that minimises the mean square of the remaining phase (M15.2). Linear in the phase; W = 1
-/// without weights.
+impl MissingPhase<'_> {
+    /// Computes D, eq. (9).
+    fn median_delay_s(&self) -> f64 {
+        self.mismatch.median(&mut delays(&self.phase, self.omega))
+    }
+
+    /// Computes the band delay (M15.2).
+    fn band_delay_s(&self) -> f64 {
+        let phase = self.phase.iter().copied();
+        band_delay_s(phase, self.omega, self.mismatch.weights())
+    }
+}
+
+/// Computes `G = median |H_ref| / |H_sim|` for every response (M6).
+pub fn delta_gains(mismatch: &PairTable<Option<Mismatch>>) -> PairTable<Option<f64>> {
+    mismatch.map(|_, entry| {
+        let entry = entry.as_ref()?;
+        Some(entry.median(&mut ratios(entry)))
+    })
+}
+
+/// Computes `sum W omega phase / sum W omega^2` \[s\] for a phase \[rad\] at each frequency
+/// \[rad/s\]: the delay that minimises the remaining mean square phase (M15.2). Linear in the
+/// phase; W = 1 without weights.
 pub(crate) fn band_delay_s(
     phase: impl Iterator<Item = f64>,
     omega: &[f64],
     weights: Option<&[f64]>,
 ) -> f64 {
-    let weight = |place: usize| weights.map_or(1.0, |weights| weights[place]);
     let mut moment = 0.0;
     let mut square = 0.0;
     for (place, (phase, omega)) in phase.zip(omega).enumerate() {
-        moment += weight(place) * omega * phase;
-        square += weight(place) * omega * omega;
+        let weight = match weights {
+            Some(weights) => weights[place],
+            None => 1.0,
+        };
+        moment += weight * omega * phase;
+        square += weight * omega * omega;
     }
     moment / square
 }
@@ -99,27 +125,26 @@ pub(crate) fn band_delay_s(
 /// infinite or zero (M6).
 pub const LARGEST_GAIN_DB: f64 = 1000.0;
 
-/// Mismatch of every response that both models have and whose ratio is finite and not zero, at the
-/// frequencies that count: all where `counted` is `None` (M4a).
+/// Computes the mismatch of every response that both models have and whose ratio is finite and not
+/// zero, at the frequencies that count: all where `coherence_weights` is `None` (M4a).
 pub fn mismatch_table(
     simulated: &PolarResponse,
     reference: &PolarResponse,
     coherence_weights: Option<&PairTable<CoherenceWeights>>,
 ) -> PairTable<Option<Mismatch>> {
     simulated.curves().map(|pair, simulated| {
-        let mismatch = Mismatch::new(simulated.as_ref()?, reference.curves()[pair].as_ref()?);
-        let mismatch = mismatch.coherence_weighted(
-            coherence_weights.map(|coherence_weights| &coherence_weights[pair]),
-        )?;
-        mismatch
+        let reference = reference.curves()[pair].as_ref()?;
+        let weights = coherence_weights.map(|weights| &weights[pair]);
+        let mismatch = Mismatch::new(simulated.as_ref()?, reference).coherence_weighted(weights)?;
+        let is_defined = mismatch
             .magnitude_db
             .iter()
-            .all(|error| error.abs() < LARGEST_GAIN_DB)
-            .then_some(mismatch)
+            .all(|error| error.abs() < LARGEST_GAIN_DB);
+        if is_defined { Some(mismatch) } else { None }
     })
 }
 
-/// `|H_ref| / |H_sim|` at each frequency.
+/// Computes `|H_ref| / |H_sim|` at each frequency.
 fn ratios(mismatch: &Mismatch) -> Vec<f64> {
     mismatch
         .magnitude_db
@@ -128,7 +153,7 @@ fn ratios(mismatch: &Mismatch) -> Vec<f64> {
         .collect()
 }
 
-/// `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency.
+/// Computes `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency.
 fn delays(phase: &[f64], omega: &[f64]) -> Vec<f64> {
     phase
         .iter()
@@ -137,7 +162,8 @@ fn delays(phase: &[f64], omega: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// The pooled mismatches: those marked in `measuring`, or all where none of the marked is defined.
+/// Selects the mismatches to pool: those marked in `measuring`, or all where no marked mismatch is
+/// defined.
 fn pooled<'a>(
     mismatch: &'a PairTable<Option<Mismatch>>,
     measuring: &PairTable<bool>,
@@ -154,8 +180,8 @@ fn pooled<'a>(
     pairs.into_iter().filter_map(|pair| mismatch[pair].as_ref())
 }
 
-/// `LB = min(1, q-quantile)`, `UB = max(1, (1-q)-quantile)` of `|H_ref| / |H_sim|` pooled over
-/// frequency and pairs.
+/// Computes `LB = min(1, q-quantile)` and `UB = max(1, (1-q)-quantile)` for `|H_ref| / |H_sim|`
+/// pooled over frequency and pairs (M7).
 pub fn gain_bounds(
     mismatch: &PairTable<Option<Mismatch>>,
     measuring: &PairTable<bool>,
@@ -167,14 +193,18 @@ pub fn gain_bounds(
     GainBounds { lower, upper }
 }
 
-/// `UB = max(0, (1-q)-quantile)` \[s\] of `Delta phi / omega` pooled over frequency and pairs.
+/// Computes `UB = max(0, (1-q)-quantile)` \[s\] for `Delta phi / omega` pooled over frequency and
+/// pairs (M7).
 pub fn delay_upper_s(
     mismatch: &PairTable<Option<Mismatch>>,
     measuring: &PairTable<bool>,
     omega: &[f64],
     q: f64,
 ) -> f64 {
-    let of = |mismatch: &Mismatch| delays(&mismatch.phase_difference(omega), mismatch.omega(omega));
-    let mut pool: Vec<f64> = pooled(mismatch, measuring).flat_map(of).collect();
+    let mut pool = Vec::new();
+    for mismatch in pooled(mismatch, measuring) {
+        let phase = mismatch.phase_difference(omega);
+        pool.extend(delays(&phase, mismatch.omega(omega)));
+    }
     quantile(&mut pool, 1.0 - q).max(0.0)
 }

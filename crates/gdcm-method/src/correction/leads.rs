@@ -1,6 +1,4 @@
-//! Lead filters: the filter of a signed delay (M15.3), the filters of all channels (M15.5), and
-//! their cost: the frequency above which a corrected model is no longer valid, and the gain that
-//! the filters add above it (M15.6). Screens and files take the cost from here.
+//! Lead filters: from signed delays to filters (M15.3), and the filters on all channels (M15.5).
 
 use std::sync::{Arc, OnceLock};
 
@@ -8,19 +6,18 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::Pair;
 use gdcm_model::response::{LeadFilter, LeadOrder};
-use gdcm_model::units::{number, signed};
 
-use super::channels::{Channel, Channels};
+use super::channels::Channels;
 use super::delta::band_delay_s;
 
-/// Settings shared by the lead filters of all channels.
+/// Settings shared by all lead filters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeadSettings {
     pub order: LeadOrder,
-    /// `n`: the lag time constant is `b = 1 / (n omega_B)`, `omega_B` the top of the band.
+    /// `n`: the lag time constant is `b = 1 / (n omega_B)`, `omega_B` the band's top.
     #[serde(rename = "n")]
     pub pole: f64,
-    /// `R_max`: greatest gain of one channel's filter at high frequency (ratio).
+    /// `R_max`: greatest high-frequency gain (ratio) for a channel's filter.
     #[serde(rename = "r_max")]
     pub limit: f64,
 }
@@ -37,15 +34,24 @@ impl Default for LeadSettings {
 }
 
 /// The lead filters that a band allows: exactly one for each signed delay below zero (M15.3).
+///
+/// With `b = 1 / (n omega_B)` and the lead time `l >= 0`:
+///
+/// ```text
+/// second order   L(s) = (1 + sqrt(2) a s + a^2 s^2) / (1 + sqrt(2) b s + b^2 s^2),   a = b + l / sqrt(2)
+/// first order    L(s) = (1 + a s) / (1 + b s),                                       a = b + l
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadDesign {
     settings: LeadSettings,
+    /// Band frequencies \[rad/s\].
     omega: Arc<[f64]>,
+    /// `LB_tau` \[s\].
     lower_s: f64,
 }
 
 impl LeadDesign {
-    /// The design over these frequencies \[rad/s\], rising and positive; at least one.
+    /// Creates the design over these frequencies \[rad/s\]: rising, positive, not empty.
     pub fn new(settings: LeadSettings, omega: Arc<[f64]>) -> Self {
         let mut design = Self {
             settings,
@@ -56,27 +62,27 @@ impl LeadDesign {
         design
     }
 
-    /// Settings shared by the filters.
+    /// Returns the settings shared by the filters.
     pub fn settings(&self) -> LeadSettings {
         self.settings
     }
 
-    /// The frequencies \[rad/s\] over which a filter's band delay is taken.
+    /// Returns the frequencies \[rad/s\] over which a filter's band delay is taken.
     pub fn omega(&self) -> &[f64] {
         &self.omega
     }
 
-    /// `omega_B` \[rad/s\], the top of the band.
+    /// Returns `omega_B` \[rad/s\], the band's top.
     pub fn band_top_rad_s(&self) -> f64 {
         self.omega.last().copied().unwrap_or(1.0)
     }
 
-    /// `b` \[s\].
+    /// Returns the lag time constant `b` \[s\].
     pub fn lag_s(&self) -> f64 {
         1.0 / (self.settings.pole * self.band_top_rad_s())
     }
 
-    /// `l_max` \[s\], the lead time at which `R = R_max`.
+    /// Returns `l_max` \[s\], the lead time at which `R = R_max`.
     pub fn longest_lead_s(&self) -> f64 {
         let LeadSettings { order, limit, .. } = self.settings;
         match order {
@@ -85,18 +91,18 @@ impl LeadDesign {
         }
     }
 
-    /// `LB_tau = d(l_max)` \[s\]: the least signed delay of a channel.
+    /// Returns `LB_tau = d(l_max)` \[s\], the least signed delay for a channel.
     pub fn lower_s(&self) -> f64 {
         self.lower_s
     }
 
-    /// Returns the filter of a lead time \[s\].
+    /// Creates the filter with this lead time \[s\].
     pub fn filter_of(&self, lead_s: f64) -> LeadFilter {
         LeadFilter::new(self.settings.order, lead_s, self.lag_s())
     }
 
-    /// `d(l) = - sum omega arg L / sum omega^2` \[s\], the band delay of the filter of lead time
-    /// `l` (M15.2): 0 at 0, strictly falling.
+    /// Computes `d(l) = - sum omega arg L / sum omega^2` \[s\], the band delay for the filter with
+    /// lead time `l` (M15.2): 0 at 0, strictly falling.
     pub fn band_delay_s(&self, lead_s: f64) -> f64 {
         let filter = self.filter_of(lead_s);
         -band_delay_s(
@@ -106,42 +112,45 @@ impl LeadDesign {
         )
     }
 
-    /// `-d d(l) / d l`, dimensionless: with `x = a omega` the mean of `(1 + x^2) / (1 + x^4)`, or
-    /// of `1 / (1 + x^2)` for the first order.
+    /// Computes `-d d(l) / d l`, dimensionless: with `x = a omega` the weighted mean of `(1 + x^2)
+    /// / (1 + x^4)`, or of `1 / (1 + x^2)` for the first order.
     fn falling(&self, lead_s: f64) -> f64 {
-        let a = self.filter_of(lead_s).zero_s;
-        let of = |omega: f64| {
-            let square = (a * omega).powi(2);
+        let zero_s = self.filter_of(lead_s).zero_s;
+        let slopes = self.omega.iter().map(|&omega| {
+            let square = (zero_s * omega).powi(2);
             match self.settings.order {
                 LeadOrder::First => omega / (1.0 + square),
                 LeadOrder::Second => omega * (1.0 + square) / (1.0 + square * square),
             }
-        };
-        band_delay_s(self.omega.iter().map(|&omega| of(omega)), &self.omega, None)
+        });
+        band_delay_s(slopes, &self.omega, None)
     }
 
-    /// Returns the filter of a negative signed delay, otherwise `None`. A signed delay below the
-    /// bound gets the filter of `R_max`.
+    /// Returns the filter for a negative signed delay, otherwise `None`. A signed delay below the
+    /// bound gets the filter with gain `R_max`.
     pub fn filter(&self, tau_s: f64) -> Option<LeadFilter> {
-        (tau_s < 0.0).then(|| self.filter_of(self.lead_s(tau_s)))
+        if tau_s < 0.0 {
+            Some(self.filter_of(self.lead_s(tau_s)))
+        } else {
+            None
+        }
     }
 
-    /// The lead time `l` with `d(l) = tau` \[s\], to 1e-14 of it; `l_max` of a `tau` below the
-    /// bound.
+    /// Finds the lead time `l` with `d(l) = tau` \[s\], to 1e-14 relative; `l_max` for a `tau`
+    /// below the bound.
     ///
     /// ```text
-    /// low, high = 0, l_max;  l = tau / d'(0), cut to them
-    /// repeat
-    ///     miss = d(l) - tau;  low or high = l, by the sign of miss: d falls
-    ///     l' = l - miss / d'(l);  the middle of low and high where l' is not between them
-    ///     l = l';  end where it changed by less than 1e-9 of itself: Newton's error is then the square of that
+    /// 1  low, high = 0, l_max;  l = tau / d'(0), at most l_max
+    /// 2  miss = d(l) - tau;  low or high = l, by the sign of the miss: d falls
+    /// 3  l' = l - miss / d'(l);  the midpoint where l' is not between low and high
+    /// 4  l = l', again from 2, until l changes by less than a relative 1e-9: the error is then about the square
     /// ```
     ///
     /// Newton's method kept inside a bracket (Press et al., "Numerical Recipes", 3rd ed. 2007,
     /// 9.4).
     pub fn lead_s(&self, tau_s: f64) -> f64 {
         const STEPS: usize = 100;
-        const SMALL: f64 = 1e-9;
+        const RELATIVE_CHANGE: f64 = 1e-9;
         let mut low = 0.0;
         let mut high = self.longest_lead_s();
         if tau_s >= 0.0 {
@@ -166,7 +175,7 @@ impl LeadDesign {
             };
             let step_s = (next_s - lead_s).abs();
             lead_s = next_s;
-            if step_s <= SMALL * lead_s {
+            if step_s <= RELATIVE_CHANGE * lead_s {
                 break;
             }
         }
@@ -180,9 +189,9 @@ impl LeadDesign {
 /// Filters, and their curves over the band, are computed on first use, once for all clones.
 #[derive(Clone, Debug)]
 pub struct ChannelLeads {
-    /// Design that gives the filter of a signed delay.
+    /// Design that gives the filter for a signed delay.
     pub design: Arc<LeadDesign>,
-    /// Signed delay of each channel \[s\].
+    /// Signed delay for each channel \[s\].
     pub taus_s: Channels<f64>,
     filters: Arc<OnceLock<Channels<Option<LeadFilter>>>>,
     curves: Arc<OnceLock<Channels<Option<LeadCurve>>>>,
@@ -196,7 +205,7 @@ impl PartialEq for ChannelLeads {
 }
 
 impl ChannelLeads {
-    /// Signed delays \[s\] with the filters of `design`.
+    /// Creates the signed delays \[s\] with filters by `design`.
     pub fn new(design: Arc<LeadDesign>, taus_s: Channels<f64>) -> Self {
         Self {
             design,
@@ -206,32 +215,35 @@ impl ChannelLeads {
         }
     }
 
-    /// Lead filter of each channel; `None` where its signed delay is not negative.
+    /// Returns every channel's lead filter; `None` where its signed delay is not negative.
     pub fn filters(&self) -> &Channels<Option<LeadFilter>> {
         self.filters
             .get_or_init(|| self.taus_s.map(|_, &tau_s| self.design.filter(tau_s)))
     }
 
-    /// Pure delay of each channel \[s\], the positive part of its signed delay.
+    /// Returns every channel's pure delay \[s\], the positive part of its signed delay.
     pub fn delays_s(&self) -> Channels<f64> {
         self.taus_s.map(|_, tau_s| tau_s.max(0.0))
     }
 
-    /// Effect of the filters of a response's two channels at each frequency of the design's band;
-    /// `None` where neither has a filter.
+    /// Returns the effect that the filters on a response's two channels have at each frequency in
+    /// the design's band; `None` where neither has a filter.
     pub fn curve(&self, pair: Pair) -> Option<LeadCurve> {
-        let of_filter = |filter: LeadFilter| LeadCurve::of(filter, self.design.omega());
-        let curves = self
-            .curves
-            .get_or_init(|| self.filters().map(|_, filter| filter.map(of_filter)));
+        let curves = self.curves.get_or_init(|| {
+            self.filters().map(|_, filter| {
+                let filter = (*filter)?;
+                Some(LeadCurve::new(filter, self.design.omega()))
+            })
+        });
         match (&curves.inputs[pair.input], &curves.outputs[pair.output]) {
             (Some(input), Some(output)) => Some(input.in_series(output)),
-            (one, other) => one.as_ref().or(other.as_ref()).cloned(),
+            (Some(curve), None) | (None, Some(curve)) => Some(curve.clone()),
+            (None, None) => None,
         }
     }
 }
 
-/// Magnitude \[dB\] and phase \[rad\] of a filter or of two in series.
+/// Magnitude \[dB\] and phase \[rad\] of a filter, or of two in series.
 #[derive(Clone, Debug)]
 pub struct LeadCurve {
     /// `20 log10 |L|` at each frequency.
@@ -241,7 +253,8 @@ pub struct LeadCurve {
 }
 
 impl LeadCurve {
-    fn of(filter: LeadFilter, omega: &[f64]) -> Self {
+    /// Evaluates a filter at the frequencies `omega` \[rad/s\].
+    fn new(filter: LeadFilter, omega: &[f64]) -> Self {
         Self {
             magnitude_db: omega
                 .iter()
@@ -251,109 +264,18 @@ impl LeadCurve {
         }
     }
 
+    /// Returns the curve of two filters in series.
     fn in_series(&self, other: &Self) -> Self {
-        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + b).collect();
         Self {
-            magnitude_db: sum(&self.magnitude_db, &other.magnitude_db),
-            phase: sum(&self.phase, &other.phase),
+            magnitude_db: sums(&self.magnitude_db, &other.magnitude_db),
+            phase: sums(&self.phase, &other.phase),
         }
     }
 }
 
-/// Multiple of the band's top at which the gain above the band is reported (M15.6).
-pub const ABOVE_BAND: f64 = 10.0;
-/// Gain that counts as zero when rounded to a tenth of a decibel.
-const NOTHING_DB: f64 = 0.05;
-
-/// Validity limit of a model with leads, and the gain at ten times that frequency.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LeadPrice {
-    /// Top of the band \[rad/s\]: above it the corrected model is not valid.
-    pub limit_rad_s: f64,
-    /// `20 log10 |L|` at [`LeadPrice::above_rad_s`] for each channel \[dB\]; 0 for a channel
-    /// without a filter.
-    pub gains_db: Channels<f64>,
-}
-
-impl LeadPrice {
-    /// Computes the price of these leads; `None` where no channel has a filter.
-    pub fn of(leads: &ChannelLeads) -> Option<Self> {
-        let limit_rad_s = leads.design.band_top_rad_s();
-        let gain_db = |filter: LeadFilter| filter.magnitude_db(ABOVE_BAND * limit_rad_s);
-        let has_filter = leads.filters().iter().any(|(_, filter)| filter.is_some());
-        has_filter.then(|| Self {
-            limit_rad_s,
-            gains_db: leads.filters().map(|_, filter| filter.map_or(0.0, gain_db)),
-        })
-    }
-
-    /// Returns the greater of both gains for each channel, as needed by a schedule whose leads
-    /// follow the airspeed.
-    #[must_use]
-    pub fn or_more(self, other: &Self) -> Self {
-        let gains_db = self
-            .gains_db
-            .map(|channel, gain_db| gain_db.max(other.gains_db[channel]));
-        Self { gains_db, ..self }
-    }
-
-    /// Ten times the band's top \[rad/s\].
-    pub fn above_rad_s(&self) -> f64 {
-        ABOVE_BAND * self.limit_rad_s
-    }
-
-    /// Gain \[dB\] that the filters of a response's two channels add at `above_rad_s`.
-    pub fn of_pair_db(&self, pair: Pair) -> f64 {
-        Channel::of(pair)
-            .map(|channel| self.gains_db[channel])
-            .iter()
-            .sum()
-    }
-
-    /// "not valid above 12 rad/s".
-    pub fn limit_words(&self) -> String {
-        format!("not valid above {} rad/s", number(self.limit_rad_s))
-    }
-
-    /// Describes the limit and the gain of each channel with a filter: "not valid above 12 rad/s:
-    /// at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on LAT; a response gets that of its
-    /// input and of its output".
-    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
-        let with_gain = self
-            .gains_db
-            .iter()
-            .filter(|(_, gain_db)| **gain_db > NOTHING_DB);
-        let gains: Vec<String> = with_gain
-            .map(|(channel, &gain_db)| {
-                format!(
-                    "{} dB on {}",
-                    signed(gain_db, 1),
-                    channel.name(inputs, outputs)
-                )
-            })
-            .collect();
-        if gains.is_empty() {
-            return self.limit_words();
-        }
-        format!(
-            "{}: at {} rad/s the leads add {}; a response gets that of its input and of its output",
-            self.limit_words(),
-            number(self.above_rad_s()),
-            gains.join(", ")
-        )
-    }
-
-    /// Added gain of a response: "+18.9 dB at 120 rad/s"; `None` where its channels add nothing.
-    pub fn pair_words(&self, pair: Pair) -> Option<String> {
-        let gain_db = self.of_pair_db(pair);
-        (gain_db > NOTHING_DB).then(|| {
-            format!(
-                "{} dB at {} rad/s",
-                signed(gain_db, 1),
-                number(self.above_rad_s())
-            )
-        })
-    }
+/// Adds two curves frequency by frequency.
+fn sums(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + b).collect()
 }
 
 #[cfg(test)]
@@ -363,7 +285,7 @@ mod tests {
     use gdcm_model::dataset::Band;
     use gdcm_model::response::FrequencyGrid;
 
-    use super::{LeadDesign, LeadSettings, *};
+    use super::*;
 
     fn design(order: LeadOrder, pole: f64) -> LeadDesign {
         let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 200);
@@ -399,67 +321,10 @@ mod tests {
             let tau_s = share * design.lower_s();
             let lead_s = design.lead_s(tau_s);
             // Rounding of a sum of 200 phases, whose errors may all have the same sign: 200 times
-            // 2.2e-16, and the same for the divisor. For a lead far below the lag b of its filter
-            // the difference a - b has lost digits: 2.2e-16 b, against a lead of about share times
-            // b.
+            // 2.2e-16, and the same for the divisor. For a lead far below the filter's lag b the
+            // difference a - b has lost digits: 2.2e-16 b, against a lead near share times b.
             let tolerance = 1e-13 + 1e-15 / share;
             prop_assert!((design.band_delay_s(lead_s) / tau_s - 1.0).abs() < tolerance, "{tau_s}");
         }
-    }
-
-    fn leads(input_s: f64, output_s: f64) -> ChannelLeads {
-        let design = LeadDesign::new(
-            LeadSettings::default(),
-            (1..=120).map(|tenth| 0.1 * f64::from(tenth)).collect(),
-        );
-        ChannelLeads::new(
-            Arc::new(design),
-            Channels {
-                inputs: vec![input_s],
-                outputs: vec![output_s],
-            },
-        )
-    }
-
-    #[test]
-    fn a_response_pays_for_the_filters_of_both_its_channels_at_ten_times_the_band() {
-        let leads = leads(-0.04, -0.02);
-        let price = LeadPrice::of(&leads).expect("both have a filter");
-        let pair = Pair {
-            output: 0,
-            input: 0,
-        };
-        let of = |channel: Channel| leads.filters()[channel].expect("a lead").at(120.0).norm();
-        let expected = 20.0 * (of(Channel::Input(0)) * of(Channel::Output(0))).log10();
-        // Rounding of a response against the closed form of its magnitude.
-        assert!(
-            (price.of_pair_db(pair) - expected).abs() < 1e-9,
-            "{price:?}"
-        );
-        assert!(
-            (price.limit_rad_s, price.above_rad_s()) == (12.0, 120.0),
-            "{price:?}"
-        );
-        let words = price.words(&["LON".to_owned()], &["Q".to_owned()]);
-        assert!(
-            words.starts_with("not valid above 12 rad/s: at 120 rad/s the leads add +"),
-            "{words}"
-        );
-        assert!(
-            words.contains(" dB on LON, +") && words.contains(" dB on Q;"),
-            "{words}"
-        );
-    }
-
-    #[test]
-    fn delays_cost_nothing_and_a_schedule_costs_the_most_of_its_airspeeds() {
-        assert_eq!(LeadPrice::of(&leads(0.01, 0.0)), None);
-        let [one, other] =
-            [leads(-0.04, -0.01), leads(-0.02, -0.03)].map(|of| LeadPrice::of(&of).expect("leads"));
-        let most = one.clone().or_more(&other);
-        assert_eq!(
-            (most.gains_db.inputs[0], most.gains_db.outputs[0]),
-            (one.gains_db.inputs[0], other.gains_db.outputs[0])
-        );
     }
 }

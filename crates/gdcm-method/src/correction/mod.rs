@@ -1,30 +1,45 @@
 //! From two models to one gain and one delay or lead for each channel (M6 to M10, M15).
 //!
 //! [`Delta`](delta::Delta) gives the gain and delay that each response needs; [`solve`] minimises
-//! eq. (7) or the convex eq. (11), in logarithms of gains or in seconds, with a proof of the global
-//! minimum. The signed delays of M15 are a convex program of the same kind;
+//! eq. (7) or the convex eq. (11), in logarithms of gains or in seconds, and proves the global
+//! minimum. The signed delays in M15 are a convex program in the same form;
 //! [`LeadDesign`](leads::LeadDesign) turns the negative ones into filters. `solve` also explains
 //! infeasible constraints and their remedies; [`sensitivities`](sensitivity::sensitivities) and
-//! [`toggles`](sensitivity::toggles) give the cost of each constrained entry. Tables are `[output,
+//! [`toggles`](sensitivity::toggles) give the cost for each constrained entry. Tables are `[output,
 //! input]`, gains are ratios, delays are seconds.
 
 pub mod branch_and_bound;
+pub mod channel_correction;
+pub mod channel_model;
 pub mod channels;
 mod components;
 pub mod conflict;
+mod conflict_search;
+mod conflict_text;
 pub mod corrected_model;
 pub mod delta;
+mod interior_point;
+mod interval;
+pub mod lead_price;
 pub mod leads;
+pub mod pade;
 pub mod problem;
+pub mod quantity;
+pub mod remedy;
+mod rounding;
+mod scaled_objective;
 pub mod sensitivity;
+pub mod solution;
 pub mod solve;
 
 pub use branch_and_bound::search::ProofBudget;
-pub use channels::{Channel, ChannelCorrection, Channels};
-pub use corrected_model::Pade;
-pub use leads::LeadPrice;
-pub use problem::{Bounds, GainObjective, Problem, Quantity};
-pub use solve::{Outcome, Solution};
+pub use channel_correction::ChannelCorrection;
+pub use channels::{Channel, Channels};
+pub use lead_price::LeadPrice;
+pub use pade::Pade;
+pub use problem::{Bounds, Problem};
+pub use quantity::{GainObjective, Quantity};
+pub use solution::{Outcome, Solution};
 
-/// Bounds of the channel gains.
+/// Bounds on the channel gains.
 pub type GainBounds = Bounds;

@@ -6,11 +6,13 @@ use nalgebra::{DMatrix, DVector};
 use gdcm_model::dataset::Pair;
 use gdcm_model::units::number;
 
+use super::branch_and_bound::objective::connected_pieces;
+use super::branch_and_bound::search::ProofBudget;
 use super::channels::{Channel, pair_name};
-use super::problem::{Problem, ProblemError, Quantity};
-use super::solve::{Outcome, Solution, solve};
-use crate::correction::branch_and_bound::objective::pieces;
-use crate::correction::branch_and_bound::search::ProofBudget;
+use super::problem::{Entry, Problem, ProblemError};
+use super::quantity::Quantity;
+use super::solution::{Outcome, Solution};
+use super::solve::solve;
 
 /// A constraint that keeps the channels from a lower objective.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,12 +24,12 @@ pub enum ActiveConstraint {
     UpperBound(Channel),
 }
 
-/// Multiplier of one active constraint.
+/// Multiplier of an active constraint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensitivity {
     pub quantity: Quantity,
     pub restraint: ActiveConstraint,
-    /// Change of the least objective for each dB or ms by which the constrained value or the bound
+    /// Change in the least objective for each dB or ms by which the constrained value or the bound
     /// is raised (to first order).
     pub per_unit: f64,
     /// `per_unit` as a share of the objective; 0 where the objective is 0.
@@ -35,116 +37,133 @@ pub struct Sensitivity {
 }
 
 impl Sensitivity {
-    /// Step used in the description \[dB or ms\]: 1, or a tenth, a hundredth, … of it, so that the
-    /// slope is extrapolated to less than half of the objective, which cannot fall by more than all
-    /// of it.
+    /// Chooses the step for the description \[dB or ms\]: 1, 0.1, 0.01, …, so that the slope is
+    /// extrapolated to at most half the objective, which cannot fall below zero.
     pub fn step(&self) -> f64 {
         const MOST_SHARE: f64 = 0.5;
-        /// The least step is a nanosecond or a millionth of a decibel.
+        /// The least step is a nanosecond or 1e-6 dB.
         const MOST_POWERS: i32 = 6;
         let share = self.share_per_unit.abs();
-        let power = (0..MOST_POWERS).find(|&power| share * 10_f64.powi(-power) <= MOST_SHARE);
-        10_f64.powi(-power.unwrap_or(MOST_POWERS))
+        for power in 0..MOST_POWERS {
+            let step = 10_f64.powi(-power);
+            if share * step <= MOST_SHARE {
+                return step;
+            }
+        }
+        10_f64.powi(-MOST_POWERS)
     }
 
     /// Describes the sensitivity.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
-        let step = self.step();
-        // An objective close to zero is used up before the least step ends.
-        let percent = (100.0 * step * self.share_per_unit.abs()).min(100.0);
-        let step = number(step);
-        let gain = self.quantity.is_gain();
-        let is_dear = self.per_unit > 0.0;
         let name = match self.restraint {
             ActiveConstraint::Held(pair) => pair_name(pair, inputs, outputs),
             ActiveConstraint::LowerBound(channel) | ActiveConstraint::UpperBound(channel) => {
-                format!(
-                    "{}_{}",
-                    if gain { "k" } else { "τ" },
-                    channel.name(inputs, outputs)
-                )
+                let symbol = if self.quantity.is_gain() { "k" } else { "τ" };
+                format!("{symbol}_{}", channel.name(inputs, outputs))
             }
         };
-        let change = if is_dear { "lowering" } else { "raising" };
-        let way = match (self.quantity, self.restraint) {
-            (Quantity::Gain(_), ActiveConstraint::Held(_)) => {
-                format!("held: {change} its gain by {step} dB")
+        let step = self.step();
+        // An objective close to zero is used up before the least step ends.
+        let percent = (100.0 * step * self.share_per_unit.abs()).min(100.0);
+        let change = if self.quantity.is_gain() {
+            self.gain_change_words(&number(step))
+        } else {
+            self.delay_change_words(&number(step))
+        };
+        format!("{name} is {change} would lower the objective by about {percent:.2} %.")
+    }
+
+    /// Describes a gain's state and the change by `step` dB that lowers the objective.
+    fn gain_change_words(&self, step: &str) -> String {
+        let change = if self.per_unit > 0.0 {
+            "lowering"
+        } else {
+            "raising"
+        };
+        match self.restraint {
+            ActiveConstraint::Held(_) => format!("held: {change} its gain by {step} dB"),
+            ActiveConstraint::LowerBound(_) => {
+                format!("on its lower bound: {change} the bound by {step} dB")
             }
-            (Quantity::Gain(_), bound) => {
-                let end = if matches!(bound, ActiveConstraint::LowerBound(_)) {
-                    "lower"
-                } else {
-                    "upper"
-                };
-                format!("on its {end} bound: {change} the bound by {step} dB")
+            ActiveConstraint::UpperBound(_) => {
+                format!("on its upper bound: {change} the bound by {step} dB")
             }
-            (_, ActiveConstraint::Held(_)) => {
-                format!(
-                    "held: {step} ms {} delay",
-                    if is_dear { "less" } else { "more" }
-                )
+        }
+    }
+
+    /// Describes a delay's state and the change by `step` ms that lowers the objective.
+    fn delay_change_words(&self, step: &str) -> String {
+        match self.restraint {
+            ActiveConstraint::Held(_) if self.per_unit > 0.0 => {
+                format!("held: {step} ms less delay")
             }
-            (Quantity::Delay, ActiveConstraint::LowerBound(_)) => format!("0: {step} ms of lead"),
-            (_, ActiveConstraint::LowerBound(_)) => {
-                format!("at its most lead: {step} ms more of it")
+            ActiveConstraint::Held(_) => format!("held: {step} ms more delay"),
+            ActiveConstraint::LowerBound(_) if self.quantity == Quantity::Delay => {
+                format!("0: {step} ms of lead")
             }
-            (_, ActiveConstraint::UpperBound(_)) => {
+            ActiveConstraint::LowerBound(_) => format!("at its greatest lead: {step} ms more"),
+            ActiveConstraint::UpperBound(_) => {
                 format!("on its upper bound: raising the bound by {step} ms")
             }
-        };
-        format!("{name} is {way} would lower the objective by about {percent:.2} %.")
+        }
     }
 }
 
-/// Computes the sensitivity of every constrained entry and of every active bound, the most
-/// expensive first.
+/// Computes the sensitivity to every constrained entry and every active bound, the most expensive
+/// first.
 ///
-/// `solution` is the solution of `problem` ([`super::solve`]).
+/// `solution` solves `problem` ([`super::solve`]).
 pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity> {
-    let minimum = Restrained::of(problem, solution);
-    let (of_entries, of_channels) = multipliers(&minimum);
-    let sensitivity = |restraint: ActiveConstraint, slope: f64| {
-        let per_unit = problem.quantity.per_unit(slope);
-        let share_per_unit = if solution.objective > 0.0 {
-            per_unit / solution.objective
+    let minimum = ConstrainedMinimum::new(problem, solution);
+    let multipliers = Multipliers::new(&minimum);
+    let mut sensitivities = Vec::new();
+    for (pair, &slope) in minimum.held.iter().zip(&multipliers.entries) {
+        let held = ActiveConstraint::Held(*pair);
+        sensitivities.push(sensitivity(problem, solution, held, slope));
+    }
+    let channels = Channel::all(minimum.inputs, solution.outputs.len());
+    for (channel, &slope) in channels.zip(&multipliers.channels) {
+        // The objective falls as the upper bound is raised, or the lower bound lowered.
+        let bound = if slope < 0.0 {
+            ActiveConstraint::UpperBound(channel)
+        } else if slope != 0.0 {
+            ActiveConstraint::LowerBound(channel)
         } else {
-            0.0
+            continue;
         };
-        Sensitivity {
-            quantity: problem.quantity,
-            restraint,
-            per_unit,
-            share_per_unit,
-        }
-    };
-    let of_held = minimum
-        .held
-        .iter()
-        .zip(&of_entries)
-        .map(|(pair, slope)| sensitivity(ActiveConstraint::Held(*pair), *slope));
-    let channels = Channel::all(minimum.inputs, solution.outputs.len()).zip(of_channels);
-    let of_bounds = channels
-        .filter(|(_, slope)| *slope != 0.0)
-        .map(|(channel, slope)| {
-            // The objective falls as the upper bound is raised, or the lower bound lowered.
-            let bound = if slope < 0.0 {
-                ActiveConstraint::UpperBound
-            } else {
-                ActiveConstraint::LowerBound
-            };
-            sensitivity(bound(channel), slope)
-        });
-    let mut all: Vec<Sensitivity> = of_held.chain(of_bounds).collect();
-    all.sort_by(|a, b| b.per_unit.abs().total_cmp(&a.per_unit.abs()));
-    all
+        sensitivities.push(sensitivity(problem, solution, bound, slope));
+    }
+    sensitivities.sort_by(|a, b| b.per_unit.abs().total_cmp(&a.per_unit.abs()));
+    sensitivities
 }
 
-/// Slope of the objective in the logarithm of each channel gain, or in each delay; inputs first.
+/// Converts a multiplier to dB or ms.
+fn sensitivity(
+    problem: &Problem,
+    solution: &Solution,
+    restraint: ActiveConstraint,
+    slope: f64,
+) -> Sensitivity {
+    let per_unit = problem.quantity.per_unit(slope);
+    let share_per_unit = if solution.objective > 0.0 {
+        per_unit / solution.objective
+    } else {
+        0.0
+    };
+    Sensitivity {
+        quantity: problem.quantity,
+        restraint,
+        per_unit,
+        share_per_unit,
+    }
+}
+
+/// Computes the objective's slope in each logarithmic channel gain, or in each delay; inputs first.
 fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
     let quantity = problem.quantity;
     let inputs = solution.inputs.len();
     let mut slopes = vec![0.0; inputs + solution.outputs.len()];
-    for (pair, delta) in problem.fit_entries() {
+    for Entry { pair, delta } in problem.fit_entries() {
         let slope = quantity.slope(
             delta,
             solution.outputs[pair.output],
@@ -154,61 +173,75 @@ fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
         slopes[inputs + pair.output] += slope;
     }
     let neutral = quantity.neutral();
-    let first = if quantity.regularises_inputs() {
+    let first_regularised = if quantity.regularises_inputs() {
         0
     } else {
         inputs
     };
     let values = solution.inputs.iter().chain(&solution.outputs);
-    for (slope, value) in slopes.iter_mut().zip(values).skip(first) {
+    for (slope, value) in slopes.iter_mut().zip(values).skip(first_regularised) {
         *slope += problem.alpha * quantity.slope(neutral, *value, neutral);
     }
     slopes
 }
 
-/// Karush-Kuhn-Tucker residual of a solution: the greatest slope of the objective along which
+/// Computes a solution's Karush-Kuhn-Tucker residual: the greatest objective slope along which
 /// channels could still move together, inside the bounds and with the entries constrained. For a
 /// convex problem zero is a proof.
 ///
-/// In the objective's unit per unit of the channels: for delays s² / s. `solution` is the solution
-/// of `problem` ([`super::solve`]).
+/// In the objective's unit per channel unit: for delays s² / s. `solution` solves `problem`
+/// ([`super::solve`]).
 pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
-    let minimum = Restrained::of(problem, solution);
-    let pushes = minimum
-        .pieces()
-        .into_iter()
-        .map(|piece| minimum.push(&piece));
-    pushes
-        .filter(|(_, stopping)| stopping.is_empty())
-        .fold(0.0, |most, (push, _)| most.max(push.abs()))
+    let minimum = ConstrainedMinimum::new(problem, solution);
+    let mut residual = 0.0_f64;
+    for piece in minimum.pieces() {
+        let push = minimum.push(&piece);
+        if push.stopping.is_empty() {
+            residual = residual.max(push.slope.abs());
+        }
+    }
+    residual
 }
 
-/// A minimum as a function of its channels: inputs first, then outputs.
-struct Restrained {
+/// Whether a channel is on its bounds.
+#[derive(Clone, Copy)]
+struct AtBounds {
+    lower: bool,
+    upper: bool,
+}
+
+/// Slope along the common movement in a piece of tied channels.
+struct Push {
+    slope: f64,
+    /// Channels whose bounds stop the movement.
+    stopping: Vec<usize>,
+}
+
+/// A minimum as a function of the channels: inputs first, then outputs.
+struct ConstrainedMinimum {
     inputs: usize,
-    /// Slope of the objective in each channel's value.
+    /// The objective's slope in each channel's value.
     slopes: Vec<f64>,
-    /// Whether each channel is on its lower and on its upper bound.
-    at_bounds: Vec<(bool, bool)>,
-    /// The constrained entries: sums of an input's and an output's value.
+    at_bounds: Vec<AtBounds>,
+    /// The constrained entries: each fixes the sum over an input and an output.
     held: Vec<Pair>,
 }
 
-impl Restrained {
-    fn of(problem: &Problem, solution: &Solution) -> Self {
-        let on = |value: &f64| {
-            (
-                *value == problem.bounds.lower,
-                *value == problem.bounds.upper,
-            )
-        };
+impl ConstrainedMinimum {
+    fn new(problem: &Problem, solution: &Solution) -> Self {
         let at_bounds = solution
             .inputs
             .iter()
             .chain(&solution.outputs)
-            .map(on)
+            .map(|&value| AtBounds {
+                lower: value == problem.bounds.lower,
+                upper: value == problem.bounds.upper,
+            })
             .collect();
-        let held = problem.held_entries().map(|(pair, _)| pair).collect();
+        let held = problem
+            .constrained_entries()
+            .map(|entry| entry.pair)
+            .collect();
         Self {
             inputs: solution.inputs.len(),
             slopes: slopes(problem, solution),
@@ -217,57 +250,75 @@ impl Restrained {
         }
     }
 
-    /// Groups of channels tied together by constrained entries.
+    /// Groups the channels that constrained entries tie together.
     fn pieces(&self) -> Vec<Vec<usize>> {
-        pieces(
-            self.slopes.len(),
-            self.held
-                .iter()
-                .map(|pair| (pair.input, self.inputs + pair.output)),
-        )
+        let ties = self
+            .held
+            .iter()
+            .map(|pair| [pair.input, self.inputs + pair.output]);
+        connected_pieces(self.slopes.len(), ties)
     }
 
-    /// 1 for an input, -1 for an output: an output falls where the inputs tied to it rise.
+    /// Returns 1 for an input, -1 for an output: an output falls where the inputs tied to it rise.
     fn sign(&self, channel: usize) -> f64 {
         if channel < self.inputs { 1.0 } else { -1.0 }
     }
 
-    /// Slope of the objective along the common movement of a piece of tied channels, and the
-    /// channels whose bounds stop it.
-    fn push(&self, piece: &[usize]) -> (f64, Vec<usize>) {
-        let push: f64 = piece
+    /// Computes the objective's slope along the common movement in a piece of tied channels.
+    fn push(&self, piece: &[usize]) -> Push {
+        let slope: f64 = piece
             .iter()
             .map(|&channel| self.sign(channel) * self.slopes[channel])
             .sum();
-        // The piece would move against the slope: an input on its upper bound stops a rise, and so
-        // does an output on its lower bound.
-        let stops = |channel: &&usize| {
-            let rises = self.sign(**channel) * push < 0.0;
-            if rises {
-                self.at_bounds[**channel].1
-            } else {
-                self.at_bounds[**channel].0
+        let mut stopping = Vec::new();
+        for &channel in piece {
+            // The piece would move against the slope: an input on its upper bound stops a rise, and
+            // so does an output on its lower bound.
+            let rises = self.sign(channel) * slope < 0.0;
+            let at = self.at_bounds[channel];
+            if (rises && at.upper) || (!rises && at.lower) {
+                stopping.push(channel);
             }
-        };
-        (push, piece.iter().filter(stops).copied().collect())
+        }
+        Push { slope, stopping }
     }
 }
 
-/// Solves `slopes + sum of multipliers = 0`: the slope that pushes a piece of tied channels against
-/// a bound is divided equally among the channels on that bound; the constrained entries carry the
-/// rest, in a loop with the least squares.
-///
-/// The multipliers are the derivatives of the least objective with respect to the target of each
-/// constrained entry and to the active bound of each channel (0 where none is active).
-fn multipliers(minimum: &Restrained) -> (Vec<f64>, Vec<f64>) {
-    let channels = minimum.slopes.len();
-    let mut bounds = vec![0.0; channels];
-    for piece in minimum.pieces() {
-        let (push, stopping) = minimum.push(&piece);
-        for &channel in &stopping {
-            bounds[channel] = minimum.sign(channel) * push / stopping.len() as f64;
+/// The least objective's derivatives with respect to each constrained entry's target and each
+/// channel's active bound (0 where none is active).
+struct Multipliers {
+    entries: Vec<f64>,
+    /// Inputs first.
+    channels: Vec<f64>,
+}
+
+impl Multipliers {
+    /// Solves `slopes + sum(multipliers) = 0`.
+    ///
+    /// The slope that pushes a piece of tied channels against a bound is divided equally among the
+    /// channels on that bound; the constrained entries carry the rest, in a loop with the least
+    /// squares.
+    fn new(minimum: &ConstrainedMinimum) -> Self {
+        let mut channels = vec![0.0; minimum.slopes.len()];
+        for piece in minimum.pieces() {
+            let push = minimum.push(&piece);
+            for &channel in &push.stopping {
+                channels[channel] = minimum.sign(channel) * push.slope / push.stopping.len() as f64;
+            }
+        }
+        Self {
+            entries: entry_multipliers(minimum, &channels),
+            channels,
         }
     }
+}
+
+/// Solves for the constrained entries' multipliers, given those on the bounds.
+fn entry_multipliers(minimum: &ConstrainedMinimum, bounds: &[f64]) -> Vec<f64> {
+    if minimum.held.is_empty() {
+        return Vec::new();
+    }
+    let channels = bounds.len();
     let left = DVector::from_fn(channels, |channel, _| {
         minimum.slopes[channel] - bounds[channel]
     });
@@ -279,31 +330,26 @@ fn multipliers(minimum: &Restrained) -> (Vec<f64>, Vec<f64>) {
             0.0
         }
     });
-    let held = if minimum.held.is_empty() {
-        Vec::new()
-    } else {
-        // The squared singular values are the Laplacian's of a bipartite graph of n channels: 0, or
-        // at least 4 / n^2 (Mohar, "Eigenvalues, diameter and mean distance in graphs", 1991). The
-        // tolerance is half of that root.
-        let solved = ties.svd(true, true).solve(&left, 1.0 / channels as f64);
-        solved
-            .map(|held| held.iter().copied().collect())
-            .unwrap_or_default()
-    };
-    (held, bounds)
+    // The squared singular values are the Laplacian eigenvalues for a bipartite graph on n
+    // channels: 0, or at least 4 / n^2 (Mohar, "Eigenvalues, diameter and mean distance in graphs",
+    // 1991). The tolerance is half that root.
+    match ties.svd(true, true).solve(&left, 1.0 / channels as f64) {
+        Ok(multipliers) => multipliers.iter().copied().collect(),
+        Err(_) => Vec::new(),
+    }
 }
 
 /// The solution with one free entry constrained, or one constrained entry released.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Toggle {
     pub pair: Pair,
-    /// Whether it is constrained now.
+    /// Whether the entry is constrained now.
     pub held_now: bool,
     /// Least objective without the toggle.
     pub before: f64,
     /// Least objective with the toggle.
     pub after: f64,
-    /// Number of constrained entries that are infeasible with the toggle.
+    /// Count of infeasible constrained entries with the toggle.
     pub unmatched_after: usize,
     /// Whether the entry itself is feasible, if the toggle constrains it.
     pub matched_after: bool,
@@ -312,7 +358,7 @@ pub struct Toggle {
 }
 
 impl Toggle {
-    /// Change of the objective as a share of the present objective; infinite where that is 0 and
+    /// Returns the objective's change as a share of its present value; infinite where that is 0 and
     /// something changes.
     pub fn share(&self) -> f64 {
         let change = self.after - self.before;
@@ -328,26 +374,21 @@ impl Toggle {
         let pair = pair_name(self.pair, inputs, outputs);
         // Without the added zero, no change would read -0.0.
         let percent = 100.0 * self.share() + 0.0;
-        match (self.held_now, self.matched_after) {
-            (true, _) if self.after <= self.before => {
-                format!(
-                    "holding {pair} costs {:.1} % of the objective",
-                    0.0 - percent
-                )
-            }
-            (true, _) => {
+        if self.held_now {
+            if self.after <= self.before {
+                let saved = 0.0 - percent;
+                format!("holding {pair} costs {saved:.1} % of the objective")
+            } else {
                 format!(
                     "freeing {pair} would raise the objective by {percent:.1} %: others are then held better"
                 )
             }
-            (false, true) => {
-                format!("holding {pair} would change the objective by {percent:+.1} %")
-            }
-            (false, false) => {
-                format!(
-                    "{pair} cannot be held besides what is held; trying changes the objective by {percent:+.1} %"
-                )
-            }
+        } else if self.matched_after {
+            format!("holding {pair} would change the objective by {percent:+.1} %")
+        } else {
+            format!(
+                "{pair} cannot be held besides the held responses; trying changes the objective by {percent:+.1} %"
+            )
         }
     }
 }
@@ -355,7 +396,7 @@ impl Toggle {
 /// Solves `problem` with every entry that has a delta toggled in turn, row by row, until `stop`
 /// returns true.
 ///
-/// The result is the table for the matrix of entries, to be computed in the background of the live
+/// The result is the table for the entry matrix, to be computed in the background behind the live
 /// solution `solution`. A list shorter than the entries means that it was stopped.
 ///
 /// # Errors
@@ -368,7 +409,10 @@ pub fn toggles(
 ) -> Result<Vec<Toggle>, ProblemError> {
     let mut toggles = Vec::new();
     let mut toggled = problem.clone();
-    for (pair, _) in problem.delta.iter().filter(|(_, delta)| delta.is_some()) {
+    for (pair, delta) in problem.delta.iter() {
+        if delta.is_none() {
+            continue;
+        }
         let held_now = problem.constrained[pair];
         toggled.constrained[pair] = !held_now;
         let after = match solve(&toggled, budget, stop) {

@@ -418,7 +418,7 @@ pub fn without_delays(physics: &StateSpace, pade: Pade) -> Result<StateSpace, Co
         output_delays_s: vec![0.0; outputs],
         leads: None,
     };
-    Ok(CorrectedModel::of(physics, &no_correction, pade)?.model)
+    Ok(CorrectedModel::new(physics, &no_correction, pade)?.model)
 }
 
 #[cfg(test)]

@@ -900,7 +900,7 @@ fn what_was_not_measured_coherently_does_not_count() {
     for (condition, other) in measured.conditions.iter_mut().zip(&mut unusable.conditions) {
         condition.coherence = Some(PairTable::from_fn(3, 2, |pair| {
             let coherence = if pair == Pair::new(2, 0) { 0.3 } else { 1.0 };
-            CoherenceWeights::of(&omega, &vec![coherence; omega.len()], 0.6, None)
+            CoherenceWeights::select(&omega, &vec![coherence; omega.len()], 0.6, None)
         }));
         other.usable[Pair::new(2, 0)] = false;
     }

@@ -1,5 +1,7 @@
-//! Linear least-absolute-deviations fits with non-negative weights, by a search over the vertices
-//! of the fit and the edges between them.
+//! Linear least-absolute-deviations fits with non-negative weights, by a search over the fit's
+//! vertices and the edges between them.
+
+use std::cmp::Ordering;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,30 +11,30 @@ use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
     /// The linear program did not reach its optimum.
-    #[error("the fit of least absolute deviations ended with {status}")]
+    #[error("least absolute deviations fit not solved: {status}")]
     NotSolved {
         /// Status reported by the solver.
         status: String,
     },
-    #[error("the fit of least absolute deviations was cancelled")]
+    #[error("least absolute deviations fit cancelled")]
     Cancelled,
 }
 
-/// Minimises `sum_i |x_i w - y_i|` over `w >= 0`; among equally good vertices, returns the one with
-/// the smallest `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
+/// Minimises `sum_i |x_i w - y_i|` over `w >= 0`; among equally good vertices, returns the vertex
+/// with the smallest `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
 ///
 /// ```text
-/// 1  vertex <- that of the constraints x_i w = y_i, w_k = 0 which the fit of least squares meets best
-/// 2  an edge along which the sum falls: give up one constraint of the basis, go to where the sum stops falling,
-///    take in the constraint met there; again from 2
-/// 3  edges along which it stays the same: over all vertices that they lead to, again from 2
-/// 4  where more constraints meet than a basis holds, edges may hide a way down: the linear program
-///    min sum t,  -t <= x w - y <= t,  w >= 0  is solved, and 2 and 3 go on from the vertex nearest to its solution
+/// 1  vertex <- intersection of those constraints x_i w = y_i, w_k = 0 that the least squares fit satisfies best
+/// 2  edge along which the sum falls: release a constraint in the basis, move to where the sum stops falling,
+///    add the constraint met there; again from 2
+/// 3  edges along which the sum stays the same: compare all vertices that they lead to; again from 2
+/// 4  where more constraints meet than a basis holds, edges may hide a descent: solve the linear program
+///    min sum t,  -t <= x w - y <= t,  w >= 0,  and repeat 2 and 3 from the vertex nearest to its solution
 /// ```
 ///
-/// The simplex method of Barrodale and Roberts (SIAM J. Numer. Anal. 10(5), 1973): exact, and
-/// identical on every machine. `x` and `y` must not be negative. The search ends without a result
-/// at the first vertex at which it is `cancelled`.
+/// Barrodale and Roberts' simplex method (SIAM J. Numer. Anal. 10(5), 1973): exact, and identical
+/// on every machine. `x` (rows with equal length) and `y` must not be negative. The search ends
+/// without a result at the first vertex at which it is `cancelled`.
 pub fn least_absolute_deviations(
     x: &[Vec<f64>],
     y: &[f64],
@@ -49,12 +51,12 @@ pub fn least_absolute_deviations(
     let mut best = best_vertex(&fit, start, cancelled)?;
     if best.is_degenerate(&fit) {
         let weights = solve_linear_program(x, &scaled, unknowns)?;
-        let other = Vertex::nearest(&fit, &weights)
-            .map(|vertex| best_vertex(&fit, vertex, cancelled))
-            .transpose()?;
-        let better =
-            other.filter(|other| fit.deviations(&other.weights) < fit.deviations(&best.weights));
-        best = better.unwrap_or(best);
+        if let Some(vertex) = Vertex::nearest(&fit, &weights) {
+            let other = best_vertex(&fit, vertex, cancelled)?;
+            if fit.deviations(&other.weights) < fit.deviations(&best.weights) {
+                best = other;
+            }
+        }
     }
     Ok(best
         .weights
@@ -69,9 +71,8 @@ fn best_vertex(
     start: Vertex,
     cancelled: &dyn Fn() -> bool,
 ) -> Result<Vertex, FitError> {
-    /// Far more than the vertices of a face with few unknowns; limits only the run time.
+    /// Far more than the vertices on a face with few unknowns; limits only the run time.
     const MOST_VERTICES: usize = 300;
-    let misfit = |vertex: &Vertex| fit.squared_root_deviations(&vertex.weights);
     let mut best = start.clone();
     let mut equal = vec![start];
     let mut next = 0;
@@ -90,7 +91,9 @@ fn best_vertex(
         };
         for vertex in equally_good {
             if !equal.iter().any(|known| known.is_at(&vertex)) {
-                if misfit(&vertex) < misfit(&best) {
+                if fit.squared_root_deviations(&vertex.weights)
+                    < fit.squared_root_deviations(&best.weights)
+                {
                     best = vertex.clone();
                 }
                 equal.push(vertex);
@@ -104,36 +107,32 @@ fn best_vertex(
 /// Solves the linear program `min sum t` subject to `x w - t <= y`, `-x w - t <= -y`, `w >= 0`.
 fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Vec<f64>, FitError> {
     let rows = x.len();
-    let mut i = Vec::new();
-    let mut j = Vec::new();
-    let mut v = Vec::new();
-    let mut entry = |row: usize, column: usize, value: f64| {
-        i.push(row);
-        j.push(column);
-        v.push(value);
-    };
+    let mut entries = Triplets::default();
     for (row, x) in x.iter().enumerate() {
-        for (column, &value) in x.iter().enumerate().filter(|(_, value)| **value != 0.0) {
-            entry(row, column, value);
-            entry(rows + row, column, -value);
+        for (column, &value) in x.iter().enumerate() {
+            if value != 0.0 {
+                entries.push(row, column, value);
+                entries.push(rows + row, column, -value);
+            }
         }
-        entry(row, unknowns + row, -1.0);
-        entry(rows + row, unknowns + row, -1.0);
+        entries.push(row, unknowns + row, -1.0);
+        entries.push(rows + row, unknowns + row, -1.0);
     }
     for column in 0..unknowns {
-        entry(2 * rows + column, column, -1.0);
+        entries.push(2 * rows + column, column, -1.0);
     }
-    let a = CscMatrix::new_from_triplets(2 * rows + unknowns, unknowns + rows, i, j, v);
-    let b: Vec<f64> = y
-        .iter()
-        .copied()
-        .chain(y.iter().map(|y| -y))
-        .chain(vec![0.0; unknowns])
-        .collect();
-    let q: Vec<f64> = vec![0.0; unknowns]
-        .into_iter()
-        .chain(vec![1.0; rows])
-        .collect();
+    let a = CscMatrix::new_from_triplets(
+        2 * rows + unknowns,
+        unknowns + rows,
+        entries.rows,
+        entries.columns,
+        entries.values,
+    );
+    let mut b = y.to_vec();
+    b.extend(y.iter().map(|y| -y));
+    b.extend(vec![0.0; unknowns]);
+    let mut q = vec![0.0; unknowns];
+    q.extend(vec![1.0; rows]);
     // Tight enough that the nearest vertex is optimal or one edge from an optimal vertex.
     let settings = DefaultSettings {
         verbose: false,
@@ -143,45 +142,62 @@ fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Ve
         max_iter: 500,
         ..DefaultSettings::default()
     };
-    let solution = convex_program(&CscMatrix::zeros((q.len(), q.len())), &q, &a, &b, settings);
-    solution
-        .map(|x| x[..unknowns].to_vec())
-        .map_err(|status| FitError::NotSolved { status })
+    let no_curvature = CscMatrix::zeros((q.len(), q.len()));
+    match convex_program(&no_curvature, &q, &a, &b, settings) {
+        Ok(solution) => Ok(solution[..unknowns].to_vec()),
+        Err(status) => Err(FitError::NotSolved { status }),
+    }
+}
+
+/// Entries of a sparse matrix.
+#[derive(Default)]
+struct Triplets {
+    rows: Vec<usize>,
+    columns: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl Triplets {
+    fn push(&mut self, row: usize, column: usize, value: f64) {
+        self.rows.push(row);
+        self.columns.push(column);
+        self.values.push(value);
+    }
 }
 
 /// Deviations and weights below this count as zero; the right-hand sides are scaled to at most 1.
 const ZERO: f64 = 1e-11;
-/// Relative change of the sum of deviations along an edge below which the edge counts as flat.
+/// Relative change in the summed deviations below which an edge counts as flat.
 const FLAT: f64 = 1e-10;
 
-/// The constraints `x_i w = y_i` and `w_k = 0`; a vertex is the intersection of as many constraints
-/// as there are unknowns.
+/// The constraints `x_i w = y_i` (the rows) and `w_k = 0` (the weights), counted in this order; a
+/// vertex is where as many constraints intersect as there are unknowns.
 struct Fit<'a> {
-    /// Row by row.
+    /// Row-major.
     x: Vec<f64>,
     unknowns: usize,
     y: &'a [f64],
 }
 
-/// A vertex: its weights, and the constraints that meet in it.
+/// A vertex: its weights, and the constraints that define it.
 #[derive(Clone, Debug)]
 struct Vertex {
     /// The weights, non-negative up to rounding.
     weights: Vec<f64>,
-    /// Indices of the constraints: rows first, then weights.
+    /// Constraint indices: rows first, then weights.
     basis: Vec<usize>,
 }
 
-/// Destinations of the edges of a vertex.
+/// Destinations along a vertex's edges.
 enum Neighbours {
-    /// End of an edge along which the deviations decrease.
+    /// End vertex for an edge along which the deviations decrease.
     Better(Vertex),
-    /// Ends of the edges along which the deviations stay the same.
+    /// End vertices for the edges along which the deviations stay the same.
     Equal(Vec<Vertex>),
 }
 
 impl<'a> Fit<'a> {
-    /// Creates the constraints of the fit of `y` by `x`.
+    /// Creates the constraints for fitting `y` by `x`.
     fn new(x: &[Vec<f64>], y: &'a [f64]) -> Self {
         Self {
             x: x.concat(),
@@ -190,15 +206,17 @@ impl<'a> Fit<'a> {
         }
     }
 
+    /// Constraint count.
     fn count(&self) -> usize {
         self.y.len() + self.unknowns
     }
 
+    /// Returns `x_i`.
     fn row(&self, row: usize) -> &[f64] {
         &self.x[row * self.unknowns..(row + 1) * self.unknowns]
     }
 
-    /// Returns the left-hand side of a constraint at `w`, or its change along a direction `w`.
+    /// Returns a constraint's left-hand side at `w`, or its change along a direction `w`.
     fn left(&self, constraint: usize, w: &[f64]) -> f64 {
         if self.is_weight(constraint) {
             return w[constraint - self.y.len()];
@@ -206,6 +224,7 @@ impl<'a> Fit<'a> {
         self.row(constraint).iter().zip(w).map(|(x, w)| x * w).sum()
     }
 
+    /// Returns a constraint's right-hand side.
     fn right(&self, constraint: usize) -> f64 {
         self.y.get(constraint).copied().unwrap_or(0.0)
     }
@@ -214,11 +233,12 @@ impl<'a> Fit<'a> {
         self.left(constraint, w) - self.right(constraint)
     }
 
+    /// Whether a constraint is `w_k = 0`.
     fn is_weight(&self, constraint: usize) -> bool {
         constraint >= self.y.len()
     }
 
-    /// Returns the left-hand sides of some constraints: rows of `x` or of the identity.
+    /// Returns the left-hand sides for some constraints: rows from `x` or the identity.
     fn matrix(&self, constraints: &[usize]) -> DMatrix<f64> {
         DMatrix::from_fn(
             constraints.len(),
@@ -230,26 +250,25 @@ impl<'a> Fit<'a> {
         )
     }
 
-    /// `sum_i |x_i w - y_i|`.
+    /// Computes `sum_i |x_i w - y_i|`.
     fn deviations(&self, w: &[f64]) -> f64 {
         (0..self.y.len())
             .map(|row| self.deviation(row, w).abs())
             .sum()
     }
 
-    /// Returns the least-squares weights with negative values set to zero: close to the optimal
-    /// vertex.
+    /// Returns the least-squares weights with negative values set to zero, close to the optimal
+    /// vertex; zero weights where the normal equations are singular.
     fn least_squares(&self) -> Vec<f64> {
         let x = DMatrix::from_row_slice(self.y.len(), self.unknowns, &self.x);
-        let normal = x.tr_mul(&x).cholesky();
-        let solution =
-            normal.map(|normal| normal.solve(&x.tr_mul(&DVector::from_column_slice(self.y))));
-        solution.map_or(vec![0.0; self.unknowns], |w| {
-            w.iter().map(|weight| weight.max(0.0)).collect()
-        })
+        let Some(normal) = x.tr_mul(&x).cholesky() else {
+            return vec![0.0; self.unknowns];
+        };
+        let weights = normal.solve(&x.tr_mul(&DVector::from_column_slice(self.y)));
+        weights.iter().map(|weight| weight.max(0.0)).collect()
     }
 
-    /// `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
+    /// Computes `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
     fn squared_root_deviations(&self, w: &[f64]) -> f64 {
         (0..self.y.len())
             .map(|row| (self.left(row, w).max(0.0).sqrt() - self.y[row].sqrt()).powi(2))
@@ -259,12 +278,12 @@ impl<'a> Fit<'a> {
 
 /// An edge that leaves a vertex.
 struct Edge {
-    /// Position of the released constraint in the vertex's basis.
+    /// The released constraint's position in the vertex's basis.
     leaving: usize,
     direction: Vec<f64>,
-    /// Rate of change of the sum of deviations along the edge.
+    /// Rate at which the summed deviations change along the edge.
     slope: f64,
-    /// Largest possible magnitude of that rate.
+    /// Largest possible magnitude for that rate.
     scale: f64,
 }
 
@@ -278,33 +297,31 @@ impl Edge {
     }
 }
 
-/// Intersection of an edge with a constraint.
+/// Intersection of an edge and a constraint.
 struct Crossing {
     constraint: usize,
     /// Distance along the edge.
     step: f64,
-    /// Half the change of the rate at this intersection.
+    /// Half the change in the rate at this intersection.
     change: f64,
 }
 
-/// Returns the constraint of the first crossing at which the doubled accumulated changes reach
-/// `rise`: a weighted median, found by bisection rather than by sorting.
+impl Crossing {
+    /// Orders crossings along the edge; equal ones by constraint.
+    fn compare(&self, other: &Self) -> Ordering {
+        self.step
+            .total_cmp(&other.step)
+            .then(self.constraint.cmp(&other.constraint))
+    }
+}
+
+/// Returns the constraint at the first crossing where the doubled accumulated changes reach `rise`:
+/// a weighted median, found by bisection rather than by sorting.
 fn crossing_at(mut crossings: Vec<Crossing>, rise: f64) -> Option<usize> {
-    let by_step = |a: &Crossing, b: &Crossing| {
-        a.step
-            .total_cmp(&b.step)
-            .then(a.constraint.cmp(&b.constraint))
-    };
     let mut left = crossings.as_mut_slice();
     let mut risen = 0.0;
-    loop {
-        if left.len() <= 1 {
-            return left
-                .first()
-                .filter(|last| risen + 2.0 * last.change >= rise)
-                .map(|last| last.constraint);
-        }
-        let (near, _, _) = left.select_nth_unstable_by(left.len() / 2, by_step);
+    while left.len() > 1 {
+        let (near, _, _) = left.select_nth_unstable_by(left.len() / 2, Crossing::compare);
         let middle = near.len();
         let rise_of_near: f64 = near.iter().map(|crossing| 2.0 * crossing.change).sum();
         if risen + rise_of_near >= rise {
@@ -314,17 +331,25 @@ fn crossing_at(mut crossings: Vec<Crossing>, rise: f64) -> Option<usize> {
             left = &mut left[middle..];
         }
     }
+    let last = left.first()?;
+    if risen + 2.0 * last.change >= rise {
+        Some(last.constraint)
+    } else {
+        None
+    }
 }
 
 impl Vertex {
     /// Returns the vertex of the constraints that `weights` satisfies best; `None` if they define
-    /// no vertex, or one with a negative weight.
+    /// no vertex, or a vertex with a negative weight.
     fn nearest(fit: &Fit<'_>, weights: &[f64]) -> Option<Self> {
-        let deviation = |constraint: usize| (fit.deviation(constraint, weights).abs(), constraint);
-        let mut order: Vec<(f64, usize)> = (0..fit.count()).map(deviation).collect();
-        order.sort_unstable_by(|(a, first), (b, second)| a.total_cmp(b).then(first.cmp(second)));
+        let deviations: Vec<f64> = (0..fit.count())
+            .map(|constraint| fit.deviation(constraint, weights).abs())
+            .collect();
+        let mut order: Vec<usize> = (0..fit.count()).collect();
+        order.sort_unstable_by(|&a, &b| deviations[a].total_cmp(&deviations[b]).then(a.cmp(&b)));
         let mut basis = Vec::new();
-        for (_, constraint) in order {
+        for constraint in order {
             basis.push(constraint);
             // Offsets are scaled to at most 1: a smaller singular value means a redundant
             // constraint.
@@ -335,7 +360,7 @@ impl Vertex {
                 break;
             }
         }
-        Self::of(fit, basis)
+        Self::from_basis(fit, basis)
     }
 
     /// Returns the vertex with all weights zero.
@@ -347,7 +372,9 @@ impl Vertex {
         }
     }
 
-    fn of(fit: &Fit<'_>, basis: Vec<usize>) -> Option<Self> {
+    /// Returns the intersection of the constraints in a basis; `None` if they do not intersect in a
+    /// point, or at a negative weight.
+    fn from_basis(fit: &Fit<'_>, basis: Vec<usize>) -> Option<Self> {
         let matrix = fit.matrix(&basis);
         if !matrix.is_square() {
             return None;
@@ -357,10 +384,11 @@ impl Vertex {
             basis.iter().map(|&constraint| fit.right(constraint)),
         );
         let weights: Vec<f64> = matrix.lu().solve(&right)?.iter().copied().collect();
-        weights
-            .iter()
-            .all(|&weight| weight > -ZERO)
-            .then_some(Self { weights, basis })
+        if weights.iter().all(|&weight| weight > -ZERO) {
+            Some(Self { weights, basis })
+        } else {
+            None
+        }
     }
 
     /// Whether two vertices coincide.
@@ -371,25 +399,28 @@ impl Vertex {
             .all(|(a, b)| (a - b).abs() <= ZERO)
     }
 
-    /// Returns the vertices at the ends of the edges along which the deviations do not grow. Among
+    /// Returns the end vertices of the edges along which the deviations do not grow. Among
     /// descending edges it takes the steepest: with many rows, the first descending edge would need
     /// ten times as many steps.
     fn neighbours(&self, fit: &Fit<'_>) -> Neighbours {
-        let deviations = self.all_deviations(fit);
+        let deviations = self.deviations(fit);
         let mut edges = self.edges(fit, &deviations);
+        edges.retain(|edge| edge.relative_slope() <= FLAT);
         edges.sort_by(|a, b| a.relative_slope().total_cmp(&b.relative_slope()));
         let mut equal = Vec::new();
-        for edge in edges.iter().filter(|edge| edge.relative_slope() <= FLAT) {
-            match self.end_of_edge(fit, edge, &deviations) {
-                Some(end) if edge.relative_slope() < -FLAT => return Neighbours::Better(end),
-                end => equal.extend(end),
+        for edge in &edges {
+            if let Some(end) = self.end_of_edge(fit, edge, &deviations) {
+                if edge.relative_slope() < -FLAT {
+                    return Neighbours::Better(end);
+                }
+                equal.push(end);
             }
         }
         Neighbours::Equal(equal)
     }
 
-    /// Returns the edges of this vertex: one constraint is released, in either direction; a weight
-    /// only upwards.
+    /// Returns this vertex's edges: a constraint is released, in either direction; a weight only
+    /// upwards.
     fn edges(&self, fit: &Fit<'_>, deviations: &[f64]) -> Vec<Edge> {
         let Some(inverse) = fit.matrix(&self.basis).try_inverse() else {
             return Vec::new();
@@ -397,27 +428,28 @@ impl Vertex {
         let mut edges = Vec::with_capacity(2 * self.basis.len());
         for leaving in 0..self.basis.len() {
             let upwards: Vec<f64> = inverse.column(leaving).iter().copied().collect();
-            let (slopes, scale) = slopes(fit, deviations, &upwards);
-            let sides = if fit.is_weight(self.basis[leaving]) {
-                &[1.0][..]
-            } else {
-                &[1.0, -1.0]
-            };
-            for (side, slope) in sides.iter().zip(slopes) {
-                let direction = upwards.iter().map(|entry| side * entry).collect();
+            let rates = EdgeRates::new(fit, deviations, &upwards);
+            let against: Vec<f64> = upwards.iter().map(|entry| -entry).collect();
+            edges.push(Edge {
+                leaving,
+                direction: upwards,
+                slope: rates.along,
+                scale: rates.scale,
+            });
+            if !fit.is_weight(self.basis[leaving]) {
                 edges.push(Edge {
                     leaving,
-                    direction,
-                    slope,
-                    scale,
+                    direction: against,
+                    slope: rates.against,
+                    scale: rates.scale,
                 });
             }
         }
         edges
     }
 
-    /// Returns the deviation of each constraint, exactly zero for those that meet here.
-    fn all_deviations(&self, fit: &Fit<'_>) -> Vec<f64> {
+    /// Returns every constraint's deviation, exactly zero for those that define the vertex.
+    fn deviations(&self, fit: &Fit<'_>) -> Vec<f64> {
         let mut deviations: Vec<f64> = (0..fit.count())
             .map(|constraint| fit.deviation(constraint, &self.weights))
             .collect();
@@ -427,16 +459,16 @@ impl Vertex {
         deviations
     }
 
-    /// Returns the vertex along an edge at which the sum of deviations stops falling.
+    /// Returns the vertex along an edge at which the summed deviations stop falling.
     ///
     /// Each row whose deviation changes sign along the edge adds twice its change to the rate; a
     /// weight that reaches zero ends the edge.
     fn end_of_edge(&self, fit: &Fit<'_>, edge: &Edge, deviations: &[f64]) -> Option<Self> {
-        let met = deviations
-            .iter()
-            .enumerate()
-            .filter(|(constraint, _)| !self.basis.contains(constraint));
-        let met = met.filter_map(|(constraint, deviation)| {
+        let mut crossings = Vec::new();
+        for (constraint, deviation) in deviations.iter().enumerate() {
+            if self.basis.contains(&constraint) {
+                continue;
+            }
             let slope = fit.left(constraint, &edge.direction);
             let step = -deviation / slope;
             // A weight ends the edge, whatever the rate.
@@ -445,43 +477,59 @@ impl Vertex {
             } else {
                 slope.abs()
             };
-            (slope.abs() > ZERO && step > ZERO).then_some(Crossing {
-                constraint,
-                step,
-                change,
-            })
-        });
-        let entering = crossing_at(met.collect(), -FLAT * edge.scale - edge.slope)?;
+            if slope.abs() > ZERO && step > ZERO {
+                crossings.push(Crossing {
+                    constraint,
+                    step,
+                    change,
+                });
+            }
+        }
+        let entering = crossing_at(crossings, -FLAT * edge.scale - edge.slope)?;
         let mut basis = self.basis.clone();
         basis[edge.leaving] = entering;
-        Self::of(fit, basis)
+        Self::from_basis(fit, basis)
     }
 
     /// Whether more constraints meet in this vertex than it needs; its edges may then miss a
     /// descent direction.
     fn is_degenerate(&self, fit: &Fit<'_>) -> bool {
-        let meet = |constraint: &usize| fit.deviation(*constraint, &self.weights).abs() <= ZERO;
-        (0..fit.count()).filter(meet).count() > fit.unknowns
+        let meeting = (0..fit.count())
+            .filter(|&constraint| fit.deviation(constraint, &self.weights).abs() <= ZERO)
+            .count();
+        meeting > fit.unknowns
     }
 }
 
-/// Returns the rates of change of the sum of deviations along `direction` and against it, and their
-/// largest possible magnitude.
-fn slopes(fit: &Fit<'_>, deviations: &[f64], direction: &[f64]) -> ([f64; 2], f64) {
-    // A zero deviation grows in either direction.
-    let mut growing = 0.0;
-    let mut signed = 0.0;
-    let mut scale = 0.0;
-    for (row, deviation) in deviations[..fit.y.len()].iter().enumerate() {
-        let change = fit.left(row, direction);
-        if deviation.abs() <= ZERO {
-            growing += change.abs();
-        } else {
-            signed += change * deviation.signum();
+/// Rates at which the summed deviations change along a direction and against it.
+struct EdgeRates {
+    along: f64,
+    against: f64,
+    /// Largest possible magnitude for the rates.
+    scale: f64,
+}
+
+impl EdgeRates {
+    fn new(fit: &Fit<'_>, deviations: &[f64], direction: &[f64]) -> Self {
+        // A zero deviation grows in either direction.
+        let mut growing = 0.0;
+        let mut signed = 0.0;
+        let mut scale = 0.0;
+        for (row, deviation) in deviations[..fit.y.len()].iter().enumerate() {
+            let change = fit.left(row, direction);
+            if deviation.abs() <= ZERO {
+                growing += change.abs();
+            } else {
+                signed += change * deviation.signum();
+            }
+            scale += change.abs();
         }
-        scale += change.abs();
+        Self {
+            along: growing + signed,
+            against: growing - signed,
+            scale,
+        }
     }
-    ([growing + signed, growing - signed], scale)
 }
 
 #[cfg(test)]
@@ -501,25 +549,37 @@ mod tests {
         assert!((weights[0] - 2.0).abs() < 1e-12 && (weights[1] - 3.0).abs() < 1e-12);
     }
 
+    /// Squared differences between every two offsets, coordinate by coordinate.
+    fn squared_differences(offsets: &[[i8; 3]]) -> Vec<Vec<f64>> {
+        let mut rows = Vec::new();
+        for (place, a) in offsets.iter().enumerate() {
+            for b in &offsets[place + 1..] {
+                rows.push(
+                    a.iter()
+                        .zip(b)
+                        .map(|(a, b)| f64::from(a - b).powi(2))
+                        .collect(),
+                );
+            }
+        }
+        rows
+    }
+
     proptest::proptest! {
         #[test]
         fn the_search_along_edges_ends_where_the_linear_program_does(
-            offsets in proptest::collection::vec((-2_i8..=2, -2_i8..=2, -2_i8..=2), 6..12),
+            offsets in proptest::collection::vec([-2_i8..=2, -2_i8..=2, -2_i8..=2], 6..12),
             noise in proptest::collection::vec(0.0_f64..2.0, 66),
         ) {
-            let pairs = (0..offsets.len()).flat_map(|a| (a + 1..offsets.len()).map(move |b| (a, b)));
-            let square = |a: i8, b: i8| f64::from(a - b).powi(2);
-            let x: Vec<Vec<f64>> = pairs
-                .map(|(a, b)| (offsets[a], offsets[b]))
-                .map(|(a, b)| vec![square(a.0, b.0), square(a.1, b.1), square(a.2, b.2)])
-                .collect();
+            let x = squared_differences(&offsets);
             let y: Vec<f64> = x.iter().zip(&noise).map(|(x, noise)| (3.0 * x[0] + 0.5 * x[1] + x[2]) * noise).collect();
             let largest = y.iter().copied().fold(0.0, f64::max);
             proptest::prop_assume!(largest > 0.0);
             let scaled: Vec<f64> = y.iter().map(|y| y / largest).collect();
             let fit = Fit::new(&x, &scaled);
-            let weights = |weights: Vec<f64>| weights.iter().map(|weight| weight / largest).collect::<Vec<f64>>();
-            let found = fit.deviations(&weights(least_absolute_deviations(&x, &y, &|| false).unwrap()));
+            let weights = least_absolute_deviations(&x, &y, &|| false).unwrap();
+            let scaled_weights: Vec<f64> = weights.iter().map(|weight| weight / largest).collect();
+            let found = fit.deviations(&scaled_weights);
             let program = fit.deviations(&solve_linear_program(&x, &scaled, 3).unwrap());
             // The program is solved to 1e-11 relative; the search is exact.
             proptest::prop_assert!(found <= program * (1.0 + 1e-9) + 1e-12, "{found} {program}");
@@ -543,15 +603,14 @@ mod tests {
     }
 
     #[test]
-    fn of_equally_good_vertices_the_one_nearest_in_square_roots_is_taken() {
+    fn equally_good_vertices_are_compared_in_square_roots() {
         // Every w from 4 to 9 is a median of these. Square roots 0, 2, 3, 4: from 2 the squares add
         // to 9, from 3 to 11; square roots 1, 2, 3, 5: from 2 they add to 11, from 3 to 9. (The
         // tolerance covers a few rounding errors.)
-        let fit = |y: &[f64]| {
-            let x = [vec![1.0], vec![1.0], vec![1.0], vec![1.0]];
-            least_absolute_deviations(&x, y, &|| false).unwrap()[0]
-        };
-        assert!((fit(&[0.0, 4.0, 9.0, 16.0]) - 4.0).abs() < 1e-13);
-        assert!((fit(&[1.0, 4.0, 9.0, 25.0]) - 9.0).abs() < 1e-13);
+        let x = [vec![1.0], vec![1.0], vec![1.0], vec![1.0]];
+        for (y, expected) in [([0.0, 4.0, 9.0, 16.0], 4.0), ([1.0, 4.0, 9.0, 25.0], 9.0)] {
+            let weights = least_absolute_deviations(&x, &y, &|| false).unwrap();
+            assert!((weights[0] - expected).abs() < 1e-13, "{weights:?}");
+        }
     }
 }

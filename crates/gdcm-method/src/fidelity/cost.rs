@@ -9,51 +9,51 @@ use gdcm_model::response::curve_values::{mean, weighted_median};
 use gdcm_model::response::frequency_response::PolarCurve;
 use gdcm_model::response::median;
 
-/// Weight of the squared magnitude error \[dB^2\], `W_g`.
+/// Weight of the squared magnitude error \[dB^2\], `W_g` (Tischler & Remple 2012, chapter 11).
 const MAGNITUDE_WEIGHT: f64 = 1.0;
 /// Weight of the squared phase error \[deg^2\], `W_p`.
 const PHASE_WEIGHT: f64 = 0.0175;
-/// J up to which a model is acceptable.
+/// J up to which a model is acceptable (Tischler & Remple, "Aircraft and Rotorcraft System
+/// Identification", 2nd ed. 2012, chapter 11; given for the mean over frequency).
 pub const ACCEPTABLE: f64 = 100.0;
 
-/// Common factor of both parts of J.
+/// Common factor in both parts of J.
 const COST_SCALE: f64 = 20.0;
 
-/// Returns the term of J averaged over frequency, at one frequency: `20 (W_g e_dB^2 + W_p e_deg^2)`
-/// (M4).
+/// Returns the term that J averages, at a single frequency: `20 (W_g e_dB^2 + W_p e_deg^2)` (M4).
 pub fn summand(error_db: f64, error_deg: f64) -> f64 {
     COST_SCALE * (MAGNITUDE_WEIGHT * error_db * error_db + PHASE_WEIGHT * error_deg * error_deg)
 }
 
-/// Averages of the squared errors over frequency.
+/// Average over the squared errors at all frequencies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CostAverage {
-    /// The median (the paper).
+    /// The median (eq. (14) to (19)).
     Median,
     /// The mean (Tischler's original).
     Mean,
 }
 
 impl CostAverage {
-    fn of(self, squares: &mut [f64], weights: Option<&[f64]>) -> f64 {
+    /// Averages the squares, which are overwritten; M4a with weights.
+    fn average(self, squares: &mut [f64], weights: Option<&[f64]>) -> f64 {
         match (self, weights) {
             (CostAverage::Median, None) => median(squares),
             (CostAverage::Mean, None) => mean(squares),
             (CostAverage::Median, Some(weights)) => weighted_median(squares, weights),
-            // Divided by the number of frequencies, not by the sum of weights: Tischler's form.
+            // Divided by the frequency count, not by the summed weights: Tischler's form.
             (CostAverage::Mean, Some(weights)) => {
-                squares
-                    .iter_mut()
-                    .zip(weights)
-                    .for_each(|(square, weight)| *square *= weight);
+                for (square, weight) in squares.iter_mut().zip(weights) {
+                    *square *= weight;
+                }
                 mean(squares)
             }
         }
     }
 }
 
-/// The two parts of J; `J = J_mag + J_phase` (M4). With weights the average is weighted (M4a).
+/// Both parts of J; `J = J_mag + J_phase` (M4). With weights the average is weighted (M4a).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
     /// `J_mag = 20 W_g average(e_dB^2)`.
@@ -63,32 +63,29 @@ pub struct Cost {
 }
 
 impl Cost {
-    /// Computes J from the magnitude errors \[dB\] and the phase errors \[rad\], one of each per
-    /// frequency; `weights` likewise, unless all frequencies weigh the same.
+    /// Computes J from the magnitude errors \[dB\] and the phase errors \[rad\] at each frequency.
     ///
-    /// `scratch` is overwritten.
-    pub fn of(
+    /// `weights` has a weight for each frequency; `None` where all weigh the same.
+    pub fn from_errors(
         magnitude_error_db: impl Iterator<Item = f64>,
         phase_error: impl Iterator<Item = f64>,
         weights: Option<&[f64]>,
         average: CostAverage,
-        scratch: &mut Vec<f64>,
     ) -> Self {
-        scratch.clear();
-        scratch.extend(magnitude_error_db.map(|error| error * error));
-        let magnitude = COST_SCALE * MAGNITUDE_WEIGHT * average.of(scratch, weights);
-        scratch.clear();
-        scratch.extend(phase_error.map(f64::to_degrees).map(|error| error * error));
-        let phase = COST_SCALE * PHASE_WEIGHT * average.of(scratch, weights);
+        let mut squares: Vec<f64> = magnitude_error_db.map(|error| error * error).collect();
+        let magnitude = COST_SCALE * MAGNITUDE_WEIGHT * average.average(&mut squares, weights);
+        squares.clear();
+        squares.extend(phase_error.map(f64::to_degrees).map(|error| error * error));
+        let phase = COST_SCALE * PHASE_WEIGHT * average.average(&mut squares, weights);
         Self { magnitude, phase }
     }
 
-    /// Returns the factors of the averaged squared errors, `20 W_g` and `20 W_p`, as text.
+    /// Returns the factors on the averaged squared errors, `20 W_g` and `20 W_p`, as text.
     pub fn factors() -> [String; 2] {
         [MAGNITUDE_WEIGHT, PHASE_WEIGHT].map(|weight| format!("{COST_SCALE} · {weight}"))
     }
 
-    /// Returns the averages of the squared errors \[dB^2, deg^2\].
+    /// Returns the averaged squared errors \[dB^2, deg^2\].
     pub fn averages(self) -> [f64; 2] {
         [
             self.magnitude / (COST_SCALE * MAGNITUDE_WEIGHT),
@@ -102,12 +99,12 @@ impl Cost {
     }
 }
 
-/// Computes J of `simulated` against `reference`, on the same frequencies: `J = 20 / N sum_k (W_g
+/// Computes J for `simulated` against `reference`, on the same frequencies: `J = 20 / N sum_k (W_g
 /// e_dB,k^2 + W_p e_deg,k^2)` (M4, M5).
 ///
 /// Equals [`super::mismatch::Mismatch::cost`] with the mean, without gain or delay. Separate for
-/// speed: distances within a bundle of `n` models evaluate it `n (n - 1) / 2` times per response, a
-/// dozen operations per frequency.
+/// speed: distances within a bundle with `n` models evaluate it `n (n - 1) / 2` times per response,
+/// a dozen operations per frequency.
 pub(super) fn mean_cost(simulated: &PolarCurve, reference: &PolarCurve) -> f64 {
     let [magnitude, phase] = Arch::new().dispatch(SquaredDifferences {
         simulated,
@@ -118,8 +115,8 @@ pub(super) fn mean_cost(simulated: &PolarCurve, reference: &PolarCurve) -> f64 {
         * (MAGNITUDE_WEIGHT * magnitude + PHASE_WEIGHT * squared_degrees)
 }
 
-/// Sums over the frequencies of the squared differences of two curves, vectorised (SIMD): the
-/// magnitudes \[dB^2\] and the principal values of the phases \[rad^2\].
+/// Squared differences between two curves, summed over the frequencies, vectorised (SIMD):
+/// magnitudes \[dB^2\] and the phases' principal values \[rad^2\].
 struct SquaredDifferences<'a> {
     simulated: &'a PolarCurve,
     reference: &'a PolarCurve,
@@ -159,7 +156,7 @@ impl WithSimd for SquaredDifferences<'_> {
     }
 }
 
-/// Returns the principal value in (-pi, pi] of a phase difference of two principal values.
+/// Returns the principal value in (-pi, pi] for the difference between two principal values.
 #[inline(always)]
 fn principal<S: Simd>(simd: S, difference: S::f64s) -> S::f64s {
     let turn = simd.splat_f64s(TAU);
@@ -176,50 +173,36 @@ mod tests {
 
     #[test]
     fn a_constant_error_has_the_cost_of_the_definition() {
-        let cost = Cost::of(
-            [2.0; 5].into_iter(),
-            [0.1; 5].into_iter(),
-            None,
-            CostAverage::Median,
-            &mut Vec::new(),
-        );
+        let magnitude = [2.0; 5].into_iter();
+        let phase = [0.1; 5].into_iter();
+        let cost = Cost::from_errors(magnitude, phase, None, CostAverage::Median);
         assert_eq!(cost.magnitude, 80.0);
         // 20 * 0.0175 * (18 / pi)^2, by hand: 11.48966...; a few rounding errors.
         assert!((cost.phase - 0.35 * (18.0 / std::f64::consts::PI).powi(2)).abs() < 1e-12);
     }
 
     #[test]
-    fn the_median_ignores_one_bad_frequency_and_the_mean_does_not() {
-        let error = || [1.0, 1.0, 10.0].into_iter();
-        let none = || [0.0; 3].into_iter();
-        assert_eq!(
-            Cost::of(error(), none(), None, CostAverage::Median, &mut Vec::new()).total(),
-            20.0
-        );
-        assert_eq!(
-            Cost::of(error(), none(), None, CostAverage::Mean, &mut Vec::new()).total(),
-            680.0
-        );
+    fn the_median_ignores_a_bad_frequency_and_the_mean_does_not() {
+        let [median, mean] = [CostAverage::Median, CostAverage::Mean].map(|average| {
+            let magnitude = [1.0, 1.0, 10.0].into_iter();
+            let phase = [0.0; 3].into_iter();
+            Cost::from_errors(magnitude, phase, None, average).total()
+        });
+        assert_eq!(median, 20.0);
+        assert_eq!(mean, 680.0);
     }
 
     #[test]
     fn weights_are_tischlers_in_the_mean_and_a_weighted_median_in_the_median() {
-        let cost = |average| {
+        let [median, mean] = [CostAverage::Median, CostAverage::Mean].map(|average| {
             let magnitude = [1.0, 3.0, 2.0].into_iter();
             let phase = [0.0; 3].into_iter();
-            Cost::of(
-                magnitude,
-                phase,
-                Some(&[0.5, 1.0, 0.25]),
-                average,
-                &mut Vec::new(),
-            )
-            .total()
-        };
-        // 20 / 3 (0.5 + 9 + 1); among the squares 1, 4, 9 half of the total weight of 1.75 is
-        // exceeded at the last.
-        assert!((cost(CostAverage::Mean) - 70.0).abs() < 1e-13);
-        assert_eq!(cost(CostAverage::Median), 180.0);
+            Cost::from_errors(magnitude, phase, Some(&[0.5, 1.0, 0.25]), average).total()
+        });
+        // 20 / 3 (0.5 + 9 + 1).
+        assert!((mean - 70.0).abs() < 1e-13);
+        // Among the squares 1, 4, 9 half the total weight 1.75 is exceeded at the last.
+        assert_eq!(median, 180.0);
     }
 }
 
@@ -230,19 +213,21 @@ mod mean_cost_tests {
     use super::{CostAverage, *};
     use crate::fidelity::mismatch::Mismatch;
 
-    #[test]
-    fn it_is_the_cost_of_the_mismatch_with_the_mean() {
-        let curve = |seed: f64| PolarCurve {
+    fn curve(seed: f64) -> PolarCurve {
+        PolarCurve {
             magnitude_db: (0..53)
                 .map(|k| 20.0 * (seed + 0.3 * f64::from(k)).sin())
                 .collect(),
             phase: (0..53)
                 .map(|k| wrap(seed - 0.4 * seed * f64::from(k)))
                 .collect(),
-        };
-        for (a, b) in
-            [(0.1, 0.2), (-3.0, 2.0), (1.0, 1.0), (3.1, -3.1)].map(|(a, b)| (curve(a), curve(b)))
-        {
+        }
+    }
+
+    #[test]
+    fn it_is_the_cost_of_the_mismatch_with_the_mean() {
+        for seeds in [[0.1, 0.2], [-3.0, 2.0], [1.0, 1.0], [3.1, -3.1]] {
+            let [a, b] = seeds.map(curve);
             let expected = Mismatch::new(&a, &b)
                 .cost(&[0.0; 53], GainDelay::NONE, CostAverage::Mean)
                 .total();

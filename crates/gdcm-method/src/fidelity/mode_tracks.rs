@@ -3,10 +3,10 @@
 //! The matching is an assignment problem with the smallest total cost.
 //!
 //! ```text
-//! 1  potentials u_i of the rows, v_j of the columns, with u_i + v_j <= c_ij, equal where i goes with j
-//! 2  for each row i in turn: grow a tree of columns from i by the least reduced cost c_ij - u_i - v_j (Dijkstra) ...
-//! 3     ... moving the potentials with it, until a column is free
-//! 4     along the path back to i each row takes the column that it was reached by
+//! 1  row potentials u_i, column potentials v_j, with u_i + v_j <= c_ij, equal where i goes with j
+//! 2  for each row i in turn: grow a column tree from i by the least reduced cost c_ij - u_i - v_j (Dijkstra),
+//!    moving the potentials with it, until a column is free
+//! 3  shift the assignments along the path from i to that column
 //! ```
 //!
 //! Kuhn, "The Hungarian method for the assignment problem", Naval Research Logistics Quarterly 2,
@@ -16,21 +16,21 @@ use nalgebra::Complex;
 
 use gdcm_model::response::{Mode, median};
 
-/// Distance of a jump from the centre, in spreads of the track: a smooth track over perturbations
-/// to both sides ends at two to three.
+/// Distance between a jump and the centre, in track spreads: a smooth track over perturbations to
+/// both sides ends at two to three.
 const JUMP_SPREADS: f64 = 5.0;
-/// Smallest distance of a jump \[rad/s\]: a smaller shift of a helicopter's slowest mode changes
-/// the response in no band.
+/// Smallest jump \[rad/s\]: a smaller shift in a helicopter's slowest mode changes the response in
+/// no band.
 const LEAST_JUMP_RAD_S: f64 = 0.05;
 
-/// A mode of the reference model and its matches in the other models.
+/// A mode in the reference model and its matches in the other models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeTrack {
-    /// Its index among the modes of the reference model.
+    /// Its index among the reference model's modes.
     pub reference: usize,
-    /// Index of the matched mode of each model; `None` if the model has fewer poles.
+    /// The matched mode's index in each model; `None` if the model has fewer poles.
     pub modes: Vec<Option<usize>>,
-    /// Centre of the poles \[rad/s\]: the medians of the real parts and of the imaginary parts.
+    /// The poles' centre \[rad/s\]: median real part and median imaginary part.
     pub centre: Complex<f64>,
     /// Median distance from the centre \[rad/s\].
     pub spread_rad_s: f64,
@@ -41,68 +41,80 @@ pub struct ModeTrack {
 /// Returns the track of each mode of `models[reference]`, in its order; a conjugate pair has one
 /// track, unless a model matches it with two poles that are not a pair.
 ///
-/// Each model's poles are matched to those of the reference with the smallest sum of distances in
-/// the s-plane (an assignment problem). No tracks if the reference has no modes.
+/// Each model's poles are matched to the reference's poles with the smallest summed distance in the
+/// s-plane (an assignment problem). No tracks if the reference has no modes.
 pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
-    let Some(of_reference) = models.get(reference).copied() else {
+    let Some(reference_modes) = models.get(reference).copied() else {
         return Vec::new();
     };
     let matches: Vec<Vec<Option<usize>>> = models
         .iter()
-        .map(|model| matched(of_reference, model))
+        .map(|model| matched(reference_modes, model))
         .collect();
-    let pole =
-        |model: usize, track: usize| matches[model][track].map(|mode| models[model][mode].pole);
-    let is_mirror = |track: usize| {
-        of_reference[track].pole.im < 0.0
-            && (0..models.len()).all(|model| pole(model, track).is_none_or(|pole| pole.im < 0.0))
-    };
-    let tracks = (0..of_reference.len()).filter(|&track| !is_mirror(track));
+    let mut tracks = Vec::new();
+    for (mode, reference_mode) in reference_modes.iter().enumerate() {
+        let modes: Vec<Option<usize>> = matches.iter().map(|matched| matched[mode]).collect();
+        let poles: Vec<Option<Complex<f64>>> = models
+            .iter()
+            .zip(&modes)
+            .map(|(model, mode)| mode.map(|mode| model[mode].pole))
+            .collect();
+        // The track of the conjugate mode covers both.
+        let is_mirror =
+            reference_mode.pole.im < 0.0 && poles.iter().flatten().all(|pole| pole.im < 0.0);
+        if !is_mirror {
+            tracks.push(track(mode, modes, &poles));
+        }
+    }
     tracks
-        .map(|track| {
-            let poles: Vec<Option<Complex<f64>>> =
-                (0..models.len()).map(|model| pole(model, track)).collect();
-            let modes = matches.iter().map(|matched| matched[track]).collect();
-            let known: Vec<Complex<f64>> = poles.iter().flatten().copied().collect();
-            let middle = |part: fn(&Complex<f64>) -> f64| {
-                median(&mut known.iter().map(part).collect::<Vec<f64>>())
-            };
-            let centre = Complex::new(middle(|pole| pole.re), middle(|pole| pole.im));
-            let distance = |pole: &Complex<f64>| (pole - centre).norm();
-            let spread_rad_s = median(&mut known.iter().map(distance).collect::<Vec<f64>>());
-            let far = (JUMP_SPREADS * spread_rad_s).max(LEAST_JUMP_RAD_S);
-            let jumps = poles
-                .iter()
-                .enumerate()
-                .filter(|(_, pole)| pole.is_some_and(|pole| distance(&pole) > far));
-            ModeTrack {
-                reference: track,
-                modes,
-                centre,
-                spread_rad_s,
-                jumps: jumps.map(|(model, _)| model).collect(),
-            }
-        })
-        .collect()
 }
 
-/// Returns the match in `model` of each mode of `reference`.
+/// Measures the track for a reference mode from its match in each model.
+fn track(reference: usize, modes: Vec<Option<usize>>, poles: &[Option<Complex<f64>>]) -> ModeTrack {
+    let known: Vec<Complex<f64>> = poles.iter().flatten().copied().collect();
+    let mut real_parts: Vec<f64> = known.iter().map(|pole| pole.re).collect();
+    let mut imaginary_parts: Vec<f64> = known.iter().map(|pole| pole.im).collect();
+    let centre = Complex::new(median(&mut real_parts), median(&mut imaginary_parts));
+    let mut distances: Vec<f64> = known.iter().map(|pole| (pole - centre).norm()).collect();
+    let spread_rad_s = median(&mut distances);
+    let far_rad_s = (JUMP_SPREADS * spread_rad_s).max(LEAST_JUMP_RAD_S);
+    let mut jumps = Vec::new();
+    for (model, pole) in poles.iter().enumerate() {
+        if let Some(pole) = pole
+            && (pole - centre).norm() > far_rad_s
+        {
+            jumps.push(model);
+        }
+    }
+    ModeTrack {
+        reference,
+        modes,
+        centre,
+        spread_rad_s,
+        jumps,
+    }
+}
+
+/// Returns the match in `model` for each mode in `reference`; `None` for a mode without a match in
+/// a smaller model.
 fn matched(reference: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
-    let distance = |a: usize, b: usize| (reference[a].pole - model[b].pole).norm();
+    let mut matches = vec![None; reference.len()];
     if reference.len() <= model.len() {
-        return least_total(reference.len(), model.len(), distance)
-            .into_iter()
-            .map(Some)
-            .collect();
+        let columns = least_total(reference.len(), model.len(), |row, column| {
+            (reference[row].pole - model[column].pole).norm()
+        });
+        for (place, mode) in columns.into_iter().enumerate() {
+            matches[place] = Some(mode);
+        }
+    } else {
+        let columns = least_total(model.len(), reference.len(), |row, column| {
+            (reference[column].pole - model[row].pole).norm()
+        });
+        for (mode, place) in columns.into_iter().enumerate() {
+            matches[place] = Some(mode);
+        }
     }
-    let mut places = vec![None; reference.len()];
-    for (mode, place) in least_total(model.len(), reference.len(), |b, a| distance(a, b))
-        .into_iter()
-        .enumerate()
-    {
-        places[place] = Some(mode);
-    }
-    places
+    matches
 }
 
 /// Assigns a different column to each row with the smallest total cost; needs at least as many
@@ -112,13 +124,16 @@ pub(crate) fn least_total(
     columns: usize,
     cost: impl Fn(usize, usize) -> f64,
 ) -> Vec<usize> {
-    let mut potentials = (vec![0.0; rows], vec![0.0; columns]);
-    let mut row_of: Vec<Option<usize>> = vec![None; columns];
+    let mut assignment = Assignment {
+        row_potentials: vec![0.0; rows],
+        column_potentials: vec![0.0; columns],
+        row_of: vec![None; columns],
+    };
     for row in 0..rows {
-        augment(row, &cost, &mut potentials, &mut row_of);
+        assignment.augment(row, &cost);
     }
     let mut column_of = vec![0; rows];
-    for (column, row) in row_of.into_iter().enumerate() {
+    for (column, row) in assignment.row_of.into_iter().enumerate() {
         if let Some(row) = row {
             column_of[row] = column;
         }
@@ -126,52 +141,86 @@ pub(crate) fn least_total(
     column_of
 }
 
-/// Assigns a column to `new`, and reassigns earlier rows where that costs less.
-fn augment(
-    new: usize,
-    cost: &impl Fn(usize, usize) -> f64,
-    (of_row, of_column): &mut (Vec<f64>, Vec<f64>),
-    row_of: &mut [Option<usize>],
-) {
-    let columns = row_of.len();
-    let mut distance = vec![f64::INFINITY; columns];
-    // The previous column on the path from the new row; `None` at the row itself.
-    let mut before: Vec<Option<usize>> = vec![None; columns];
-    let mut in_tree = vec![false; columns];
-    let mut at = None;
-    let mut row = new;
-    loop {
-        for column in (0..columns).filter(|&column| !in_tree[column]) {
-            let reduced = cost(row, column) - of_row[row] - of_column[column];
-            if reduced < distance[column] {
-                (distance[column], before[column]) = (reduced, at);
+/// A partial assignment of least cost.
+struct Assignment {
+    /// `u`.
+    row_potentials: Vec<f64>,
+    /// `v`.
+    column_potentials: Vec<f64>,
+    /// Each column's row; `None` for a free column.
+    row_of: Vec<Option<usize>>,
+}
+
+impl Assignment {
+    /// Assigns a column to the row `new`, and reassigns earlier rows where that costs less (steps 2
+    /// and 3).
+    fn augment(&mut self, new: usize, cost: &impl Fn(usize, usize) -> f64) {
+        let columns = self.row_of.len();
+        let mut distance = vec![f64::INFINITY; columns];
+        // The previous column on the path from the new row; `None` at the row itself.
+        let mut before: Vec<Option<usize>> = vec![None; columns];
+        let mut in_tree = vec![false; columns];
+        let mut last = None;
+        let mut row = new;
+        loop {
+            for column in 0..columns {
+                if in_tree[column] {
+                    continue;
+                }
+                let reduced =
+                    cost(row, column) - self.row_potentials[row] - self.column_potentials[column];
+                if reduced < distance[column] {
+                    distance[column] = reduced;
+                    before[column] = last;
+                }
+            }
+            let open = (0..columns).filter(|&column| !in_tree[column]);
+            let Some(next) = open.min_by(|&a, &b| distance[a].total_cmp(&distance[b])) else {
+                return;
+            };
+            self.shift_potentials(new, &in_tree, &mut distance, next);
+            in_tree[next] = true;
+            last = Some(next);
+            match self.row_of[next] {
+                Some(owner) => row = owner,
+                None => break,
             }
         }
-        let open = (0..columns).filter(|&column| !in_tree[column]);
-        let Some(next) = open.min_by(|&a, &b| distance[a].total_cmp(&distance[b])) else {
-            return;
-        };
+        self.shift_assignments(new, &before, last);
+    }
+
+    /// Moves the tree's potentials so that the reduced cost to `next` becomes zero.
+    fn shift_potentials(
+        &mut self,
+        new: usize,
+        in_tree: &[bool],
+        distance: &mut [f64],
+        next: usize,
+    ) {
         let step = distance[next];
-        of_row[new] += step;
-        for (column, owner) in row_of.iter().enumerate() {
+        self.row_potentials[new] += step;
+        for (column, owner) in self.row_of.iter().enumerate() {
             match owner {
                 Some(owner) if in_tree[column] => {
-                    of_row[*owner] += step;
-                    of_column[column] -= step;
+                    self.row_potentials[*owner] += step;
+                    self.column_potentials[column] -= step;
                 }
                 _ => distance[column] -= step,
             }
         }
-        in_tree[next] = true;
-        at = Some(next);
-        match row_of[next] {
-            Some(owner) => row = owner,
-            None => break,
-        }
     }
-    while let Some(column) = at {
-        at = before[column];
-        row_of[column] = at.map_or(Some(new), |previous| row_of[previous]);
+
+    /// Gives each column on the path back from `last` the previous column's row, and the first
+    /// column the row `new`.
+    fn shift_assignments(&mut self, new: usize, before: &[Option<usize>], last: Option<usize>) {
+        let mut at = last;
+        while let Some(column) = at {
+            at = before[column];
+            self.row_of[column] = match at {
+                Some(previous) => self.row_of[previous],
+                None => Some(new),
+            };
+        }
     }
 }
 
@@ -184,25 +233,20 @@ mod tests {
 
     use super::*;
 
-    fn of(a: DMatrix<f64>) -> Vec<Mode> {
+    /// Modes of the system matrix `a`.
+    fn modes_of(a: DMatrix<f64>) -> Vec<Mode> {
         let n = a.nrows();
-        modes(
-            &StateSpace::new(
-                a,
-                DMatrix::zeros(n, 1),
-                DMatrix::zeros(1, n),
-                DMatrix::zeros(1, 1),
-            )
-            .unwrap(),
-        )
-        .unwrap()
+        let b = DMatrix::zeros(n, 1);
+        let c = DMatrix::zeros(1, n);
+        let d = DMatrix::zeros(1, 1);
+        modes(&StateSpace::new(a, b, c, d).unwrap()).unwrap()
     }
 
     /// A lag with `rate` and an oscillator with `frequency` and damping 0.2.
     fn lag_and_oscillator(rate: f64, frequency: f64) -> Vec<Mode> {
         let stiffness = -frequency * frequency;
         let damping = -0.4 * frequency;
-        of(dmatrix![-rate, 0.0, 0.0; 0.0, 0.0, 1.0; 0.0, stiffness, damping])
+        modes_of(dmatrix![-rate, 0.0, 0.0; 0.0, 0.0, 1.0; 0.0, stiffness, damping])
     }
 
     #[test]
@@ -223,7 +267,7 @@ mod tests {
                 .modes
                 .iter()
                 .zip(&bundle)
-                .map(|(mode, of)| of[mode.unwrap()].pole)
+                .map(|(mode, modes)| modes[mode.unwrap()].pole)
                 .collect();
             let oscillates = bundle[4][track.reference].oscillates();
             assert!(
@@ -237,7 +281,7 @@ mod tests {
 
     #[test]
     fn a_pair_that_meets_the_real_axis_in_one_model_is_two_tracks() {
-        let [pair, two] = [3.0, 5.0].map(|damping| of(dmatrix![0.0, 1.0; -4.0, -damping]));
+        let [pair, two] = [3.0, 5.0].map(|damping| modes_of(dmatrix![0.0, 1.0; -4.0, -damping]));
         let tracks = mode_tracks(&[&pair, &two], 0);
         let places: Vec<Option<usize>> = tracks.iter().map(|track| track.modes[1]).collect();
         assert_eq!(places.len(), 2);
@@ -246,8 +290,8 @@ mod tests {
 
     #[test]
     fn models_of_other_orders_leave_gaps() {
-        let small = of(dmatrix![-1.0]);
-        let large = of(dmatrix![-9.0, 0.0; 0.0, -1.1]);
+        let small = modes_of(dmatrix![-1.0]);
+        let large = modes_of(dmatrix![-9.0, 0.0; 0.0, -1.1]);
         assert_eq!(
             mode_tracks(&[&small, &large], 0)[0].modes,
             [Some(0), Some(0)]

@@ -1,7 +1,7 @@
 //! Envelopes of maximum unnoticeable added dynamics (MUAD; MIL-STD-1797A, appendix A, 4.2.1.2).
 //!
-//! Pilots do not notice dynamics added to an aircraft's response while the magnitude and phase of
-//! the added factor stay inside
+//! Pilots do not notice dynamics added to an aircraft's response while the added factor's magnitude
+//! and phase stay inside
 //!
 //! ```text
 //! upper magnitude  (3.16 s^2 + 31.61 s + 22.79) / (s^2 + 27.14 s + 1.84)
@@ -13,13 +13,13 @@
 //! Wood & Hodgkinson, "Definition of acceptable levels of mismatch for equivalent systems of
 //! augmented CTOL aircraft", MDC A6792, 1980. Some codes omit the delays or round the coefficients
 //! (0.095, 4.95, 29460, 0.039): the rounding changes less than 0.02 dB and 0.005 deg, the omission
-//! the phase of the delays.
+//! changes the phase by up to 4 deg at 10 rad/s.
 
 use nalgebra::Complex;
 
 use gdcm_model::units::ratio_to_db;
 
-/// A ratio of two polynomials of degree 2, highest power first, and a delay \[s\].
+/// A ratio of two quadratic polynomials, highest power first, and a delay \[s\].
 struct Factor {
     numerator: [f64; 3],
     denominator: [f64; 3],
@@ -49,28 +49,33 @@ const LOWER_PHASE: Factor = Factor {
 
 impl Factor {
     fn ratio(&self, omega: f64) -> Complex<f64> {
-        let s = Complex::new(0.0, omega);
-        let at = |[two, one, zero]: [f64; 3]| (s * two + one) * s + zero;
-        at(self.numerator) / at(self.denominator)
+        polynomial(self.numerator, omega) / polynomial(self.denominator, omega)
     }
 
     fn magnitude_db(&self, omega: f64) -> f64 {
         ratio_to_db(self.ratio(omega).norm())
     }
 
-    /// The delay contributes a few degrees, the ratio less than half a turn: the principal value is
-    /// the phase.
+    /// Returns the phase \[deg\]. The delay contributes a few degrees, the ratio less than half a
+    /// turn: the principal value is the phase.
     fn phase_deg(&self, omega: f64) -> f64 {
         (self.ratio(omega).arg() - omega * self.delay_s).to_degrees()
     }
 }
 
+/// Evaluates a quadratic polynomial, highest power first, at `s = j omega`.
+fn polynomial(coefficients: [f64; 3], omega: f64) -> Complex<f64> {
+    let s = Complex::new(0.0, omega);
+    let [second, first, constant] = coefficients;
+    (s * second + first) * s + constant
+}
+
 /// The envelopes at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Muad {
-    /// Lower and upper magnitude of the added dynamics \[dB\].
+    /// Lower and upper magnitude \[dB\] for the added dynamics.
     pub magnitude_db: [f64; 2],
-    /// Lower and upper phase of the added dynamics \[deg\].
+    /// Lower and upper phase \[deg\] for the added dynamics.
     pub phase_deg: [f64; 2],
 }
 
@@ -87,41 +92,38 @@ impl Muad {
         }
     }
 
-    /// Returns the distance of an error to the nearer envelope \[dB and deg\], positive outside,
+    /// Returns the distance from an error to the nearer envelope \[dB and deg\], positive outside,
     /// negative inside.
     fn outside(&self, error_db: f64, error_deg: f64) -> [f64; 2] {
-        let beyond = |[least, most]: [f64; 2], error: f64| (least - error).max(error - most);
         [
-            beyond(self.magnitude_db, error_db),
-            beyond(self.phase_deg, error_deg),
+            distance_outside(self.magnitude_db, error_db),
+            distance_outside(self.phase_deg, error_deg),
         ]
     }
 }
 
-/// Returns the ranges of `omega` \[rad/s\] in which a mismatch, model over reference, leaves an
+/// Returns the distance from an error to the nearer end of `[least, most]`, positive outside.
+fn distance_outside(envelope: [f64; 2], error: f64) -> f64 {
+    let [least, most] = envelope;
+    (least - error).max(error - most)
+}
+
+/// Returns the `omega` ranges \[rad/s\] in which a mismatch, model over reference, leaves an
 /// envelope: ascending and disjoint.
 ///
 /// The errors \[dB\] and \[deg\] are given at the ascending frequencies `omega`; the phase error is
 /// its value near zero. Between two frequencies the distance from the envelope is linear in `ln
 /// omega`.
 pub fn leaves(omega: &[f64], error_db: &[f64], error_deg: &[f64]) -> Vec<(f64, f64)> {
-    let errors = error_db.iter().zip(error_deg);
-    let outside: Vec<[f64; 2]> = omega
-        .iter()
-        .zip(errors)
-        .map(|(&omega, (&db, &deg))| Muad::at(omega).outside(db, deg))
-        .collect();
-    let mut ranges: Vec<(f64, f64)> = (0..2)
-        .flat_map(|part| {
-            ranges_above_zero(
-                omega,
-                &outside
-                    .iter()
-                    .map(|outside| outside[part])
-                    .collect::<Vec<_>>(),
-            )
-        })
-        .collect();
+    let mut outside_db = Vec::with_capacity(omega.len());
+    let mut outside_deg = Vec::with_capacity(omega.len());
+    for ((&omega, &error_db), &error_deg) in omega.iter().zip(error_db).zip(error_deg) {
+        let [magnitude, phase] = Muad::at(omega).outside(error_db, error_deg);
+        outside_db.push(magnitude);
+        outside_deg.push(phase);
+    }
+    let mut ranges = ranges_above_zero(omega, &outside_db);
+    ranges.extend(ranges_above_zero(omega, &outside_deg));
     ranges.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut merged: Vec<(f64, f64)> = Vec::new();
     for range in ranges {
@@ -133,25 +135,33 @@ pub fn leaves(omega: &[f64], error_db: &[f64], error_deg: &[f64]) -> Vec<(f64, f
     merged
 }
 
+/// Returns the `omega` ranges in which values at these frequencies are positive, interpolated
+/// linearly in `ln omega`.
 fn ranges_above_zero(omega: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
     let mut ranges = Vec::new();
     let mut begun = None;
     for k in 0..values.len() {
-        let crossing = |k: usize| {
-            let share = values[k - 1] / (values[k - 1] - values[k]);
-            omega[k - 1] * (omega[k] / omega[k - 1]).powf(share)
-        };
-        match (begun, values[k] > 0.0) {
-            (None, true) => begun = Some(if k == 0 { omega[0] } else { crossing(k) }),
-            (Some(start), false) => {
-                ranges.push((start, crossing(k)));
+        let is_above = values[k] > 0.0;
+        match begun {
+            None if is_above && k == 0 => begun = Some(omega[0]),
+            None if is_above => begun = Some(zero_crossing(omega, values, k)),
+            Some(start) if !is_above => {
+                ranges.push((start, zero_crossing(omega, values, k)));
                 begun = None;
             }
             _ => {}
         }
     }
-    ranges.extend(begun.zip(omega.last()).map(|(start, &end)| (start, end)));
+    if let (Some(start), Some(&end)) = (begun, omega.last()) {
+        ranges.push((start, end));
+    }
     ranges
+}
+
+/// Returns the frequency between points `k - 1` and `k` at which the values cross zero.
+fn zero_crossing(omega: &[f64], values: &[f64], k: usize) -> f64 {
+    let share = values[k - 1] / (values[k - 1] - values[k]);
+    omega[k - 1] * (omega[k] / omega[k - 1]).powf(share)
 }
 
 #[cfg(test)]
@@ -183,16 +193,18 @@ mod tests {
     }
 
     #[test]
-    fn ranges_of_magnitude_and_phase_are_told_as_one_where_they_meet() {
+    fn ranges_of_magnitude_and_phase_are_merged_where_they_meet() {
         let omega = [1.0, 2.0, 3.0, 4.0, 5.0];
         let ranges = leaves(
             &omega,
             &[9.0, 9.0, 0.0, 0.0, 0.0],
             &[0.0, 0.0, -90.0, -90.0, 0.0],
         );
-        assert_eq!((ranges.len(), ranges[0].0), (1, 1.0), "{ranges:?}");
+        assert_eq!(ranges.len(), 1, "{ranges:?}");
+        assert_eq!(ranges[0].0, 1.0);
         assert!((4.0..5.0).contains(&ranges[0].1));
         let to_the_end = leaves(&omega, &[0.0; 5], &[0.0, 0.0, 0.0, 0.0, 60.0]);
-        assert_eq!((to_the_end.len(), to_the_end[0].1), (1, 5.0));
+        assert_eq!(to_the_end.len(), 1);
+        assert_eq!(to_the_end[0].1, 5.0);
     }
 }

@@ -464,11 +464,11 @@ mod tests {
             magnitude_db: vec![1.0; 3],
             phase: vec![0.1; 3],
         };
-        let coherence_weights = CoherenceWeights::of(&omega, &[0.9, 0.2, 0.9], 0.6, None);
+        let coherence_weights = CoherenceWeights::select(&omega, &[0.9, 0.2, 0.9], 0.6, None);
         let shape = ErrorShape::new(&polar, &polar, &omega, Some(&coherence_weights)).unwrap();
         assert!(shape.mismatch_db[1].is_nan() && shape.phase[1].is_nan());
         assert_eq!((shape.mismatch_db[0], shape.phase[2]), (0.0, 0.0));
-        let nothing = CoherenceWeights::of(&omega, &[0.0; 3], 0.6, None);
+        let nothing = CoherenceWeights::select(&omega, &[0.0; 3], 0.6, None);
         assert!(ErrorShape::new(&polar, &polar, &omega, Some(&nothing)).is_none());
     }
 

@@ -1,7 +1,7 @@
 //! Delays and leads in each channel of one condition, up to ten times the band: the limit of the
 //! model's validity, and the cost of leads.
 
-use gdcm_method::correction::leads::ABOVE_BAND;
+use gdcm_method::correction::lead_price::ABOVE_BAND;
 use gdcm_method::correction::{Channel, ChannelCorrection, LeadPrice};
 use gdcm_model::dataset::Pair;
 use gdcm_model::response::GainDelay;

@@ -8,7 +8,7 @@ use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
 use gdcm_method::correction::Pade;
-use gdcm_method::correction::leads::ABOVE_BAND;
+use gdcm_method::correction::lead_price::ABOVE_BAND;
 use gdcm_method::couplings::coupling_effects::relative_change_db;
 use gdcm_method::couplings::problem::CouplingError;
 use gdcm_method::couplings::{CouplingBars, LEAST_CONDITIONS, LeftOutFit, LoopMargin, PoleShift};

@@ -61,7 +61,7 @@ impl BundleMetrics {
             .iter()
             .map(|model| (model.name.as_str(), model.perturbation()))
             .collect();
-        let discontinuity = Discontinuity::of(&physics, &perturbations, &|| {
+        let discontinuity = Discontinuity::fit(&physics, &perturbations, &|| {
             execution.progress().cancelled()
         });
         if discontinuity == Err(DiscontinuityError::Fit(FitError::Cancelled)) {
@@ -93,13 +93,13 @@ fn measured_pairs(
         })
     };
     let marked = polar(measuring, 1)?;
-    let measured = MeasuredPairs::of(&marked, measuring);
+    let measured = MeasuredPairs::new(&marked, measuring);
     if !measured.compared.is_empty() {
         return Ok((marked, measured));
     }
     let all = measuring.map(|_, _| true);
     let polar_responses = polar(&all, 0)?;
-    let measured = MeasuredPairs::of(&polar_responses, &all);
+    let measured = MeasuredPairs::new(&polar_responses, &all);
     Ok((polar_responses, measured))
 }
 
@@ -262,7 +262,7 @@ impl Comparison {
                 rejected, pinned, ..
             } = choice.bundle(kind);
             let rejected: BTreeSet<usize> = rejected.iter().filter_map(position).collect();
-            let representative = Representative::of(
+            let representative = Representative::select(
                 figures.bundle(kind),
                 &rejected,
                 pinned.as_ref().and_then(position),
@@ -285,7 +285,7 @@ impl Comparison {
         } else {
             against(&compared(BundleKind::Physics, nominal))
         };
-        let delta = Delta::of(&representative.mismatch, grid.omega());
+        let delta = Delta::new(&representative.mismatch, grid.omega());
         let why = |pair: Pair| match flight {
             Dynamics::Measured(response) if !response.is_measured(pair) => Undefined::NotMeasured,
             _ => why_undefined(&simulated, &reference, pair),

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
-use gdcm_method::correction::leads::ABOVE_BAND;
+use gdcm_method::correction::lead_price::ABOVE_BAND;
 use gdcm_model::dataset::model::ContentHash;
 use gdcm_model::dataset::{Band, BundleKind, Condition, Model};
 use gdcm_model::progress::Cancelled;

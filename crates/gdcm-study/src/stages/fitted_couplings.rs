@@ -316,7 +316,7 @@ impl ConditionAnalysis {
         pade: Pade,
     ) -> Result<CorrectedModel, CoupledModelError> {
         let coupled = self.coupled_model(physics, pade)?;
-        Ok(CorrectedModel::of(&coupled, correction, pade)?)
+        Ok(CorrectedModel::new(&coupled, correction, pade)?)
     }
 }
 
@@ -351,6 +351,6 @@ impl Analysis {
     ) -> Result<CorrectedModel, CoupledModelError> {
         let airspeed_kt = condition.flight_state().airspeed_kt;
         let coupled = coupled_model(self.fitted_couplings(), physics, airspeed_kt, pade)?;
-        Ok(CorrectedModel::of(&coupled, correction, pade)?)
+        Ok(CorrectedModel::new(&coupled, correction, pade)?)
     }
 }

@@ -283,7 +283,7 @@ fn make(
                 None => entry,
             });
         }
-        let delta = Delta::of(&mismatch, omega);
+        let delta = Delta::new(&mismatch, omega);
         // As for a pinned pair without comparable responses.
         if delta.gain.iter().all(|(_, gain)| gain.is_none()) {
             return Ok(None);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use gdcm_method::fidelity::CostAverage;
-use gdcm_method::fidelity::mismatch::coherence_weight;
+use gdcm_method::fidelity::coherence_weights::coherence_weight;
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_model::dataset::dataset::DatasetHeader;
 use gdcm_model::dataset::measured_response::MeasuredResponse;

@@ -1,39 +1,49 @@
-//! Global minimum of the objective over the scales that the constrained products leave free, with a
+//! The objective's global minimum over the scales that the constrained products leave free, with a
 //! proof.
 //!
-//! Constraining `k_o k_i` ties the logarithms of a connected piece of channels together up to one
+//! Constraining `k_o k_i` ties the logarithms in a connected piece of channels together up to a
 //! *scale* `s` (M8, structure). With the ground, scale 0, the objective is a sum of functions, each
-//! of one difference:
+//! of a single difference:
 //!
 //! ```text
 //! F(s) = c + sum over terms f_t(s_j - s_i),     f_t(u) = R1 (e^u - c1)^2 + R2 (e^-u - c2)^2   or   w (u - c)^2:
 //! ```
 //!
 //! Each exponential is convex where `e^u >= c / 2`, and a term is concave on at most one interval.
-//! A *node* is a part of the box given by *difference bounds* `s_j - s_i <= b_ij`. Spatial
+//! A *node* is a part of the box, given by *difference bounds* `s_j - s_i <= b_ij`. Spatial
 //! (interval) branch and bound:
 //!
 //! ```text
-//!  1  best <- local minimum of F from where it is told to start (projected Newton)
+//!  1  best <- local minimum of F from the given start (projected Newton)
 //!  2  open <- { the whole box }
-//!  3  while the least bound of the open nodes < (1 - 2e-10) best (proof), then < 1.01 best (listing), and the budget lasts
-//!  4     node <- the open node of least bound;  listing: monotonicity test, convexity test: without an unknown minimum, close it
-//!  5     node.bound <- tangent plane of its underestimator (each term's convex envelope) at its minimum, less the rounding
+//!  3  while the least open bound < (1 - 2e-10) best (proof), then < 1.01 best (listing), and the budget lasts
+//!  4     node <- the open node with the least bound;  listing: monotonicity test, convexity test: without an unknown minimum, close it
+//!  5     node.bound <- tangent plane to its underestimator (each term's convex envelope) at its minimum, less the rounding
 //!  6     best <- local minimum of F from there, where that may be a new one worth listing
 //!  7     if node.bound >= 1.01 best, close it; if only >= best, keep it for the listing
 //!  8     if F is convex over the hull of node and best (convexity test), close it with the bound from best's gradient and Hessian
-//!  9     branch: at the difference whose term lies furthest above its envelope, or at the end of a concave interval
-//! 10  lower bound <- least bound of closed and open nodes
+//!  9     branch: at the difference whose term lies furthest above its envelope, or at a concave interval's end
+//! 10  lower bound <- least bound over closed and open nodes
 //! ```
 //!
-//! Hansen and Walster, *Global Optimization Using Interval Analysis* (2004): branching,
-//! monotonicity and convexity tests. Horst and Tuy, *Global Optimization* (1996): best-first branch
-//! and bound, convergence. McCormick (1976), *Mathematical Programming* 10: convex envelopes term
-//! by term. The tangent plane bounds the convex underestimator from any point that Newton's method
-//! reaches, so the bound needs no convergence; its rounding is counted term by term (`Rounded`).
+//! Sources: Hansen and Walster, *Global Optimization Using Interval Analysis* (2004), for
+//! branching, monotonicity and convexity tests; Horst and Tuy, *Global Optimization* (1996), for
+//! best-first branch and bound and its convergence; McCormick (1976), *Mathematical Programming*
+//! 10, for convex envelopes term by term. The tangent plane bounds the convex underestimator from
+//! any point that Newton's method reaches, so the bound needs no convergence; its rounding is
+//! counted term by term (`Rounded`).
 
+mod derivatives;
+mod difference_bounds;
+pub(crate) mod effort;
+mod envelope;
+pub(crate) mod exponential;
+pub(crate) mod newton;
 mod node_exclusion;
 pub(crate) mod objective;
+mod open_nodes;
+pub(crate) mod quadratic;
+pub(crate) mod rounded;
 pub mod search;
 pub(crate) mod term;
 mod underestimator;

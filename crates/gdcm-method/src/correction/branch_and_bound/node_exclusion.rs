@@ -1,20 +1,24 @@
 //! Tests that exclude a node: monotonicity (the node has no minimum) and convexity (no minimum
-//! other than a known one).
+//! other than a known one). Hansen & Walster, *Global Optimization Using Interval Analysis*, 2004.
 
 use nalgebra::DMatrix;
 
+use super::derivatives::Range;
+use super::difference_bounds::DifferenceBounds;
 use super::objective::{Expansion, Objective};
-use super::term::{Range, Term};
-use super::underestimator::{DifferenceBounds, quadratic_bound};
+use super::rounded::Rounded;
+use super::term::Term;
+use super::underestimator::quadratic_bound;
+use crate::correction::interval::Interval;
 
 /// The objective with the structure needed by the exclusion tests.
 pub(super) struct NodeExclusion<'a> {
     objective: &'a Objective,
-    /// Reference scale of each scale: the ground, or the first of a piece that is not tied to it.
+    /// Reference for each scale: the ground, or the first scale in its floating piece.
     base: Vec<usize>,
-    /// Scales whose bounds can stop each scale: the ground, or any other of a piece that is not
-    /// tied to it.
+    /// Scales whose bounds can stop each scale: the ground, or the others in its floating piece.
     stops: Vec<Vec<usize>>,
+    /// Scale pieces that are not tied to the ground.
     floating: Vec<Vec<usize>>,
 }
 
@@ -42,80 +46,89 @@ impl<'a> NodeExclusion<'a> {
         }
     }
 
-    /// Work of one test: the range of every slope, or the Hessian and its Cholesky factorisation.
+    /// Work of a test: the range of every slope, or the Hessian and its Cholesky factorisation.
     pub(super) fn work(&self) -> u64 {
         let scales = self.objective.scales() as u64;
         4 * self.objective.terms.len() as u64 + scales * scales * scales / 96
     }
 
     /// Monotonicity test: whether the slope in some scale keeps its sign over the whole region
-    /// although nothing stops the scale, so that the region holds no local minimum.
+    /// although no bound stops the scale, so that the region contains no local minimum.
     pub(super) fn has_no_minimum(&self, region: &DifferenceBounds) -> bool {
         let slopes = self.slope_ranges(region);
-        let can_move = |scale: &usize| self.objective.lower[*scale] < self.objective.upper[*scale];
-        let unstopped = |scale: usize| {
-            sign(&slopes[scale]) != 0 && !self.is_stopped(region, scale, sign(&slopes[scale]))
-        };
-        (0..self.objective.ground()).filter(can_move).any(unstopped)
+        for (scale, slope) in slopes.iter().enumerate().take(self.objective.ground()) {
+            let sign = sign(slope);
+            let can_move = self.objective.lower[scale] < self.objective.upper[scale];
+            if can_move && sign != 0 && !self.is_stopped(region, scale, sign) {
+                return true;
+            }
+        }
+        false
     }
 
-    /// Whether the region holds no local minimum other than `minimum`: over the hull of both, the
+    /// Whether the region contains no local minimum other than `minimum`: over their hull, the
     /// scales whose slope keeps its sign are on their bound at any local minimum, and the objective
     /// is convex in the others.
     pub(super) fn has_only(&self, region: &DifferenceBounds, minimum: &[f64]) -> bool {
         let hull = region.hull(minimum);
         let slopes = self.slope_ranges(&hull);
         let ground = self.objective.ground();
-        let on_bound = |scale: usize| self.stops[scale] == [ground] && sign(&slopes[scale]) != 0;
-        self.is_convex_in(&hull, |scale| !on_bound(scale))
+        let free: Vec<usize> = (0..ground)
+            .filter(|&scale| self.stops[scale] != [ground] || sign(&slopes[scale]) == 0)
+            .collect();
+        self.is_convex_in(&hull, free)
     }
 
     /// Convexity test: whether the objective is convex over the region.
     pub(super) fn is_convex(&self, region: &DifferenceBounds) -> bool {
-        self.is_convex_in(region, |_| true)
+        self.is_convex_in(region, (0..self.objective.ground()).collect())
     }
 
+    /// Whether a bound stops the scale from moving against a slope of this sign.
     fn is_stopped(&self, region: &DifferenceBounds, scale: usize, sign: i8) -> bool {
         self.stops[scale].iter().any(|&other| {
-            let (from, to) = if sign > 0 {
-                (scale, other)
+            if sign > 0 {
+                self.reaches_box(region, scale, other)
             } else {
-                (other, scale)
-            };
-            region.range(from, to).1
-                >= self.objective.upper[to] - self.objective.lower[from] - 1e-12
+                self.reaches_box(region, other, scale)
+            }
         })
     }
 
-    /// Range of the slope in each scale over the region; `size` sums the sizes of the terms'
-    /// slopes.
+    /// Whether `s_to - s_from` may be as great in the region as in the whole box.
+    fn reaches_box(&self, region: &DifferenceBounds, from: usize, to: usize) -> bool {
+        region.range(from, to).high >= self.objective.upper[to] - self.objective.lower[from] - 1e-12
+    }
+
+    /// Bounds the slope in each scale over the region; `size` sums over the terms' slopes.
     fn slope_ranges(&self, region: &DifferenceBounds) -> Vec<Range> {
         let mut ranges = vec![Range::default(); self.objective.scales()];
         for term in &self.objective.terms {
-            let (low, high) = region.range(term.from, term.to);
-            let Range { least, most, size } = term.function.slopes((low, high.max(low)));
-            for (scale, least, most) in [(term.to, least, most), (term.from, -most, -least)] {
-                let range = &mut ranges[scale];
-                range.least += least;
-                range.most += most;
-                range.size += size;
-                // Rounding of both sums, each below the sum of the sizes.
-                let rounding = f64::EPSILON * range.size;
-                range.least -= rounding;
-                range.most += rounding;
-            }
+            let slope = term
+                .function
+                .slopes(region.range(term.from, term.to).not_empty());
+            add_range(&mut ranges[term.to], slope);
+            let mirrored = Range {
+                least: -slope.most,
+                most: -slope.least,
+                size: slope.size,
+            };
+            add_range(&mut ranges[term.from], mirrored);
         }
         ranges
     }
 
-    /// Returns a lower bound over a region on which the objective is convex, from its gradient and
-    /// Hessian next to `minimum`.
+    /// Bounds the objective from below over a region on which it is convex, from its gradient and
+    /// Hessian next to `minimum`. `None` where these give no bound.
     pub(super) fn bound_at(&self, minimum: &[f64], at: &Expansion) -> Option<f64> {
-        // Far above the error of the scales, far below a change that matters to the curvature.
+        // Far above the scales' error, far below a change that matters to the curvature.
         const WITHIN: f64 = 0.01;
         let least = self.least_hessian(|term| {
-            let u = minimum[term.to] - minimum[term.from];
-            (u - 2.0 * WITHIN, u + 2.0 * WITHIN)
+            let u = term.difference(minimum);
+            Interval {
+                low: u - 2.0 * WITHIN,
+                high: u + 2.0 * WITHIN,
+            }
         });
         let push: Vec<f64> = (0..minimum.len())
             .map(|scale| self.push(minimum, at, scale))
@@ -134,31 +147,32 @@ impl<'a> NodeExclusion<'a> {
         quadratic_bound(at, &reach, WITHIN, |scale| push[scale] > 0.0)
     }
 
-    /// Guaranteed magnitude of the slope that pushes the scale against its active bound; otherwise
-    /// 0.
+    /// Returns the guaranteed slope magnitude that pushes the scale against its active bound;
+    /// otherwise 0.
     fn push(&self, minimum: &[f64], at: &Expansion, scale: usize) -> f64 {
         let slope = at.gradient[scale];
-        let stopped = if slope > 0.0 {
+        let is_stopped = if slope > 0.0 {
             minimum[scale] <= self.objective.lower[scale]
         } else {
             minimum[scale] >= self.objective.upper[scale]
         };
-        if stopped {
+        if is_stopped {
             (slope.abs() - at.gradient_error[scale]).max(0.0)
         } else {
             0.0
         }
     }
 
-    /// Reference scale of each floating piece: a fixed scale or, where bounds push, the scale
-    /// pushed hardest. The slopes of the others lean on that scale, so its push has to outweigh
-    /// them.
+    /// Chooses a reference scale for each floating piece: a fixed scale or, where bounds push, the
+    /// scale pushed hardest. Slopes in scales that no bound pushes lean on it; `None` where its
+    /// push does not outweigh them.
     fn anchors(&self, at: &Expansion, push: &[f64]) -> Option<Vec<usize>> {
         let mut anchors = Vec::new();
         for piece in &self.floating {
-            let is_fixed =
-                |scale: &usize| self.objective.lower[*scale] >= self.objective.upper[*scale];
-            if let Some(fixed) = piece.iter().copied().find(is_fixed) {
+            let fixed = piece
+                .iter()
+                .find(|&&scale| self.objective.lower[scale] >= self.objective.upper[scale]);
+            if let Some(&fixed) = fixed {
                 anchors.push(fixed);
                 continue;
             }
@@ -166,8 +180,9 @@ impl<'a> NodeExclusion<'a> {
                 .iter()
                 .copied()
                 .max_by(|a, b| push[*a].total_cmp(&push[*b]))?;
-            let loose = piece.iter().filter(|&&scale| push[scale] == 0.0);
-            let lean: f64 = loose
+            let lean: f64 = piece
+                .iter()
+                .filter(|&&scale| push[scale] == 0.0)
                 .map(|&scale| at.gradient[scale].abs() + at.gradient_error[scale])
                 .sum();
             if push[hardest] > 0.0 && push[hardest] < lean {
@@ -178,14 +193,13 @@ impl<'a> NodeExclusion<'a> {
         Some(anchors)
     }
 
-    /// Returns the Hessian built from every term's least curvature over its range and, as the
-    /// gradient's error, the sum of sizes behind its diagonal.
-    fn least_hessian(&self, range: impl Fn(&Term) -> (f64, f64)) -> Expansion {
+    /// Builds the Hessian from every term's least curvature over its range. The gradient's error is
+    /// the sum over the magnitudes behind its diagonal.
+    fn least_hessian(&self, range: impl Fn(&Term) -> Interval) -> Expansion {
         let mut least = Expansion::zero(self.objective.scales());
         for term in &self.objective.terms {
-            let (low, high) = range(term);
-            let curvature = term.function.curvatures((low, high.max(low)));
-            least.add(term, Default::default(), curvature.least);
+            let curvature = term.function.curvatures(range(term).not_empty());
+            least.add(term, Rounded::default(), curvature.least);
             least.gradient_error[term.from] += curvature.size;
             least.gradient_error[term.to] += curvature.size;
         }
@@ -195,21 +209,32 @@ impl<'a> NodeExclusion<'a> {
     /// Whether the objective is convex in the `free` scales over the region: the Hessian built from
     /// every term's least curvature is positive definite, and the true Hessian differs from it by a
     /// positive semidefinite matrix.
-    fn is_convex_in(&self, region: &DifferenceBounds, free: impl Fn(usize) -> bool) -> bool {
+    fn is_convex_in(&self, region: &DifferenceBounds, mut free: Vec<usize>) -> bool {
         let least = self.least_hessian(|term| region.range(term.from, term.to));
-        let measured = |scale: &usize| self.base[*scale] != *scale && free(*scale);
-        let free: Vec<usize> = (0..self.objective.ground()).filter(measured).collect();
+        // A floating piece's reference scale does not move.
+        free.retain(|&scale| self.base[scale] != scale);
         free.is_empty() || reduced(&least, &free).cholesky().is_some()
     }
 }
 
-/// Sign that a slope keeps over its range: -1, 1, or 0 where the sign is undecided.
+/// Adds a term's slope range, and the rounding in both sums: each is below the summed sizes.
+fn add_range(sum: &mut Range, slope: Range) {
+    sum.least += slope.least;
+    sum.most += slope.most;
+    sum.size += slope.size;
+    let rounding = f64::EPSILON * sum.size;
+    sum.least -= rounding;
+    sum.most += rounding;
+}
+
+/// Returns the sign that a slope keeps over its range: -1, 1, or 0 where the sign is undecided.
 fn sign(slope: &Range) -> i8 {
     i8::from(slope.least > 0.0) - i8::from(slope.most < 0.0)
 }
 
-/// Returns the Hessian of the `free` scales, less a margin for the rounding of its sums (up to n
-/// terms) and of its factorisation (n (n + 1) roundings of the diagonal: Higham, theorem 10.3).
+/// Returns the Hessian in the `free` scales, less a margin for rounding in its sums (up to n terms)
+/// and in its factorisation (n (n + 1) roundings on the diagonal: Higham, *Accuracy and Stability
+/// of Numerical Algorithms*, 2002, theorem 10.3).
 fn reduced(hessian: &Expansion, free: &[usize]) -> DMatrix<f64> {
     let scales = hessian.gradient.len();
     let roundings = ((scales + 1) * (scales + 2)) as f64;

@@ -1,13 +1,12 @@
-//! The branch and bound search, with its open nodes and its budget, which counts work instead of
-//! time so that results repeat.
+//! The branch and bound search, and its budget.
 
-use std::cell::Cell;
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
-
+use super::difference_bounds::DifferenceBounds;
+use super::effort::{Effort, SearchStopped};
+use super::newton::Newton;
 use super::node_exclusion::NodeExclusion;
-use super::objective::{Curvature, Differentiable, Expansion, Newton, Objective};
-use super::underestimator::{DifferenceBounds, Underestimator, tangent_bound};
+use super::objective::{Curvature, Differentiable, Expansion, Objective, ScaleBox};
+use super::open_nodes::{Node, OpenNodes};
+use super::underestimator::{ConcaveEnd, Underestimator, tangent_bound};
 
 /// Minima within this factor of the best are listed.
 const NEAR: f64 = 1.01;
@@ -15,12 +14,20 @@ const NEAR: f64 = 1.01;
 /// Relative gap at which branching stops, to end safely below [`PROOF`].
 const AIM: f64 = 2e-10;
 
-/// Result of a search.
+/// A local minimum.
+#[derive(Clone, Debug)]
+pub(crate) struct Minimum {
+    pub(crate) scales: Vec<f64>,
+    /// Objective at the minimum.
+    pub(crate) value: f64,
+}
+
+/// Search result.
 #[derive(Clone, Debug)]
 pub(crate) struct Minima {
-    /// Distinct local minima within 1 % of the best, best first, each with its value.
-    pub(crate) minima: Vec<(Vec<f64>, f64)>,
-    /// Lower bound of the objective over the whole box.
+    /// Distinct local minima within 1 % of the best, best first.
+    pub(crate) minima: Vec<Minimum>,
+    /// Lower bound on the objective over the whole box.
     pub(crate) lower_bound: f64,
     /// `(best - lower_bound) / max(best, floor)`.
     pub(crate) gap: f64,
@@ -31,8 +38,8 @@ pub(crate) struct Minima {
     pub(crate) all_minima: bool,
 }
 
-/// Finds the global minimum of `objective` over its box, with a rigorous lower bound ([`super`] has
-/// the algorithm).
+/// Finds the global minimum for `objective` over its box, with a rigorous lower bound ([`super`]
+/// has the algorithm).
 ///
 /// Newton's method begins at `start`; `floor` is the objective, set by rounding, below which the
 /// gap is no longer relative.
@@ -48,9 +55,10 @@ pub(crate) fn search(
 ) -> Result<Minima, SearchStopped> {
     let mut search = Search::new(objective, budget, floor, effort);
     search.run(start)?;
-    Ok(search.found())
+    Ok(search.into_minima())
 }
 
+/// A search in progress; its methods cite the line numbers in the algorithm ([`super`]).
 struct Search<'a> {
     objective: &'a Objective,
     exclusion: NodeExclusion<'a>,
@@ -58,20 +66,24 @@ struct Search<'a> {
     floor: f64,
     effort: &'a Effort<'a>,
     newton: Newton<'a>,
-    minima: Vec<(Vec<f64>, f64)>,
+    /// Distinct local minima, in the order found.
+    minima: Vec<Minimum>,
+    /// Least value among the minima.
     best: f64,
     open: OpenNodes,
     /// Least bound of the closed nodes.
     closed: f64,
     nodes: usize,
-    /// Work spent when the best was proven.
+    /// Work spent until the best was proven.
     proven_at: Option<u64>,
-    /// Whether no closed node may hold an unknown local minimum.
+    /// Whether every closed node is known to contain no unknown local minimum.
     all_minima: bool,
+    /// Present node's box: least value for each scale.
     lower: Vec<f64>,
+    /// Present node's box: greatest value for each scale.
     upper: Vec<f64>,
-    /// Curvature of an underestimator beyond its node: well above the objective's own, so that the
-    /// part of the box next to a minimum is bounded by its own edge.
+    /// Curvature of underestimators beyond their node: well above the objective's own, so that a
+    /// node next to a minimum is bounded by its own edge.
     beyond: f64,
 }
 
@@ -107,17 +119,17 @@ impl<'a> Search<'a> {
     /// listed.
     fn run(&mut self, start: &[f64]) -> Result<(), SearchStopped> {
         self.descend(start);
-        let region = DifferenceBounds::of_box(&self.objective.lower, &self.objective.upper);
+        let region = DifferenceBounds::from_box(&self.objective.lower, &self.objective.upper);
         self.open.push(Node {
             bound: 0.0,
             region,
-            start: self.minima[0].0.clone(),
+            start: self.minima[0].scales.clone(),
         });
         loop {
             self.effort.check()?;
             let bound = self.open.least_bound();
-            if bound >= self.aim() {
-                self.proven_at.get_or_insert(self.effort.spent());
+            if bound >= self.aim() && self.proven_at.is_none() {
+                self.proven_at = Some(self.effort.spent());
             }
             if bound >= self.cutoff() || self.is_spent() {
                 return Ok(());
@@ -129,19 +141,22 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Whether the budget for the proof, the listing or memory is used up.
     fn is_spent(&self) -> bool {
         let spent = self.effort.spent();
-        let listed = self
-            .proven_at
-            .is_some_and(|proven_at| spent - proven_at >= self.budget.listing);
-        listed || spent >= self.budget.work || self.open.is_full()
+        let is_listing_spent = match self.proven_at {
+            Some(proven_at) => spent - proven_at >= self.budget.listing,
+            None => false,
+        };
+        is_listing_spent || spent >= self.budget.work || self.open.is_full()
     }
 
+    /// Divisor in the relative gap.
     fn denominator(&self) -> f64 {
         self.best.max(self.floor)
     }
 
-    /// Bound that proves the best.
+    /// Least bound that proves the best.
     fn aim(&self) -> f64 {
         self.best - AIM * self.denominator()
     }
@@ -151,7 +166,7 @@ impl<'a> Search<'a> {
         NEAR * self.best + AIM * self.denominator()
     }
 
-    /// Lines 4 to 9.
+    /// Lines 4 to 9: bounds a node, and closes, keeps or branches it.
     fn visit(&mut self, node: Node) {
         self.nodes += 1;
         let Node {
@@ -174,8 +189,7 @@ impl<'a> Search<'a> {
         let known = self.minima.len();
         let value = self.objective.value(&start);
         // A minimum worth listing is below the cutoff, and so is a start near it.
-        if value < self.best || (value < NEAR * self.cutoff() && self.minimum_in(&region).is_none())
-        {
+        if value < self.best || (value < NEAR * self.cutoff() && !self.has_minimum_in(&region)) {
             self.descend(&start);
         }
         if bound >= self.aim() {
@@ -191,15 +205,15 @@ impl<'a> Search<'a> {
                     start,
                 });
             }
-        } else if let Some(convex) = self
-            .convex_bound(&region, underestimator.is_exact())
-            .filter(|convex| *convex >= self.aim())
+        } else if let Some(convex) = self.convex_bound(&region, underestimator.is_exact())
+            && convex >= self.aim()
         {
             return self.close(bound.max(convex));
         }
         self.branch(&underestimator, &region, bound, &start);
     }
 
+    /// Closes a node with this bound.
     fn close(&mut self, bound: f64) {
         self.closed = self.closed.min(bound);
     }
@@ -221,7 +235,10 @@ impl<'a> Search<'a> {
         let tolerance = 0.05 * AIM * self.denominator();
         let effort = self.effort;
         let most = self.budget.work;
-        let bounds = (self.lower.as_slice(), self.upper.as_slice());
+        let bounds = ScaleBox {
+            lower: &self.lower,
+            upper: &self.upper,
+        };
         let exact = underestimator.is_exact();
         let mut best = f64::NEG_INFINITY;
         self.newton
@@ -240,12 +257,12 @@ impl<'a> Search<'a> {
     /// Minimises the objective from `start` over the whole box, and keeps the minimum if it is new.
     fn descend(&mut self, start: &[f64]) {
         let mut scales = start.to_vec();
-        let bounds = (
-            self.objective.lower.as_slice(),
-            self.objective.upper.as_slice(),
+        self.newton.minimise(
+            self.objective,
+            self.objective.bounds(),
+            &mut scales,
+            |_, _| false,
         );
-        self.newton
-            .minimise(self.objective, bounds, &mut scales, |_, _| false);
         let value = self.newton.reached.value.value;
         if value < self.best {
             let curvature = self
@@ -258,76 +275,90 @@ impl<'a> Search<'a> {
         }
         self.effort
             .spend((self.minima.len() * self.objective.terms.len()) as u64);
-        let same = |(known, _): &(Vec<f64>, f64)| self.is_same(known, &scales);
-        match self.minima.iter().position(same) {
-            Some(position) if value < self.minima[position].1 => {
-                self.minima[position] = (scales, value)
-            }
+        let found = Minimum { scales, value };
+        let known = self
+            .minima
+            .iter()
+            .position(|known| self.is_same(&known.scales, &found.scales));
+        match known {
+            Some(known) if value < self.minima[known].value => self.minima[known] = found,
             Some(_) => {}
-            None => self.minima.push((scales, value)),
+            None => self.minima.push(found),
         }
         self.best = self.best.min(value);
     }
 
-    /// Whether two minima are duplicates: no difference between them as measured by the curvature
-    /// of the terms.
+    /// Whether two minima are duplicates: equal up to 1e-6, or the terms' curvature at `known`
+    /// raises the objective between them by no more than the aimed gap.
     fn is_same(&self, known: &[f64], found: &[f64]) -> bool {
-        let changes = self.objective.terms.iter().map(|term| {
-            let here = known[term.to] - known[term.from];
-            let there = found[term.to] - found[term.from];
-            (term, here, (there - here).abs())
-        });
         let mut longest = 0.0_f64;
         let mut rise = 0.0;
-        for (term, here, change) in changes {
+        for term in &self.objective.terms {
+            let here = term.difference(known);
+            let there = term.difference(found);
+            let change = (there - here).abs();
             longest = longest.max(change);
             rise += 0.5 * term.function.at(here).curvature.abs() * change * change;
         }
         longest <= 1e-6 || rise <= AIM * self.denominator()
     }
 
-    fn minimum_in(&self, region: &DifferenceBounds) -> Option<usize> {
+    /// Whether a known minimum is inside the region.
+    fn has_minimum_in(&self, region: &DifferenceBounds) -> bool {
         let scales = self.objective.scales();
         self.effort
             .spend((self.minima.len() * scales * scales) as u64 / 16);
         self.minima
             .iter()
-            .position(|(scales, _)| region.holds(scales))
+            .any(|minimum| region.contains(&minimum.scales))
     }
 
-    /// Bound of a node over whose hull with the best minimum the objective is convex (`exact`:
-    /// every term is convex over the node), from the gradient and the Hessian at that minimum.
+    /// Line 8: bounds a node from the gradient and the Hessian at the best minimum; `None` where
+    /// the objective is not convex over the hull of node and minimum. `exact`: every term is convex
+    /// over the node.
     fn convex_bound(&mut self, region: &DifferenceBounds, exact: bool) -> Option<f64> {
-        let (scales, _) = self.minima.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let best = self
+            .minima
+            .iter()
+            .min_by(|a, b| a.value.total_cmp(&b.value))?;
+        let scales = &best.scales;
         let hull = region.hull(scales);
         self.effort.spend(2 * self.exclusion.work());
-        if !(exact && region.holds(scales) || self.exclusion.is_convex(&hull)) {
+        if !(exact && region.contains(scales) || self.exclusion.is_convex(&hull)) {
             return None;
         }
         let mut at = Expansion::zero(scales.len());
         self.objective.expand(scales, Curvature::True, &mut at);
         hull.write_box(&mut self.lower, &mut self.upper);
-        let tangent = tangent_bound(scales, &at, (&self.lower, &self.upper));
-        Some(
-            self.exclusion
-                .bound_at(scales, &at)
-                .map_or(tangent, |quadratic| quadratic.max(tangent)),
-        )
+        let bounds = ScaleBox {
+            lower: &self.lower,
+            upper: &self.upper,
+        };
+        let tangent = tangent_bound(scales, &at, bounds);
+        match self.exclusion.bound_at(scales, &at) {
+            Some(quadratic) => Some(quadratic.max(tangent)),
+            None => Some(tangent),
+        }
     }
 
-    /// Whether the node holds no local minimum other than a known one.
+    /// Whether the node contains no local minimum other than a known one.
     fn is_searched(&self, region: &DifferenceBounds) -> bool {
         self.effort.spend(self.exclusion.work());
-        let holds_only = |(scales, _): &(Vec<f64>, f64)| {
+        if self.exclusion.has_no_minimum(region) {
+            return true;
+        }
+        for minimum in &self.minima {
             self.effort.spend(2 * self.exclusion.work());
-            self.exclusion.has_only(region, scales)
-        };
-        self.exclusion.has_no_minimum(region) || self.minima.iter().any(holds_only)
+            if self.exclusion.has_only(region, &minimum.scales) {
+                return true;
+            }
+        }
+        false
     }
 
-    /// Branches where the node's bound loses most. Where nothing is lost or the best is already
-    /// proven, separates convex from concave parts first, and then reduces the variation of the
-    /// slopes.
+    /// Line 9: branches where the node's bound loses most. Where nothing is lost or the best is
+    /// already proven, separates convex from concave parts first, and then reduces the slopes'
+    /// variation.
     fn branch(
         &mut self,
         underestimator: &Underestimator<'_>,
@@ -338,60 +369,64 @@ impl<'a> Search<'a> {
         self.effort
             .spend(4 * self.objective.work() + (start.len() * start.len()) as u64 / 4);
         let listing = self.proven_at.is_some();
-        let least_gap = 1e-13 * self.denominator();
-        let gap = underestimator
-            .widest_gap(start)
-            .filter(|(_, gap)| !listing && *gap > least_gap)
-            .map(|(term, _)| term);
-        let ends = if gap.is_none() {
-            underestimator.concave_ends(start)
-        } else {
-            Vec::new()
-        };
-        if !ends.is_empty() {
-            let count = if listing { ends.len() } else { 1 };
-            return self.split_concave(&ends[..count], region, bound, start);
+        let mut term = None;
+        if !listing {
+            term = underestimator.widest_gap(start, 1e-13 * self.denominator());
         }
-        let widest = gap
-            .or_else(|| underestimator.widest_slope())
-            .map(|term| (term, region.range(term.from, term.to)));
-        let Some((term, (low, high))) = widest.filter(|(_, (low, high))| high - low > 1e-11) else {
-            // The bound is as sharp as rounding allows.
-            self.all_minima &= !listing;
-            return self.close(bound);
-        };
-        let margin = 0.15 * (high - low);
-        let at = (start[term.to] - start[term.from]).clamp(low + margin, high - margin);
-        self.push(region.below(term.from, term.to, at), bound, start);
-        self.push(region.above(term.from, term.to, at), bound, start);
+        if term.is_none() {
+            let ends = underestimator.concave_ends(start);
+            if !ends.is_empty() {
+                let count = if listing { ends.len() } else { 1 };
+                return self.split_concave(&ends[..count], region, bound, start);
+            }
+            term = underestimator.widest_slope();
+        }
+        if let Some(term) = term {
+            let range = region.range(term.from, term.to);
+            if range.width() > 1e-11 {
+                let margin = 0.15 * range.width();
+                let at = term
+                    .difference(start)
+                    .clamp(range.low + margin, range.high - margin);
+                self.push(region.below(term.from, term.to, at), bound, start);
+                self.push(region.above(term.from, term.to, at), bound, start);
+                return;
+            }
+        }
+        // The bound is as sharp as rounding allows.
+        self.all_minima &= !listing;
+        self.close(bound);
     }
 
-    /// Splits off the parts beyond each end of a concave interval, as seen from `start`, and keeps
+    /// Splits off the parts beyond each end in a concave interval, as seen from `start`, and keeps
     /// the rest as one node.
     fn split_concave(
         &mut self,
-        ends: &[(usize, usize, f64)],
+        ends: &[ConcaveEnd],
         region: &DifferenceBounds,
         bound: f64,
         start: &[f64],
     ) {
         let mut rest = Some(region.clone());
-        for &(from, to, at) in ends {
+        for end in ends {
             let Some(region) = rest else { return };
             self.effort.spend((start.len() * start.len()) as u64 / 4);
-            let below = region.below(from, to, at);
-            let above = region.above(from, to, at);
-            let (inner, outer) = if start[to] - start[from] < at {
-                (below, above)
+            let below = region.below(end.from, end.to, end.at);
+            let above = region.above(end.from, end.to, end.at);
+            let outer;
+            if start[end.to] - start[end.from] < end.at {
+                rest = below;
+                outer = above;
             } else {
-                (above, below)
-            };
+                rest = above;
+                outer = below;
+            }
             self.push(outer, bound, start);
-            rest = inner;
         }
         self.push(rest, bound, start);
     }
 
+    /// Adds a part to the open nodes, unless it is empty.
     fn push(&mut self, region: Option<DifferenceBounds>, bound: f64, start: &[f64]) {
         if let Some(region) = region {
             self.open.push(Node {
@@ -402,8 +437,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Line 10.
-    fn found(mut self) -> Minima {
+    /// Line 10: the lower bound, and the minima within 1 % of the best.
+    fn into_minima(mut self) -> Minima {
         let left = self.open.least_bound();
         let cutoff = self.cutoff();
         // A sum of squares is never negative, and no bound exceeds a value that was reached.
@@ -418,15 +453,12 @@ impl<'a> Search<'a> {
         } else {
             Some(Limit::Rounding)
         };
-        self.minima.sort_by(|a, b| a.1.total_cmp(&b.1));
-        // The best itself always stays in the list.
-        let kept = self
+        self.minima.sort_by(|a, b| a.value.total_cmp(&b.value));
+        let within = self
             .minima
-            .iter()
-            .take_while(|(_, value)| *value <= cutoff)
-            .count()
-            .max(1);
-        self.minima.truncate(kept);
+            .partition_point(|minimum| minimum.value <= cutoff);
+        // The best itself always stays in the list.
+        self.minima.truncate(within.max(1));
         Minima {
             minima: self.minima,
             lower_bound,
@@ -444,12 +476,12 @@ pub(crate) const PROOF: f64 = 1e-9;
 /// Budget of the search for a proof, counted instead of timed so that results repeat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProofBudget {
-    /// Total work, in evaluations of one term of the objective (20 to 30 ns on one core). A step in
+    /// Total work, in evaluations of a term of the objective (20 to 30 ns on a core). A step in
     /// progress is completed.
     pub work: u64,
     /// Work after the proof, to find every other local minimum within 1 %.
     pub listing: u64,
-    /// Memory of the open nodes, in bytes.
+    /// Memory for the open nodes, in bytes.
     pub bytes: usize,
 }
 
@@ -474,167 +506,4 @@ pub enum Limit {
     Memory,
     /// Double precision: no sharper bound is possible.
     Rounding,
-}
-
-/// The search was stopped from outside.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct SearchStopped;
-
-/// Counts the work of one search, and polls at intervals whether to stop.
-pub(crate) struct Effort<'a> {
-    stop: &'a dyn Fn() -> bool,
-    work: Cell<u64>,
-    asked_at: Cell<u64>,
-    stopped: Cell<bool>,
-}
-
-impl<'a> Effort<'a> {
-    /// Work between two polls: half a millisecond.
-    const ASKING: u64 = 20_000;
-
-    /// Starts with no work spent.
-    pub(crate) fn new(stop: &'a dyn Fn() -> bool) -> Self {
-        Self {
-            stop,
-            work: Cell::new(0),
-            asked_at: Cell::new(0),
-            stopped: Cell::new(stop()),
-        }
-    }
-
-    /// Counts `work`.
-    pub(crate) fn spend(&self, work: u64) {
-        let spent = self.work.get() + work;
-        self.work.set(spent);
-        if spent - self.asked_at.get() >= Self::ASKING {
-            self.asked_at.set(spent);
-            self.stopped.set(self.stopped.get() || (self.stop)());
-        }
-    }
-
-    /// Total work so far.
-    pub(crate) fn spent(&self) -> u64 {
-        self.work.get()
-    }
-
-    /// Whether a stop was requested.
-    pub(crate) fn is_stopped(&self) -> bool {
-        self.stopped.get()
-    }
-
-    /// Returns an error where a stop was requested.
-    pub(crate) fn check(&self) -> Result<(), SearchStopped> {
-        if self.is_stopped() {
-            Err(SearchStopped)
-        } else {
-            Ok(())
-        }
-    }
-}
-
-/// A part of the box that is still to be searched.
-pub(super) struct Node {
-    /// Lower bound of the objective over the part.
-    pub(super) bound: f64,
-    pub(super) region: DifferenceBounds,
-    /// Start of the search for the underestimator's minimum.
-    pub(super) start: Vec<f64>,
-}
-
-impl PartialEq for Node {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Node {}
-
-impl PartialOrd for Node {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Node {
-    /// Reversed order, so that the heap returns the least bound first.
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.bound.total_cmp(&self.bound)
-    }
-}
-
-/// The open nodes, least bound first, in limited memory.
-pub(super) struct OpenNodes {
-    heap: BinaryHeap<Node>,
-    most: usize,
-    /// Least bound of the nodes refused for lack of memory.
-    refused: f64,
-}
-
-impl OpenNodes {
-    /// Empty heap of nodes with `scales` scales each, in at most `bytes` bytes; there is always
-    /// room for one node.
-    pub(super) fn new(scales: usize, bytes: usize) -> Self {
-        // Twice the overhead of an allocation, and the growth of the heap, which doubles its
-        // memory.
-        let of_node = DifferenceBounds::bytes(scales)
-            + scales * size_of::<f64>()
-            + 32
-            + 3 * size_of::<Node>();
-        Self {
-            heap: BinaryHeap::new(),
-            most: (bytes / of_node).max(1),
-            refused: f64::INFINITY,
-        }
-    }
-
-    /// Adds a node, or only its bound where memory is exhausted.
-    pub(super) fn push(&mut self, node: Node) {
-        if self.heap.len() < self.most {
-            self.heap.push(node);
-        } else {
-            self.refused = self.refused.min(node.bound);
-        }
-    }
-
-    /// Whether a node was refused for lack of memory.
-    pub(super) fn is_full(&self) -> bool {
-        self.refused < f64::INFINITY
-    }
-
-    /// Removes the node of least bound.
-    pub(super) fn pop(&mut self) -> Option<Node> {
-        self.heap.pop()
-    }
-
-    /// Least bound of all nodes, refused ones included; infinite where there are none.
-    pub(super) fn least_bound(&self) -> f64 {
-        self.heap
-            .peek()
-            .map_or(f64::INFINITY, |node| node.bound)
-            .min(self.refused)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn nodes_beyond_the_memory_leave_their_bound_only() {
-        let node = |bound: f64| Node {
-            bound,
-            region: DifferenceBounds::of_box(&[0.0; 20], &[0.0; 20]),
-            start: vec![0.0; 20],
-        };
-        let mut open = OpenNodes::new(20, 40_000);
-        let kept = (0..100).take_while(|&index| {
-            open.push(node(100.0 - f64::from(index)));
-            !open.is_full()
-        });
-        // 400 differences of 8 bytes, and the rest of a node.
-        let kept = kept.count();
-        assert!((9..=12).contains(&kept), "{kept}");
-        assert_eq!(open.least_bound(), 100.0 - kept as f64);
-        assert_eq!(open.pop().map(|node| node.bound), Some(101.0 - kept as f64));
-    }
 }

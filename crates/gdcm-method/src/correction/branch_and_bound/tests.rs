@@ -4,17 +4,19 @@ use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use proptest::prelude::*;
 
-use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::dataset::PairTable;
 
-use super::super::components::{Components, Held};
-use super::super::problem::{Bounds, GainObjective, Problem, Quantity, floor, objective};
-use super::objective::Differentiable;
-use crate::correction::branch_and_bound::node_exclusion::NodeExclusion;
-use crate::correction::branch_and_bound::objective::{Curvature, Expansion, Newton, Objective};
-use crate::correction::branch_and_bound::search::{Effort, ProofBudget, search};
-use crate::correction::branch_and_bound::underestimator::{
-    DifferenceBounds, Underestimator, tangent_bound,
-};
+use super::difference_bounds::DifferenceBounds;
+use super::effort::Effort;
+use super::newton::Newton;
+use super::node_exclusion::NodeExclusion;
+use super::objective::{Curvature, Differentiable, Expansion, Objective, ScaleBox};
+use super::search::{ProofBudget, search};
+use super::underestimator::{Underestimator, tangent_bound};
+use crate::correction::components::{Components, Constraints, Placement};
+use crate::correction::problem::{Bounds, Problem};
+use crate::correction::quantity::{GainObjective, Quantity};
+use crate::correction::scaled_objective::{rounding_floor, scaled_objective};
 
 type Exact = FBig<HalfEven, 2>;
 
@@ -28,6 +30,17 @@ fn excess(figure: &Exact, computed: f64) -> f64 {
     (figure - exact(computed)).to_f64().value()
 }
 
+/// Exact logarithmic gains.
+struct Logarithms {
+    inputs: Vec<Exact>,
+    outputs: Vec<Exact>,
+}
+
+/// A node's exact value.
+fn exact_node(node: &Placement, scales: &[f64]) -> Exact {
+    exact(node.offset.value) + exact(scales[node.component])
+}
+
 /// Problem of up to three outputs and three inputs, with at most one constrained entry for each
 /// output.
 #[derive(Clone, Debug)]
@@ -39,8 +52,8 @@ struct Sample {
 
 impl Sample {
     fn new(problem: Problem) -> Self {
-        let components = Components::new(&Held::of(&problem));
-        let objective = objective(&problem, &components);
+        let components = Components::new(&Constraints::new(&problem));
+        let objective = scaled_objective(&problem, &components);
         Self {
             problem,
             components,
@@ -48,50 +61,53 @@ impl Sample {
         }
     }
 
-    /// Exact logarithms of the gains: an input's is its component's scale, a constrained output's
-    /// follows from its entry.
-    fn logarithms(&self, scales: &[f64]) -> (Vec<Exact>, Vec<Exact>) {
-        let node = |placed: &super::super::components::Placement| {
-            exact(placed.offset.value) + exact(scales[placed.component])
-        };
-        let (inputs, outputs) = self.components.sides();
-        let inputs: Vec<Exact> = inputs.iter().map(node).collect();
-        let output = |(index, placed): (usize, &super::super::components::Placement)| {
-            let held = self
+    /// Computes exact logarithmic gains: an input's is its component's scale, a constrained
+    /// output's follows from its entry.
+    fn logarithms(&self, scales: &[f64]) -> Logarithms {
+        let nodes = self.components.nodes();
+        let inputs: Vec<Exact> = nodes
+            .inputs
+            .iter()
+            .map(|node| exact_node(node, scales))
+            .collect();
+        let mut outputs = Vec::new();
+        for (index, node) in nodes.outputs.iter().enumerate() {
+            let constrained = self
                 .problem
-                .held_entries()
-                .find(|(pair, _)| pair.output == index);
-            match held {
-                Some((pair, delta)) => exact(delta).ln() - &inputs[pair.input],
-                None => -node(placed),
-            }
-        };
-        let outputs = outputs.iter().enumerate().map(output).collect();
-        (inputs, outputs)
+                .constrained_entries()
+                .find(|entry| entry.pair.output == index);
+            outputs.push(match constrained {
+                Some(entry) => exact(entry.delta).ln() - &inputs[entry.pair.input],
+                None => -exact_node(node, scales),
+            });
+        }
+        Logarithms { inputs, outputs }
     }
 
-    /// The exact objective: equation (7), or its counterpart in dB.
-    fn exact_objective(&self, scales: &[f64]) -> Exact {
-        let (inputs, outputs) = self.logarithms(scales);
-        let decibel = exact(20.0) / exact(10.0).ln();
-        let square = |delta: f64, logarithm: &Exact| {
-            let miss = match self.problem.quantity {
-                Quantity::Gain(GainObjective::Ratio) => exact(delta) - logarithm.exp(),
-                _ => (exact(delta).ln() - logarithm) * &decibel,
-            };
-            &miss * &miss
+    /// Computes the exact square for an entry's residual, a ratio or in dB.
+    fn exact_square(&self, delta: f64, logarithm: &Exact) -> Exact {
+        let miss = match self.problem.quantity {
+            Quantity::Gain(GainObjective::Ratio) => exact(delta) - logarithm.exp(),
+            _ => (exact(delta).ln() - logarithm) * (exact(20.0) / exact(10.0).ln()),
         };
+        &miss * &miss
+    }
+
+    /// The exact objective: eq. (7), or its counterpart in dB.
+    fn exact_objective(&self, scales: &[f64]) -> Exact {
+        let Logarithms { inputs, outputs } = self.logarithms(scales);
         let mut sum = exact(0.0);
-        for (pair, delta) in self.problem.fit_entries() {
-            sum += square(delta, &(&inputs[pair.input] + &outputs[pair.output]));
+        for entry in self.problem.fit_entries() {
+            let logarithm = &inputs[entry.pair.input] + &outputs[entry.pair.output];
+            sum += self.exact_square(entry.delta, &logarithm);
         }
         for output in &outputs {
-            sum += square(1.0, output) * exact(self.problem.alpha);
+            sum += self.exact_square(1.0, output) * exact(self.problem.alpha);
         }
         sum
     }
 
-    /// The point of the box at these shares of its width.
+    /// Returns the point in the box at these shares along its width.
     fn at(&self, shares: &[f64]) -> Vec<f64> {
         let ends = self
             .objective
@@ -103,19 +119,18 @@ impl Sample {
             .collect()
     }
 
-    /// Part of the box that contains `inside`: every difference is cut at a share of the width on
-    /// either side of it.
+    /// Returns a part of the box that contains `inside`: every difference is cut at a share along
+    /// the width on either side.
     fn region(&self, inside: &[f64], width: f64) -> DifferenceBounds {
-        let mut region = DifferenceBounds::of_box(&self.objective.lower, &self.objective.upper);
+        let mut region = DifferenceBounds::from_box(&self.objective.lower, &self.objective.upper);
         for from in 0..inside.len() {
             for to in 0..inside.len() {
+                if from == to {
+                    continue;
+                }
                 let difference = inside[to] - inside[from];
-                let most = difference + width * (region.range(from, to).1 - difference).max(0.0);
-                region = if from == to {
-                    region
-                } else {
-                    region.below(from, to, most).unwrap()
-                };
+                let most = difference + width * (region.range(from, to).high - difference).max(0.0);
+                region = region.below(from, to, most).unwrap();
             }
         }
         region
@@ -162,8 +177,8 @@ proptest! {
         prop_assert!(off <= expansion.value.error, "off by {:e}, not {:e}", off, expansion.value.error);
         // The bound is sharp, too: some hundred roundings of the squares' size, which differs from
         // the sum's where they cancel.
-        let delta = |(_, delta): (Pair, f64)| delta.powi(2) + 1.0;
-        let size = 1e4 * (expansion.value.value + sample.problem.fit_entries().map(delta).sum::<f64>());
+        let squares: f64 = sample.problem.fit_entries().map(|entry| entry.delta.powi(2) + 1.0).sum();
+        let size = 1e4 * (expansion.value.value + squares);
         prop_assert!(expansion.value.error <= 1e3 * f64::EPSILON * size * (1.0 + sample.problem.alpha));
     }
 
@@ -186,15 +201,16 @@ proptest! {
         let mut scales: Vec<f64> =
             inside.iter().enumerate().map(|(index, scale)| scale.clamp(lower[index], upper[index])).collect();
         let mut newton = Newton::new(scales.len(), &effort);
-        newton.minimise(&underestimator, (&lower, &upper), &mut scales, |scales, at| {
-            bound = bound.max(tangent_bound(scales, at, (&lower, &upper)));
+        let node = ScaleBox { lower: &lower, upper: &upper };
+        newton.minimise(&underestimator, node, &mut scales, |scales, at| {
+            bound = bound.max(tangent_bound(scales, at, node));
             false
         });
         let nearby = |shares: &Vec<f64>| -> Vec<f64> {
             let at = |index: usize| lower[index] + (upper[index] - lower[index]) * shares[index];
             (0..inside.len()).map(at).collect()
         };
-        let points = others.iter().map(nearby).filter(|point| region.holds(point));
+        let points = others.iter().map(nearby).filter(|point| region.contains(point));
         for point in points.chain([inside.clone()]) {
             let above = excess(&sample.exact_objective(&point), bound);
             prop_assert!(above >= 0.0, "{:e} below {:e}", above, bound);
@@ -206,8 +222,8 @@ proptest! {
         let effort = Effort::new(&|| false);
         let budget = ProofBudget { work: 300_000, listing: 0, bytes: 1_000_000 };
         let start = sample.objective.nearest_to_zero();
-        let found = search(&sample.objective, &start, budget, floor(&sample.problem), &effort).unwrap();
-        let minimum = &found.minima[0].0;
+        let found = search(&sample.objective, &start, budget, rounding_floor(&sample.problem), &effort).unwrap();
+        let minimum = &found.minima[0].scales;
         // Next to the minimum, where the bound is sharp, and all over the box.
         let near = others.iter().enumerate().map(|(step, shares)| {
             let width = 10f64.powi(-4 * step as i32 - 2);
@@ -224,14 +240,14 @@ proptest! {
     fn the_bound_from_the_curvature_at_a_minimum_holds_next_to_it(sample in samples(), others in prop::collection::vec(shares(), 6)) {
         let effort = Effort::new(&|| false);
         let mut minimum = sample.objective.nearest_to_zero();
-        let bounds = (sample.objective.lower.as_slice(), sample.objective.upper.as_slice());
+        let bounds = sample.objective.bounds();
         Newton::new(minimum.len(), &effort).minimise(&sample.objective, bounds, &mut minimum, |_, _| false);
         let mut at = Expansion::zero(minimum.len());
         sample.objective.expand(&minimum, Curvature::True, &mut at);
         if let Some(bound) = NodeExclusion::new(&sample.objective).bound_at(&minimum, &at) {
             for (step, shares) in others.iter().enumerate() {
                 let width = 10f64.powi(-3 * step as i32 - 2);
-                let ends = bounds.0.iter().zip(bounds.1).enumerate();
+                let ends = bounds.lower.iter().zip(bounds.upper).enumerate();
                 let nearby: Vec<f64> = ends
                     .map(|(index, (low, high))| (minimum[index] + width * (shares[index] - 0.5)).clamp(*low, *high))
                     .collect();

@@ -1,66 +1,103 @@
-//! A convex underestimator of the objective over one node (part of the box of the scales), and its
-//! lower bounds.
+//! A convex underestimator of the objective over a node (part of the scale box), and its lower
+//! bounds.
 
-use super::objective::{Curvature, Differentiable, Expansion, Objective};
-use super::term::{Derivatives, Exponential, Function, Rounded, Term, both};
+use super::derivatives::Derivatives;
+use super::difference_bounds::DifferenceBounds;
+use super::envelope::{Line, enveloped};
+use super::objective::{Curvature, Differentiable, Expansion, Objective, ScaleBox};
+use super::rounded::Rounded;
+use super::term::{Function, Term};
+use crate::correction::interval::Interval;
 
-/// A term's underestimator with the range of its difference. Newton's method keeps to the box of
-/// the node only, so beyond the range the underestimator continues along its tangent and bends up:
-/// any convex continuation is valid, and this one keeps the minimum near.
+/// Lines of the convex envelopes of a term's two exponentials; `None` for an exponential that is
+/// convex over the node.
+#[derive(Clone, Copy, Debug)]
+struct EnvelopeLines {
+    forward: Option<Line>,
+    backward: Option<Line>,
+}
+
+/// Underestimator of a term over the range of its difference.
+///
+/// Newton's method keeps to the node's box only, so beyond the range the underestimator continues
+/// along its tangent and bends up: any convex continuation is valid, and this one keeps the minimum
+/// near.
 #[derive(Clone, Copy, Debug)]
 struct TermUnder {
-    /// The lines in the convex envelopes of its two exponentials; `None` where the term is convex
-    /// over the node and is its own underestimator.
-    envelopes: Option<[Option<Line>; 2]>,
-    range: (f64, f64),
+    /// `None` where the term is convex over the node and is its own underestimator.
+    lines: Option<EnvelopeLines>,
+    range: Interval,
 }
 
 impl TermUnder {
-    fn of(term: &Term, region: &DifferenceBounds) -> Self {
-        let (low, high) = region.range(term.from, term.to);
-        let range = (low, high.max(low));
-        let envelopes = match &term.function {
+    fn new(term: &Term, region: &DifferenceBounds) -> Self {
+        let range = region.range(term.from, term.to).not_empty();
+        let lines = match &term.function {
             Function::Exponential {
                 forward, backward, ..
-            } if !term.function.is_convex_over(range) => Some([
-                envelope(forward, range),
-                envelope(backward, (-range.1, -range.0)),
-            ]),
+            } if !term.function.is_convex_over(range) => Some(EnvelopeLines {
+                forward: Line::of_envelope(forward, range),
+                backward: Line::of_envelope(backward, range.mirrored()),
+            }),
             _ => None,
         };
-        Self { envelopes, range }
+        Self { lines, range }
     }
 
     fn is_exact(&self) -> bool {
-        self.envelopes.is_none()
+        self.lines.is_none()
     }
 
-    /// The term's difference at `scales`, kept inside the range.
+    /// Returns the term's difference at `scales`, moved into the range.
     fn difference(&self, term: &Term, scales: &[f64]) -> f64 {
-        (scales[term.to] - scales[term.from]).clamp(self.range.0, self.range.1)
+        self.range.nearest(term.difference(scales))
     }
 
-    /// The underestimator of `function` at `u` in the range.
+    /// Evaluates the underestimator of `function` at `u` in the range.
     fn inside(&self, function: &Function, u: f64) -> Derivatives {
-        match (function, &self.envelopes) {
+        match (function, &self.lines) {
             (
                 Function::Exponential {
                     forward, backward, ..
                 },
-                Some([ahead, behind]),
-            ) => both(
-                enveloped(forward, ahead.as_ref(), u),
-                enveloped(backward, behind.as_ref(), -u),
-            ),
+                Some(lines),
+            ) => enveloped(forward, lines.forward.as_ref(), u).plus_mirrored(enveloped(
+                backward,
+                lines.backward.as_ref(),
+                -u,
+            )),
             _ => function.at(u),
         }
     }
+}
+
+/// Where a term's concave interval ends.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ConcaveEnd {
+    pub(super) from: usize,
+    pub(super) to: usize,
+    /// `s_to - s_from`.
+    pub(super) at: f64,
+    /// Distance from the present difference.
+    distance: f64,
+}
+
+/// A term with the figure by which terms are compared.
+struct RankedTerm<'a> {
+    term: &'a Term,
+    rank: f64,
+}
+
+/// Returns the term with the greatest rank, the last among equals.
+fn highest<'a>(terms: impl Iterator<Item = RankedTerm<'a>>) -> Option<RankedTerm<'a>> {
+    terms.max_by(|a, b| a.rank.total_cmp(&b.rank))
 }
 
 /// Convex function of the scales that nowhere in the node exceeds the objective.
 pub(crate) struct Underestimator<'a> {
     objective: &'a Objective,
     unders: Vec<TermUnder>,
+    /// Curvature outside the differences' ranges.
     beyond: f64,
 }
 
@@ -68,13 +105,13 @@ impl<'a> Underestimator<'a> {
     /// Work of construction for each term: up to fourteen steps to a tangent.
     pub(crate) const WORK_PER_TERM: u64 = 12;
 
-    /// The underestimator of `objective` over `region`, with curvature `beyond` outside the ranges
-    /// of the differences.
+    /// Creates the underestimator of `objective` over `region`, with curvature `beyond` outside the
+    /// differences' ranges.
     pub(crate) fn new(objective: &'a Objective, region: &DifferenceBounds, beyond: f64) -> Self {
         let unders = objective
             .terms
             .iter()
-            .map(|term| TermUnder::of(term, region))
+            .map(|term| TermUnder::new(term, region))
             .collect();
         Self {
             objective,
@@ -88,7 +125,7 @@ impl<'a> Underestimator<'a> {
         self.unders.iter().all(TermUnder::is_exact)
     }
 
-    /// The terms that are not convex over the node.
+    /// Iterates over the terms that are not convex over the node.
     fn nonconvex(&self) -> impl Iterator<Item = (&'a Term, &TermUnder)> {
         self.objective
             .terms
@@ -97,53 +134,64 @@ impl<'a> Underestimator<'a> {
             .filter(|(_, under)| !under.is_exact())
     }
 
-    /// The term furthest above its envelope at `scales` (kept inside the node's ranges), with that
-    /// distance less its rounding.
-    pub(crate) fn widest_gap(&self, scales: &[f64]) -> Option<(&'a Term, f64)> {
-        let gap = |(term, under): (&'a Term, &TermUnder)| {
+    /// Finds the term furthest above its envelope at `scales` (moved into the node's ranges); the
+    /// distance, less its rounding, has to exceed `least_gap`.
+    pub(crate) fn widest_gap(&self, scales: &[f64], least_gap: f64) -> Option<&'a Term> {
+        let gaps = self.nonconvex().map(|(term, under)| {
             let u = under.difference(term, scales);
             let above = term.function.at(u).value;
             let below = under.inside(&term.function, u).value;
-            (term, above.value - below.value - above.error - below.error)
-        };
-        self.nonconvex().map(gap).max_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
-    /// Each term (from, to) that is not convex over the node but is convex at `scales`, with the
-    /// end of its concave interval, furthest end first. The parts beyond the ends are easily
-    /// bounded, and the rest is convex in these terms.
-    pub(crate) fn concave_ends(&self, scales: &[f64]) -> Vec<(usize, usize, f64)> {
-        let end = |(term, under): (&'a Term, &TermUnder)| {
-            let u = under.difference(term, scales);
-            let end = term.function.concave_end(u, under.range)?;
-            Some((term, end, (end - u).abs()))
-        };
-        let mut ends: Vec<(&Term, f64, f64)> = self.nonconvex().filter_map(end).collect();
-        ends.sort_by(|a, b| b.2.total_cmp(&a.2));
-        ends.into_iter()
-            .map(|(term, end, _)| (term.from, term.to, end))
-            .collect()
-    }
-
-    /// The term whose slope varies most over the node, weighted with its range: it hides the sign
-    /// of a scale's slope, or the uniqueness of the minimum.
-    pub(crate) fn widest_slope(&self) -> Option<&'a Term> {
-        let variation = |(term, under): (&'a Term, &TermUnder)| {
-            let slopes = term.function.slopes(under.range);
-            (
+            RankedTerm {
                 term,
-                (slopes.most - slopes.least) * (under.range.1 - under.range.0),
-            )
-        };
-        let terms = self.objective.terms.iter().zip(&self.unders).map(variation);
-        terms
-            .max_by(|a, b| a.1.total_cmp(&b.1))
-            .map(|(term, _)| term)
+                rank: above.value - below.value - above.error - below.error,
+            }
+        });
+        let widest = highest(gaps)?;
+        if widest.rank > least_gap {
+            Some(widest.term)
+        } else {
+            None
+        }
     }
 
+    /// Finds the terms that are not convex over the node but convex at `scales`, each with its
+    /// concave interval's end, furthest end first. The parts beyond the ends are easily bounded,
+    /// and the rest is convex in these terms.
+    pub(super) fn concave_ends(&self, scales: &[f64]) -> Vec<ConcaveEnd> {
+        let mut ends = Vec::new();
+        for (term, under) in self.nonconvex() {
+            let u = under.difference(term, scales);
+            if let Some(end) = term.function.concave_end(u, under.range) {
+                ends.push(ConcaveEnd {
+                    from: term.from,
+                    to: term.to,
+                    at: end,
+                    distance: (end - u).abs(),
+                });
+            }
+        }
+        ends.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+        ends
+    }
+
+    /// Returns the term whose slope varies most over the node, weighted with its range: it hides
+    /// the sign of a scale's slope, or that the minimum is unique.
+    pub(crate) fn widest_slope(&self) -> Option<&'a Term> {
+        let terms = self.objective.terms.iter().zip(&self.unders);
+        let variations = terms.map(|(term, under)| {
+            let slopes = term.function.slopes(under.range);
+            RankedTerm {
+                term,
+                rank: (slopes.most - slopes.least) * under.range.width(),
+            }
+        });
+        highest(variations).map(|widest| widest.term)
+    }
+
+    /// Evaluates a term's underestimator, also outside its range.
     fn at(&self, term: &Term, under: &TermUnder, scales: &[f64]) -> Derivatives {
-        let u = scales[term.to] - scales[term.from];
-        let end = u.clamp(under.range.0, under.range.1);
+        let u = term.difference(scales);
+        let end = under.range.nearest(u);
         let mut at = under.inside(&term.function, end);
         let beyond = u - end;
         if beyond != 0.0 {
@@ -181,31 +229,27 @@ impl Differentiable for Underestimator<'_> {
     }
 }
 
-/// Lower bound over a box, for a function that is convex there, from its tangent plane at `scales`
-/// (inside the box), less the rounding of the value, of every slope and of their sum.
-pub(super) fn tangent_bound(
-    scales: &[f64],
-    at: &Expansion,
-    (lower, upper): (&[f64], &[f64]),
-) -> f64 {
+/// Bounds a convex function over a box from below, by its tangent plane at `scales` (inside the
+/// box), less the rounding in the value, in every slope and in their sum.
+pub(super) fn tangent_bound(scales: &[f64], at: &Expansion, bounds: ScaleBox<'_>) -> f64 {
     let mut bound = at.value.value - at.value.error;
     for scale in 0..scales.len() {
         let slope = at.gradient[scale];
         let error = at.gradient_error[scale];
-        let down = (slope + error).max(0.0) * (scales[scale] - lower[scale]).max(0.0);
-        let up = (error - slope).max(0.0) * (upper[scale] - scales[scale]).max(0.0);
+        let down = (slope + error).max(0.0) * (scales[scale] - bounds.lower[scale]).max(0.0);
+        let up = (error - slope).max(0.0) * (bounds.upper[scale] - scales[scale]).max(0.0);
         bound -= down.max(up);
     }
     // Each of the n + 1 differences rounds a figure between the value and the bound; each product
-    // four times, of their sum.
+    // rounds four times, relative to their sum.
     bound - (scales.len() as f64 + 5.0) * f64::EPSILON * at.value.value.abs().max(bound.abs())
 }
 
-/// Lower bound from the tangent plane and the Hessian next to `scales`, where the slopes are almost
-/// zero.
+/// Bounds a convex function from below by its tangent plane and Hessian next to a point where the
+/// slopes are almost zero. `None` where the bound does not hold.
 ///
 /// `reach` is `sqrt(diagonal of H^-1)` for a Hessian `H` that the function's own does not fall
-/// below while no scale is further than `within` from `scales`; 0 for a fixed scale. With the
+/// below while no scale is further than `within` from the point; 0 for a fixed scale. With the
 /// gradient `g` known to `e`, and `r = sum (|g| + e) reach`, the parabola `g d + d' H d / 2` is
 /// nowhere below `-r^2 / 2` and turns before any scale has moved by `r reach`; beyond, a convex
 /// function keeps rising. A scale that its slope has `pushed` against its bound can only raise the
@@ -223,211 +267,12 @@ pub(super) fn quadratic_bound(
         }
     }
     let farthest = sum * reach.iter().fold(0.0_f64, |most, reach| most.max(*reach));
-    // A millionth above the parabola's depth covers the rounding of the sum and of the inverse.
-    let bound = at.value.value - at.value.error - 0.5 * sum * sum * (1.0 + 1e-6);
-    (farthest <= within).then_some(bound - 4.0 * f64::EPSILON * bound.abs())
-}
-
-/// Scales whose differences stay within bounds: `s_j - s_i <= bound(i, j)` for any two, the ground
-/// included.
-///
-/// The bounds are closed under addition (shortest paths; "difference bound matrices"), so that each
-/// is the tightest implied bound.
-#[derive(Clone, Debug)]
-pub(crate) struct DifferenceBounds {
-    count: usize,
-    bounds: Vec<f64>,
-}
-
-impl DifferenceBounds {
-    /// The box `lower <= s <= upper`, the ground last.
-    pub(crate) fn of_box(lower: &[f64], upper: &[f64]) -> Self {
-        let count = lower.len();
-        let mut bounds = vec![0.0; count * count];
-        for from in 0..count {
-            for to in (0..count).filter(|&to| to != from) {
-                bounds[from * count + to] = upper[to] - lower[from];
-            }
-        }
-        Self { count, bounds }
-    }
-
-    /// Least and greatest `s_to - s_from`.
-    pub(crate) fn range(&self, from: usize, to: usize) -> (f64, f64) {
-        (
-            -self.bounds[to * self.count + from],
-            self.bounds[from * self.count + to],
-        )
-    }
-
-    /// The part with `s_to - s_from <= most`, with the implied bounds of every other difference, or
-    /// `None` where it is empty.
-    pub(crate) fn below(&self, from: usize, to: usize, most: f64) -> Option<Self> {
-        let count = self.count;
-        if most + self.bounds[to * count + from] < 0.0 {
-            return None;
-        }
-        let mut part = self.clone();
-        for i in 0..count {
-            for j in (0..count).filter(|&j| j != i) {
-                let before = self.bounds[i * count + from];
-                let after = self.bounds[to * count + j];
-                // Rounded outward, so that no point of the part is lost.
-                let implied = before
-                    + most
-                    + after
-                    + 2.0 * f64::EPSILON * (before.abs() + most.abs() + after.abs());
-                let bound = &mut part.bounds[i * count + j];
-                *bound = bound.min(implied);
-            }
-        }
-        part.bounds[from * count + to] = part.bounds[from * count + to].min(most);
-        Some(part)
-    }
-
-    /// The part with `s_to - s_from >= least`, or `None` where it is empty.
-    pub(crate) fn above(&self, from: usize, to: usize, least: f64) -> Option<Self> {
-        self.below(to, from, -least)
-    }
-
-    /// Tightest bounds that contain these and `scales`.
-    pub(crate) fn hull(&self, scales: &[f64]) -> Self {
-        let count = self.count;
-        let bound =
-            |index: usize| self.bounds[index].max(scales[index % count] - scales[index / count]);
-        Self {
-            count,
-            bounds: (0..count * count).map(bound).collect(),
-        }
-    }
-
-    /// Bytes of the bounds of `count` scales.
-    pub(crate) fn bytes(count: usize) -> usize {
-        count * count * size_of::<f64>()
-    }
-
-    /// Writes the least and greatest value of each scale.
-    pub(crate) fn write_box(&self, lower: &mut [f64], upper: &mut [f64]) {
-        let ground = self.count - 1;
-        for scale in 0..ground {
-            (lower[scale], upper[scale]) = self.range(ground, scale);
-            // An empty interval can only be rounding: `below` has refused empty parts.
-            upper[scale] = upper[scale].max(lower[scale]);
-        }
-    }
-
-    /// Whether `scales` satisfies the bounds.
-    pub(crate) fn holds(&self, scales: &[f64]) -> bool {
-        let slack = 1e-13;
-        (0..self.count).all(|i| {
-            (0..self.count)
-                .all(|j| scales[j] - scales[i] <= self.bounds[i * self.count + j] + slack)
-        })
-    }
-}
-
-/// The line of a convex envelope: it replaces the exponential left of `until`.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
-    until: f64,
-    at: f64,
-    value: Rounded,
-    slope: f64,
-}
-
-/// The exponential at `v`, with the line of its envelope, if any, instead of the part left of
-/// `until`.
-pub(super) fn enveloped(function: &Exponential, line: Option<&Line>, v: f64) -> Derivatives {
-    match line {
-        Some(line) if v < line.until => {
-            let rise = line.slope * (v - line.at);
-            let moved = f64::EPSILON * (2.0 * rise.abs() + (line.slope * v).abs());
-            let mut value = line.value;
-            value.add(Rounded {
-                value: rise,
-                error: moved,
-            });
-            Derivatives {
-                value,
-                slope: Rounded {
-                    value: line.slope,
-                    error: 0.0,
-                },
-                curvature: 0.0,
-            }
-        }
-        _ if function.is_zero() => Derivatives::default(),
-        _ => function.at(v, v.exp()),
-    }
-}
-
-/// Line of the convex envelope of an exponential over `[low, high]`: `None` where it is convex
-/// there, the chord where the line from the left end is nowhere tangent, else the tangent, with the
-/// exponential itself to the right of it.
-pub(super) fn envelope(function: &Exponential, (low, high): (f64, f64)) -> Option<Line> {
-    if function.is_zero() || low >= function.inflection() {
-        return None;
-    }
-    let start = function.at(low, low.exp());
-    let end = function.at(high, high.exp());
-    // Height of the tangent at b over the left end: falls as b moves right of the inflection.
-    let overshoot =
-        |b: f64, at: &Derivatives| at.value.value + at.slope.value * (low - b) - start.value.value;
-    if high <= function.inflection() || overshoot(high, &end) >= 0.0 {
-        return Some(chord((low, start.value), (high, end.value)));
-    }
-    let mut over = function.inflection().max(low);
-    let mut under = high;
-    let mut tangent = end;
-    // Newton's method from the bracket's right side; any point there is valid, so a near-tangent is
-    // enough.
-    for _ in 0..14 {
-        let excess = overshoot(under, &tangent);
-        let newton = under - excess / (tangent.curvature * (low - under));
-        let next = if over < newton && newton < under {
-            newton
-        } else {
-            0.5 * (over + under)
-        };
-        let at = function.at(next, next.exp());
-        if overshoot(next, &at) > 0.0 {
-            over = next;
-        } else {
-            under = next;
-            tangent = at;
-        }
-        if -overshoot(under, &tangent) <= 1e-9 * start.value.value {
-            break;
-        }
-    }
-    let error = start.value.error + tangent.value.error + 2.0 * tangent.slope.error * (under - low);
-    let value = Rounded {
-        value: tangent.value.value,
-        error: error + 4.0 * f64::EPSILON * start.value.value,
-    };
-    Some(Line {
-        until: under,
-        at: under,
-        value,
-        slope: tangent.slope.value,
-    })
-}
-
-/// The line through both ends, lowered by their rounding.
-fn chord((low, start): (f64, Rounded), (high, end): (f64, Rounded)) -> Line {
-    let slope = if high > low {
-        (end.value - start.value) / (high - low)
+    if farthest <= within {
+        // A millionth above the parabola's depth covers rounding in the sum and in the inverse.
+        let bound = at.value.value - at.value.error - 0.5 * sum * sum * (1.0 + 1e-6);
+        Some(bound - 4.0 * f64::EPSILON * bound.abs())
     } else {
-        0.0
-    };
-    let error =
-        start.error + end.error + 4.0 * f64::EPSILON * (start.value.abs() + end.value.abs());
-    let value = start.value.min(end.value - slope * (high - low));
-    Line {
-        until: f64::INFINITY,
-        at: low,
-        value: Rounded { value, error },
-        slope,
+        None
     }
 }
 
@@ -436,25 +281,45 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::correction::branch_and_bound::term::ProductEntry;
+    use crate::correction::branch_and_bound::exponential::{
+        CombinedEntries, Exponential, ProductEntry,
+    };
 
     fn exponential(weight: f64, centre: f64) -> Exponential {
-        Exponential::of(&[ProductEntry::new(weight, centre, Rounded::default())]).0
+        let entry = ProductEntry::new(weight, centre, Rounded::default());
+        CombinedEntries::new(&[entry]).exponential
     }
 
-    fn objective(forward: (f64, f64), backward: (f64, f64), range: (f64, f64)) -> Objective {
-        let function = Function::exponential(
-            exponential(forward.0, forward.1),
-            exponential(backward.0, backward.1),
-        );
+    /// Two exponentials with weights from 0.01 to 10 and centres from 0.05 to 20.
+    fn functions() -> impl Strategy<Value = Function> {
+        let forward = (0.01..10.0_f64, 0.05..20.0_f64);
+        let backward = (0.01..10.0_f64, 0.05..20.0_f64);
+        (forward, backward).prop_map(|(forward, backward)| {
+            Function::exponential(
+                exponential(forward.0, forward.1),
+                exponential(backward.0, backward.1),
+            )
+        })
+    }
+
+    /// The same, or the forward exponential alone.
+    fn functions_of_one_or_two() -> impl Strategy<Value = Function> {
+        let forward = (0.01..10.0_f64, 0.05..20.0_f64);
+        let alone = forward.prop_map(|(weight, centre)| {
+            Function::exponential(exponential(weight, centre), Exponential::default())
+        });
+        prop_oneof![alone, functions()]
+    }
+
+    fn objective(function: Function, range: Interval) -> Objective {
         let terms = vec![Term {
             from: 0,
             to: 1,
             function,
         }];
         Objective {
-            lower: vec![range.0, 0.0],
-            upper: vec![range.1, 0.0],
+            lower: vec![range.low, 0.0],
+            upper: vec![range.high, 0.0],
             terms,
             constant: Rounded::default(),
         }
@@ -463,13 +328,12 @@ mod tests {
     proptest! {
         #[test]
         fn the_underestimator_is_convex_and_nowhere_above_the_objective(
-            forward in (0.01..10.0_f64, 0.05..20.0_f64),
-            backward in (prop_oneof![Just(0.0), 0.01..10.0_f64], 0.05..20.0_f64),
+            function in functions_of_one_or_two(),
             low in -3.0..1.0_f64,
             width in 0.01..4.0_f64,
         ) {
-            let objective = objective(forward, backward, (low, low + width));
-            let region = DifferenceBounds::of_box(&objective.lower, &objective.upper);
+            let objective = objective(function, Interval { low, high: low + width });
+            let region = DifferenceBounds::from_box(&objective.lower, &objective.upper);
             let underestimator = Underestimator::new(&objective, &region, 1.0);
             let mut at = Expansion::zero(2);
             let mut steepness = f64::INFINITY;
@@ -478,8 +342,8 @@ mod tests {
                 underestimator.expand(&scales, Curvature::True, &mut at);
                 let value = objective.value(&scales);
                 prop_assert!(at.value.value - at.value.error <= value, "{} is above {}", at.value.value, value);
-                // The difference is measured from node 0 to node 1: the slope of node 1 falls as
-                // the scale of node 0 rises.
+                // The difference is measured from node 0 to node 1: the slope in node 1 falls as
+                // scale 0 rises.
                 let rounding = 1e-9 * (1.0 + steepness.abs().min(1e9));
                 prop_assert!(at.gradient[1] <= steepness + rounding, "{} after {}", at.gradient[1], steepness);
                 steepness = at.gradient[1];
@@ -488,12 +352,10 @@ mod tests {
 
         #[test]
         fn two_exponentials_are_convex_wherever_they_say_so(
-            forward in (0.01..10.0_f64, 0.05..20.0_f64),
-            backward in (0.01..10.0_f64, 0.05..20.0_f64),
+            function in functions(),
             at in -3.0..3.0_f64,
         ) {
-            let function = Function::exponential(exponential(forward.0, forward.1), exponential(backward.0, backward.1));
-            let convex = function.is_convex_over((at, at));
+            let convex = function.is_convex_over(Interval { low: at, high: at });
             let curvature = function.at(at).curvature;
             // The interval is widened by 1e-11; the curvature there is as small as that times its
             // own slope.
@@ -502,14 +364,12 @@ mod tests {
 
         #[test]
         fn bounds_on_slope_and_curvature_hold_over_the_range(
-            forward in (0.01..10.0_f64, 0.05..20.0_f64),
-            backward in (0.01..10.0_f64, 0.05..20.0_f64),
+            function in functions(),
             low in -3.0..1.0_f64,
             width in 0.01..4.0_f64,
             share in 0.0..1.0_f64,
         ) {
-            let function = Function::exponential(exponential(forward.0, forward.1), exponential(backward.0, backward.1));
-            let range = (low, low + width);
+            let range = Interval { low, high: low + width };
             let at = function.at(low + share * width);
             let slopes = function.slopes(range);
             let curvatures = function.curvatures(range);

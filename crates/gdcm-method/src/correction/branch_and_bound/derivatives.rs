@@ -1,0 +1,35 @@
+//! Value, slope and curvature at a point, and their range over an interval.
+
+use super::rounded::Rounded;
+
+/// Value, slope and curvature at a point.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Derivatives {
+    pub(crate) value: Rounded,
+    pub(crate) slope: Rounded,
+    pub(crate) curvature: f64,
+}
+
+impl Derivatives {
+    /// Adds a function of `-u` to this function of `u`, each given at its own argument.
+    pub(super) fn plus_mirrored(self, mirrored: Self) -> Self {
+        let mut value = self.value;
+        value.add(mirrored.value);
+        let mut slope = self.slope;
+        slope.add(-mirrored.slope);
+        Self {
+            value,
+            slope,
+            curvature: self.curvature + mirrored.curvature,
+        }
+    }
+}
+
+/// Least and greatest derivative over an interval, rounded outward.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Range {
+    pub(crate) least: f64,
+    pub(crate) most: f64,
+    /// Sum of the summands' magnitudes, to which rounding errors are proportional.
+    pub(crate) size: f64,
+}

@@ -1,0 +1,111 @@
+//! Parts of the scale box, bounded by the differences between every two scales.
+
+use crate::correction::interval::Interval;
+
+/// Bounds on the scale differences: `s_j - s_i <= bound(i, j)` for every two scales, the ground
+/// included.
+///
+/// The bounds are closed under addition (shortest paths; "difference bound matrices"), so that each
+/// is the tightest implied bound.
+#[derive(Clone, Debug)]
+pub(crate) struct DifferenceBounds {
+    /// Scale count, with the ground.
+    count: usize,
+    /// Row-major, count x count.
+    bounds: Vec<f64>,
+}
+
+impl DifferenceBounds {
+    /// Creates the box `lower <= s <= upper`, the ground last.
+    pub(crate) fn from_box(lower: &[f64], upper: &[f64]) -> Self {
+        let count = lower.len();
+        let mut bounds = vec![0.0; count * count];
+        for from in 0..count {
+            for to in 0..count {
+                if to != from {
+                    bounds[from * count + to] = upper[to] - lower[from];
+                }
+            }
+        }
+        Self { count, bounds }
+    }
+
+    /// Returns the range for `s_to - s_from`.
+    pub(crate) fn range(&self, from: usize, to: usize) -> Interval {
+        Interval {
+            low: -self.bounds[to * self.count + from],
+            high: self.bounds[from * self.count + to],
+        }
+    }
+
+    /// Returns the part with `s_to - s_from <= most`, with the implied bounds on every other
+    /// difference; `None` where it is empty.
+    pub(crate) fn below(&self, from: usize, to: usize, most: f64) -> Option<Self> {
+        let count = self.count;
+        if most + self.bounds[to * count + from] < 0.0 {
+            return None;
+        }
+        let mut part = self.clone();
+        for i in 0..count {
+            for j in 0..count {
+                if j == i {
+                    continue;
+                }
+                let before = self.bounds[i * count + from];
+                let after = self.bounds[to * count + j];
+                // Rounded outward, so that no point is lost.
+                let implied = before
+                    + most
+                    + after
+                    + 2.0 * f64::EPSILON * (before.abs() + most.abs() + after.abs());
+                let bound = &mut part.bounds[i * count + j];
+                *bound = bound.min(implied);
+            }
+        }
+        part.bounds[from * count + to] = part.bounds[from * count + to].min(most);
+        Some(part)
+    }
+
+    /// Returns the part with `s_to - s_from >= least`; `None` where it is empty.
+    pub(crate) fn above(&self, from: usize, to: usize, least: f64) -> Option<Self> {
+        self.below(to, from, -least)
+    }
+
+    /// Returns the tightest bounds that contain these and `scales`.
+    pub(crate) fn hull(&self, scales: &[f64]) -> Self {
+        let count = self.count;
+        let mut bounds = self.bounds.clone();
+        for from in 0..count {
+            for to in 0..count {
+                let bound = &mut bounds[from * count + to];
+                *bound = bound.max(scales[to] - scales[from]);
+            }
+        }
+        Self { count, bounds }
+    }
+
+    /// Memory for the bounds on `count` scales, in bytes.
+    pub(crate) fn bytes(count: usize) -> usize {
+        count * count * size_of::<f64>()
+    }
+
+    /// Writes each scale's least and greatest value.
+    pub(crate) fn write_box(&self, lower: &mut [f64], upper: &mut [f64]) {
+        let ground = self.count - 1;
+        for scale in 0..ground {
+            // An empty interval can only be rounding: `below` has refused empty parts.
+            let range = self.range(ground, scale).not_empty();
+            lower[scale] = range.low;
+            upper[scale] = range.high;
+        }
+    }
+
+    /// Whether `scales` satisfies the bounds.
+    pub(crate) fn contains(&self, scales: &[f64]) -> bool {
+        let slack = 1e-13;
+        (0..self.count).all(|i| {
+            (0..self.count)
+                .all(|j| scales[j] - scales[i] <= self.bounds[i * self.count + j] + slack)
+        })
+    }
+}

@@ -1,0 +1,132 @@
+//! Convex envelope of an exponential over an interval: a line on the left, the exponential itself
+//! on the right (McCormick 1976).
+
+use super::derivatives::Derivatives;
+use super::exponential::Exponential;
+use super::rounded::Rounded;
+use crate::correction::interval::Interval;
+
+/// Line of a convex envelope: it replaces the exponential below `until`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    until: f64,
+    /// Argument at which the line has `value`.
+    at: f64,
+    value: Rounded,
+    slope: f64,
+}
+
+impl Line {
+    /// Finds the line in an exponential's envelope over an interval: `None` where the exponential
+    /// is convex there, the chord where no line from the left end is a tangent, otherwise the
+    /// tangent.
+    pub(super) fn of_envelope(function: &Exponential, over: Interval) -> Option<Self> {
+        if function.is_zero() || over.low >= function.inflection() {
+            return None;
+        }
+        let start = function.at(over.low, over.low.exp());
+        let end = function.at(over.high, over.high.exp());
+        if over.high <= function.inflection() || overshoot(over.low, &start, over.high, &end) >= 0.0
+        {
+            return Some(Self::chord(over, start.value, end.value));
+        }
+        Some(Self::tangent(function, over, &start, end))
+    }
+
+    /// Finds the tangent through the left end, by Newton's method from a bracket's right side: any
+    /// point there is valid, so a near-tangent is enough.
+    fn tangent(
+        function: &Exponential,
+        over: Interval,
+        start: &Derivatives,
+        end: Derivatives,
+    ) -> Self {
+        let low = over.low;
+        // Overshoots at `left`, but not at `right`.
+        let mut left = function.inflection().max(low);
+        let mut right = over.high;
+        let mut tangent = end;
+        for _ in 0..14 {
+            let excess = overshoot(low, start, right, &tangent);
+            let newton = right - excess / (tangent.curvature * (low - right));
+            let next = if left < newton && newton < right {
+                newton
+            } else {
+                0.5 * (left + right)
+            };
+            let at = function.at(next, next.exp());
+            if overshoot(low, start, next, &at) > 0.0 {
+                left = next;
+            } else {
+                right = next;
+                tangent = at;
+            }
+            if -overshoot(low, start, right, &tangent) <= 1e-9 * start.value.value {
+                break;
+            }
+        }
+        let error =
+            start.value.error + tangent.value.error + 2.0 * tangent.slope.error * (right - low);
+        let value = Rounded {
+            value: tangent.value.value,
+            error: error + 4.0 * f64::EPSILON * start.value.value,
+        };
+        Self {
+            until: right,
+            at: right,
+            value,
+            slope: tangent.slope.value,
+        }
+    }
+
+    /// Returns the line through the values at both ends, lowered by their rounding.
+    fn chord(over: Interval, start: Rounded, end: Rounded) -> Self {
+        let slope = if over.high > over.low {
+            (end.value - start.value) / over.width()
+        } else {
+            0.0
+        };
+        let error =
+            start.error + end.error + 4.0 * f64::EPSILON * (start.value.abs() + end.value.abs());
+        let value = start.value.min(end.value - slope * over.width());
+        Self {
+            until: f64::INFINITY,
+            at: over.low,
+            value: Rounded { value, error },
+            slope,
+        }
+    }
+
+    /// Evaluates the line at `v`.
+    fn evaluate(&self, v: f64) -> Derivatives {
+        let rise = self.slope * (v - self.at);
+        let mut value = self.value;
+        value.add(Rounded {
+            value: rise,
+            error: f64::EPSILON * (2.0 * rise.abs() + (self.slope * v).abs()),
+        });
+        Derivatives {
+            value,
+            slope: Rounded {
+                value: self.slope,
+                error: 0.0,
+            },
+            curvature: 0.0,
+        }
+    }
+}
+
+/// Returns the height at `low` by which the tangent at `v` exceeds the value `start`: it falls as
+/// `v` rises beyond the inflection.
+fn overshoot(low: f64, start: &Derivatives, v: f64, at: &Derivatives) -> f64 {
+    at.value.value + at.slope.value * (low - v) - start.value.value
+}
+
+/// Evaluates the envelope at `v`: the line, if any, up to its end, otherwise the exponential.
+pub(super) fn enveloped(function: &Exponential, line: Option<&Line>, v: f64) -> Derivatives {
+    match line {
+        Some(line) if v < line.until => line.evaluate(v),
+        _ if function.is_zero() => Derivatives::default(),
+        _ => function.at(v, v.exp()),
+    }
+}

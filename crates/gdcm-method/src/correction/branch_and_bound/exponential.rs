@@ -1,0 +1,167 @@
+//! Exponential terms: all entries whose product depends on the same scale difference, as a single
+//! square.
+
+use super::derivatives::{Derivatives, Range};
+use super::rounded::Rounded;
+use crate::correction::interval::Interval;
+
+/// `weight (e^v - centre)^2`: the sum of `w (G - A e^v)^2` over the entries that share the
+/// logarithm `v`, less its minimum.
+///
+/// Concave where `e^v < centre / 2`, convex elsewhere (`(G - K)^2` is convex in the logarithm where
+/// `K >= G / 2`).
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Exponential {
+    pub(super) weight: f64,
+    pub(super) centre: f64,
+    /// Bound on the relative rounding in `weight` and `centre`.
+    rounding: f64,
+}
+
+/// An entry `weight (gain - product e^v)^2`; `error` is the product's relative error.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ProductEntry {
+    weight: f64,
+    gain: f64,
+    product: f64,
+    error: f64,
+}
+
+impl ProductEntry {
+    /// Creates the entry `weight (gain - e^logarithm e^v)^2`.
+    pub(crate) fn new(weight: f64, gain: f64, logarithm: Rounded) -> Self {
+        // The logarithm's error is the product's relative error, and the exponential is accurate to
+        // an epsilon.
+        Self {
+            weight,
+            gain,
+            product: logarithm.value.exp(),
+            error: logarithm.error + f64::EPSILON,
+        }
+    }
+
+    /// Returns the square at `v = 0`.
+    pub(crate) fn square(&self) -> Rounded {
+        let difference = self.gain - self.product;
+        let error = self.error * self.product + f64::EPSILON * difference.abs();
+        Rounded::square(self.weight, difference, error, 0.0)
+    }
+}
+
+/// A sum of [`ProductEntry`] as an exponential and a constant.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct CombinedEntries {
+    pub(crate) exponential: Exponential,
+    /// Minimum of the combined entries.
+    pub(crate) least: Rounded,
+}
+
+impl CombinedEntries {
+    /// Combines the entries that share a logarithm.
+    ///
+    /// The minimum is summed from the residuals, not from `P - Q^2 / R`, which would cancel.
+    pub(crate) fn new(entries: &[ProductEntry]) -> Self {
+        let weight = entries
+            .iter()
+            .map(|entry| entry.weight * entry.product * entry.product)
+            .sum::<f64>();
+        if weight <= 0.0 {
+            return Self::default();
+        }
+        let moment = entries
+            .iter()
+            .map(|entry| entry.weight * entry.gain * entry.product)
+            .sum::<f64>();
+        let centre = moment / weight;
+        let mut least = Rounded::default();
+        let mut worst = 0.0_f64;
+        for entry in entries {
+            let at_minimum = ProductEntry {
+                product: entry.product * centre,
+                error: entry.error + f64::EPSILON,
+                ..*entry
+            };
+            least.add(at_minimum.square());
+            worst = worst.max(entry.error);
+        }
+        // A sum of n positive terms is exact to n roundings of half an epsilon. The centre is a
+        // quotient of two such sums, in which the product appears three times.
+        let rounding = 3.0 * worst + (entries.len() as f64 + 4.0) * f64::EPSILON;
+        let exponential = Exponential {
+            weight,
+            centre,
+            rounding,
+        };
+        Self { exponential, least }
+    }
+}
+
+impl Exponential {
+    /// Whether the function is zero.
+    pub(crate) fn is_zero(&self) -> bool {
+        self.weight == 0.0
+    }
+
+    /// Returns the logarithm below which the function is concave.
+    pub(crate) fn inflection(&self) -> f64 {
+        (0.5 * self.centre).ln()
+    }
+
+    /// Bounds the relative rounding in `weight`, `centre` and `z = e^v` at `v`: the first two, `v`
+    /// as a difference, the exponential and its reciprocal.
+    pub(super) fn relative(&self, v: f64) -> f64 {
+        self.rounding + (v.abs() + 4.0) * f64::EPSILON
+    }
+
+    /// Evaluates the function at `v`, given `z = e^v`.
+    pub(crate) fn at(&self, v: f64, z: f64) -> Derivatives {
+        let away = z - self.centre;
+        let relative = self.relative(v);
+        let error = relative * (z + self.centre);
+        let slope = 2.0 * self.weight * z * away;
+        Derivatives {
+            value: Rounded::square(self.weight, away, error, relative),
+            slope: Rounded {
+                value: slope,
+                error: 2.0 * self.weight * z * error + 2.0 * relative * slope.abs(),
+            },
+            curvature: 2.0 * self.weight * z * (z + away),
+        }
+    }
+
+    /// Bounds the curvature over `v` in an interval: a parabola in `e^v`, lowest at `centre / 4`.
+    /// Only the lower bound is sharp.
+    pub(crate) fn curvatures(&self, v: Interval) -> Range {
+        let least = v.low.exp();
+        let most = v.high.exp();
+        let lowest_at = (0.25 * self.centre).clamp(least, most);
+        let lowest = 2.0 * self.weight * lowest_at * (2.0 * lowest_at - self.centre);
+        let size = 2.0 * self.weight * most * (2.0 * most + self.centre);
+        let margin = 4.0 * self.relative(v.low.abs().max(v.high.abs())) * size;
+        Range {
+            least: lowest - margin,
+            most: size + margin,
+            size,
+        }
+    }
+
+    /// Bounds the slope over `v` in an interval: a parabola in `e^v`, lowest at `centre / 2`.
+    pub(crate) fn slopes(&self, v: Interval) -> Range {
+        let least = v.low.exp();
+        let most = v.high.exp();
+        let size = 2.0 * self.weight * most * (most + self.centre);
+        let margin = 4.0 * self.relative(v.low.abs().max(v.high.abs())) * size;
+        let lowest = self.slope_at((0.5 * self.centre).clamp(least, most));
+        let highest = self.slope_at(least).max(self.slope_at(most));
+        Range {
+            least: lowest - margin,
+            most: highest + margin,
+            size,
+        }
+    }
+
+    /// Returns the slope in `v` at `z = e^v`.
+    fn slope_at(&self, z: f64) -> f64 {
+        2.0 * self.weight * z * (z - self.centre)
+    }
+}

@@ -1,0 +1,119 @@
+//! The open nodes of the search, in limited memory.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use super::difference_bounds::DifferenceBounds;
+
+/// A part of the box that is still to be searched.
+pub(super) struct Node {
+    /// Lower bound on the objective over the part.
+    pub(super) bound: f64,
+    pub(super) region: DifferenceBounds,
+    /// Start of the search for the underestimator's minimum.
+    pub(super) start: Vec<f64>,
+}
+
+impl PartialEq for Node {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Node {}
+
+impl PartialOrd for Node {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Node {
+    /// Reversed order, so that the heap returns the least bound first.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.bound.total_cmp(&self.bound)
+    }
+}
+
+/// The open nodes, least bound first.
+pub(super) struct OpenNodes {
+    heap: BinaryHeap<Node>,
+    /// Greatest node count that fits into the memory.
+    most: usize,
+    /// Least bound over the nodes refused for lack of memory.
+    refused: f64,
+}
+
+impl OpenNodes {
+    /// Creates an empty heap for nodes with `scales` scales each, in at most `bytes` bytes; a
+    /// single node always fits.
+    pub(super) fn new(scales: usize, bytes: usize) -> Self {
+        // Twice the overhead of an allocation, and the heap's growth, which doubles its memory.
+        let node_bytes = DifferenceBounds::bytes(scales)
+            + scales * size_of::<f64>()
+            + 32
+            + 3 * size_of::<Node>();
+        Self {
+            heap: BinaryHeap::new(),
+            most: (bytes / node_bytes).max(1),
+            refused: f64::INFINITY,
+        }
+    }
+
+    /// Adds a node, or only its bound where memory is exhausted.
+    pub(super) fn push(&mut self, node: Node) {
+        if self.heap.len() < self.most {
+            self.heap.push(node);
+        } else {
+            self.refused = self.refused.min(node.bound);
+        }
+    }
+
+    /// Whether a node was refused for lack of memory.
+    pub(super) fn is_full(&self) -> bool {
+        self.refused < f64::INFINITY
+    }
+
+    /// Removes the node with the least bound.
+    pub(super) fn pop(&mut self) -> Option<Node> {
+        self.heap.pop()
+    }
+
+    /// Returns the least bound over all nodes, including refused nodes; infinite where there are
+    /// none.
+    pub(super) fn least_bound(&self) -> f64 {
+        match self.heap.peek() {
+            Some(node) => node.bound.min(self.refused),
+            None => self.refused,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_beyond_the_memory_leave_their_bound_only() {
+        let mut open = OpenNodes::new(20, 40_000);
+        let mut kept = 0;
+        for index in 0..100 {
+            open.push(Node {
+                bound: 100.0 - f64::from(index),
+                region: DifferenceBounds::from_box(&[0.0; 20], &[0.0; 20]),
+                start: vec![0.0; 20],
+            });
+            if open.is_full() {
+                break;
+            }
+            kept += 1;
+        }
+        // 400 differences with 8 bytes each, and the rest of a node.
+        assert!((9..=12).contains(&kept), "{kept}");
+        assert_eq!(open.least_bound(), 100.0 - f64::from(kept));
+        assert_eq!(
+            open.pop().map(|node| node.bound),
+            Some(101.0 - f64::from(kept))
+        );
+    }
+}

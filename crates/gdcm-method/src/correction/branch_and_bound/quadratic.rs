@@ -1,0 +1,136 @@
+//! Quadratic terms: all entries of a least squares objective that share the same scale difference,
+//! as a single square.
+
+use super::rounded::Rounded;
+use super::term::{Function, Term, TermSum};
+
+/// An entry of a least squares objective: `weight (delta - offset - (s_input - s_output))^2`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SquareEntry {
+    /// Index of the output's scale.
+    pub(crate) output: usize,
+    /// Index of the input's scale (the ground, for an output's own departure).
+    pub(crate) input: usize,
+    pub(crate) weight: f64,
+    /// The entry's target.
+    pub(crate) delta: f64,
+    /// The entry's value where both scales are 0.
+    pub(crate) offset: Rounded,
+}
+
+/// The scale difference `s_to - s_from`, `from <= to`, at which an entry meets its target.
+#[derive(Clone, Copy)]
+struct TargetDifference {
+    from: usize,
+    to: usize,
+    difference: Rounded,
+}
+
+impl SquareEntry {
+    /// Orders the two scales by index.
+    fn target_difference(&self) -> TargetDifference {
+        let difference = self.delta - self.offset.value;
+        let error = self.offset.error + f64::EPSILON * (self.delta.abs() + difference.abs());
+        if self.output < self.input {
+            TargetDifference {
+                from: self.output,
+                to: self.input,
+                difference: Rounded {
+                    value: difference,
+                    error,
+                },
+            }
+        } else {
+            TargetDifference {
+                from: self.input,
+                to: self.output,
+                difference: Rounded {
+                    value: -difference,
+                    error,
+                },
+            }
+        }
+    }
+}
+
+/// Sums over the entries that share two scales.
+#[derive(Clone, Copy, Default)]
+struct SquareGroup {
+    count: f64,
+    weight: f64,
+    /// `sum weight difference`.
+    moment: f64,
+    /// Greatest difference in magnitude.
+    size: f64,
+    /// Greatest error in a difference.
+    error: f64,
+}
+
+impl SquareGroup {
+    /// Adds an entry with this weight.
+    fn add(&mut self, weight: f64, difference: Rounded) {
+        self.count += 1.0;
+        self.weight += weight;
+        self.moment += weight * difference.value;
+        self.size = self.size.max(difference.value.abs());
+        self.error = self.error.max(difference.error);
+    }
+
+    /// Returns the scale difference at the group's minimum: a quotient of sums, and no more
+    /// accurate than its worst entry.
+    fn centre(&self) -> Rounded {
+        Rounded {
+            value: self.moment / self.weight,
+            error: self.error + (self.count + 2.0) * f64::EPSILON * self.size,
+        }
+    }
+
+    fn function(&self) -> Function {
+        Function::Quadratic {
+            weight: self.weight,
+            centre: self.centre(),
+            relative: (self.count + 2.0) * f64::EPSILON,
+        }
+    }
+}
+
+/// Combines entries over `scales` scales to one quadratic term for each two scales that share an
+/// entry; the constant is the sum over all residuals at the terms' minima.
+pub(crate) fn quadratic_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
+    let mut groups = vec![SquareGroup::default(); scales * scales];
+    for entry in entries {
+        let target = entry.target_difference();
+        groups[target.from * scales + target.to].add(entry.weight, target.difference);
+    }
+    let mut constant = Rounded::default();
+    for entry in entries {
+        let TargetDifference {
+            from,
+            to,
+            difference,
+        } = entry.target_difference();
+        // Inside a component no scale changes the entry.
+        let centre = if from == to {
+            Rounded::default()
+        } else {
+            groups[from * scales + to].centre()
+        };
+        let left = difference.value - centre.value;
+        let error = difference.error + centre.error + f64::EPSILON * left.abs();
+        constant.add(Rounded::square(entry.weight, left, error, f64::EPSILON));
+    }
+    let mut terms = Vec::new();
+    for from in 0..scales {
+        for to in from + 1..scales {
+            let group = groups[from * scales + to];
+            if group.weight > 0.0 {
+                terms.push(Term {
+                    from,
+                    to,
+                    function: group.function(),
+                });
+            }
+        }
+    }
+    TermSum { terms, constant }
+}

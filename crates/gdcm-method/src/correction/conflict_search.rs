@@ -1,0 +1,356 @@
+//! Search for the conflict behind each constrained entry that stage 1 could not match.
+
+use std::collections::VecDeque;
+
+use gdcm_model::dataset::Pair;
+
+use super::branch_and_bound::effort::{Effort, SearchStopped};
+use super::channels::Channel;
+use super::components::{Constraints, PairNodes, Reached, STRAIN};
+use super::conflict::{Conflict, ConflictKind};
+use super::problem::Problem;
+use super::rounding::three_digits;
+
+/// A missed entry with the smallest conflict that explains it.
+#[derive(Clone, Debug)]
+pub(crate) struct EntryConflict {
+    pub(crate) missed: Pair,
+    pub(crate) conflict: Conflict,
+}
+
+/// Finds the smallest conflict behind each entry that stage 1 missed by more than `tolerance` (in
+/// coordinates), with duplicates.
+///
+/// Stage 1 is a least squares problem, so the misses are a flow: the pull on a channel is passed on
+/// by another missed entry or is stopped by an active bound. Every path in the flow from bound to
+/// bound, and every loop, is an infeasible set, and every missed entry is on such a path or loop
+/// (Farkas). Where a part is infeasible by itself, that part is the conflict, and the entry's own
+/// miss is the compromise with it.
+///
+/// ```text
+/// for each missed entry
+///     1  loop <- shortest way along the flow from the entry's end back to its start
+///     2  path <- shortest way from a lower bound to its start, the entry, shortest way from its end to an upper bound
+///     3  the shorter of both, where each bound counts like an entry
+///     4  its shortest part that the bounds at both ends do not allow, if any
+/// ```
+pub(crate) fn entry_conflicts(
+    problem: &Problem,
+    constraints: &Constraints,
+    reached: &Reached,
+    tolerance: f64,
+    effort: &Effort<'_>,
+) -> Result<Vec<EntryConflict>, SearchStopped> {
+    let Some(point) = &reached.point else {
+        return Ok(Vec::new());
+    };
+    let flow = Flow::new(problem, constraints, reached, point);
+    let mut found = Vec::new();
+    for pull in &flow.pulls {
+        let missing = pull.weight - (point[pull.to] - point[pull.from]);
+        if missing > tolerance {
+            // Three searches over every pull on every channel.
+            effort.spend((flow.pulls.len() * constraints.nodes()) as u64 / 8);
+            effort.check()?;
+            if let Some(conflict) = flow.smallest_through(pull) {
+                found.push(EntryConflict {
+                    missed: pull.pair,
+                    conflict,
+                });
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// A constrained entry that stage 1 missed: it requires `s_to - s_from >= weight`, and gets less.
+#[derive(Clone, Copy)]
+struct Pull {
+    from: usize,
+    to: usize,
+    weight: f64,
+    pair: Pair,
+}
+
+impl Pull {
+    /// Returns the same entry in the opposite direction: the constraint is an equality.
+    fn reversed(&self) -> Self {
+        Self {
+            from: self.to,
+            to: self.from,
+            weight: -self.weight,
+            pair: self.pair,
+        }
+    }
+}
+
+/// Shape of a pull sequence.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Shape {
+    Path,
+    Loop,
+}
+
+/// Walking direction relative to the pulls.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Direction {
+    Along,
+    Against,
+}
+
+/// The missed entries as a directed graph.
+struct Flow<'a> {
+    problem: &'a Problem,
+    constraints: &'a Constraints,
+    pulls: Vec<Pull>,
+    /// For each node, whether its lower bound stops the pulls.
+    at_lower: Vec<bool>,
+    /// For each node, whether its upper bound stops the pulls.
+    at_upper: Vec<bool>,
+}
+
+impl<'a> Flow<'a> {
+    /// Collects the entries missed at the `point` from stage 1.
+    fn new(
+        problem: &'a Problem,
+        constraints: &'a Constraints,
+        reached: &Reached,
+        point: &[f64],
+    ) -> Self {
+        let mut pulls = Vec::new();
+        // Sum of the pulls on each node.
+        let mut net = vec![0.0; constraints.nodes()];
+        for (asked, target) in constraints.entries.iter().zip(&reached.targets) {
+            let missing = asked.sum - target.sum;
+            // A smaller miss is rounding in stage 1.
+            if missing.abs() <= 1e-11 * (1.0 + asked.sum.abs()) {
+                continue;
+            }
+            let PairNodes { input, output } = constraints.nodes_of(asked.pair);
+            let upwards = Pull {
+                from: output,
+                to: input,
+                weight: asked.sum,
+                pair: asked.pair,
+            };
+            let pull = if missing > 0.0 {
+                upwards
+            } else {
+                upwards.reversed()
+            };
+            net[pull.from] -= missing.abs();
+            net[pull.to] += missing.abs();
+            pulls.push(pull);
+        }
+        let mut at_lower = Vec::new();
+        let mut at_upper = Vec::new();
+        for (node, &net) in net.iter().enumerate() {
+            let range = constraints.node_range(node);
+            at_lower.push(point[node] <= range.low && net < 0.0);
+            at_upper.push(point[node] >= range.high && net > 0.0);
+        }
+        Self {
+            problem,
+            constraints,
+            pulls,
+            at_lower,
+            at_upper,
+        }
+    }
+
+    /// Returns the smaller conflict: the shortest loop through `pull`, or the shortest path through
+    /// it from bound to bound; a bound counts like an entry.
+    fn smallest_through(&self, pull: &Pull) -> Option<Conflict> {
+        let around = self.shortest_walk(pull.to, Direction::Along, |node| node == pull.from);
+        let path = self.path_through(pull);
+        match (around, path) {
+            (Some(around), Some(path)) if around.len() < path.len() + 2 => {
+                Some(self.loop_conflict(pull, around))
+            }
+            (_, Some(path)) => Some(
+                self.smallest_part(&path, Shape::Path)
+                    .unwrap_or_else(|| self.path_conflict(&path)),
+            ),
+            (Some(around), None) => Some(self.loop_conflict(pull, around)),
+            (None, None) => None,
+        }
+    }
+
+    /// Returns the shortest path from a lower bound through `pull` to an upper bound.
+    fn path_through(&self, pull: &Pull) -> Option<Vec<Pull>> {
+        let onward = self.shortest_walk(pull.to, Direction::Along, |node| self.at_upper[node])?;
+        let mut path =
+            self.shortest_walk(pull.from, Direction::Against, |node| self.at_lower[node])?;
+        path.reverse();
+        path.push(*pull);
+        path.extend(onward);
+        Some(path)
+    }
+
+    /// Returns the conflict in the loop that `pull` and the way back `around` it form.
+    fn loop_conflict(&self, pull: &Pull, around: Vec<Pull>) -> Conflict {
+        let mut pulls = vec![*pull];
+        pulls.extend(around);
+        if let Some(conflict) = self.smallest_part(&pulls, Shape::Loop) {
+            return conflict;
+        }
+        let sum: f64 = pulls.iter().map(|pull| pull.weight).sum();
+        let mismatch = self
+            .problem
+            .quantity
+            .difference(sum, self.problem.coordinate());
+        let entries = pulls.iter().map(|pull| pull.pair).collect();
+        self.conflict(entries, ConflictKind::Loop { mismatch })
+    }
+
+    /// Returns the conflict in the shortest proper run of pulls that the bounds at its two ends do
+    /// not allow. In a loop, runs continue past the last pull into the first again.
+    fn smallest_part(&self, pulls: &[Pull], shape: Shape) -> Option<Conflict> {
+        let count = pulls.len();
+        for length in 1..count {
+            let starts = match shape {
+                Shape::Path => count - length + 1,
+                Shape::Loop => count,
+            };
+            for start in 0..starts {
+                let run: Vec<Pull> = (start..start + length)
+                    .map(|index| pulls[index % count])
+                    .collect();
+                if self.is_impossible(&run) {
+                    return Some(self.path_conflict(&run));
+                }
+                let back: Vec<Pull> = run.iter().rev().map(Pull::reversed).collect();
+                if self.is_impossible(&back) {
+                    return Some(self.path_conflict(&back));
+                }
+            }
+        }
+        None
+    }
+
+    /// Whether the run needs more than the span from its first node's least value to its last
+    /// node's greatest value.
+    fn is_impossible(&self, run: &[Pull]) -> bool {
+        let (Some(first), Some(last)) = (run.first(), run.last()) else {
+            return false;
+        };
+        let needed: f64 = run.iter().map(|pull| pull.weight).sum();
+        let most = self.constraints.node_range(last.to).high;
+        let least = self.constraints.node_range(first.from).low;
+        needed - (most - least) > STRAIN
+    }
+
+    /// Returns the conflict in a path from a node at its least value to a node at its greatest.
+    fn path_conflict(&self, path: &[Pull]) -> Conflict {
+        let needed: f64 = path.iter().map(|pull| pull.weight).sum();
+        let start = path.first().map_or(0, |pull| pull.from);
+        let end = path.last().map_or(0, |pull| pull.to);
+        let coordinate = self.problem.coordinate();
+        let start = self.constraints.channel(start);
+        let end = self.constraints.channel(end);
+        // An output's node is minus its coordinate: at its least value the output is at its upper
+        // bound.
+        let kind = match (start, end) {
+            (Channel::Output(_), Channel::Input(_)) => ConflictKind::AboveUpper {
+                channels: (end, start),
+                asked: coordinate.value(needed),
+                upper: three_digits(coordinate.value(0.5 * needed), f64::ceil),
+            },
+            (Channel::Input(_), Channel::Output(_)) => ConflictKind::BelowLower {
+                channels: (start, end),
+                asked: coordinate.value(-needed),
+                lower: self.sufficient_lower(coordinate.value(-0.5 * needed)),
+            },
+            (Channel::Input(_), Channel::Input(_)) => {
+                self.too_far_apart(end, start, coordinate.value(needed))
+            }
+            (Channel::Output(_), Channel::Output(_)) => {
+                self.too_far_apart(start, end, coordinate.value(needed))
+            }
+        };
+        let mut entries: Vec<Pair> = path.iter().map(|pull| pull.pair).collect();
+        entries.sort();
+        self.conflict(entries, kind)
+    }
+
+    /// Returns the conflict between two channels on the same side whose ratio or difference is
+    /// `asked`.
+    fn too_far_apart(&self, greater: Channel, lesser: Channel, asked: f64) -> ConflictKind {
+        let quantity = self.problem.quantity;
+        let bounds = self.problem.bounds;
+        ConflictKind::TooFarApart {
+            greater,
+            lesser,
+            asked,
+            upper: three_digits(quantity.net(bounds.lower, asked), f64::ceil),
+            lower: self.sufficient_lower(quantity.without(bounds.upper, asked)),
+        }
+    }
+
+    /// Rounds a lower bound down to three digits; `None` where the lower bound is not adjustable.
+    fn sufficient_lower(&self, lower: f64) -> Option<f64> {
+        if self.problem.quantity.has_lower_bound() {
+            Some(three_digits(lower, f64::floor))
+        } else {
+            None
+        }
+    }
+
+    fn conflict(&self, entries: Vec<Pair>, kind: ConflictKind) -> Conflict {
+        Conflict {
+            quantity: self.problem.quantity,
+            entries,
+            bounds: self.problem.bounds,
+            kind,
+        }
+    }
+
+    /// Finds the shortest walk from `start` to a node that satisfies `is_end`, by breadth-first
+    /// search; the pulls are in the order walked.
+    fn shortest_walk(
+        &self,
+        start: usize,
+        direction: Direction,
+        is_end: impl Fn(usize) -> bool,
+    ) -> Option<Vec<Pull>> {
+        let mut came_by: Vec<Option<Pull>> = vec![None; self.constraints.nodes()];
+        let mut queue = VecDeque::from([start]);
+        while let Some(node) = queue.pop_front() {
+            if is_end(node) {
+                return walk_back(&came_by, start, node, direction);
+            }
+            for pull in &self.pulls {
+                let (leaves, enters) = match direction {
+                    Direction::Along => (pull.from, pull.to),
+                    Direction::Against => (pull.to, pull.from),
+                };
+                if leaves == node && enters != start && came_by[enters].is_none() {
+                    came_by[enters] = Some(*pull);
+                    queue.push_back(enters);
+                }
+            }
+        }
+        None
+    }
+}
+
+/// Collects the pulls from `start` to `end`, given the pull by which each node was reached.
+fn walk_back(
+    came_by: &[Option<Pull>],
+    start: usize,
+    end: usize,
+    direction: Direction,
+) -> Option<Vec<Pull>> {
+    let mut walked = Vec::new();
+    let mut node = end;
+    while node != start {
+        let pull = came_by[node]?;
+        node = match direction {
+            Direction::Along => pull.from,
+            Direction::Against => pull.to,
+        };
+        walked.push(pull);
+    }
+    walked.reverse();
+    Some(walked)
+}

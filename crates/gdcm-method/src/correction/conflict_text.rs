@@ -1,0 +1,260 @@
+//! Conflicts and remedies in words. All sentences about them are here; the facts are
+//! [`ConflictKind`] and [`Remedy`].
+
+use gdcm_model::units::{s_to_ms, telling, told_apart};
+
+use super::channels::{Channel, pair_name, pair_names};
+use super::conflict::{Conflict, ConflictKind};
+use super::quantity::Quantity;
+use super::remedy::Remedy;
+
+impl Conflict {
+    /// Describes the conflict and its possible resolutions, with these channel names.
+    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
+        ConflictText {
+            conflict: self,
+            inputs,
+            outputs,
+        }
+        .sentence()
+    }
+
+    /// Describes a loop that agrees within the tolerance; empty for any other conflict.
+    pub fn agreement_words(&self, inputs: &[String], outputs: &[String]) -> String {
+        let ConflictKind::Loop { mismatch } = self.kind else {
+            return String::new();
+        };
+        format!(
+            "{} form a loop: their {} agree to {}, and count as agreeing; each is held at its nearest consistent value.",
+            pair_names(&self.entries, inputs, outputs),
+            loop_values(self.quantity),
+            mismatch_size(self.quantity, mismatch)
+        )
+    }
+}
+
+impl Remedy {
+    /// Describes the remedies; empty where there is none.
+    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
+        let unit = if self.quantity.is_gain() { "" } else { " s" };
+        let mut ways = Vec::new();
+        if let Some(upper) = self.upper {
+            ways.push(format!("an upper bound of {upper}{unit}"));
+        }
+        if let Some(lower) = self.lower {
+            ways.push(format!("a lower bound of {lower}{unit}"));
+        }
+        for &pair in &self.free {
+            ways.push(format!("freeing {}", pair_name(pair, inputs, outputs)));
+        }
+        if ways.is_empty() {
+            String::new()
+        } else {
+            format!("Any one of these lets all be held: {}.", ways.join("; "))
+        }
+    }
+}
+
+/// Names the values compared around a loop.
+fn loop_values(quantity: Quantity) -> &'static str {
+    if quantity.is_gain() {
+        "ratios"
+    } else {
+        "delays"
+    }
+}
+
+/// Formats a loop's mismatch, given in dB or in seconds.
+fn mismatch_size(quantity: Quantity, mismatch: f64) -> String {
+    if quantity.is_gain() {
+        format!("{} dB", telling(mismatch.abs(), 1))
+    } else {
+        format!("{} ms", milliseconds(mismatch.abs()))
+    }
+}
+
+/// Formats a time \[s\] in milliseconds.
+fn milliseconds(time_s: f64) -> String {
+    telling(s_to_ms(time_s), 1)
+}
+
+/// Formats a limit and an asked value \[s\] in milliseconds, with enough digits to differ.
+fn limit_and_asked_ms(limit_s: f64, asked_s: f64) -> (String, String) {
+    told_apart(s_to_ms(limit_s), s_to_ms(asked_s), 1)
+}
+
+/// A conflict with the channel names.
+struct ConflictText<'a> {
+    conflict: &'a Conflict,
+    inputs: &'a [String],
+    outputs: &'a [String],
+}
+
+impl ConflictText<'_> {
+    /// Remedies of too little lead besides another bound.
+    const MORE_LEAD: &'static str = "a larger R_max or a smaller n gives more";
+
+    /// Composes "entries cannot be held: limit; remedies".
+    fn sentence(&self) -> String {
+        let conflict = self.conflict;
+        let entries = pair_names(&conflict.entries, self.inputs, self.outputs);
+        let release = if conflict.entries.len() == 1 {
+            "release it"
+        } else {
+            "release one of them"
+        };
+        let cannot = match conflict.entries.len() {
+            1 => "cannot be held",
+            2 => "cannot both be held",
+            _ => "cannot all be held",
+        };
+        let limit = match conflict.kind {
+            ConflictKind::Loop { mismatch } => {
+                return format!(
+                    "{entries} form a loop: their {} disagree by {}; {release}.",
+                    loop_values(conflict.quantity),
+                    mismatch_size(conflict.quantity, mismatch)
+                );
+            }
+            ConflictKind::Unclear => return format!("{entries} {cannot}; {release}."),
+            ConflictKind::BelowLower { asked, .. } if conflict.is_lone_lead() => {
+                return format!(
+                    "{entries} needs {} ms of lead: a delay cannot give it; {release}.",
+                    milliseconds(-asked)
+                );
+            }
+            ConflictKind::AboveUpper {
+                channels,
+                asked,
+                upper,
+            } => self.above_upper(channels, asked, upper),
+            ConflictKind::BelowLower {
+                channels,
+                asked,
+                lower,
+            } => self.below_lower(channels, asked, lower),
+            ConflictKind::TooFarApart {
+                greater,
+                lesser,
+                asked,
+                upper,
+                lower,
+            } if conflict.quantity.is_gain() => {
+                let lower = lower.unwrap_or(conflict.bounds.lower);
+                let limit = self.ratio_too_great(greater, lesser, asked);
+                format!(
+                    "{limit}; set the upper bound to {upper}, or the lower bound to {lower}, or"
+                )
+            }
+            ConflictKind::TooFarApart {
+                greater,
+                lesser,
+                asked,
+                upper,
+                ..
+            } => self.difference_too_great(greater, lesser, asked, upper),
+        };
+        format!("{entries} {cannot}: {limit} {release}.")
+    }
+
+    /// Describes a net value above the upper bound, doubled or squared.
+    fn above_upper(&self, channels: (Channel, Channel), asked: f64, upper: f64) -> String {
+        let first = self.symbol(channels.0);
+        let second = self.symbol(channels.1);
+        let bound = self.conflict.bounds.upper;
+        if self.conflict.quantity.is_gain() {
+            let (most, asked) = told_apart(bound.powi(2), asked, 3);
+            return format!(
+                "with gains <= {bound:.3} the product {first} {second} is at most {most}, not {asked}; set the upper bound to \
+                 {upper} or"
+            );
+        }
+        let (most, asked) = limit_and_asked_ms(2.0 * bound, asked);
+        let kind = if self.conflict.quantity == Quantity::SignedDelay {
+            " of delay"
+        } else {
+            ""
+        };
+        format!(
+            "{first} and {second} give at most {most} ms{kind} together, not {asked}; set the upper bound to {upper} s or"
+        )
+    }
+
+    /// Describes a net value below the lower bound, doubled or squared.
+    fn below_lower(&self, channels: (Channel, Channel), asked: f64, lower: Option<f64>) -> String {
+        let first = self.symbol(channels.0);
+        let second = self.symbol(channels.1);
+        let bound = self.conflict.bounds.lower;
+        match self.conflict.quantity {
+            Quantity::Gain(_) => {
+                let (least, asked) = told_apart(bound.powi(2), asked, 3);
+                let lower = lower.unwrap_or(bound);
+                format!(
+                    "with gains >= {bound:.3} the product {first} {second} is at least {least}, not {asked}; set the lower bound \
+                     to {lower} or"
+                )
+            }
+            Quantity::Delay => format!(
+                "{first} and {second} would have to give {} ms of lead together, and a delay cannot;",
+                milliseconds(-asked)
+            ),
+            Quantity::SignedDelay => {
+                let (most, asked) = limit_and_asked_ms(-2.0 * bound, -asked);
+                format!(
+                    "R_max lets {first} and {second} give {most} ms of lead together, not {asked}: {}, or",
+                    Self::MORE_LEAD
+                )
+            }
+        }
+    }
+
+    /// Describes a gain ratio above the ratio between the bounds.
+    fn ratio_too_great(&self, greater: Channel, lesser: Channel, asked: f64) -> String {
+        let greater = self.symbol(greater);
+        let lesser = self.symbol(lesser);
+        let low = self.conflict.bounds.lower;
+        let high = self.conflict.bounds.upper;
+        let (most, asked) = told_apart(high / low, asked, 3);
+        format!(
+            "with {greater} <= {high:.3} and {lesser} >= {low:.3} their ratio is at most {most}, not {asked}"
+        )
+    }
+
+    /// Describes a delay difference above the difference between the bounds.
+    fn difference_too_great(
+        &self,
+        greater: Channel,
+        lesser: Channel,
+        asked: f64,
+        upper: f64,
+    ) -> String {
+        let greater = self.symbol(greater);
+        let lesser = self.symbol(lesser);
+        let low = self.conflict.bounds.lower;
+        let high = self.conflict.bounds.upper;
+        if self.conflict.quantity == Quantity::SignedDelay {
+            let (most, asked) = limit_and_asked_ms(high - low, asked);
+            return format!(
+                "{greater} cannot be {asked} ms above {lesser}: with at most {} ms of lead and {} ms of delay a channel the \
+                 difference is at most {most} ms; set the upper bound to {upper} s; {}, or",
+                milliseconds(-low),
+                milliseconds(high),
+                Self::MORE_LEAD
+            );
+        }
+        let (most, asked) = limit_and_asked_ms(high, asked);
+        format!(
+            "{greater} cannot be {asked} ms above {lesser} with delays <= {most} ms; set the upper bound to {upper} s or"
+        )
+    }
+
+    /// Symbol of a channel's value: "k_LON", "tau_P".
+    fn symbol(&self, channel: Channel) -> String {
+        let symbol = if self.conflict.quantity.is_gain() {
+            "k"
+        } else {
+            "tau"
+        };
+        format!("{symbol}_{}", channel.name(self.inputs, self.outputs))
+    }
+}

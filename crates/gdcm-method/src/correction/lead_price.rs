@@ -1,0 +1,165 @@
+//! Price of lead filters: the frequency above which a corrected model is not valid, and the gain
+//! that the filters add above it (M15.6).
+
+use gdcm_model::dataset::Pair;
+use gdcm_model::units::{number, signed};
+
+use super::channels::Channels;
+use super::leads::ChannelLeads;
+
+/// Multiple of the band's top at which the gain above the band is reported (M15.6).
+pub const ABOVE_BAND: f64 = 10.0;
+/// Gain that counts as zero when rounded to 0.1 dB.
+const NOTHING_DB: f64 = 0.05;
+
+/// Validity limit for a model with leads, and the gain that the filters add at ten times that
+/// frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeadPrice {
+    /// Band top \[rad/s\]: above it the corrected model is not valid.
+    pub limit_rad_s: f64,
+    /// `20 log10 |L|` at [`LeadPrice::above_rad_s`] for each channel \[dB\]; 0 for a channel
+    /// without a filter.
+    pub gains_db: Channels<f64>,
+}
+
+impl LeadPrice {
+    /// Computes the price of these leads; `None` where no channel has a filter.
+    pub fn of(leads: &ChannelLeads) -> Option<Self> {
+        let filters = leads.filters();
+        if filters.iter().all(|(_, filter)| filter.is_none()) {
+            return None;
+        }
+        let limit_rad_s = leads.design.band_top_rad_s();
+        let gains_db = filters.map(|_, filter| match filter {
+            Some(filter) => filter.magnitude_db(ABOVE_BAND * limit_rad_s),
+            None => 0.0,
+        });
+        Some(Self {
+            limit_rad_s,
+            gains_db,
+        })
+    }
+
+    /// Returns the greater of both gains for each channel, as needed by a schedule whose leads
+    /// follow the airspeed.
+    #[must_use]
+    pub fn or_more(self, other: &Self) -> Self {
+        let gains_db = self
+            .gains_db
+            .map(|channel, gain_db| gain_db.max(other.gains_db[channel]));
+        Self { gains_db, ..self }
+    }
+
+    /// Returns ten times the band's top \[rad/s\].
+    pub fn above_rad_s(&self) -> f64 {
+        ABOVE_BAND * self.limit_rad_s
+    }
+
+    /// Returns the gain \[dB\] that the filters of a response's two channels add at
+    /// [`LeadPrice::above_rad_s`].
+    pub fn of_pair_db(&self, pair: Pair) -> f64 {
+        self.gains_db.outputs[pair.output] + self.gains_db.inputs[pair.input]
+    }
+
+    /// Describes the limit: "not valid above 12 rad/s".
+    pub fn limit_words(&self) -> String {
+        format!("not valid above {} rad/s", number(self.limit_rad_s))
+    }
+
+    /// Describes the limit and the gain on each channel with a filter: "not valid above 12 rad/s:
+    /// at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on Q; a response gets the gains of its
+    /// input and its output" (the sum in dB).
+    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
+        let mut gains = Vec::new();
+        for (channel, &gain_db) in self.gains_db.iter() {
+            if gain_db > NOTHING_DB {
+                let name = channel.name(inputs, outputs);
+                gains.push(format!("{} dB on {name}", signed(gain_db, 1)));
+            }
+        }
+        if gains.is_empty() {
+            return self.limit_words();
+        }
+        format!(
+            "{}: at {} rad/s the leads add {}; a response gets the gains of its input and its output",
+            self.limit_words(),
+            number(self.above_rad_s()),
+            gains.join(", ")
+        )
+    }
+
+    /// Describes a response's added gain: "+18.9 dB at 120 rad/s"; `None` where its channels add
+    /// nothing.
+    pub fn pair_words(&self, pair: Pair) -> Option<String> {
+        let gain_db = self.of_pair_db(pair);
+        if gain_db > NOTHING_DB {
+            let above_rad_s = number(self.above_rad_s());
+            Some(format!("{} dB at {above_rad_s} rad/s", signed(gain_db, 1)))
+        } else {
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::super::channels::Channel;
+    use super::super::leads::{LeadDesign, LeadSettings};
+    use super::*;
+
+    fn leads(input_s: f64, output_s: f64) -> ChannelLeads {
+        let design = LeadDesign::new(
+            LeadSettings::default(),
+            (1..=120).map(|tenth| 0.1 * f64::from(tenth)).collect(),
+        );
+        ChannelLeads::new(
+            Arc::new(design),
+            Channels {
+                inputs: vec![input_s],
+                outputs: vec![output_s],
+            },
+        )
+    }
+
+    #[test]
+    fn a_response_pays_for_the_filters_of_both_its_channels_at_ten_times_the_band() {
+        let leads = leads(-0.04, -0.02);
+        let price = LeadPrice::of(&leads).expect("both have a filter");
+        let pair = Pair {
+            output: 0,
+            input: 0,
+        };
+        let [input, output] = [Channel::Input(0), Channel::Output(0)]
+            .map(|channel| leads.filters()[channel].expect("a lead").at(120.0).norm());
+        let expected = 20.0 * (input * output).log10();
+        // Rounding in a response against the closed form for its magnitude.
+        assert!(
+            (price.of_pair_db(pair) - expected).abs() < 1e-9,
+            "{price:?}"
+        );
+        assert_eq!(price.limit_rad_s, 12.0);
+        assert_eq!(price.above_rad_s(), 120.0);
+        let words = price.words(&["LON".to_owned()], &["Q".to_owned()]);
+        assert!(
+            words.starts_with("not valid above 12 rad/s: at 120 rad/s the leads add +"),
+            "{words}"
+        );
+        assert!(
+            words.contains(" dB on LON, +") && words.contains(" dB on Q;"),
+            "{words}"
+        );
+    }
+
+    #[test]
+    fn delays_cost_nothing_and_a_schedule_costs_the_most_of_its_airspeeds() {
+        assert_eq!(LeadPrice::of(&leads(0.01, 0.0)), None);
+        let input_leads = LeadPrice::of(&leads(-0.04, -0.01)).expect("leads");
+        let output_leads = LeadPrice::of(&leads(-0.02, -0.03)).expect("leads");
+        let most = input_leads.clone().or_more(&output_leads);
+        assert_eq!(most.gains_db.inputs[0], input_leads.gains_db.inputs[0]);
+        assert_eq!(most.gains_db.outputs[0], output_leads.gains_db.outputs[0]);
+    }
+}

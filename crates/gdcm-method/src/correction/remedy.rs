@@ -1,0 +1,159 @@
+//! Remedies: single changes that make all constrained entries feasible.
+
+use std::collections::BTreeSet;
+
+use gdcm_model::dataset::Pair;
+
+use super::branch_and_bound::effort::{Effort, SearchStopped};
+use super::components::{Components, Constraints, Placement, STRAIN};
+use super::conflict::Conflict;
+use super::interval::Interval;
+use super::problem::Problem;
+use super::quantity::Quantity;
+use super::rounding::three_digits;
+
+/// Single changes that each make all constrained entries feasible at their delta; empty where
+/// several changes are needed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Remedy {
+    /// Constrained quantity: gains, or delays in seconds.
+    pub quantity: Quantity,
+    /// Least sufficient upper bound with the present lower bound, rounded up to three digits.
+    pub upper: Option<f64>,
+    /// Greatest sufficient lower bound with the present upper bound, rounded down to three digits;
+    /// `None` for delays.
+    pub lower: Option<f64>,
+    /// Each constrained entry whose release alone suffices.
+    pub free: Vec<Pair>,
+}
+
+impl Remedy {
+    /// Finds the remedy for the `constraints` in `problem` with these conflicts; `None` where there
+    /// is no conflict.
+    pub(crate) fn new(
+        problem: &Problem,
+        constraints: &Constraints,
+        conflicts: &[Conflict],
+        effort: &Effort<'_>,
+    ) -> Result<Option<Self>, SearchStopped> {
+        if conflicts.is_empty() {
+            return Ok(None);
+        }
+        let free = sufficient_releases(constraints, conflicts, effort)?;
+        let coordinate = problem.coordinate();
+        let sufficient = SufficientRange::new(constraints);
+        // A bound that is not the obstacle stays unchanged.
+        let upper = sufficient
+            .high
+            .map(|high| three_digits(coordinate.value(high), f64::ceil).max(problem.bounds.upper));
+        let lower = if problem.quantity.has_lower_bound() {
+            sufficient.low.map(|low| {
+                three_digits(coordinate.value(low), f64::floor).min(problem.bounds.lower)
+            })
+        } else {
+            None
+        };
+        Ok(Some(Self {
+            quantity: problem.quantity,
+            upper,
+            lower,
+            free,
+        }))
+    }
+}
+
+/// Finds the conflicting entries whose release alone makes all others feasible.
+fn sufficient_releases(
+    constraints: &Constraints,
+    conflicts: &[Conflict],
+    effort: &Effort<'_>,
+) -> Result<Vec<Pair>, SearchStopped> {
+    let suspects: BTreeSet<Pair> = conflicts
+        .iter()
+        .flat_map(|conflict| conflict.entries.iter().copied())
+        .collect();
+    let mut sufficient = Vec::new();
+    for pair in suspects {
+        // Each channel is placed by a walk along the constrained entries.
+        effort.spend((constraints.nodes() * constraints.entries.len()) as u64 / 8);
+        effort.check()?;
+        let mut others = constraints.entries.clone();
+        others.retain(|entry| entry.pair != pair);
+        if Components::new(&constraints.with_entries(others)).are_possible() {
+            sufficient.push(pair);
+        }
+    }
+    Ok(sufficient)
+}
+
+/// Sufficient ends for the channels' range, each with the other end unchanged, in coordinates.
+#[derive(Default)]
+struct SufficientRange {
+    /// Greatest sufficient lower end.
+    low: Option<f64>,
+    /// Least sufficient upper end.
+    high: Option<f64>,
+}
+
+impl SufficientRange {
+    /// Finds both ends; none where a loop does not close.
+    fn new(constraints: &Constraints) -> Self {
+        let components = Components::new(constraints);
+        for entry in &constraints.entries {
+            let mismatch = (components.sum(entry.pair) - entry.sum).abs();
+            if mismatch > STRAIN || mismatch.is_nan() {
+                return Self::default();
+            }
+        }
+        let nodes = components.nodes();
+        // Greatest width that a component needs, and the sums that its channel pairs need at each
+        // end.
+        let mut widest = 0.0_f64;
+        let mut lowest = f64::INFINITY;
+        let mut highest = f64::NEG_INFINITY;
+        for component in 0..components.count() {
+            // A component without inputs or outputs is a single channel, which is always feasible.
+            let Some(inputs) = offset_range(nodes.inputs, component) else {
+                continue;
+            };
+            let Some(outputs) = offset_range(nodes.outputs, component) else {
+                continue;
+            };
+            widest = widest.max(inputs.width().max(outputs.width()));
+            lowest = lowest.min(0.5 * (inputs.low - outputs.high));
+            highest = highest.max(0.5 * (inputs.high - outputs.low));
+        }
+        let Interval { low, high } = constraints.range;
+        let rounding = 1e-12 * (1.0 + low.abs() + high.abs());
+        let mut sufficient = Self::default();
+        if highest <= high + rounding {
+            sufficient.low = Some(low.min(high - widest).min(lowest));
+        }
+        if lowest >= low - rounding {
+            sufficient.high = Some(high.max(low + widest).max(highest));
+        }
+        sufficient
+    }
+}
+
+/// Returns the offset range over a component's nodes; `None` where it has no such nodes.
+fn offset_range(nodes: &[Placement], component: usize) -> Option<Interval> {
+    let mut range: Option<Interval> = None;
+    for node in nodes {
+        if node.component != component {
+            continue;
+        }
+        let offset = node.offset.value;
+        range = Some(match range {
+            None => Interval {
+                low: offset,
+                high: offset,
+            },
+            Some(range) => Interval {
+                low: range.low.min(offset),
+                high: range.high.max(offset),
+            },
+        });
+    }
+    range
+}

@@ -1,0 +1,159 @@
+//! A problem's objective as a function of the scales that its constrained entries leave free (M8,
+//! structure).
+
+use super::branch_and_bound::exponential::{CombinedEntries, ProductEntry};
+use super::branch_and_bound::objective::Objective;
+use super::branch_and_bound::quadratic::{SquareEntry, quadratic_terms};
+use super::branch_and_bound::rounded::Rounded;
+use super::branch_and_bound::term::{Function, Term, TermSum};
+use super::components::Components;
+use super::problem::{Entry, Problem};
+use super::quantity::{Coordinate, GainObjective, Quantity, SQUARED_DECIBEL};
+
+/// Builds the objective for `problem` over the scales of `components`, in the problem's coordinate.
+pub(crate) fn scaled_objective(problem: &Problem, components: &Components) -> Objective {
+    let mut entries = fit_entries(problem, components);
+    if problem.alpha > 0.0 {
+        entries.extend(departures(problem, components));
+    }
+    let scales = components.count() + 1;
+    let coordinate = problem.coordinate();
+    let TermSum { terms, constant } = match problem.quantity {
+        Quantity::Gain(GainObjective::Ratio) => ratio_terms(&entries, scales),
+        Quantity::Gain(GainObjective::Decibel) => quadratic_terms(
+            &in_coordinate(&entries, coordinate, SQUARED_DECIBEL),
+            scales,
+        ),
+        Quantity::Delay | Quantity::SignedDelay => {
+            quadratic_terms(&in_coordinate(&entries, coordinate, 1.0), scales)
+        }
+    };
+    let mut lower = components.lower.clone();
+    let mut upper = components.upper.clone();
+    // The ground.
+    lower.push(0.0);
+    upper.push(0.0);
+    Objective {
+        lower,
+        upper,
+        terms,
+        constant,
+    }
+}
+
+/// Lists the fitted entries.
+fn fit_entries(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
+    let nodes = components.nodes();
+    let mut entries = Vec::new();
+    for Entry { pair, delta } in problem.fit_entries() {
+        let output = nodes.outputs[pair.output];
+        let input = nodes.inputs[pair.input];
+        let mut offset = -output.offset;
+        offset.add(input.offset);
+        entries.push(SquareEntry {
+            output: output.component,
+            input: input.component,
+            weight: 1.0,
+            delta,
+            offset,
+        });
+    }
+    entries
+}
+
+/// Lists the channels' regularised departures from their neutral value: each is an entry with the
+/// ground as its other scale.
+fn departures(problem: &Problem, components: &Components) -> Vec<SquareEntry> {
+    let ground = components.count();
+    let delta = problem.quantity.neutral();
+    let nodes = components.nodes();
+    let mut entries = Vec::new();
+    for output in nodes.outputs {
+        entries.push(SquareEntry {
+            output: output.component,
+            input: ground,
+            weight: problem.alpha,
+            delta,
+            offset: -output.offset,
+        });
+    }
+    if problem.quantity.regularises_inputs() {
+        for input in nodes.inputs {
+            entries.push(SquareEntry {
+                output: ground,
+                input: input.component,
+                weight: problem.alpha,
+                delta,
+                offset: input.offset,
+            });
+        }
+    }
+    entries
+}
+
+/// Converts the targets to coordinates and multiplies the weights by `factor`.
+fn in_coordinate(entries: &[SquareEntry], coordinate: Coordinate, factor: f64) -> Vec<SquareEntry> {
+    entries
+        .iter()
+        .map(|entry| SquareEntry {
+            weight: factor * entry.weight,
+            delta: coordinate.coordinate(entry.delta),
+            ..*entry
+        })
+        .collect()
+}
+
+/// Combines entries compared as ratios to one term for each two scales that share an entry:
+/// `forward` contains the entries whose input has the greater index.
+fn ratio_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
+    let mut groups: Vec<Vec<ProductEntry>> = vec![Vec::new(); scales * scales];
+    let mut constant = Rounded::default();
+    for entry in entries {
+        let product = ProductEntry::new(entry.weight, entry.delta, entry.offset);
+        if entry.output == entry.input {
+            constant.add(product.square());
+        } else {
+            groups[entry.output * scales + entry.input].push(product);
+        }
+    }
+    let mut terms = Vec::new();
+    for from in 0..scales {
+        for to in from + 1..scales {
+            let forward = CombinedEntries::new(&groups[from * scales + to]);
+            let backward = CombinedEntries::new(&groups[to * scales + from]);
+            constant.add(forward.least);
+            constant.add(backward.least);
+            if !(forward.exponential.is_zero() && backward.exponential.is_zero()) {
+                terms.push(Term {
+                    from,
+                    to,
+                    function: Function::exponential(forward.exponential, backward.exponential),
+                });
+            }
+        }
+    }
+    TermSum { terms, constant }
+}
+
+/// Returns the objective below which rounding decides, not the search, in the problem's coordinate.
+///
+/// 1e-9 times the objective without any correction (rounding in a sum of squares grows with the
+/// root of the squared numbers), and for the outputs, known to their rounding, that rounding
+/// squared.
+pub(crate) fn rounding_floor(problem: &Problem) -> f64 {
+    let coordinate = problem.coordinate();
+    let energy: f64 = problem
+        .fit_entries()
+        .map(|entry| uncorrected_square(problem.quantity, coordinate, entry.delta))
+        .sum();
+    (1e-9 * energy + 1e-20 * problem.alpha * problem.delta.outputs() as f64).max(f64::MIN_POSITIVE)
+}
+
+/// Returns the size of an entry's square without any correction.
+fn uncorrected_square(quantity: Quantity, coordinate: Coordinate, delta: f64) -> f64 {
+    match quantity {
+        Quantity::Gain(GainObjective::Ratio) => delta * delta,
+        Quantity::Gain(GainObjective::Decibel) => SQUARED_DECIBEL * (delta.ln().powi(2) + 1.0),
+        Quantity::Delay | Quantity::SignedDelay => coordinate.coordinate(delta).powi(2),
+    }
+}

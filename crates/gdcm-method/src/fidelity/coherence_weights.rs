@@ -1,0 +1,117 @@
+//! Frequency weights from a measured reference's coherence (M4a).
+
+use gdcm_model::dataset::{Dynamics, Pair, PairTable};
+use gdcm_model::response::curve_values::coherence_at;
+
+/// The frequencies of a response with sufficient coherence, each with its weight.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoherenceWeights {
+    /// Indices on the grid, ascending.
+    places: Vec<usize>,
+    /// The weighted frequencies \[rad/s\].
+    pub omega: Vec<f64>,
+    /// `W` at each frequency.
+    pub weights: Vec<f64>,
+}
+
+/// Returns `W = [1.58 (1 - e^(-gamma^2))]^2` for a coherence `gamma^2` from 0 to 1 (Tischler &
+/// Remple, "Aircraft and Rotorcraft System Identification", 2nd ed. 2012, chapter 11): 0.9975 at 1,
+/// 0.508 at 0.6.
+pub fn coherence_weight(coherence: f64) -> f64 {
+    (1.58 * (1.0 - (-coherence).exp())).powi(2)
+}
+
+impl CoherenceWeights {
+    /// Selects the frequencies of `omega` \[rad/s\] with a coherence of at least `threshold` in the
+    /// response's valid band.
+    pub fn select(
+        omega: &[f64],
+        coherence: &[f64],
+        threshold: f64,
+        valid_band: Option<[f64; 2]>,
+    ) -> Self {
+        let mut selected = Self {
+            places: Vec::new(),
+            omega: Vec::new(),
+            weights: Vec::new(),
+        };
+        for (place, (&omega, &coherence)) in omega.iter().zip(coherence).enumerate() {
+            let is_valid = match valid_band {
+                Some([low, high]) => (low..=high).contains(&omega),
+                None => true,
+            };
+            let weight = coherence_weight(coherence);
+            // A zero weight would count in N' and nowhere else.
+            if coherence >= threshold && weight > 0.0 && is_valid {
+                selected.places.push(place);
+                selected.omega.push(omega);
+                selected.weights.push(weight);
+            }
+        }
+        selected
+    }
+
+    /// Returns the weights for every response of a model; `None` without coherence, so that all
+    /// frequencies weigh the same.
+    pub fn of_model(
+        dynamics: &Dynamics,
+        omega: &[f64],
+        threshold: Option<f64>,
+    ) -> Option<PairTable<Self>> {
+        let (Dynamics::Measured(response), Some(threshold)) = (dynamics, threshold) else {
+            return None;
+        };
+        let coherence = coherence_at(response, omega)?;
+        Some(coherence.map(|pair: Pair, coherence| {
+            let valid_band = response.valid_bands().map(|bands| bands[pair]);
+            Self::select(omega, coherence, threshold, valid_band)
+        }))
+    }
+
+    /// Spreads values at these frequencies over a grid with `points` points, NaN elsewhere.
+    pub fn spread(&self, values: &[f64], points: usize) -> Vec<f64> {
+        let mut spread = vec![f64::NAN; points];
+        for (&place, &value) in self.places.iter().zip(values) {
+            spread[place] = value;
+        }
+        spread
+    }
+
+    /// Picks the values at these frequencies from a value at each grid point.
+    pub(super) fn pick(&self, values: &[f64]) -> Vec<f64> {
+        self.places.iter().map(|&place| values[place]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frequencies_under_the_threshold_or_outside_the_valid_band_are_left_out() {
+        let omega = [1.0, 2.0, 3.0, 4.0, 5.0];
+        let coherence = [1.0, 0.59, 0.6, 0.9, f64::NAN];
+        let coherence_weights = CoherenceWeights::select(&omega, &coherence, 0.6, Some([1.5, 4.0]));
+        assert_eq!(coherence_weights.omega, [3.0, 4.0]);
+        assert_eq!(
+            coherence_weights.weights,
+            [coherence_weight(0.6), coherence_weight(0.9)]
+        );
+        assert_eq!(
+            coherence_weights.pick(&[10.0, 20.0, 30.0, 40.0, 50.0]),
+            [30.0, 40.0]
+        );
+        let spread = coherence_weights.spread(&[30.0, 40.0], 5);
+        assert_eq!(spread[2..4], [30.0, 40.0]);
+        for place in [0, 1, 4] {
+            assert!(spread[place].is_nan());
+        }
+    }
+
+    #[test]
+    fn without_any_coherence_no_frequency_counts() {
+        let omega = [1.0, 2.0, 3.0, 4.0, 5.0];
+        let nothing = CoherenceWeights::select(&omega, &[0.0; 5], 0.0, None);
+        assert!(nothing.omega.is_empty());
+    }
+}

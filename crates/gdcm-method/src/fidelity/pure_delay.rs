@@ -1,0 +1,122 @@
+//! The pure delay that fits a phase difference best (M6b).
+
+use nalgebra::Complex;
+
+/// Delays between -600 and 600 steps are compared.
+const STEPS: i32 = 600;
+/// Step between two compared delays \[s\].
+const STEP_S: f64 = 1e-3;
+/// Steps between two delays in the coarse grid.
+const COARSE: i32 = 16;
+
+/// Delays on a grid: `first_s`, `first_s + step_s`, ...
+struct DelayGrid {
+    first_s: f64,
+    step_s: f64,
+    count: usize,
+}
+
+/// Returns the delay \[s\] among -0.600, -0.599 ... 0.600 with the largest likeness `L = sum
+/// cos(phase - omega delay)`, the first among equals (M6b).
+///
+/// ```text
+/// 1  L at every 16th delay
+/// 2  |dL / d delay| <= sum omega: only near coarse delays from which L could rise to the greatest in step 1, L at every delay
+/// ```
+pub(super) fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
+    let coarse_steps: Vec<i32> = (-STEPS..=STEPS + COARSE / 2)
+        .step_by(COARSE as usize)
+        .collect();
+    let coarse_grid = DelayGrid {
+        first_s: delay_s(-STEPS),
+        step_s: delay_s(COARSE),
+        count: coarse_steps.len(),
+    };
+    let coarse = likenesses(phase, omega, &coarse_grid);
+    let greatest = coarse.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // Half a coarse step away; a relative 1e-9 exceeds the rounding error of the sums.
+    let rise = delay_s(COARSE / 2) * omega.iter().map(|omega| omega.abs()).sum::<f64>()
+        + 1e-9 * phase.len() as f64;
+    let mut best_likeness = f64::NEG_INFINITY;
+    let mut best_s = 0.0;
+    for (step, likeness) in coarse_steps.into_iter().zip(coarse) {
+        if likeness + rise < greatest {
+            continue;
+        }
+        let first = (step - COARSE / 2).max(-STEPS);
+        let end = (step + COARSE / 2).min(STEPS + 1);
+        let fine_grid = DelayGrid {
+            first_s: delay_s(first),
+            step_s: STEP_S,
+            count: (end - first) as usize,
+        };
+        let fine = likenesses(phase, omega, &fine_grid);
+        for (step, likeness) in (first..end).zip(fine) {
+            if likeness > best_likeness {
+                best_likeness = likeness;
+                best_s = delay_s(step);
+            }
+        }
+    }
+    best_s
+}
+
+/// Returns the delay \[s\] at a step.
+fn delay_s(step: i32) -> f64 {
+    STEP_S * f64::from(step)
+}
+
+/// Computes `sum cos(phase - omega delay)` for each delay in a grid.
+fn likenesses(phase: &[f64], omega: &[f64], grid: &DelayGrid) -> Vec<f64> {
+    // Rotated from each delay to the next: summing cosines takes a dozen times as long.
+    let mut left = Vec::with_capacity(phase.len());
+    for (phase, omega) in phase.iter().zip(omega) {
+        left.push(Complex::from_polar(1.0, phase - omega * grid.first_s));
+    }
+    let turns: Vec<Complex<f64>> = omega
+        .iter()
+        .map(|omega| Complex::from_polar(1.0, -omega * grid.step_s))
+        .collect();
+    let mut likenesses = Vec::with_capacity(grid.count);
+    for _ in 0..grid.count {
+        likenesses.push(left.iter().map(|left| left.re).sum());
+        for (left, turn) in left.iter_mut().zip(&turns) {
+            *left *= turn;
+        }
+    }
+    likenesses
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn likeness(phase: &[f64], omega: &[f64], delay_s: f64) -> f64 {
+        phase
+            .iter()
+            .zip(omega)
+            .map(|(phase, omega)| (phase - omega * delay_s).cos())
+            .sum()
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_delay_of_all_is_more_like_the_phase(
+            phase in proptest::collection::vec(-20.0..20.0, 1..60),
+            most in 0.5..40.0,
+            slope in -0.7..0.7,
+        ) {
+            let omega: Vec<f64> = (1..=phase.len()).map(|k| most * k as f64 / phase.len() as f64).collect();
+            for scatter in [1.0, 0.05] {
+                let phase: Vec<f64> = phase.iter().zip(&omega).map(|(phase, omega)| scatter * phase + slope * omega).collect();
+                let greatest = (-600..=600)
+                    .map(|step| likeness(&phase, &omega, 1e-3 * f64::from(step)))
+                    .fold(f64::NEG_INFINITY, f64::max);
+                let found = nearest_pure_delay_s(&phase, &omega);
+                // Sums over at most 60 cosines with angles in the hundreds differ in the last
+                // digits.
+                proptest::prop_assert!(likeness(&phase, &omega, found) >= greatest - 1e-10, "{} s", found);
+            }
+        }
+    }
+}

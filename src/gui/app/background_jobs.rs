@@ -1,6 +1,7 @@
 //! The live answer and the window's other jobs. One table, [`BackgroundJobs::start`], lists every
 //! kind of job with its tools, its trigger and the destination of its output.
 
+use crate::gui::views::view_content;
 use std::io;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -20,8 +21,11 @@ use super::GdcmApp;
 use super::job_queue::JobQueue;
 use super::threads::{Fault, ReplySender};
 use crate::executor::Pool;
-use crate::gui::state::window_state::{Background, FirstResult, State};
-use crate::gui::views::{Need, View, are_couplings_judged, couplings_job, overlay_job};
+use crate::gui::state::results::{Background, FirstResult};
+use crate::gui::state::view::View;
+use crate::gui::state::window_state::State;
+use crate::gui::views::need::Need;
+use crate::gui::views::{are_couplings_judged, couplings_job, overlay_job};
 
 /// Creates an engine, at the start and after a panic, which may leave its caches inconsistent.
 pub type EngineMaker = Arc<dyn Fn() -> Engine + Send + Sync>;
@@ -335,7 +339,7 @@ impl GdcmApp {
         let shown = View::ALL
             .into_iter()
             .filter(|view| state.display.arrangement.is_shown(*view));
-        let of_views = shown.flat_map(|view| (view.kind().needs)(state));
+        let of_views = shown.flat_map(|view| (view_content(view).needs)(state));
         let judged = are_couplings_judged(state).then(|| Need::Couplings(couplings_job(state)));
         self.needs = of_views
             .chain(overlay_job(state).map(Need::Variant))

@@ -15,12 +15,13 @@ use gdcm_study::decisions::differences::Difference;
 
 use super::GdcmApp;
 use super::threads::caught;
-use crate::gui::commands::command::{Command, FormKind, RequirementTable};
-use crate::gui::panels::bars::Bar;
-use crate::gui::state::display::Preferences;
+use crate::gui::commands::assembling::AssemblingCommand;
+use crate::gui::commands::command::Command;
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::state::forms::{FormKind, RequirementTable};
+use crate::gui::state::notices::Bar;
+use crate::gui::state::preferences::Preferences;
 use crate::gui::state::window_state::{RecentFile, State};
-use crate::gui::views::assembling::AssemblingCommand;
-use crate::gui::views::records::RecordsCommand;
 
 /// The study as last saved.
 #[derive(Clone, Debug)]

@@ -18,8 +18,9 @@ use gdcm_model::message_text::sanitized_path;
 use super::GdcmApp;
 use super::files::DialogPurpose;
 use super::threads::ReplySender;
-use crate::gui::commands::command::FormKind;
-use crate::gui::views::assembling::{AssemblingCommand, AssemblyState, Reading};
+use crate::gui::commands::assembling::AssemblingCommand;
+use crate::gui::state::assembling::{AssemblyState, Reading};
+use crate::gui::state::forms::FormKind;
 
 /// Bytes of values between two progress reports while a file is read.
 const TOLD_EVERY: u64 = 16 << 20;

@@ -23,9 +23,11 @@ use gdcm_study::{Analysis, Edit, Engine, Table};
 
 use super::GdcmApp;
 use super::files::study_name;
-use crate::gui::commands::command::{Command, FormKind, RequirementTable};
-use crate::gui::state::figures::{figure_name, figure_of, tables_in_place};
-use crate::gui::views::{View, all_records, known_poles};
+use crate::gui::commands::command::Command;
+use crate::gui::state::forms::{FormKind, RequirementTable};
+use crate::gui::state::view::View;
+use crate::gui::views::figure_button::tables_in_place;
+use crate::gui::views::figures::{figure_name, figure_of};
 
 impl GdcmApp {
     /// Writes the corrections of the conditions selected in the form.
@@ -358,8 +360,8 @@ impl GdcmApp {
                 self.state.forms.shown = None;
                 // The live answer does not depend on the requirements and may have older ones.
                 let analysis = Arc::new(analysis.asked_with(&self.state.study.requirements));
-                let records = all_records(&self.state);
-                let known = known_poles(&self.state);
+                let records = self.state.records.history_records();
+                let known = self.state.records.known_poles();
                 self.reporting = Some(ReportJob {
                     analysis,
                     records,

@@ -27,11 +27,14 @@ use gdcm_sysid::records::{
 use super::GdcmApp;
 use super::files::DialogPurpose;
 use super::threads::Untold;
-use crate::gui::commands::command::{Command, FormKind};
-use crate::gui::views::records::{
-    AddedRecord, ConditionRecords, RecordsBefore, RecordsCommand, RecordsPage, WantedDataset,
+use crate::gui::commands::command::Command;
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::records::{
+    AddedRecord, ConditionRecords, RecordsBefore, RecordsPage, WantedDataset,
 };
-use crate::gui::views::{RequirementsPage, View};
+use crate::gui::state::requirements_page::RequirementsPage;
+use crate::gui::state::view::View;
 
 /// Records read, by condition, and the faults found.
 #[derive(Default)]

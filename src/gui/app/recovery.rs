@@ -18,7 +18,7 @@ use gdcm_study::Study;
 use super::GdcmApp;
 use super::files::{ReadFor, study_name};
 use super::threads::ReplySender;
-use crate::gui::panels::bars::Bar;
+use crate::gui::state::notices::Bar;
 
 /// Folder of the recovery files in the program's directory.
 const FOLDER: &str = "recovery";

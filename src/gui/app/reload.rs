@@ -13,7 +13,7 @@ use gdcm_io::{LoadedDataset, Opened};
 use super::GdcmApp;
 use super::files::ReadFor;
 use super::threads::ReplySender;
-use crate::gui::panels::bars::Bar;
+use crate::gui::state::notices::Bar;
 
 impl GdcmApp {
     /// Watches the file of the open dataset.

@@ -12,16 +12,20 @@ use gdcm_study::{Edit, Study};
 
 use super::GdcmApp;
 use super::files::{DialogPurpose, PendingAction};
-use crate::gui::commands::command::{Command, FormKind};
+use crate::gui::commands::command::Command;
+use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::{FigureView, Pane};
-use crate::gui::state::curve_display::CurveCommand;
-use crate::gui::state::display::{Arrangement, Display};
-use crate::gui::state::focus::leave_region;
-use crate::gui::state::window_state::{Notice, NoticeKind, State};
-use crate::gui::views::records::{RecordsBefore, RecordsState};
-use crate::gui::views::{PairSet, View};
+use crate::gui::state::arrangement::Arrangement;
+use crate::gui::state::display::Display;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::notices::{Notice, NoticeKind};
+use crate::gui::state::pair_set::PairSet;
+use crate::gui::state::records::{RecordsBefore, RecordsState};
+use crate::gui::state::tables::table_of;
+use crate::gui::state::view::View;
+use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::focus_field;
-use crate::gui::widgets::tables::table_of;
+use crate::gui::widgets::focus::leave_region;
 
 /// Target of the focus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -19,32 +19,35 @@ use gdcm_study::jobs::job::{CurvesJob, ProofJob};
 use gdcm_study::stages::condition_responses::ConditionCurves;
 use gdcm_study::{Analysis, Study};
 
-use super::Setup;
 use super::background_jobs::{AnalysisJob, BackgroundJobs, Proof};
 use super::files::{PendingAction, SavedStudy};
-use super::keyboard::{self, KeyOrder};
+use super::keyboard::KeyOrder;
 use super::outputs::ReportJob;
 use super::record_import::DatasetOfRecords;
 use super::recovery::{Autosave, LAST_WAIT};
 use super::reload::DiskWatch;
 use super::threads::{Fault, Reader, Reply, ReplySender};
 use super::update::NextFocus;
+use super::{Setup, keyboard};
+use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
-use crate::gui::panels::bars::Bar;
-use crate::gui::panels::explanation::{Sheet, sheet_ui};
-use crate::gui::panels::start_page::OpensWith;
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::panels::explanation::sheet_ui;
 use crate::gui::panels::{
     answer_panel, bars, centre, conditions_panel, explanation, forms, help, models_panel,
     start_page,
 };
-use crate::gui::state::display::Preferences;
-use crate::gui::state::focus;
+use crate::gui::state::notices::Bar;
+use crate::gui::state::opens_with::OpensWith;
+use crate::gui::state::preferences::Preferences;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::views::assembling::{AssemblingCommand, assembling_ui};
-use crate::gui::views::records::RecordsCommand;
-use crate::gui::views::{Need, View};
+use crate::gui::views::assembling::assembling_ui;
+use crate::gui::views::need::Need;
 use crate::gui::widgets::controls::restore_panel_size;
-use crate::gui::widgets::palette::{self, Palette};
+use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::{focus, palette};
 
 /// The program's window.
 pub struct GdcmApp {

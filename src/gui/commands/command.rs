@@ -12,17 +12,22 @@ use gdcm_plot::figure::gains::{Across, Measure};
 use gdcm_plot::figure::{ColumnWidth, FigureFormat};
 use gdcm_study::{AcrossRole, Edit, ExplainTarget, Table};
 
-use crate::gui::panels::bars::Bar;
-use crate::gui::panels::cost_map::MappedCost;
-use crate::gui::panels::explanation::Sheet;
-use crate::gui::panels::start_page::OpensWith;
-use crate::gui::state::curve_display::CurveCommand;
-use crate::gui::state::display::ViewGroup;
-use crate::gui::views::assembling::AssemblingCommand;
-use crate::gui::views::records::RecordsCommand;
-use crate::gui::views::{AssessedFigures, PairSet, RequirementsPage, View};
+use super::assembling::AssemblingCommand;
+use super::records::RecordsCommand;
+use crate::gui::plot::curve_command::CurveCommand;
+use crate::gui::state::assessed_figures::AssessedFigures;
+use crate::gui::state::forms::{FormKind, RequirementTable};
+use crate::gui::state::mapped_cost::MappedCost;
+use crate::gui::state::notices::Bar;
+use crate::gui::state::opens_with::OpensWith;
+use crate::gui::state::pair_set::PairSet;
+use crate::gui::state::requirements_page::RequirementsPage;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::tables::TableKind;
+use crate::gui::state::view::{View, ViewGroup};
+use crate::gui::widgets::controls::RefusedEntry;
 use crate::gui::widgets::palette::PlotStyle;
-use crate::gui::widgets::tables::TableKind;
+use crate::gui::widgets::tables::TableRequest;
 
 /// Action of the engineer: a click, a key or a menu entry. Views push commands; the window carries
 /// them out.
@@ -212,52 +217,6 @@ pub enum Command {
     Quit,
 }
 
-/// Table of requirements that the engineer supplies as a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum RequirementTable {
-    Levels,
-    Tolerances,
-}
-
-/// Form in front of the window.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum FormKind {
-    /// Path of a file to open.
-    Open,
-    /// New path of a study's dataset.
-    FindDataset,
-    /// Path for the study.
-    Save,
-    /// Corrections to export, and the folder.
-    Export,
-    /// Format of an export for other tools, and the path.
-    ExportAs,
-    /// Reason of a rejection, in words.
-    Reason,
-    /// Path for a table.
-    SaveTable,
-    /// What to make of imported models.
-    Models,
-    /// Channels of the records that a dataset consists of, and the path.
-    RecordDataset,
-    /// Path and width of a figure.
-    SaveFigure,
-    /// Path for the report.
-    Report,
-    /// Path of a table to read.
-    ReadRequirementTable(RequirementTable),
-    /// Path for the tolerances.
-    WriteTolerances,
-    /// Palette of all commands, searched by name.
-    Palette,
-    /// Confirmation before unsaved decisions are lost.
-    Unsaved,
-    /// Differences between the dataset and the dataset of the saved study.
-    Differences,
-    Shortcuts,
-    About,
-}
-
 impl From<CurveCommand> for Command {
     fn from(command: CurveCommand) -> Self {
         Command::Curves(command)
@@ -273,6 +232,21 @@ impl From<AssemblingCommand> for Command {
 impl From<RecordsCommand> for Command {
     fn from(command: RecordsCommand) -> Self {
         Self::Records(command)
+    }
+}
+
+impl From<RefusedEntry> for Command {
+    fn from(RefusedEntry(why): RefusedEntry) -> Self {
+        Self::Refuse(why)
+    }
+}
+
+impl From<TableRequest> for Command {
+    fn from(request: TableRequest) -> Self {
+        match request {
+            TableRequest::Copy(text) => Self::CopyText(text),
+            TableRequest::Save(table) => Self::AskSaveShownTable(table),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Table of all commands: the source of the menus, the shortcuts, the palette and the page of keys.
 
-use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
+use egui::{Key, Modifiers, ThemePreference};
 
 use gdcm_model::dataset::{BundleKind, ModelId, Pair};
 use gdcm_plot::figure::FigureFormat;
@@ -10,97 +10,21 @@ use gdcm_study::decisions::changed_models::OfferedModels;
 use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::{Kind, Value};
 
-use super::command::{Command, FormKind};
-use crate::gui::panels::explanation::Sheet;
-use crate::gui::panels::start_page::OpensWith;
-use crate::gui::state::curve_display::curve_entries;
-use crate::gui::state::display::ViewGroup;
-use crate::gui::state::figures::views_with_figure;
+use super::assembling::AssemblingCommand;
+use super::command::Command;
+use super::curve_entries::curve_entries;
+use super::entry::{Entry, Menu};
+use super::records::RecordsCommand;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::opens_with::OpensWith;
+use crate::gui::state::pair_set::PairSet;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::tables::TableKind;
+use crate::gui::state::view::{View, ViewGroup, views_with_figure};
 use crate::gui::state::window_state::State;
-use crate::gui::views::assembling::AssemblingCommand;
-use crate::gui::views::records::RecordsCommand;
-use crate::gui::views::{PairSet, View};
-use crate::gui::widgets::tables::TableKind;
-
-/// Menu of the bar at the top.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Menu {
-    /// Opening, saving, exporting.
-    File,
-    Edit,
-    /// Displayed content and its form.
-    View,
-    /// Style of curves: a submenu of `View`.
-    Curves,
-    Help,
-}
-
-/// Where a shortcut works.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
-    /// Everywhere, also while text is being typed.
-    Everywhere,
-    /// Only without a focused control and without an open form: lists, fields and texts use these
-    /// keys too.
-    WithoutFocus,
-}
-
-/// Entry of a menu or of the palette.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
-    /// Name in menus and in the palette.
-    pub name: String,
-    /// Explanation, if the name is not sufficient.
-    pub meaning: &'static str,
-    /// Shortcuts; the first is displayed.
-    pub shortcuts: Vec<KeyboardShortcut>,
-    pub reach: Reach,
-    /// Menu and group within it; groups are separated by lines.
-    pub menu: Option<(Menu, u8)>,
-    pub enabled: bool,
-    pub command: Command,
-}
-
-impl Entry {
-    /// Creates an entry for the palette alone, without shortcut.
-    pub(crate) fn new(name: impl Into<String>, meaning: &'static str, command: Command) -> Self {
-        let shortcuts = Vec::new();
-        let reach = Reach::Everywhere;
-        Self {
-            name: name.into(),
-            meaning,
-            shortcuts,
-            reach,
-            menu: None,
-            enabled: true,
-            command,
-        }
-    }
-
-    pub(crate) fn keys(mut self, modifiers: Modifiers, key: Key) -> Self {
-        self.shortcuts.push(KeyboardShortcut::new(modifiers, key));
-        self
-    }
-
-    /// Adds a key without modifiers that works only while nothing has the focus.
-    pub(crate) fn free_key(mut self, key: Key) -> Self {
-        self.reach = Reach::WithoutFocus;
-        self.keys(Modifiers::NONE, key)
-    }
-
-    pub(crate) fn within(mut self, menu: Menu, group: u8) -> Self {
-        self.menu = Some((menu, group));
-        self
-    }
-
-    pub(crate) fn enabled(mut self, enabled: bool) -> Self {
-        self.enabled = enabled;
-        self
-    }
-}
 
 /// Builds the entries of a group of a menu.
-fn group<const N: usize>(
+pub fn group<const N: usize>(
     menu: Menu,
     group: u8,
     entries: [Entry; N],
@@ -415,7 +339,7 @@ fn view_entries(state: &State) -> Vec<Entry> {
     let show = |view: View| {
         Entry::new(
             format!("Show {}", view.name()),
-            view.kind().purpose,
+            view.facts().purpose,
             Command::ShowView(view),
         )
     };

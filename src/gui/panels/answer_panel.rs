@@ -11,13 +11,15 @@ use gdcm_model::units::number;
 use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::setting;
 
-use super::explanation::Sheet;
 use super::verdict::{Step, Verdict, VerdictRow, band_words, export};
 use super::{matrix_panel, result_panel, settings_panel};
 use crate::gui::commands::command::Command;
-use crate::gui::state::focus::{Region, region_ui, take_escape};
+use crate::gui::state::sheet::Sheet;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, elided, named, named_switch, painted_text, text_width};
+use crate::gui::widgets::controls::{
+    Asks, chevron, elided, named, named_switch, painted_text, text_width,
+};
+use crate::gui::widgets::focus::{Region, region_ui, take_escape};
 use crate::gui::widgets::palette::{
     BODY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
 };
@@ -343,20 +345,6 @@ fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mu
         "{words}. Click, or Ctrl+comma: {} them",
         if is_open { "fold" } else { "open" }
     ));
-}
-
-/// Paints a small arrow: to the right if its section is folded, down if it is open.
-pub(crate) fn chevron(ui: &Ui, center: egui::Pos2, is_open: bool, palette: &Palette) {
-    let turn = |x: f32, y: f32| {
-        if is_open {
-            center + vec2(-y, x)
-        } else {
-            center + vec2(x, y)
-        }
-    };
-    let points = vec![turn(-2.0, -4.0), turn(2.0, 0.0), turn(-2.0, 4.0)];
-    ui.painter()
-        .line(points, egui::Stroke::new(1.3, palette.dim_text));
 }
 
 /// "α 1 · 0.5–12 rad/s · delays · representatives".

@@ -8,10 +8,14 @@ use egui::{
 
 use gdcm_model::dataset::{BundleKind, Condition};
 
-use crate::gui::commands::command::{Command, FormKind};
-use crate::gui::commands::command_table::{Menu, command_table};
-use crate::gui::state::window_state::{Background, NoticeKind, RecentFile, State, bar_words};
-use crate::gui::views::records::RecordsState;
+use crate::gui::commands::command::Command;
+use crate::gui::commands::command_table::command_table;
+use crate::gui::commands::entry::Menu;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::notices::{Bar, NoticeKind};
+use crate::gui::state::records::RecordsState;
+use crate::gui::state::results::{Background, bar_words};
+use crate::gui::state::window_state::{RecentFile, State};
 use crate::gui::widgets::controls::{
     Asks, button_ui, elided, in_line_ui, named, painted_text, text_width,
 };
@@ -204,30 +208,6 @@ fn title_ui(ui: &mut Ui, bar: Rect, room: Rect, state: &State, palette: &Palette
         format!("{}, {study}", state.dataset().name()),
     );
     response.on_hover_text(format!("{}\n{is_saved}", state.dataset().description()));
-}
-
-/// Event that concerns the program or its files.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Bar {
-    /// A computation panicked.
-    Fault {
-        /// What happened, what was preserved, and what to send to whom.
-        sentence: String,
-    },
-    /// Decisions of an earlier window that ended without saving them.
-    Recovery {
-        offer: usize,
-        /// Study and date.
-        sentence: String,
-    },
-    /// The dataset's file has changed since it was opened.
-    Changed { name: String },
-    /// The dataset was read again and has changed.
-    Differences {
-        name: String,
-        /// Changes, and decisions that no longer apply.
-        sentences: Vec<String>,
-    },
 }
 
 /// Draws every bar, oldest first.

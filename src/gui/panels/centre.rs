@@ -6,17 +6,17 @@ use egui::{
     StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
 
-use super::answer_panel::chevron;
 use super::start_page::example_line_ui;
 use crate::gui::commands::command::Command;
-use crate::gui::state::display::ViewGroup;
-use crate::gui::state::figures::figure_button_ui;
-use crate::gui::state::focus::{Region, region_ui};
+use crate::gui::state::view::{View, ViewGroup};
 use crate::gui::state::window_state::State;
-use crate::gui::views::{View, ViewTitle};
+use crate::gui::views::figure_button::figure_button_ui;
+use crate::gui::views::{ViewTitle, view_content};
 use crate::gui::widgets::controls::{
-    Asks, button_ui, entries_ui, in_line_ui, named, named_switch, restore_panel_size, text_width,
+    Asks, button_ui, chevron, entries_ui, in_line_ui, named, named_switch, restore_panel_size,
+    text_width,
 };
+use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, TITLE_SIZE, body, medium};
 
 /// Height of the bar of the views \[pt\].
@@ -215,7 +215,7 @@ fn tab_ui(
     }
     let response = named_switch(response, Role::Tab, is_front, view.name());
     response
-        .on_hover_text(view.kind().purpose)
+        .on_hover_text(view.facts().purpose)
         .asks(Command::ShowView(view), commands);
 }
 
@@ -271,7 +271,7 @@ fn part_ui(
     let top = if state.is_example { 0 } else { 6 };
     clipped_ui(ui, ("view", view), area, [top, 4], |ui| {
         title_row_ui(ui, state, view, palette, commands);
-        let draw = view.kind().draw;
+        let draw = view_content(view).draw;
         region_ui(ui, Region::Plots, |ui| draw(ui, state, palette, commands));
     });
 }
@@ -309,18 +309,18 @@ fn title_row_ui(
 ) {
     /// Least width of a title \[pt\].
     const LEAST: f32 = 200.0;
-    let kind = view.kind();
+    let content = view_content(view);
     let width = ui.available_width();
-    let is_titled = !matches!(kind.title, ViewTitle::None);
-    if is_titled && width - kind.tools_width < LEAST && kind.tools_width > 0.0 {
-        row_ui(ui, width, |ui| title_ui(ui, state, kind.title, palette));
+    let is_titled = !matches!(content.title, ViewTitle::None);
+    if is_titled && width - content.tools_width < LEAST && content.tools_width > 0.0 {
+        row_ui(ui, width, |ui| title_ui(ui, state, content.title, palette));
         row_ui(ui, width, |ui| tools_ui(ui, state, view, palette, commands));
-    } else if is_titled || kind.tools_width > 0.0 {
+    } else if is_titled || content.tools_width > 0.0 {
         row_ui(ui, width, |ui| {
             tools_ui(ui, state, view, palette, commands);
             let rest = ui.available_rect_before_wrap();
             in_line_ui(ui, rest, false, |ui| {
-                title_ui(ui, state, kind.title, palette)
+                title_ui(ui, state, content.title, palette)
             });
         });
     }
@@ -348,8 +348,8 @@ fn tools_ui(
     if view != state.display.arrangement.view() {
         figure_button_ui(ui, state, view, commands);
     }
-    (view.kind().tools)(ui, state, palette, commands);
-    if view.kind().is_of_all_conditions && state.others_are_older() {
+    (view_content(view).tools)(ui, state, palette, commands);
+    if view.facts().is_of_all_conditions && state.others_are_older() {
         let text = palette.small_warning("of older settings");
         ui.label(text).on_hover_text(
             "The condition shown is computed anew already; the others are on their way",
@@ -412,7 +412,7 @@ fn dock_ui(
         clipped_ui(ui, "dock content", area, [0, 2], |ui| {
             dock_head_ui(ui, state, (view, is_open), palette, commands);
             if is_open {
-                let draw = view.kind().draw;
+                let draw = view_content(view).draw;
                 region_ui(ui, Region::Dock, |ui| draw(ui, state, palette, commands));
             }
         });
@@ -450,10 +450,10 @@ fn dock_head_ui(
                 response
                     .on_hover_text(hint)
                     .asks(Command::OpenDock(!is_open), commands);
-                let others: Vec<View> = View::docked(state).collect();
+                let others: Vec<View> = View::docked(state.study.settings.phase).collect();
                 for docked in &others {
                     let is_front = *docked == view;
-                    let text = RichText::new(docked.kind().long_name.unwrap_or(docked.name()))
+                    let text = RichText::new(docked.facts().long_name.unwrap_or(docked.name()))
                         .font(medium(BODY_SIZE));
                     if others.len() == 1 {
                         ui.label(text);
@@ -469,7 +469,7 @@ fn dock_head_ui(
                     }
                 }
                 ui.add_space(4.0);
-                title_ui(ui, state, view.kind().title, palette);
+                title_ui(ui, state, view_content(view).title, palette);
             });
         },
     );

@@ -14,18 +14,18 @@ use gdcm_plot::figure::decimals;
 use gdcm_plot::figure::gains::Classes;
 use gdcm_study::Edit;
 
-use super::cost_map::{CostColumn, MappedCost, columns, cost_of_column};
-use super::explanation::Sheet;
+use super::cost_map::{CostColumn, columns, cost_of_column};
+use super::table_menu::{table_heading_ui, table_menu_ui};
 use crate::gui::commands::command::Command;
-use crate::gui::state::focus::{Region, region_ui};
+use crate::gui::state::mapped_cost::MappedCost;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::tables::TableKind;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{
-    Asks, entries_ui, named, painted_text, row_of_height_ui, table_heading_ui, table_menu_ui,
-};
+use crate::gui::widgets::controls::{Asks, entries_ui, named, painted_text, row_of_height_ui};
+use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{
     BODY_SIZE, HEAT_COSTS, Palette, SMALL_SIZE, body, medium, small,
 };
-use crate::gui::widgets::tables::TableKind;
 
 /// Right edge of the number, centre of the mark, right edge of the airspeed \[pt from the row's
 /// left edge\].

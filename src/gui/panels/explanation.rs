@@ -21,45 +21,13 @@ use gdcm_study::stages::lead_compensation::lead_words;
 use gdcm_study::{ConditionAnalysis, Edit, ExplainTarget};
 
 use crate::gui::commands::command::Command;
-use crate::gui::state::focus::take_escape;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::views::{View, offered_couplings, used_couplings};
-use crate::gui::widgets::controls::{Asks, button_ui, entries_ui, named};
+use crate::gui::views::{offered_couplings, used_couplings};
+use crate::gui::widgets::controls::{Asks, QUESTION, button_ui, entries_ui, named};
+use crate::gui::widgets::focus::take_escape;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, medium};
-
-/// Content of a sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sheet {
-    /// Reasons for the result.
-    Reasons,
-    /// Physics models, beside the rail.
-    Models,
-    /// Identified models, beside the rail.
-    Identified,
-    /// Derivation of a value.
-    Derivation,
-}
-
-impl Sheet {
-    /// Returns the heading, which is also the accessible name.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Reasons => "Why the result is so",
-            Self::Models => "Physics models",
-            Self::Identified => "Identified models",
-            Self::Derivation => QUESTION,
-        }
-    }
-
-    /// Returns whether the sheet is at the right side, and its width \[pt\].
-    fn place(self) -> (bool, f32) {
-        match self {
-            Self::Reasons => (true, 380.0),
-            Self::Derivation => (true, 440.0),
-            Self::Models | Self::Identified => (false, 272.0),
-        }
-    }
-}
 
 /// Draws a sheet over `centre`; returns whether it is to be closed.
 pub fn sheet_ui(
@@ -121,9 +89,6 @@ pub fn sheet_ui(
     }
     is_closed
 }
-
-/// Menu text that opens a derivation, used everywhere.
-pub const QUESTION: &str = "How was this computed?";
 
 /// Draws the derivation of a value in a sheet; it follows the results while it is open.
 pub fn derivation_sheet_ui(

@@ -17,10 +17,12 @@ use gdcm_study::decisions::differences::Difference;
 use gdcm_study::{Analysis, Edit};
 
 use super::help::keys_page_ui;
-use crate::gui::commands::command::{Command, FormKind, RequirementTable};
+use crate::gui::commands::command::Command;
 use crate::gui::commands::command_palette::command_palette_ui;
-use crate::gui::state::window_state::{Forms, State};
-use crate::gui::views::records::{RecordsCommand, WantedDataset};
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::state::forms::{FormKind, Forms, RequirementTable};
+use crate::gui::state::records::WantedDataset;
+use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{is_entered, name_text_field, named_switch, text_field_ui};
 use crate::gui::widgets::palette::Palette;
 

@@ -1,16 +1,16 @@
 //! Help on the window: the page of keys and gestures, and the guided tour.
 
+use crate::gui::commands::command::Command;
+use crate::gui::commands::command_table::command_table;
+use crate::gui::commands::entry::Reach;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::controls::Asks;
+use crate::gui::widgets::focus::{Region, region_place, take_escape};
+use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use egui::{
     Align2, Area, Button, Context, Frame, Grid, Id, Order, Rect, RichText, ScrollArea, Stroke,
     StrokeKind, Ui, Vec2, vec2,
 };
-
-use crate::gui::commands::command::Command;
-use crate::gui::commands::command_table::{Reach, command_table};
-use crate::gui::state::focus::{Region, region_place, take_escape};
-use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::Asks;
-use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Width of the note \[pt\].
 const WIDTH: f32 = 300.0;

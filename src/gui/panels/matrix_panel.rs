@@ -16,14 +16,15 @@ use gdcm_study::results::caution::Undefined;
 use gdcm_study::{ConditionAnalysis, Edit, ExplainTarget};
 
 use super::explanation::{gain_conflict_marks, question_menu_ui, turn_entry};
+use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
-use crate::gui::state::focus::{Region, region_ui};
-use crate::gui::state::window_state::{State, Sureness};
-use crate::gui::widgets::controls::{
-    check_ui, entries_ui, named_switch, painted_text, table_menu_ui,
-};
+use crate::gui::state::results::Sureness;
+use crate::gui::state::tables::TableKind;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::check_ui;
+use crate::gui::widgets::controls::{entries_ui, named_switch, painted_text};
+use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
-use crate::gui::widgets::tables::TableKind;
 
 /// Least and greatest height of a cell \[pt\].
 const CELL_HEIGHTS: [f32; 2] = [34.0, 44.0];
@@ -408,7 +409,7 @@ impl<'a> Cell<'a> {
     }
 
     /// Draws four aligned rows; the rest is available through
-    /// [`QUESTION`](super::explanation::QUESTION) in the menu.
+    /// [`QUESTION`](crate::gui::widgets::controls::QUESTION) in the menu.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         let held = if self.constrained { "held" } else { "free" };
         let ignored = if self.fitted {

@@ -13,17 +13,17 @@ use gdcm_model::dataset::{BundleKind, Model, ModelId};
 use gdcm_plot::figure::axis::compact;
 use gdcm_study::{Edit, ExplainTarget};
 
-use super::answer_panel::chevron;
 use super::explanation::question_menu_ui;
+use super::table_menu::{table_heading_ui, table_menu_ui};
 use crate::gui::commands::command::Command;
-use crate::gui::state::focus::{Region, region_ui};
+use crate::gui::state::tables::TableKind;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{
-    Asks, ROW_HEIGHT, elided_among, entries_ui, named, named_switch, painted_text, row_text,
-    table_heading_ui, table_menu_ui,
+    Asks, ROW_HEIGHT, chevron, elided_among, entries_ui, named, named_switch, painted_text,
+    row_text,
 };
+use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
-use crate::gui::widgets::tables::TableKind;
 
 /// Draws the bundles of the displayed condition in the left panel: the physics models above, the
 /// identified models folded at its foot.
@@ -606,7 +606,7 @@ impl<'a> ModelRow<'a> {
     }
 
     /// Draws the name above four aligned rows; the rest is available through
-    /// [`QUESTION`](super::explanation::QUESTION) in the menu.
+    /// [`QUESTION`](crate::gui::widgets::controls::QUESTION) in the menu.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         ui.label(RichText::new(&self.model.name).font(medium(BODY_SIZE)));
         Grid::new("model")

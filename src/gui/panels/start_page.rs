@@ -5,47 +5,20 @@ use egui::{
     Align, Align2, Button, Color32, Frame, Layout, Margin, Pos2, Rect, RichText, Role, ScrollArea,
     Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
-use serde::{Deserialize, Serialize};
 
 use gdcm_plot::figure::axis::compact;
 
 use super::conditions_panel::cost_picture_ui;
+use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::records::RecordsCommand;
 use crate::gui::plot::{BodeCurve, Pane, Role as CurveRole};
 use crate::gui::state::window_state::State;
-use crate::gui::views::assembling::AssemblingCommand;
 use crate::gui::views::frequency::bode_curves;
-use crate::gui::views::records::RecordsCommand;
 use crate::gui::widgets::controls::{Asks, button_ui, elided, named, painted_text};
 use crate::gui::widgets::palette::{
     BODY_SIZE, DISPLAY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
 };
-
-/// Content of the window when the program is started without a file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum OpensWith {
-    /// The embedded example.
-    #[default]
-    Example,
-    /// The start page.
-    StartPage,
-    /// The study or dataset that was open last.
-    LastStudy,
-}
-
-impl OpensWith {
-    /// Every choice, in the order of the menu.
-    pub const ALL: [Self; 3] = [Self::Example, Self::StartPage, Self::LastStudy];
-
-    /// Returns the text of the menu entry.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Example => "Begin with the example",
-            Self::StartPage => "Begin with the start page",
-            Self::LastStudy => "Begin with the last study",
-        }
-    }
-}
 
 /// Widths of the ways in, of the open study, and of the gap between them \[pt\].
 const WIDTHS: [f32; 3] = [600.0, 460.0, 64.0];

@@ -14,10 +14,13 @@ use gdcm_study::results::couplings_assessment::CouplingCost;
 use gdcm_study::results::remark::RemarkKind;
 use gdcm_study::{ConditionAnalysis, CouplingCorrection, Edit, PhaseCorrection};
 
-use super::explanation::{Sheet, turn_entry};
-use crate::gui::commands::command::{Command, FormKind};
+use super::explanation::turn_entry;
+use crate::gui::commands::command::Command;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::views::{View, offered_couplings, used_couplings};
+use crate::gui::views::{offered_couplings, used_couplings};
 
 /// Verdict on gain and phase of the constrained responses, here and in every condition, with the
 /// next steps.

@@ -10,15 +10,16 @@ use gdcm_plot::figure::axis::Axis;
 use gdcm_plot::figure::drawing::{Hue, Stroke};
 use gdcm_plot::figure::figure::{Bars, Curve, Note, Place, Plot, Rule, Spans};
 use gdcm_plot::figure::{Color, Figure, MarkId, Panel, Range, decimals};
-use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice, held_out_verdict};
+use gdcm_study::results::assessment_table::{AssessedModel, held_out_verdict};
 use gdcm_study::{AssessedCorrection, AssessmentTable, ExplainTarget, Table};
 
-use super::View;
 use crate::gui::commands::command::Command;
-use crate::gui::panels::settings_panel::choice_ui;
 use crate::gui::plot::curve_menu::NamedFigure;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
+use crate::gui::state::assessed_figures::{AssessedFigures, AssessedPairs, CostPart};
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
 
@@ -447,80 +448,6 @@ fn text_table_ui(
         commands.extend(condition.map(|condition| Command::SelectCondition(condition.id())));
     }
     state.display.assessment_sorting = sorting;
-}
-
-/// Responses shown by an assessment.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum AssessedPairs {
-    /// On-axis responses (Figures 8 to 12).
-    #[default]
-    OnAxis,
-    /// All others (Figures 13 to 19).
-    OffAxis,
-    /// Response in focus.
-    Focused,
-    All,
-}
-
-/// Part of J shown by the table of an assessment.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CostPart {
-    /// `Delta J`.
-    #[default]
-    Total,
-    /// `Delta J_mag`.
-    Magnitude,
-    /// `Delta J_phase`.
-    Phase,
-}
-
-impl CostPart {
-    /// Returns the symbol.
-    pub fn symbol(self) -> &'static str {
-        match self {
-            Self::Total => "ΔJ",
-            Self::Magnitude => "ΔJ mag",
-            Self::Phase => "ΔJ phase",
-        }
-    }
-
-    fn of(self) -> fn(CostChange) -> f64 {
-        match self {
-            Self::Total => CostChange::total,
-            Self::Magnitude => CostChange::magnitude,
-            Self::Phase => CostChange::phase,
-        }
-    }
-}
-
-/// Selection and form of the assessment.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct AssessedFigures {
-    pub model: AssessedModel,
-    /// Correction applied to the model.
-    pub correction: AssessedCorrection,
-    /// Average of squared errors; `None` follows the settings.
-    pub average: Option<CostAverage>,
-    pub pairs: AssessedPairs,
-    /// Whether a table is shown instead of bars.
-    pub as_table: bool,
-    /// Part of J in the table.
-    pub part: CostPart,
-}
-
-/// Returns the assessment to compute.
-pub fn assessment_choice(state: &State) -> AssessmentChoice {
-    let AssessedFigures {
-        model,
-        correction,
-        average,
-        ..
-    } = state.display.assessed;
-    AssessmentChoice {
-        model,
-        correction,
-        average: average.unwrap_or(state.study.settings.cost_average),
-    }
 }
 
 /// Returns the assessed responses, in the order of the matrix.

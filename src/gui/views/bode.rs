@@ -13,21 +13,21 @@ use gdcm_study::jobs::job::AcrossJob;
 use gdcm_study::results::caution::Undefined;
 use gdcm_study::stages::condition_responses::display_band;
 
-use super::View;
 use super::frequency::{
     bode_curves, bode_options, condition_source, error_curves, error_reference, frequency_plot_ui,
     wished,
 };
 use crate::gui::commands::command::Command;
-use crate::gui::panels::settings_panel::choice_ui;
 use crate::gui::plot::bode::{BodeEvent, InvalidRegion, PaneNote};
 use crate::gui::plot::bode_pane::BodeBand;
+use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::overview::{OverviewCell, OverviewEvent, OverviewScene, overview_ui};
 use crate::gui::plot::quantity::{BodeQuantity, PhaseErrorUnit, ResponsePlace};
 use crate::gui::plot::readout::pointed_words;
 use crate::gui::plot::{BodeCurve, BodeScene, CurveId, Pane, Role, bode_ui};
-use crate::gui::state::curve_display::CurveCommand;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Draws magnitude and phase of the response in focus, for every model of the displayed condition.

@@ -9,10 +9,11 @@ use gdcm_study::decisions::study::Variant;
 use gdcm_study::jobs::job::VariantJob;
 use gdcm_study::{Analysis, Edit, Table};
 
-use super::net_gain::net_gain_pairs;
+use super::gain_plots::net_gain_pairs;
 use crate::gui::commands::command::Command;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{is_entered, named, text_field_ui, toggle_ui};
+use crate::gui::widgets::choices::toggle_ui;
+use crate::gui::widgets::controls::{is_entered, named, text_field_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
 

@@ -11,13 +11,14 @@ use gdcm_method::schedule::{FormComparison, FormFit, LeadDegreeFit, LeadFit, Sch
 use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::{s_to_ms, signed};
+use gdcm_study::Table;
 use gdcm_study::decisions::setting;
 use gdcm_study::results::table::{difference_table, second_variable_table};
 use gdcm_study::stages::uncertainty::Uncertainty;
-use gdcm_study::{Analysis, Table};
 
-use super::net_gain::net_gain_pairs;
+use super::gain_plots::net_gain_pairs;
 use crate::gui::commands::command::Command;
+use crate::gui::state::evidence_cache::CachedEvidence;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
@@ -299,14 +300,6 @@ fn rows_high<R>(ui: &mut Ui, rows: usize, add: impl FnOnce(&mut Ui) -> R) -> R {
     let height = (row * (rows + 1) as f32 + bar + 4.0).min(MOST_TABLE);
     ui.allocate_ui(vec2(ui.available_width(), height), add)
         .inner
-}
-
-/// Evidence for every form of the schedule, cached as long as the analysis is the same.
-#[derive(Debug, Default)]
-pub struct CachedEvidence {
-    analysis: Option<Arc<Analysis>>,
-    found: Option<(Vec<ConditionId>, FormComparison)>,
-    leads: Vec<LeadDegreeFit>,
 }
 
 impl CachedEvidence {

@@ -18,12 +18,12 @@ use gdcm_study::decisions::setting;
 use super::compare::overlaid_analysis;
 use crate::gui::commands::command::Command;
 use crate::gui::plot::bode::{BodeEvent, PANES};
+use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::curve_menu::CurveWish;
 use crate::gui::plot::legend::Chip;
 use crate::gui::plot::quantity::{BodeQuantity, ValueUnit};
 use crate::gui::plot::readout::{Readout, ReadoutCell, pointed_words};
 use crate::gui::plot::{BodeCurve, BodeScene, BodeView, CurveId, Pane, Role, bode_ui};
-use crate::gui::state::curve_display::CurveCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 

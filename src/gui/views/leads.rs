@@ -7,10 +7,10 @@ use gdcm_model::units::{number, s_to_ms, signed, telling};
 use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
 use gdcm_study::{PhaseCorrection, Table};
 
-use super::View;
 use super::frequency::condition_source;
 use crate::gui::commands::command::Command;
 use crate::gui::plot::{FigureScene, figure_ui};
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;

@@ -2,23 +2,25 @@
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
-use serde::{Deserialize, Serialize};
 
-use gdcm_model::dataset::Pair;
 use gdcm_plot::figure::MarkId;
 use gdcm_plot::figure::condition_source::schedule_words;
 use gdcm_plot::figure::gains::{Across, GainQuantity, add_variant, net_gain_figure, quieten};
 use gdcm_study::decisions::setting;
 
-use super::View;
-use super::channels::{GainPlots, gain_command, shown_uncertainty};
 use super::compare::overlaid_analysis;
 use super::evidence::{coefficient_table, forms_ui, lead_evidence_table, residual_table};
+use super::gain_plots::{
+    GainPlots, bars_switch_ui, gain_command, net_gain_pairs, shown_uncertainty,
+};
+use super::setting_controls::setting_ui;
 use crate::gui::commands::command::Command;
-use crate::gui::panels::settings_panel::{choice_ui, setting_ui};
 use crate::gui::plot::{FigureScene, figure_ui};
+use crate::gui::state::pair_set::PairSet;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{named, restore_panel_size, toggle_ui};
+use crate::gui::widgets::choices::{choice_ui, toggle_ui};
+use crate::gui::widgets::controls::{named, restore_panel_size};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
@@ -77,24 +79,6 @@ pub fn net_gain_header_ui(
     named(button, Role::Button, "Form of the schedule")
         .on_hover_text("The form of the schedule over airspeed");
     pair_set_ui(ui, state, commands);
-}
-
-/// Draws the switch of error bars and bands.
-pub(super) fn bars_switch_ui(
-    ui: &mut Ui,
-    state: &State,
-    names: (&str, &str),
-    commands: &mut Vec<Command>,
-) {
-    let shown = !state.display.hide_bars;
-    let level = 100.0 * state.study.settings.uncertainty.level;
-    let hint = format!(
-        "Bars of {level:.0} %: thick for the physics model chosen (identification), thin with not knowing the trim flown. Bands of the \
-         schedule: where it may lie, and where another condition would fall"
-    );
-    if toggle_ui(ui, names, shown, &hint) {
-        commands.push(Command::ShowBars(!shown));
-    }
 }
 
 /// Draws the selection of the displayed responses, from right to left.
@@ -223,69 +207,6 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
                 ui.end_row();
             }
         });
-}
-
-/// Set of responses in the net-gain plots.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum PairSet {
-    /// Responses constrained now or at any time since the window was opened: releasing a response
-    /// keeps its plot.
-    #[default]
-    Held,
-    /// Response in focus.
-    Focused,
-    /// On-axis responses of the dataset.
-    OnAxis,
-    All,
-    /// Responses picked by the engineer.
-    Picked,
-}
-
-impl PairSet {
-    /// Every set, in the order of the list.
-    pub const ALL: [Self; 5] = [
-        Self::Held,
-        Self::Focused,
-        Self::OnAxis,
-        Self::All,
-        Self::Picked,
-    ];
-
-    /// Returns the name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Held => "held",
-            Self::Focused => "in focus",
-            Self::OnAxis => "on-axis",
-            Self::All => "all",
-            Self::Picked => "picked",
-        }
-    }
-
-    /// Describes the content of the set in a sentence.
-    pub fn purpose(self) -> &'static str {
-        match self {
-            Self::Held => "The responses held, and those held before",
-            Self::Focused => "The response chosen in the matrix",
-            Self::OnAxis => "The on-axis responses of the dataset",
-            Self::All => "Every response that has a gain",
-            Self::Picked => "Those picked with the button beside this list",
-        }
-    }
-}
-
-/// Returns the responses of the net-gain plots, in the order of the matrix.
-pub fn net_gain_pairs(state: &State) -> Vec<Pair> {
-    let display = &state.display;
-    let constrained = &state.study.settings.constrained;
-    let is_in = |pair: &Pair| match display.net_gain_pairs {
-        PairSet::Held => constrained[*pair] || display.once_held.contains(pair),
-        PairSet::Focused => display.pair == *pair,
-        PairSet::OnAxis => state.dataset().measuring_pairs()[*pair],
-        PairSet::All => true,
-        PairSet::Picked => display.picked_pairs.contains(pair),
-    };
-    constrained.pairs().filter(is_in).collect()
 }
 
 /// Builds a plot for each response of the displayed set: the net gain of each condition's optimum,

@@ -3,9 +3,7 @@
 use std::sync::Arc;
 
 use egui::{Panel, Ui, Vec2, vec2};
-use nalgebra::Complex;
 
-use gdcm_method::couplings::PoleShift;
 use gdcm_method::requirements::{ModeName, NamedBy};
 use gdcm_model::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
 use gdcm_model::response::Mode;
@@ -15,14 +13,14 @@ use gdcm_plot::figure::figure::Along;
 use gdcm_plot::figure::poles::{damping_grid, poles_figure};
 use gdcm_plot::figure::{Figure, Mark, MarkId, Range, Role};
 use gdcm_study::jobs::job::ConditionModes;
-use gdcm_study::stages::fitted_couplings::FittedCouplings;
 use gdcm_study::{ConditionAnalysis, Edit, Table};
 
-use super::View;
 use super::frequency::{bode_options, condition_source};
 use crate::gui::commands::command::Command;
 use crate::gui::plot::canvas::figure_legend_ui;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_ui};
+use crate::gui::state::modes_cache::{CachedModes, MadeOf};
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
@@ -240,30 +238,6 @@ fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Ve
     state.display.modes_sorting = sorting;
 }
 
-/// Modes of a condition followed from model to model, zeros of a response, and pole shifts by
-/// couplings; cached as long as their inputs are the same.
-#[derive(Debug, Default)]
-pub struct CachedModes {
-    made_of: Option<MadeOf>,
-    table: Table,
-    /// For each row, the first model that jumps.
-    jumping: Vec<Option<ModelId>>,
-    zeros: Vec<(ModelId, Vec<Complex<f64>>)>,
-    /// Shifts of the physics representative's poles by couplings.
-    shifts: Vec<PoleShift>,
-}
-
-/// Inputs of the modes, the zeros and the shifts.
-#[derive(Debug)]
-struct MadeOf {
-    modes: Arc<ConditionModes>,
-    /// Index of the physics model to whose modes the others' are matched.
-    reference: usize,
-    couplings: Option<Arc<FittedCouplings>>,
-    /// Response and models whose zeros are shown.
-    zeros_of: Option<(Pair, Vec<ModelId>)>,
-}
-
 impl MadeOf {
     fn of(state: &State, modes: &Arc<ConditionModes>) -> Self {
         let coupled = state.shown().and_then(|shown| shown.coupled.as_ref());
@@ -345,7 +319,7 @@ fn models_with_zeros(state: &State, modes: &ConditionModes) -> Vec<ModelId> {
 
 /// Returns the index of the physics model to whose modes the others' are matched: the
 /// representative, or the nominal model until it is known.
-fn reference(state: &State, modes: &ConditionModes) -> usize {
+pub fn reference(state: &State, modes: &ConditionModes) -> usize {
     let name = state
         .shown()
         .map(|shown| shown.representative_name(BundleKind::Physics));

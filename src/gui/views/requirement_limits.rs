@@ -1,14 +1,17 @@
 //! Editable tables of the requirements: tolerances of time histories and of modes, limits of the
 //! overview (M17).
 
+use std::sync::Arc;
+
 use egui::{Button, Grid, Ui};
 
 use gdcm_method::requirements::{ModeToleranceTable, ToleranceTable};
 use gdcm_model::units::number;
-use gdcm_study::results::requirements::OverviewLimits;
+use gdcm_study::Edit;
+use gdcm_study::results::requirements::{OverviewLimits, RequirementSettings};
 
-use super::requirements::decided;
-use crate::gui::commands::command::{Command, RequirementTable};
+use crate::gui::commands::command::Command;
+use crate::gui::state::forms::RequirementTable;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{button_ui, number_entry_ui};
 use crate::gui::widgets::palette::Palette;
@@ -236,4 +239,15 @@ pub fn overview_limits_ui(
             settings.overview = OverviewLimits::default()
         }));
     }
+}
+
+/// Returns the command that changes the inputs of the requirements.
+pub fn decided(
+    state: &State,
+    what: &'static str,
+    change: impl FnOnce(&mut RequirementSettings),
+) -> Command {
+    let mut settings = RequirementSettings::clone(&state.study.requirements);
+    change(&mut settings);
+    Edit::SetRequirements(what, Arc::new(settings)).into()
 }

@@ -12,24 +12,27 @@ use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::{s_to_ms, telling};
 use gdcm_plot::figure::drawing::Hue;
 use gdcm_plot::figure::requirements::{bandwidth_pairs, bandwidth_place};
-use gdcm_plot::figure::{Color, Figure, FigureKind, MarkId};
-use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_plot::figure::{Color, Figure, MarkId};
+use gdcm_study::Table;
 use gdcm_study::results::requirements::{RequirementRole, RequirementSettings, Requirements};
 use gdcm_study::results::requirements_tables::{RequirementsJob, mode_verdict_words};
-use gdcm_study::results::time_histories::{HistoryRecords, TimeHistoriesJob};
-use gdcm_study::{Edit, Table};
+use gdcm_study::results::time_histories::TimeHistoriesJob;
 
-use super::histories::{current, histories_ui, over_time_need};
-use super::records::ConditionRecords;
-use super::requirement_limits::{mode_tolerances_ui, overview_limits_ui};
-use super::{Need, View};
-use crate::gui::commands::command::{Command, RequirementTable};
+use super::figures::figure_of;
+use super::histories::histories_ui;
+use super::need::Need;
+use super::over_time::{current, over_time_need};
+use super::requirement_limits::{decided, mode_tolerances_ui, overview_limits_ui};
+use crate::gui::commands::command::Command;
 use crate::gui::plot::canvas::figure_legend_ui;
+use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
-use crate::gui::state::curve_display::CurveCommand;
-use crate::gui::state::figures::figure_of;
+use crate::gui::state::forms::RequirementTable;
+use crate::gui::state::requirements_page::RequirementsPage;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{button_ui, check_ui, page_tab_ui, restore_panel_size};
+use crate::gui::widgets::choices::{check_ui, page_tab_ui};
+use crate::gui::widgets::controls::{button_ui, restore_panel_size};
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{TableClick, TableLook, table_grid_ui};
 
@@ -39,21 +42,6 @@ pub(super) const NO_QUALIFICATION: &str = "Of the models, not of the aircraft: t
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
 /// Initial share of the height taken by the table.
 const TABLE_PART: f32 = 0.34;
-
-/// Page of requirements.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum RequirementsPage {
-    /// Bandwidth and phase delay of every response, condition and model.
-    #[default]
-    Bandwidth,
-    /// Responses of the displayed condition's models over time.
-    Histories,
-    /// Modes of the displayed condition.
-    Modes,
-    /// Corrected model of every condition compared with the identified model; mean J and shares of
-    /// the band of every condition and model.
-    Summary,
-}
 
 /// Draws the tabs of the pages, from right to left.
 pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
@@ -93,16 +81,8 @@ pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
         analysis: analysis.into(),
         uncertainty: state.uncertainty().cloned().map(Into::into),
         settings: Arc::clone(&state.study.requirements),
-        known: known_poles(state),
+        known: state.records.known_poles(),
     })
-}
-
-/// Returns the poles identified in this session, condition by condition.
-pub fn known_poles(state: &State) -> KnownPoles {
-    let found = |(id, records): (&ConditionId, &ConditionRecords)| {
-        Some((*id, records.identification()?.poles.clone()))
-    };
-    state.records.conditions.iter().filter_map(found).collect()
 }
 
 /// Returns the computations needed by the selected page.
@@ -121,19 +101,10 @@ pub fn requirements_needs(state: &State) -> Vec<Need> {
     }
 }
 
-/// Returns the flight records in use of every condition.
-pub fn all_records(state: &State) -> Vec<HistoryRecords> {
-    let of_condition = |(id, records): (&ConditionId, &ConditionRecords)| {
-        HistoryRecords::of(*id, &records.rows, records.preparation())
-    };
-    let all = state.records.conditions.iter().map(of_condition);
-    all.filter(|of| !of.records.is_empty()).collect()
-}
-
 /// Returns the job of all models' responses to all records; `None` without records.
 fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
     let analysis = current(state)?;
-    let records = all_records(state);
+    let records = state.records.history_records();
     let tolerances = state.study.requirements.tolerances.clone();
     (!records.is_empty()).then_some(TimeHistoriesJob {
         analysis: analysis.into(),
@@ -199,17 +170,6 @@ fn known_ui(ui: &mut Ui, requirements: &Requirements, palette: &Palette) {
         ui.add(Label::new(palette.small_warning(&words)).truncate())
             .on_hover_text(words);
     }
-}
-
-/// Returns the command that changes the inputs of the requirements.
-pub(super) fn decided(
-    state: &State,
-    what: &'static str,
-    change: impl FnOnce(&mut RequirementSettings),
-) -> Command {
-    let mut settings = RequirementSettings::clone(&state.study.requirements);
-    change(&mut settings);
-    Edit::SetRequirements(what, Arc::new(settings)).into()
 }
 
 /// Draws the inputs of the bandwidths: the sticks that command an attitude, and the engineer's
@@ -565,12 +525,4 @@ impl FigureWords for BandwidthWords<'_> {
             roles.join(" · ")
         ))
     }
-}
-
-/// Returns the requirements for a figure.
-pub fn shown_requirements(state: &State, kind: FigureKind) -> Option<Arc<Requirements>> {
-    state
-        .requirements()
-        .filter(|_| kind == FigureKind::Requirements)
-        .cloned()
 }

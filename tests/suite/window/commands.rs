@@ -1,9 +1,9 @@
 //! The table of commands: the palette, the page of keys, tables and the tour.
 
-use gdcm::gui::commands::command::FormKind;
+use gdcm::gui::commands::assembling::AssemblingCommand;
 use gdcm::gui::commands::command_table::{command_table, every_command};
-use gdcm::gui::views::assembling::AssemblingCommand;
-use gdcm::gui::widgets::tables::{TableKind, table_of};
+use gdcm::gui::state::forms::FormKind;
+use gdcm::gui::state::tables::{TableKind, table_of};
 use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::Scalar;
 use gdcm_study::Table;

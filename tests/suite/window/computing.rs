@@ -5,7 +5,7 @@ use std::sync::{Arc, Condvar, Mutex, Once};
 
 use gdcm::gui::app::threads;
 use gdcm::gui::commands::command::Command;
-use gdcm::gui::views::View;
+use gdcm::gui::state::view::View;
 use gdcm_method::correction::{Outcome, ProofBudget};
 use gdcm_model::dataset::Condition;
 use gdcm_model::executor::{Executor, Task};

@@ -1,9 +1,11 @@
 //! Couplings by hand: looked at before they are used, offered, used, seen and undone (M16).
 
 use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::panels::cost_map::{MappedCost, cost_of};
-use gdcm::gui::panels::explanation::Sheet;
-use gdcm::gui::views::{View, offered_couplings};
+use gdcm::gui::panels::cost_map::cost_of;
+use gdcm::gui::state::mapped_cost::MappedCost;
+use gdcm::gui::state::sheet::Sheet;
+use gdcm::gui::state::view::View;
+use gdcm::gui::views::offered_couplings;
 use gdcm_model::dataset::ConditionId;
 use gdcm_plot::figure::Mark;
 use gdcm_study::decisions::setting;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::panels::explanation::Sheet;
+use gdcm::gui::state::sheet::Sheet;
 use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 
 use super::views::give;

@@ -1,6 +1,7 @@
 //! Opening and saving.
 
-use gdcm::gui::commands::command::{Command, FormKind};
+use gdcm::gui::commands::command::Command;
+use gdcm::gui::state::forms::FormKind;
 
 use super::*;
 

@@ -1,7 +1,8 @@
 //! What a new user does with files of other programs, by the controls alone: what is silent, or turned, is found by the program.
 
-use gdcm::gui::views::assembling::AssemblingCommand;
-use gdcm::gui::views::records::{RecordsCommand, RecordsPage};
+use gdcm::gui::commands::assembling::AssemblingCommand;
+use gdcm::gui::commands::records::RecordsCommand;
+use gdcm::gui::state::records::RecordsPage;
 
 use super::assembling::{bench, type_into};
 use super::views::{give, show};
@@ -85,7 +86,7 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
     window
         .state_mut()
         .dispatch(gdcm::gui::commands::command::Command::ShowForm(Some(
-            gdcm::gui::commands::command::FormKind::ExportAs,
+            gdcm::gui::state::forms::FormKind::ExportAs,
         )));
     window.run_steps(2);
     let notice = exported(&mut window, &path);

@@ -2,7 +2,8 @@
 
 use egui::{Color32, Shape};
 
-use gdcm::gui::commands::command::{Command as Action, FormKind};
+use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::state::forms::FormKind;
 use gdcm::gui::widgets::palette::Palette;
 use gdcm_method::correction::GainBounds;
 

@@ -2,8 +2,8 @@
 
 use egui::{LayerId, Order};
 
-use gdcm::gui::commands::command::FormKind;
-use gdcm::gui::panels::explanation::Sheet;
+use gdcm::gui::state::forms::FormKind;
+use gdcm::gui::state::sheet::Sheet;
 
 use super::views::{give, show};
 use super::*;

@@ -1,8 +1,8 @@
 //! Leads by hand: taken, seen, and undone (M15).
 
 use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::panels::explanation::Sheet;
-use gdcm::gui::views::View;
+use gdcm::gui::state::sheet::Sheet;
+use gdcm::gui::state::view::View;
 use gdcm_model::units::signed;
 use gdcm_study::decisions::setting;
 use gdcm_study::{AssessedCorrection, PhaseCorrection};

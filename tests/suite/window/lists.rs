@@ -1,7 +1,7 @@
 //! What the lists say, and that it can be read.
 
 use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::panels::explanation::Sheet;
+use gdcm::gui::state::sheet::Sheet;
 use gdcm_study::Edit;
 
 use super::views::give;

@@ -13,9 +13,9 @@ use egui::epaint::{ColorImage, ImageData, ImageDelta, Primitive};
 use egui::{TexturesDelta, ThemePreference};
 use egui_kittest::TestRenderer;
 
+use gdcm::gui::commands::assembling::AssemblingCommand;
 use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::views::View;
-use gdcm::gui::views::assembling::AssemblingCommand;
+use gdcm::gui::state::view::View;
 use gdcm::gui::widgets::palette::Palette;
 use gdcm_study::Edit;
 

@@ -1,7 +1,7 @@
 //! The plots, worked with the pointer.
 
 use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::views::View;
+use gdcm::gui::state::view::View;
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::responses::{AirspeedCache, airspeed_curves, fitted_values};
 use gdcm_study::AcrossRole;

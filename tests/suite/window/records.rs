@@ -6,8 +6,10 @@ use nalgebra::DMatrix;
 use serde_json::{Value, json};
 
 use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::views::View;
-use gdcm::gui::views::records::{RecordsCommand, RecordsPage, condition_table};
+use gdcm::gui::commands::records::RecordsCommand;
+use gdcm::gui::state::records::RecordsPage;
+use gdcm::gui::state::view::View;
+use gdcm::gui::views::records::condition_table;
 use gdcm_model::dataset::Band;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::RecordKind;

@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
-use gdcm::gui::commands::command::{Command as Action, RequirementTable};
-use gdcm::gui::views::{RequirementsPage, View};
+use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::state::forms::RequirementTable;
+use gdcm::gui::state::requirements_page::RequirementsPage;
+use gdcm::gui::state::view::View;
 use gdcm_method::requirements::{ModeVerdict, RecordCheck, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Edit;
@@ -102,7 +104,7 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
         ],
         "of the row's model"
     );
-    let figure = gdcm::gui::state::figures::figure_of(state(&window), View::Bode).unwrap();
+    let figure = gdcm::gui::views::figures::figure_of(state(&window), View::Bode).unwrap();
     let words = format!("{figure:?}");
     assert!(
         words.contains("ω_phase") && words.contains("ω180"),

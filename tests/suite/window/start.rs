@@ -1,8 +1,8 @@
 //! Ways in: the line over the example, the start page, and what opens first.
 
 use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::panels::start_page::OpensWith;
-use gdcm::gui::state::display::Preferences;
+use gdcm::gui::state::opens_with::OpensWith;
+use gdcm::gui::state::preferences::Preferences;
 
 use super::*;
 

@@ -1,11 +1,15 @@
 //! The views: what each shows, by its controls.
 
 use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::state::display::{Arrangement, Preferences, ViewGroup};
-use gdcm::gui::views::assessment::{AssessedPairs, assessment_sentences, assessment_text_table};
-use gdcm::gui::views::net_gain::net_gain_pairs;
+use gdcm::gui::state::arrangement::Arrangement;
+use gdcm::gui::state::assessed_figures::AssessedPairs;
+use gdcm::gui::state::pair_set::PairSet;
+use gdcm::gui::state::preferences::Preferences;
+use gdcm::gui::state::view::View;
+use gdcm::gui::state::view::ViewGroup;
+use gdcm::gui::views::assessment::{assessment_sentences, assessment_text_table};
+use gdcm::gui::views::gain_plots::net_gain_pairs;
 use gdcm::gui::views::poles::poles;
-use gdcm::gui::views::{PairSet, View};
 use gdcm_method::correction::Channel;
 use gdcm_plot::figure::figure::DotShape;
 use gdcm_plot::figure::{Mark, Panel};
@@ -337,7 +341,7 @@ fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
         (10, 11)
     );
     show(&mut window, View::Assessment);
-    let choice = gdcm::gui::views::assessment_choice(state(&window));
+    let choice = state(&window).assessment_choice();
     let words = gdcm_study::results::assessment_table::held_out_verdict(
         state(&window).analysis().unwrap(),
         choice,

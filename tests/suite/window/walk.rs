@@ -2,7 +2,7 @@
 
 use gdcm::gui::commands::command::Command as Action;
 use gdcm::gui::commands::command_table::every_command;
-use gdcm::gui::views::View;
+use gdcm::gui::state::view::View;
 use gdcm_model::progress::Unobserved;
 use gdcm_study::Engine;
 use gdcm_study::decisions::setting;

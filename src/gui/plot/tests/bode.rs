@@ -4,8 +4,8 @@ use egui::vec2;
 
 use super::*;
 use crate::gui::plot::bode::BodeEvent;
+use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::curve_menu::CurveWish;
-use crate::gui::state::curve_display::CurveCommand;
 use crate::gui::widgets::palette::{self, Palette};
 
 pub(super) struct Model {

@@ -19,8 +19,8 @@ use gdcm_sysid::identification::{
     CautionNote, Identification, IdentificationCaution, TRUSTED_COHERENCE,
 };
 
-use super::histories::kept;
-use super::records_state::Page;
+use super::frame_cache::kept;
+use super::page::Page;
 use crate::gui::plot::chart::{
     Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan, chart_ui,
 };

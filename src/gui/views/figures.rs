@@ -1,22 +1,19 @@
-//! Figures of the views for paper, and the button that copies or saves them.
+//! Figures of the views for paper.
 
-use egui::containers::menu::MenuButton;
-use egui::{Button, Role, Ui};
+use std::sync::Arc;
 
 use gdcm_plot::figure::bode::BodeOptions;
-use gdcm_plot::figure::{Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
-use gdcm_study::Table;
+use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
+use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::requirements::Requirements;
 
-use super::window_state::State;
-use crate::gui::commands::command::Command;
+use super::frequency::{bode_options, condition_source};
+use super::over_time::shown_over_time;
+use super::view_content;
 use crate::gui::plot::BodeView;
 use crate::gui::plot::bode::PANES;
-use crate::gui::views::couplings::shown_couplings;
-use crate::gui::views::frequency::{bode_options, condition_source};
-use crate::gui::views::histories::shown_over_time;
-use crate::gui::views::requirements::{requirement_tables, shown_requirements};
-use crate::gui::views::{View, ViewFigure, assessment_choice};
-use crate::gui::widgets::controls::named;
+use crate::gui::state::view::View;
+use crate::gui::state::window_state::State;
 
 /// Returns the figure of a view; `None` until its results are available.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
@@ -53,14 +50,10 @@ pub fn figure_name(state: &State, view: View) -> String {
         .collect()
 }
 
-/// Returns the views that have a figure.
-pub fn views_with_figure() -> impl Iterator<Item = View> {
-    View::ALL.into_iter().filter(|view| view.figure().is_some())
-}
-
 /// Returns the figure request of a view, the same as of the command `gdcm figure`.
-pub(crate) fn request(state: &State, view: View) -> Option<FigureRequest> {
-    let ViewFigure { kind, pairs } = view.kind().figure?;
+pub fn request(state: &State, view: View) -> Option<FigureRequest> {
+    let kind = view.figure()?;
+    let pairs = view_content(view).figure_pairs;
     let display = &state.display;
     let (measure, across) = display.channel_values;
     let plot = match view {
@@ -76,7 +69,7 @@ pub(crate) fn request(state: &State, view: View) -> Option<FigureRequest> {
         values,
         ..bode_options(state)
     };
-    let assessed = Some(assessment_choice(state));
+    let assessed = Some(state.assessment_choice());
     let usual = FigureRequest::new(kind, pairs(state), all_channels(state.dataset()));
     let requirements = shown_requirements(state, kind);
     let over_time = shown_over_time(state, kind);
@@ -94,48 +87,15 @@ pub(crate) fn request(state: &State, view: View) -> Option<FigureRequest> {
     })
 }
 
-/// Returns the tables that a view shows instead of a figure; `None` if it shows a figure.
-pub fn tables_in_place(state: &State, view: View) -> Option<Vec<Table>> {
-    (view == View::Requirements)
-        .then(|| requirement_tables(state))
-        .flatten()
+/// Returns the assessment shown by the view.
+pub fn shown_couplings(state: &State) -> Option<Arc<CouplingsAssessment>> {
+    state.couplings()?.as_ref().ok().cloned()
 }
 
-/// Draws the button that copies or saves the content of a view.
-pub(crate) fn figure_button_ui(
-    ui: &mut Ui,
-    state: &State,
-    view: View,
-    commands: &mut Vec<Command>,
-) {
-    if view.figure().is_none() {
-        return;
-    }
-    let has_figure = tables_in_place(state, view).is_none();
-    let (button, _) = MenuButton::from_button(Button::new("Save").frame(false)).ui(ui, |ui| {
-        if ui
-            .button("Copy the numbers")
-            .on_hover_text("As CSV, to the clipboard")
-            .clicked()
-        {
-            commands.push(Command::CopyFigure(view));
-            ui.close();
-        }
-        for format in FigureFormat::ALL
-            .into_iter()
-            .filter(|format| has_figure || *format == FigureFormat::Csv)
-        {
-            let text = format!("Save as {}…", format.extension().to_uppercase());
-            if ui.button(text).on_hover_text(format.words()).clicked() {
-                commands.push(Command::AskSaveFigure(view, format));
-                ui.close();
-            }
-        }
-    });
-    let button = named(
-        button,
-        Role::Button,
-        format!("Save or copy {}", view.name()),
-    );
-    button.on_hover_text("This plot on paper, or its numbers: copy, CSV, SVG, PNG, PDF");
+/// Returns the requirements for a figure.
+pub fn shown_requirements(state: &State, kind: FigureKind) -> Option<Arc<Requirements>> {
+    state
+        .requirements()
+        .filter(|_| kind == FigureKind::Requirements)
+        .cloned()
 }

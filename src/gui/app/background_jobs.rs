@@ -1,7 +1,6 @@
 //! The live answer and the window's other jobs. One table, [`BackgroundJobs::start`], lists every
 //! kind of job with its tools, its trigger and the destination of its output.
 
-use crate::gui::views::view_content;
 use std::io;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -25,7 +24,7 @@ use crate::gui::state::results::{Background, FirstResult};
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::views::need::Need;
-use crate::gui::views::{are_couplings_judged, couplings_job, overlay_job};
+use crate::gui::views::{are_couplings_judged, couplings_job, overlay_job, view_content};
 
 /// Creates an engine, at the start and after a panic, which may leave its caches inconsistent.
 pub type EngineMaker = Arc<dyn Fn() -> Engine + Send + Sync>;

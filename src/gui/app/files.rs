@@ -17,6 +17,7 @@ use super::GdcmApp;
 use super::threads::caught;
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::forms::{FormKind, RequirementTable};
 use crate::gui::state::notices::Bar;
@@ -355,7 +356,11 @@ impl GdcmApp {
             }
             Err(FileError::Exists { paths }) => {
                 *self.state.forms.typed_in(FormKind::Save) = path.display().to_string();
-                self.ask_to_overwrite(&paths, FormKind::Save, Command::SaveStudyAs(path));
+                self.ask_to_overwrite(
+                    &paths,
+                    FormKind::Save,
+                    Command::File(FileCommand::SaveStudyAs(path)),
+                );
             }
             Err(error) => {
                 self.goes_on_once_saved = false;

@@ -26,7 +26,7 @@ use super::window::PREFERENCES;
 use super::{EngineMaker, GdcmApp, threads};
 use crate::executor::{Pool, start_threads};
 use crate::gui::commands::assembling::AssemblingCommand;
-use crate::gui::commands::command::Command;
+use crate::gui::commands::file::FileCommand;
 use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::preferences::Preferences;
 
@@ -212,10 +212,10 @@ fn run(
         let last = last_opened(&setup).filter(|_| is_unasked);
         let mut app = GdcmApp::with(&creation.egui_ctx, opened, setup)?;
         if let Some(path) = last {
-            app.dispatch(Command::Open(path));
+            app.dispatch(FileCommand::Open(path));
         }
         if let Some(models) = models {
-            app.dispatch(AssemblingCommand::Add(vec![models]).into());
+            app.dispatch(AssemblingCommand::Add(vec![models]));
         }
         app.drawn = opening;
         Ok(Box::new(app))

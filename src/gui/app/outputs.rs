@@ -24,6 +24,8 @@ use gdcm_study::{Analysis, Edit, Engine, Table};
 use super::GdcmApp;
 use super::files::study_name;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::forms::{FormKind, RequirementTable};
 use crate::gui::state::view::View;
 use crate::gui::views::figure_button::tables_in_place;
@@ -53,7 +55,11 @@ impl GdcmApp {
                 sanitized_path(&folder)
             )
         };
-        self.written(written.map(words), FormKind::Export, Command::Export);
+        self.written(
+            written.map(words),
+            FormKind::Export,
+            Command::Output(OutputCommand::Export),
+        );
     }
 
     /// Proposes a name for an export to other tools if none was typed.
@@ -103,7 +109,7 @@ impl GdcmApp {
         self.written(
             written.map(words),
             FormKind::ExportAs,
-            Command::ExportAs(format, path.clone()),
+            Command::Output(OutputCommand::ExportAs(format, path.clone())),
         );
     }
 
@@ -222,7 +228,7 @@ impl GdcmApp {
                 self.absent_bars_of(view)
             )
         };
-        let again = Command::SaveFigure(view, width, path.clone());
+        let again = Command::Output(OutputCommand::SaveFigure(view, width, path.clone()));
         self.written(written.map(words), FormKind::SaveFigure, again);
     }
 
@@ -258,7 +264,7 @@ impl GdcmApp {
             written,
             &path,
             FormKind::SaveTable,
-            Command::SaveTable(table, path.clone()),
+            Command::Output(OutputCommand::SaveTable(table, path.clone())),
         );
     }
 
@@ -372,7 +378,11 @@ impl GdcmApp {
                     inputs,
                 });
             }
-            Err(error) => self.written(Err(error), FormKind::Report, Command::WriteReport(path)),
+            Err(error) => self.written(
+                Err(error),
+                FormKind::Report,
+                Command::Output(OutputCommand::WriteReport(path)),
+            ),
         }
     }
 
@@ -381,9 +391,11 @@ impl GdcmApp {
         self.reporting = None;
         match outcome {
             Ok(()) => self.done(format!("wrote the report {}", sanitized_path(&job.path))),
-            Err(error) => {
-                self.written(Err(error), FormKind::Report, Command::WriteReport(job.path))
-            }
+            Err(error) => self.written(
+                Err(error),
+                FormKind::Report,
+                Command::Output(OutputCommand::WriteReport(job.path)),
+            ),
         }
     }
 
@@ -448,7 +460,7 @@ impl GdcmApp {
             written,
             &path,
             FormKind::WriteTolerances,
-            Command::WriteTolerances(path.clone()),
+            Command::File(FileCommand::WriteTolerances(path.clone())),
         );
     }
 }

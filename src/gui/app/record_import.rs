@@ -27,8 +27,8 @@ use gdcm_sysid::records::{
 use super::GdcmApp;
 use super::files::DialogPurpose;
 use super::threads::Untold;
-use crate::gui::commands::command::Command;
 use crate::gui::commands::records::RecordsCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::records::{
     AddedRecord, ConditionRecords, RecordsBefore, RecordsPage, WantedDataset,
@@ -213,7 +213,7 @@ impl GdcmApp {
             records.choose(index);
         }
         self.state.records.page = RecordsPage::Columns;
-        self.dispatch(Command::SelectCondition(id));
+        self.dispatch(SelectionCommand::SelectCondition(id));
     }
 
     /// Returns the identification band of a condition: its own, or the study's.

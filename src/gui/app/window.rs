@@ -22,16 +22,19 @@ use gdcm_study::{Analysis, Study};
 use super::background_jobs::{AnalysisJob, BackgroundJobs, Proof};
 use super::files::{PendingAction, SavedStudy};
 use super::keyboard::KeyOrder;
+use super::layout_commands::NextFocus;
 use super::outputs::ReportJob;
 use super::record_import::DatasetOfRecords;
 use super::recovery::{Autosave, LAST_WAIT};
 use super::reload::DiskWatch;
 use super::threads::{Fault, Reader, Reply, ReplySender};
-use super::update::NextFocus;
 use super::{Setup, keyboard};
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::records::RecordsCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::panels::explanation::sheet_ui;
 use crate::gui::panels::{
     answer_panel, bars, centre, conditions_panel, explanation, forms, help, models_panel,
@@ -325,7 +328,7 @@ impl GdcmApp {
         match paths.as_slice() {
             [] => {}
             [path] if self.state.assembling.is_none() && !holds_models(path) => {
-                commands.push(Command::Open(path.clone()))
+                commands.push(FileCommand::Open(path.clone()).into())
             }
             // While the records of a condition are shown, dropped files are added to them.
             _ if self.state.assembling.is_none()
@@ -494,12 +497,12 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
     // A click outside may ask about another value, which is then shown.
     let asks = commands
         .iter()
-        .any(|command| matches!(command, Command::Explain(_)));
+        .any(|command| matches!(command, Command::Selection(SelectionCommand::Explain(_))));
     if is_closed && !asks {
         commands.push(if sheet == Sheet::Derivation {
-            Command::Explain(None)
+            Command::Selection(SelectionCommand::Explain(None))
         } else {
-            Command::ShowSheet(None)
+            Command::Layout(LayoutCommand::ShowSheet(None))
         });
     }
 }

@@ -8,6 +8,7 @@ use egui::{Key, Modifiers, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 use super::command::Command;
 use super::command_table::every_command;
 use super::entry::Entry;
+use crate::gui::commands::form::FormCommand;
 use crate::gui::state::forms::PaletteForm;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{Room, row_text, row_text_within, row_ui};
@@ -71,7 +72,7 @@ pub fn command_palette_ui(
         .map(|place| &entries[place])
         .filter(|entry| entry.enabled)
     {
-        commands.push(Command::ShowForm(None));
+        commands.push(FormCommand::ShowForm(None).into());
         commands.push(entry.command.clone());
     }
 }

@@ -15,6 +15,13 @@ use super::command::Command;
 use super::curve_entries::curve_entries;
 use super::entry::{Entry, Menu};
 use super::records::RecordsCommand;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::commands::study::StudyCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::pair_set::PairSet;
@@ -54,12 +61,12 @@ pub fn command_table(state: &State) -> Vec<Entry> {
         entries.push(Entry::new(
             copy,
             "As text, one line a row",
-            Command::CopyTable(kind),
+            OutputCommand::CopyTable(kind),
         ));
         entries.push(Entry::new(
             save,
             "As a CSV file",
-            Command::AskSaveTable(kind),
+            OutputCommand::AskSaveTable(kind),
         ));
     }
     for view in views_with_figure() {
@@ -68,9 +75,9 @@ pub fn command_table(state: &State) -> Vec<Entry> {
         entries.push(Entry::new(
             copy,
             "As CSV, to the clipboard",
-            Command::CopyFigure(view),
+            OutputCommand::CopyFigure(view),
         ));
-        let command = Command::AskSaveFigure(view, FigureFormat::Svg);
+        let command = Command::Output(OutputCommand::AskSaveFigure(view, FigureFormat::Svg));
         entries.push(Entry::new(
             save,
             "As SVG, PNG or PDF, or its numbers as CSV",
@@ -83,7 +90,7 @@ pub fn command_table(state: &State) -> Vec<Entry> {
 
 /// Returns the command that shows a form.
 fn form(form: FormKind) -> Command {
-    Command::ShowForm(Some(form))
+    Command::Form(FormCommand::ShowForm(Some(form)))
 }
 
 fn file_entries(state: &State) -> Vec<Entry> {
@@ -91,7 +98,7 @@ fn file_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             "Open…",
             "A dataset or a study, with the desktop's dialog",
-            Command::AskOpen,
+            FileCommand::AskOpen,
         )
         .keys(CTRL, Key::O),
         Entry::new(
@@ -103,25 +110,30 @@ fn file_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             "Open the example",
             "The simulated dataset that comes with the program",
-            Command::OpenExample,
+            FileCommand::OpenExample,
         ),
         Entry::new(
             "Import models…",
             "A dataset of a folder of model files: MATLAB, NumPy, JSON, text",
-            AssemblingCommand::Open.into(),
+            AssemblingCommand::Open,
         ),
         Entry::new(
             "Add flight records…",
             "Of the condition that their names say, or of the one shown",
-            RecordsCommand::AskFiles.into(),
+            RecordsCommand::AskFiles,
         ),
     ];
     let save = [
-        Entry::new("Save study", "Where it was saved last", Command::SaveStudy).keys(CTRL, Key::S),
+        Entry::new(
+            "Save study",
+            "Where it was saved last",
+            FileCommand::SaveStudy,
+        )
+        .keys(CTRL, Key::S),
         Entry::new(
             "Save study as…",
             "With the desktop's dialog",
-            Command::AskSaveStudy,
+            FileCommand::AskSaveStudy,
         )
         .keys(CTRL_SHIFT, Key::S),
     ];
@@ -131,7 +143,7 @@ fn file_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             "Write report…",
             "All that was done and found as one page to print, with every plot",
-            Command::AskReport,
+            OutputCommand::AskReport,
         ),
         Entry::new(
             "Export as…",
@@ -144,24 +156,24 @@ fn file_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             "Close",
             "Put away what is open, and show the start page",
-            Command::CloseStudy,
+            FileCommand::CloseStudy,
         )
         .keys(CTRL, Key::W),
         Entry::new(
             "Start page",
             "Three ways in, and what was open of late",
-            Command::ShowStart(true),
+            LayoutCommand::ShowStart(true),
         ),
     ];
     let begin = |what: OpensWith| {
         let entry = Entry::new(
             what.name(),
             "When the program is started without a file",
-            Command::BeginWith(what),
+            LayoutCommand::BeginWith(what),
         );
         entry.enabled(state.display.opens_with != what)
     };
-    let quit = [Entry::new("Quit", "Close the window", Command::Quit).keys(CTRL, Key::Q)];
+    let quit = [Entry::new("Quit", "Close the window", FileCommand::Quit).keys(CTRL, Key::Q)];
     let menu = Menu::File;
     let entries = group(menu, 0, open)
         .chain(group(menu, 1, save))
@@ -185,7 +197,7 @@ fn record_entries(state: &State) -> [Entry; 4] {
         .conditions
         .values()
         .any(|records| records.used_rows().next().is_some());
-    let entry = |name, meaning, command: RecordsCommand| Entry::new(name, meaning, command.into());
+    let entry = |name, meaning, command: RecordsCommand| Entry::new(name, meaning, command);
     let here = "Into the condition shown";
     [
         entry(
@@ -240,19 +252,19 @@ fn edit_entries(state: &State) -> Vec<Entry> {
     } else {
         "Include this condition in the schedule"
     };
-    let edit = |name: String, meaning, edit: Edit| Entry::new(name, meaning, edit.into());
+    let edit = |name: String, meaning, edit: Edit| Entry::new(name, meaning, edit);
     let history = [
         Entry::new(
             step("Undo", undo),
             "Take the last decision back",
-            Command::Undo,
+            StudyCommand::Undo,
         )
         .keys(CTRL, Key::Z)
         .enabled(undo.is_some()),
         Entry::new(
             step("Redo", redo),
             "Bring a decision taken back again",
-            Command::Redo,
+            StudyCommand::Redo,
         )
         .keys(CTRL_SHIFT, Key::Z)
         .keys(CTRL, Key::Y)
@@ -313,7 +325,7 @@ pub(crate) fn hold_entry(state: &State, pair: Pair) -> Entry {
             format!("Hold {name} exactly")
         },
         "Hold its net gain exactly, and its delay where one can, or leave both to the fit",
-        Edit::Hold(pair, !held).into(),
+        Edit::Hold(pair, !held),
     )
     .enabled(held || !is_undefined)
 }
@@ -327,20 +339,20 @@ fn view_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             "Fit the plots",
             "Bring every curve back into view",
-            Command::FitPlots,
+            DisplayCommand::FitPlots,
         )
         .free_key(Key::F),
         Entry::new(
             unit_name,
             "In every plot over frequency",
-            Command::SetFrequencyUnit(unit),
+            DisplayCommand::SetFrequencyUnit(unit),
         ),
     ];
     let show = |view: View| {
         Entry::new(
             format!("Show {}", view.name()),
             view.facts().purpose,
-            Command::ShowView(view),
+            LayoutCommand::ShowView(view),
         )
     };
     let parts = [
@@ -348,7 +360,7 @@ fn view_entries(state: &State) -> Vec<Entry> {
         (Modifiers::SHIFT, "Previous part of the window", false),
     ];
     let part = |(modifiers, name, forward)| {
-        Entry::new(name, PARTS, Command::LeaveRegion { forward }).keys(modifiers, Key::F6)
+        Entry::new(name, PARTS, LayoutCommand::LeaveRegion { forward }).keys(modifiers, Key::F6)
     };
     let themes = [
         (
@@ -367,7 +379,7 @@ fn view_entries(state: &State) -> Vec<Entry> {
             ThemePreference::Light,
         ),
     ];
-    let theme = |(name, meaning, theme)| Entry::new(name, meaning, Command::SetTheme(theme));
+    let theme = |(name, meaning, theme)| Entry::new(name, meaning, LayoutCommand::SetTheme(theme));
     let menu = Menu::View;
     let entries = group(menu, 0, plots)
         .chain(group(menu, 1, steps(state)))
@@ -385,7 +397,7 @@ fn layout_entries(state: &State) -> Vec<Entry> {
     let arrangement = &state.display.arrangement;
     let keys = [Key::Num1, Key::Num2, Key::Num3, Key::Num4];
     let groups = ViewGroup::ALL.into_iter().zip(keys).map(|(group, key)| {
-        let command = Command::ShowGroup(group);
+        let command = Command::Layout(LayoutCommand::ShowGroup(group));
         Entry::new(
             format!("Views: {}", group.name()),
             "The group, with the view that it showed last",
@@ -401,7 +413,7 @@ fn layout_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             name,
             "Of the group in front",
-            Command::ShowView(arrangement.neighbour(by)),
+            LayoutCommand::ShowView(arrangement.neighbour(by)),
         )
         .keys(Modifiers::ALT, key)
     });
@@ -416,7 +428,7 @@ fn layout_entries(state: &State) -> Vec<Entry> {
                 "Conditions and models in full"
             },
             "The left side of the window",
-            Command::ShowLeft(!is_left_open),
+            LayoutCommand::ShowLeft(!is_left_open),
         )
         .keys(CTRL, Key::B),
         Entry::new(
@@ -426,7 +438,7 @@ fn layout_entries(state: &State) -> Vec<Entry> {
                 "Unfold the settings"
             },
             "In place of matrix and card",
-            Command::ShowSettings(!display.settings_open),
+            LayoutCommand::ShowSettings(!display.settings_open),
         )
         .keys(CTRL, Key::Comma),
         Entry::new(
@@ -436,17 +448,17 @@ fn layout_entries(state: &State) -> Vec<Entry> {
                 "Unfold the dock"
             },
             "The plots below the view in front",
-            Command::OpenDock(!is_dock_open),
+            LayoutCommand::OpenDock(!is_dock_open),
         ),
         Entry::new(
             "Why the result is so",
             "Its cautions, where a lag may come from, the proof",
-            Command::ShowSheet(Some(Sheet::Reasons)),
+            LayoutCommand::ShowSheet(Some(Sheet::Reasons)),
         ),
         Entry::new(
             "Reset the layout",
             "Every panel and plot goes back to its place",
-            Command::ResetLayout,
+            LayoutCommand::ResetLayout,
         ),
     ];
     groups
@@ -465,7 +477,9 @@ fn steps(state: &State) -> [Entry; 4] {
         .unwrap_or(0);
     let to_condition = |name, key, place: Option<usize>| {
         let found = place.and_then(|place| conditions.get(place));
-        let command = Command::SelectCondition(found.unwrap_or(&conditions[here]).id());
+        let command = Command::Selection(SelectionCommand::SelectCondition(
+            found.unwrap_or(&conditions[here]).id(),
+        ));
         Entry::new(name, "In the order of the list", command)
             .free_key(key)
             .enabled(found.is_some())
@@ -476,7 +490,10 @@ fn steps(state: &State) -> [Entry; 4] {
     let to_response = |name, key, place: Option<usize>| {
         let found = place.filter(|place| *place < inputs * outputs);
         let place = found.unwrap_or(at);
-        let command = Command::FocusPair(Pair::new(place / inputs, place % inputs));
+        let command = Command::Selection(SelectionCommand::FocusPair(Pair::new(
+            place / inputs,
+            place % inputs,
+        )));
         Entry::new(name, "Row by row of the matrix", command)
             .free_key(key)
             .enabled(found.is_some())
@@ -501,7 +518,7 @@ fn setting_entries(state: &State) -> Vec<Entry> {
             entries.push(Entry::new(
                 name,
                 "Goes to its field",
-                Command::FocusField(label),
+                LayoutCommand::FocusField(label),
             ));
         };
         match setting.kind {
@@ -516,7 +533,7 @@ fn setting_entries(state: &State) -> Vec<Entry> {
                 let now = get(&state.study.settings);
                 entries.extend(words.iter().enumerate().map(|(index, [_, text, _])| {
                     let name = format!("{}: {text}", setting.control.label);
-                    Entry::new(name, setting.help, setting.to(Value::Choice(index)).into())
+                    Entry::new(name, setting.help, setting.to(Value::Choice(index)))
                         .enabled(index != now)
                 }));
             }
@@ -543,7 +560,7 @@ fn help_entries() -> impl Iterator<Item = Entry> {
         Entry::new(
             "Guided tour",
             "Five steps through the window",
-            Command::StartTour,
+            LayoutCommand::StartTour,
         ),
     ];
     let about = [Entry::new(
@@ -558,26 +575,32 @@ fn help_entries() -> impl Iterator<Item = Entry> {
 /// file.
 pub fn every_command(state: &State) -> Vec<Entry> {
     let mut entries = command_table(state);
-    entries.retain(|entry| entry.command != Command::ShowForm(Some(FormKind::Palette)));
+    entries.retain(|entry| {
+        entry.command != Command::Form(FormCommand::ShowForm(Some(FormKind::Palette)))
+    });
     entries.extend(PairSet::ALL.map(|set| {
         Entry::new(
             format!("Net gains of the responses {}", set.name()),
             set.purpose(),
-            Command::ShowNetGains(set),
+            DisplayCommand::ShowNetGains(set),
         )
     }));
     entries.extend(state.dataset().conditions().iter().map(|condition| {
         let id = condition.id();
         let flight_state = condition.flight_state();
         let name = format!("Condition {id} · {}", flight_state.name);
-        Entry::new(name, "Show this condition", Command::SelectCondition(id))
+        Entry::new(
+            name,
+            "Show this condition",
+            SelectionCommand::SelectCondition(id),
+        )
     }));
     for pair in state.dataset().on_axis().pairs() {
         let name = state.dataset().pair_name(pair);
         entries.push(Entry::new(
             format!("Show {name}"),
             "In the plots of one response",
-            Command::FocusPair(pair),
+            SelectionCommand::FocusPair(pair),
         ));
         if pair != state.display.pair {
             entries.push(hold_entry(state, pair));
@@ -589,7 +612,7 @@ pub fn every_command(state: &State) -> Vec<Entry> {
         Entry::new(
             name,
             "Opened or saved of late",
-            Command::Open(file.path.clone()),
+            FileCommand::Open(file.path.clone()),
         )
         .enabled(!file.missing)
     }));
@@ -605,9 +628,10 @@ fn model_entries(state: &State) -> Vec<Entry> {
         for name in condition.bundle(bundle).iter().map(|model| &model.name) {
             let id = ModelId::new(condition.id(), bundle, name);
             let choice = choice.bundle(bundle);
-            let mut entry =
-                |text: String, meaning, command| entries.push(Entry::new(text, meaning, command));
-            let ask = Command::AskReason(id.clone());
+            let mut entry = |text: String, meaning, command: Command| {
+                entries.push(Entry::new(text, meaning, command))
+            };
+            let ask = Command::Form(FormCommand::AskReason(id.clone()));
             let kept_in_words = "In words, kept in the study";
             if choice.rejected.contains(name) {
                 entry(

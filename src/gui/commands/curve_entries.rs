@@ -4,6 +4,8 @@ use egui::Key;
 
 use super::command::Command;
 use super::entry::{Entry, Menu};
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::state::curve_display::CurveDisplay;
@@ -22,7 +24,7 @@ pub fn curve_entries(state: &State) -> Vec<Entry> {
 fn unit_entries(state: &State) -> Vec<Entry> {
     let curves = &state.display.curves;
     let entry = |name: &str, meaning, command: CurveCommand| {
-        Entry::new(name, meaning, command.into()).within(Menu::Curves, 0)
+        Entry::new(name, meaning, command).within(Menu::Curves, 0)
     };
     vec![
         match curves.magnitude {
@@ -98,18 +100,18 @@ fn look_entries(looks: PlotStyle) -> Vec<Entry> {
         .into_iter()
         .filter(|colors| *colors != looks.curve_colors)
     {
-        let command = Command::SetLooks(PlotStyle {
+        let command = Command::Display(DisplayCommand::SetLooks(PlotStyle {
             curve_colors,
             ..looks
-        });
+        }));
         let meaning = "For all eyes: colours that stay apart for people who do not see red, green or blue as others do";
         entries.push(Entry::new(curve_colors.name(), meaning, command).within(Menu::Curves, 1));
     }
     for line_width in PlotStyle::LINE_WIDTHS {
-        let command = Command::SetLooks(PlotStyle {
+        let command = Command::Display(DisplayCommand::SetLooks(PlotStyle {
             line_width,
             ..looks
-        });
+        }));
         let entry = Entry::new(
             format!("Lines × {line_width}"),
             "Widths of all curves, by the usual ones",
@@ -135,7 +137,7 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
     let isolation = Entry::new(
         "End isolation and selection",
         "Show every model, select none",
-        Command::EndIsolation,
+        SelectionCommand::EndIsolation,
     );
     vec![
         // Fields and menus lose the key of an entry whether or not the entry is enabled, so it has
@@ -149,14 +151,14 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             "Show hidden curves",
             "Draw every model, and the roles that are drawn at first",
-            CurveCommand::ShowHidden.into(),
+            CurveCommand::ShowHidden,
         )
         .within(Menu::Curves, 3)
         .enabled(is_hidden),
         Entry::new(
             "Mark the frequency under the pointer",
             "In every plot over frequency; two marks show what changes between them",
-            CurveCommand::PinCursor(display.curves.cursor.unwrap_or_default()).into(),
+            CurveCommand::PinCursor(display.curves.cursor.unwrap_or_default()),
         )
         .free_key(Key::M)
         .within(Menu::Curves, 3)
@@ -164,7 +166,7 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             "Remove marks of frequencies",
             "In every plot over frequency",
-            CurveCommand::UnpinCursors.into(),
+            CurveCommand::UnpinCursors,
         )
         .within(Menu::Curves, 3)
         .enabled(!(display.curves.pinned.is_empty() && display.curves.crossings.is_empty())),

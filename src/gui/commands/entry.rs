@@ -45,7 +45,11 @@ pub struct Entry {
 
 impl Entry {
     /// Creates an entry for the palette alone, without shortcut.
-    pub fn new(name: impl Into<String>, meaning: &'static str, command: Command) -> Self {
+    pub fn new(
+        name: impl Into<String>,
+        meaning: &'static str,
+        command: impl Into<Command>,
+    ) -> Self {
         let shortcuts = Vec::new();
         let reach = Reach::Everywhere;
         Self {
@@ -55,7 +59,7 @@ impl Entry {
             reach,
             menu: None,
             enabled: true,
-            command,
+            command: command.into(),
         }
     }
 

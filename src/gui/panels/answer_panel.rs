@@ -14,6 +14,7 @@ use gdcm_study::decisions::setting;
 use super::verdict::{Step, Verdict, VerdictRow, band_words, export};
 use super::{matrix_panel, result_panel, settings_panel};
 use crate::gui::commands::command::Command;
+use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::sheet::Sheet;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{
@@ -212,7 +213,7 @@ fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Ve
 }
 
 fn is_of_reasons(step: &Step) -> bool {
-    step.command == Command::ShowSheet(Some(Sheet::Reasons))
+    step.command == Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons)))
 }
 
 /// Returns the link to the list of reasons if no other step leads there.
@@ -220,7 +221,7 @@ fn notes_step(verdict: &Verdict) -> Option<Step> {
     let is_offered = verdict.steps.iter().any(is_of_reasons);
     let notes = Step {
         label: format!("{} notes", verdict.reasons),
-        command: Command::ShowSheet(Some(Sheet::Reasons)),
+        command: Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons))),
     };
     (!is_offered && verdict.reasons > 0).then_some(notes)
 }
@@ -339,7 +340,7 @@ fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mu
     );
     let response = named_switch(response, Role::Button, is_open, "Settings");
     if response.clicked() || (is_open && take_escape(ui.ctx())) {
-        commands.push(Command::ShowSettings(!is_open));
+        commands.push(LayoutCommand::ShowSettings(!is_open).into());
     }
     response.on_hover_text(format!(
         "{words}. Click, or Ctrl+comma: {} them",

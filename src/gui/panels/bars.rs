@@ -10,7 +10,13 @@ use gdcm_model::dataset::{BundleKind, Condition};
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::command_table::command_table;
+use crate::gui::commands::computing::ComputingCommand;
 use crate::gui::commands::entry::Menu;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::commands::study::StudyCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::notices::{Bar, NoticeKind};
 use crate::gui::state::records::RecordsState;
@@ -29,7 +35,7 @@ pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
             ui.label(RichText::new("gdcm").font(medium(BODY_SIZE)));
             ui.add_space(4.0);
             let file = ui.menu_button("File", |ui| menu_ui(ui, state, Menu::File, commands));
-            file.response.asks(Command::LookForRecent, commands);
+            file.response.asks(FileCommand::LookForRecent, commands);
             for (name, menu) in [
                 ("Edit", Menu::Edit),
                 ("View", Menu::View),
@@ -74,7 +80,7 @@ fn search_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) -> f32
     let keys = ui.ctx().format_shortcut(&keys);
     painted_text(ui, inner, -0.01, &keys, small(), palette.dim_text);
     named(response, Role::Button, "Find a command")
-        .asks(Command::ShowForm(Some(FormKind::Palette)), commands);
+        .asks(FormCommand::ShowForm(Some(FormKind::Palette)), commands);
     rect.left()
 }
 
@@ -89,7 +95,8 @@ fn menu_ui(ui: &mut Ui, state: &State, menu: Menu, commands: &mut Vec<Command>) 
         if last.replace(group).is_some_and(|last| last != group) {
             ui.separator();
         }
-        let is_recent_place = entry.command == Command::OpenExample && !state.recent.is_empty();
+        let is_recent_place =
+            entry.command == Command::File(FileCommand::OpenExample) && !state.recent.is_empty();
         if is_recent_place {
             ui.menu_button("Open recent", |ui| recent_menu_ui(ui, state, commands));
         }
@@ -131,7 +138,7 @@ fn recent_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             .on_disabled_hover_text(format!("It is not in {folder} any more"))
             .clicked()
         {
-            commands.push(Command::Open(path.clone()));
+            commands.push(FileCommand::Open(path.clone()).into());
             ui.close();
         }
     }
@@ -143,13 +150,13 @@ fn history_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             "↶ Undo",
             state.history.undo_label(),
             "Take the last decision back (Ctrl+Z)",
-            Command::Undo,
+            Command::Study(StudyCommand::Undo),
         ),
         (
             "↷ Redo",
             state.history.redo_label(),
             "Bring it back again (Ctrl+Shift+Z)",
-            Command::Redo,
+            Command::Study(StudyCommand::Redo),
         ),
     ] {
         let text = label.map_or(verb.to_owned(), |label| format!("{verb} {label}"));
@@ -169,7 +176,7 @@ fn theme_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     let button = named(ui.add(Button::new("◐").frame(false)), Role::Button, name);
     button
         .on_hover_text(name)
-        .asks(Command::SetTheme(other), commands);
+        .asks(LayoutCommand::SetTheme(other), commands);
 }
 
 /// Draws dataset and study in the middle of the bar if there is room.
@@ -223,20 +230,23 @@ pub fn bars_ui(ui: &mut Ui, bars: &[Bar], palette: &Palette, commands: &mut Vec<
 }
 
 fn bar_ui(ui: &mut Ui, bar: &Bar, palette: &Palette, commands: &mut Vec<Command>) {
-    let close = Command::CloseBar(bar.clone());
+    let close = Command::Form(FormCommand::CloseBar(bar.clone()));
     let (sentence, buttons) = match bar {
         Bar::Fault { sentence } => {
-            let copy = Command::CopyText(sentence.clone());
+            let copy = Command::Output(OutputCommand::CopyText(sentence.clone()));
             let buttons = vec![
-                ("Compute again", Command::Compute),
+                (
+                    "Compute again",
+                    Command::Computing(ComputingCommand::Compute),
+                ),
                 ("Copy this message", copy),
                 ("Put away", close),
             ];
             (sentence.clone(), buttons)
         }
         Bar::Recovery { offer, sentence } => {
-            let restore = Command::RestoreRecovery(*offer);
-            let discard = Command::DiscardRecovery(*offer);
+            let restore = Command::File(FileCommand::RestoreRecovery(*offer));
+            let discard = Command::File(FileCommand::DiscardRecovery(*offer));
             (
                 sentence.clone(),
                 vec![("Restore", restore), ("Discard", discard), ("Later", close)],
@@ -244,8 +254,8 @@ fn bar_ui(ui: &mut Ui, bar: &Bar, palette: &Palette, commands: &mut Vec<Command>
         }
         Bar::Changed { name } => {
             let buttons = vec![
-                ("Reload", Command::Reload),
-                ("Keep what is open", Command::KeepOpen),
+                ("Reload", Command::File(FileCommand::Reload)),
+                ("Keep what is open", Command::File(FileCommand::KeepOpen)),
             ];
             (format!("{name} has changed on disk."), buttons)
         }
@@ -326,7 +336,7 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
                         ui,
                         Button::new("Dismiss").small(),
                         "",
-                        Command::DismissNotice,
+                        FormCommand::DismissNotice,
                         commands,
                     );
                     let color = if notice.kind == NoticeKind::Done {
@@ -396,7 +406,7 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
             ui,
             Button::new("Compute").small(),
             "",
-            Command::Compute,
+            ComputingCommand::Compute,
             commands,
         );
     } else if is_reading || state.results.is_stale(now) || beside.is_some() {
@@ -404,7 +414,7 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
             ui,
             Button::new("Stop").small(),
             "",
-            Command::StopComputing,
+            ComputingCommand::StopComputing,
             commands,
         );
     }

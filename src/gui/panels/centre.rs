@@ -8,6 +8,8 @@ use egui::{
 
 use super::start_page::example_line_ui;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::view::{View, ViewGroup};
 use crate::gui::state::window_state::State;
 use crate::gui::views::figure_button::figure_button_ui;
@@ -93,7 +95,7 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
                 ui,
                 Button::new("Fit").frame(false),
                 hint,
-                Command::FitPlots,
+                DisplayCommand::FitPlots,
                 commands,
             );
             beside_ui(ui, state, palette, commands);
@@ -148,7 +150,7 @@ fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
         let names: Vec<&str> = group.views().map(View::name).collect();
         response
             .on_hover_text(names.join(", "))
-            .asks(Command::ShowGroup(group), commands);
+            .asks(LayoutCommand::ShowGroup(group), commands);
     }
 }
 
@@ -171,7 +173,7 @@ fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &
         let views = arrangement.group().views();
         entries_ui(
             ui,
-            views.map(|view| (view.name(), Command::ShowView(view))),
+            views.map(|view| (view.name(), Command::Layout(LayoutCommand::ShowView(view)))),
             commands,
         );
     });
@@ -216,7 +218,7 @@ fn tab_ui(
     let response = named_switch(response, Role::Tab, is_front, view.name());
     response
         .on_hover_text(view.facts().purpose)
-        .asks(Command::ShowView(view), commands);
+        .asks(LayoutCommand::ShowView(view), commands);
 }
 
 /// Draws the button that shows a second view beside the view in front, or hides it.
@@ -231,7 +233,7 @@ fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
             views.map(|view| {
                 (
                     format!("{} beside it", view.name()),
-                    Command::ShowBeside(Some(view)),
+                    Command::Layout(LayoutCommand::ShowBeside(Some(view))),
                 )
             }),
             commands,
@@ -240,7 +242,10 @@ fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
             ui.separator();
             entries_ui(
                 ui,
-                [("One view alone", Command::ShowBeside(None))],
+                [(
+                    "One view alone",
+                    Command::Layout(LayoutCommand::ShowBeside(None)),
+                )],
                 commands,
             );
         }
@@ -449,7 +454,7 @@ fn dock_head_ui(
                 };
                 response
                     .on_hover_text(hint)
-                    .asks(Command::OpenDock(!is_open), commands);
+                    .asks(LayoutCommand::OpenDock(!is_open), commands);
                 let others: Vec<View> = View::docked(state.study.settings.phase).collect();
                 for docked in &others {
                     let is_front = *docked == view;
@@ -465,7 +470,7 @@ fn dock_head_ui(
                             is_front,
                             format!("{} in the dock", docked.name()),
                         );
-                        button.asks(Command::ShowInDock(*docked), commands);
+                        button.asks(LayoutCommand::ShowInDock(*docked), commands);
                     }
                 }
                 ui.add_space(4.0);

@@ -17,6 +17,9 @@ use gdcm_study::Edit;
 use super::cost_map::{CostColumn, columns, cost_of_column};
 use super::table_menu::{table_heading_ui, table_menu_ui};
 use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::sheet::Sheet;
 use crate::gui::state::tables::TableKind;
@@ -121,7 +124,7 @@ fn pin_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     let response = named(response, Role::Button, "Show the left panel");
     response
         .on_hover_text("Conditions with their map and models beside the plots (Ctrl+B)")
-        .asks(Command::ShowLeft(true), commands);
+        .asks(LayoutCommand::ShowLeft(true), commands);
 }
 
 fn bundle_button_ui(
@@ -167,7 +170,7 @@ fn bundle_button_ui(
         .on_hover_text(format!("{name}: {kept} kept"))
         .clicked()
     {
-        commands.push(Command::ShowSheet(Some(sheet)));
+        commands.push(LayoutCommand::ShowSheet(Some(sheet)).into());
     }
 }
 
@@ -288,7 +291,7 @@ impl<'a> Map<'a> {
             let entry = |mapped: MappedCost| {
                 (
                     format!("Map J of {}", mapped.name()),
-                    Command::MapCost(mapped),
+                    Command::Display(DisplayCommand::MapCost(mapped)),
                 )
             };
             entries_ui(ui, MappedCost::ALL.map(entry), commands);
@@ -316,7 +319,7 @@ impl<'a> Map<'a> {
         let height = ROWS[usize::from(self.is_rail)];
         let (row, response) = row_of_height_ui(ui, palette, (is_shown, is_pointed, height), &name);
         if response.contains_pointer() {
-            commands.push(Command::HoverCondition(id));
+            commands.push(SelectionCommand::HoverCondition(id).into());
         }
         let color = if marks.left_out {
             palette.quiet_text
@@ -355,7 +358,7 @@ impl<'a> Map<'a> {
         }
         self.cells_ui(ui, row, (id, &marks), palette, commands);
         marks.paint(ui, row, palette);
-        response.asks(Command::SelectCondition(id), commands);
+        response.asks(SelectionCommand::SelectCondition(id), commands);
         response.context_menu(|ui| menu_ui(ui, id, &marks, commands));
         response.on_hover_ui(|ui| tooltip_ui(ui, condition, &marks, palette));
     }
@@ -395,7 +398,10 @@ impl<'a> Map<'a> {
             let response = named(response, Role::Button, words.clone());
             response.context_menu(|ui| menu_ui(ui, id, marks, commands));
             if response.on_hover_text(words).clicked() {
-                commands.extend([Command::SelectCondition(id), Command::FocusPair(pair)]);
+                commands.extend([
+                    Command::Selection(SelectionCommand::SelectCondition(id)),
+                    Command::Selection(SelectionCommand::FocusPair(pair)),
+                ]);
             }
         }
     }

@@ -21,6 +21,9 @@ use gdcm_study::stages::lead_compensation::lead_words;
 use gdcm_study::{ConditionAnalysis, Edit, ExplainTarget};
 
 use crate::gui::commands::command::Command;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
@@ -142,7 +145,7 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
     }
     ui.horizontal(|ui| {
         if ui.button("Copy the derivation").clicked() {
-            commands.push(Command::CopyText(text_of(found)));
+            commands.push(OutputCommand::CopyText(text_of(found)).into());
         }
         ui.label(palette.small(found.section));
     });
@@ -194,7 +197,7 @@ pub fn value_label_ui(
     commands: &mut Vec<Command>,
 ) -> Response {
     let response = ui.add(Label::new(text).sense(Sense::click()).selectable(false));
-    response.asks(Command::Explain(Some(asked)), commands);
+    response.asks(SelectionCommand::Explain(Some(asked)), commands);
     response.on_hover_cursor(CursorIcon::Help)
 }
 
@@ -207,9 +210,12 @@ pub fn question_menu_ui(
     ui.menu_button(QUESTION, |ui| {
         entries_ui(
             ui,
-            values
-                .into_iter()
-                .map(|(name, asked)| (name, Command::Explain(Some(asked)))),
+            values.into_iter().map(|(name, asked)| {
+                (
+                    name,
+                    Command::Selection(SelectionCommand::Explain(Some(asked))),
+                )
+            }),
             commands,
         );
     });
@@ -345,7 +351,11 @@ fn causes_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     for (name, words, look, view) in CAUSES {
         ui.label(name);
         ui.label(palette.small(words));
-        entries_ui(ui, [(look, Command::ShowView(view))], commands);
+        entries_ui(
+            ui,
+            [(look, Command::Layout(LayoutCommand::ShowView(view)))],
+            commands,
+        );
         ui.add_space(4.0);
     }
 }
@@ -492,7 +502,10 @@ fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
     );
     entries_ui(
         ui,
-        [("Look at the couplings", Command::ShowView(View::Couplings))],
+        [(
+            "Look at the couplings",
+            Command::Layout(LayoutCommand::ShowView(View::Couplings)),
+        )],
         commands,
     );
 }

@@ -18,6 +18,7 @@ use gdcm_study::{ConditionAnalysis, Edit, ExplainTarget};
 use super::explanation::{gain_conflict_marks, question_menu_ui, turn_entry};
 use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::results::Sureness;
 use crate::gui::state::tables::TableKind;
 use crate::gui::state::window_state::State;
@@ -201,7 +202,7 @@ impl<'a> Cell<'a> {
                 commands.push(Edit::Hold(self.pair, !self.constrained).into());
             }
         } else if response.clicked() {
-            commands.push(Command::FocusPair(self.pair));
+            commands.push(SelectionCommand::FocusPair(self.pair).into());
         }
         response.context_menu(|ui| self.menu_ui(ui, commands));
         response.on_hover_ui(|ui| self.tooltip_ui(ui, palette));

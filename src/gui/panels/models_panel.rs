@@ -16,6 +16,10 @@ use gdcm_study::{Edit, ExplainTarget};
 use super::explanation::question_menu_ui;
 use super::table_menu::{table_heading_ui, table_menu_ui};
 use crate::gui::commands::command::Command;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::tables::TableKind;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{
@@ -184,7 +188,7 @@ fn fold_ui(
         commands,
     );
     let response = named_switch(response, Role::Button, is_open, "Identified models");
-    response.asks(Command::ShowIdentified(!is_open), commands);
+    response.asks(LayoutCommand::ShowIdentified(!is_open), commands);
 }
 
 fn rows_ui(
@@ -390,7 +394,7 @@ impl<'a> ModelRow<'a> {
             }
         }
         if response.contains_pointer() {
-            commands.push(Command::Hover(self.id.clone()));
+            commands.push(SelectionCommand::Hover(self.id.clone()).into());
         }
         response.context_menu(|ui| self.menu_ui(ui, commands));
         response.on_hover_ui(|ui| self.tooltip_ui(ui, palette));
@@ -401,18 +405,27 @@ impl<'a> ModelRow<'a> {
         let decisions = if self.kept {
             [
                 ("Reject", Edit::Reject(id.clone()).into()),
-                ("Reject with a reason…", Command::AskReason(id.clone())),
+                (
+                    "Reject with a reason…",
+                    Command::Form(FormCommand::AskReason(id.clone())),
+                ),
             ]
         } else {
             [
                 ("Restore", Edit::Restore(id.clone()).into()),
-                ("Say why it is rejected…", Command::AskReason(id.clone())),
+                (
+                    "Say why it is rejected…",
+                    Command::Form(FormCommand::AskReason(id.clone())),
+                ),
             ]
         };
         entries_ui(ui, decisions, commands);
         entries_ui(
             ui,
-            [("Copy its name", Command::CopyText(self.model.name.clone()))],
+            [(
+                "Copy its name",
+                Command::Output(OutputCommand::CopyText(self.model.name.clone())),
+            )],
             commands,
         );
         let ratio = self.ratio.map(|_| {

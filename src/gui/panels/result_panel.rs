@@ -11,6 +11,8 @@ use gdcm_study::{ConditionAnalysis, ExplainTarget};
 
 use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::sheet::Sheet;
 use crate::gui::state::tables::TableKind;
 use crate::gui::state::window_state::State;
@@ -99,7 +101,7 @@ fn proof_ui(
     response
         .on_hover_cursor(CursorIcon::PointingHand)
         .on_hover_text(outcome.words())
-        .asks(Command::ShowSheet(Some(Sheet::Reasons)), commands);
+        .asks(LayoutCommand::ShowSheet(Some(Sheet::Reasons)), commands);
 }
 
 /// Channels of a side.
@@ -271,7 +273,7 @@ impl Side<'_> {
         let response = response
             .on_hover_cursor(CursorIcon::Help)
             .on_hover_text(hint);
-        response.asks(Command::Explain(Some(value.asked)), commands);
+        response.asks(SelectionCommand::Explain(Some(value.asked)), commands);
     }
 }
 

@@ -7,6 +7,7 @@ use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::{Place, Setting};
 
 use crate::gui::commands::command::Command;
+use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::views::setting_controls::SettingControls;
 use crate::gui::widgets::controls::{Asks, chevron, named_switch, painted_text, row_ui};
@@ -91,7 +92,7 @@ fn advanced_head_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mu
     chevron(ui, pos2(row.left() + 6.0, row.center().y), is_open, palette);
     painted_text(ui, row, 16.0, "Advanced", medium(BODY_SIZE), palette.text);
     named_switch(response, Role::Button, is_open, "Advanced settings")
-        .asks(Command::ShowAdvanced(!is_open), commands);
+        .asks(LayoutCommand::ShowAdvanced(!is_open), commands);
 }
 
 /// Returns the effective settings, line by line.

@@ -11,6 +11,8 @@ use gdcm_plot::figure::axis::compact;
 use super::conditions_panel::cost_picture_ui;
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::plot::{BodeCurve, Pane, Role as CurveRole};
 use crate::gui::state::window_state::State;
@@ -42,7 +44,7 @@ fn ways() -> [Way; 3] {
             title: "I have a dataset or a study",
             words: "Written by this program or a script: .json, .json.gz",
             button: "Open dataset…",
-            command: Command::AskOpen,
+            command: Command::File(FileCommand::AskOpen),
             icon: sheet_icon,
         },
         Way {
@@ -274,7 +276,7 @@ fn recent_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
             format!("Open again: {} in {}", file.name, file.folder),
         );
         if response.clicked() && !file.missing {
-            commands.push(Command::Open(file.path.clone()));
+            commands.push(FileCommand::Open(file.path.clone()).into());
         }
     }
 }
@@ -311,11 +313,11 @@ fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec
         ));
         ui.add_space(12.0);
         ui.horizontal(|ui| {
-            ui.add(Button::new(back).min_size(vec2(0.0, 28.0))).asks(Command::ShowStart(false), commands);
+            ui.add(Button::new(back).min_size(vec2(0.0, 28.0))).asks(LayoutCommand::ShowStart(false), commands);
             if state.is_example {
                 let tour = Button::new(RichText::new("Guided tour, five notes").color(palette.accent)).frame(false);
                 if ui.add(tour).clicked() {
-                    commands.extend([Command::ShowStart(false), Command::StartTour]);
+                    commands.extend([Command::Layout(LayoutCommand::ShowStart(false)), Command::Layout(LayoutCommand::StartTour)]);
                 }
             }
         });

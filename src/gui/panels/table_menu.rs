@@ -3,6 +3,7 @@
 use egui::{Align, Layout, RichText, Role, Sense, Ui};
 
 use crate::gui::commands::command::Command;
+use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::tables::TableKind;
 use crate::gui::widgets::controls::{entries_ui, named};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
@@ -38,8 +39,14 @@ pub fn table_menu_ui(
     let response = named(response, Role::Label, format!("Heading of {}", kind.name()));
     response.context_menu(|ui| {
         let choices = [
-            ("Copy table", Command::CopyTable(kind)),
-            ("Save table as CSV…", Command::AskSaveTable(kind)),
+            (
+                "Copy table",
+                Command::Output(OutputCommand::CopyTable(kind)),
+            ),
+            (
+                "Save table as CSV…",
+                Command::Output(OutputCommand::AskSaveTable(kind)),
+            ),
         ];
         entries_ui(ui, choices, commands);
     });

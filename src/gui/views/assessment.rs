@@ -14,6 +14,8 @@ use gdcm_study::results::assessment_table::{AssessedModel, held_out_verdict};
 use gdcm_study::{AssessedCorrection, AssessmentTable, ExplainTarget, Table};
 
 use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::curve_menu::NamedFigure;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
 use crate::gui::state::assessed_figures::{AssessedFigures, AssessedPairs, CostPart};
@@ -39,7 +41,7 @@ pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Comma
     }
     choices_ui(ui, &mut chosen);
     if chosen != shown {
-        commands.push(Command::Assess(chosen));
+        commands.push(DisplayCommand::Assess(chosen).into());
     }
 }
 
@@ -169,11 +171,18 @@ pub fn assessment_view_ui(
     for event in figure_ui(ui, &scene, &mut view, palette) {
         match event {
             FigureEvent::Clicked(plot, MarkId::Condition(condition), _) => {
-                commands.push(Command::SelectCondition(condition));
-                commands.extend(plots.pairs.get(plot).map(|&pair| Command::FocusPair(pair)));
+                commands.push(SelectionCommand::SelectCondition(condition).into());
+                commands.extend(
+                    plots
+                        .pairs
+                        .get(plot)
+                        .map(|&pair| Command::Selection(SelectionCommand::FocusPair(pair))),
+                );
             }
-            FigureEvent::Asked(figure) => commands.push(Command::Explain(Some(figure))),
-            FigureEvent::Told(words) => commands.push(Command::Tell(words)),
+            FigureEvent::Asked(figure) => {
+                commands.push(SelectionCommand::Explain(Some(figure)).into())
+            }
+            FigureEvent::Told(words) => commands.push(SelectionCommand::Tell(words).into()),
             FigureEvent::Clicked(..) | FigureEvent::Pointed(_) => {}
         }
     }
@@ -440,12 +449,18 @@ fn text_table_ui(
     let mut sorting = state.display.assessment_sorting;
     let clicked = table_ui(ui, &text, &mut sorting, &look, palette, commands);
     if let Some(click) = clicked {
-        commands.extend(pairs.get(click.row).map(|&pair| Command::FocusPair(pair)));
+        commands.extend(
+            pairs
+                .get(click.row)
+                .map(|&pair| Command::Selection(SelectionCommand::FocusPair(pair))),
+        );
         let condition = click
             .column
             .checked_sub(1)
             .and_then(|column| state.dataset().conditions().get(column));
-        commands.extend(condition.map(|condition| Command::SelectCondition(condition.id())));
+        commands.extend(condition.map(|condition| {
+            Command::Selection(SelectionCommand::SelectCondition(condition.id()))
+        }));
     }
     state.display.assessment_sorting = sorting;
 }

@@ -18,6 +18,9 @@ use super::frequency::{
     wished,
 };
 use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::bode::{BodeEvent, InvalidRegion, PaneNote};
 use crate::gui::plot::bode_pane::BodeBand;
 use crate::gui::plot::curve_command::CurveCommand;
@@ -291,7 +294,7 @@ pub fn across_header_ui(
     });
     choice_ui(ui, "Model of each condition", &mut role, &roles);
     if role != state.display.across_role {
-        commands.push(Command::ShowAcross(role));
+        commands.push(DisplayCommand::ShowAcross(role).into());
     }
     let (least, most) = state.dataset().airspeed_range_kt();
     ui.label(palette.small(format!("{most:.0} kt")));
@@ -338,11 +341,13 @@ pub fn across_view_ui(
     };
     for event in bode_ui(ui, &scene, &mut state.display.across, palette) {
         if let BodeEvent::Clicked(CurveId::Model(id)) = event {
-            commands.push(Command::SelectCondition(id.condition));
+            commands.push(SelectionCommand::SelectCondition(id.condition).into());
         }
     }
-    commands
-        .extend(pointed_words(&state.display.across, &curves, (quantity, unit)).map(Command::Tell));
+    commands.extend(
+        pointed_words(&state.display.across, &curves, (quantity, unit))
+            .map(|value| Command::Selection(SelectionCommand::Tell(value))),
+    );
     if let Some(transform) = state
         .display
         .across
@@ -453,12 +458,16 @@ pub fn overview_view_ui(
     for event in overview_ui(ui, &scene, &mut state.display.overview, palette) {
         match event {
             OverviewEvent::PairClicked(pair) => {
-                commands.push(Command::FocusPair(pair));
-                commands.push(Command::ShowView(View::Bode));
+                commands.push(SelectionCommand::FocusPair(pair).into());
+                commands.push(LayoutCommand::ShowView(View::Bode).into());
             }
-            OverviewEvent::Hovered(CurveId::Model(id)) => commands.push(Command::Hover(id)),
-            OverviewEvent::Told(words) => commands.push(Command::Tell(words)),
-            OverviewEvent::Isolated(CurveId::Model(id)) => commands.push(Command::Isolate(id)),
+            OverviewEvent::Hovered(CurveId::Model(id)) => {
+                commands.push(SelectionCommand::Hover(id).into())
+            }
+            OverviewEvent::Told(words) => commands.push(SelectionCommand::Tell(words).into()),
+            OverviewEvent::Isolated(CurveId::Model(id)) => {
+                commands.push(SelectionCommand::Isolate(id).into())
+            }
             OverviewEvent::Wished(id, wish) => commands.extend(wished(state, id, wish)),
             OverviewEvent::Hovered(_) | OverviewEvent::Isolated(_) => {}
         }

@@ -7,6 +7,7 @@ use gdcm_plot::figure::{MarkId, all_channels};
 
 use super::gain_plots::{GainPlots, LEAST_PLOT, bars_switch_ui, gain_command, shown_uncertainty};
 use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
 use crate::gui::plot::figure_view::{figure_within_ui, rows};
 use crate::gui::plot::{FigureScene, figure_ui};
 use crate::gui::state::window_state::State;
@@ -41,7 +42,7 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
     choice_ui(ui, "Figure of the channels", &mut measure, &figures);
     bars_switch_ui(ui, state, ("bars", "bars of the channels"), commands);
     if (measure, across) != shown {
-        commands.push(Command::ShowChannels(measure, across));
+        commands.push(DisplayCommand::ShowChannels(measure, across).into());
     }
 }
 

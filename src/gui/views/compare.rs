@@ -11,6 +11,7 @@ use gdcm_study::{Analysis, Edit, Table};
 
 use super::gain_plots::net_gain_pairs;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::toggle_ui;
 use crate::gui::widgets::controls::{is_entered, named, text_field_ui};
@@ -112,7 +113,7 @@ fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut 
             let hint =
                 "Its corrected model in Bode, and its net gains, dotted beside the present ones";
             if toggle_ui(ui, ("Overlay", &label), is_overlaid, hint) {
-                commands.push(Command::Overlay((!is_overlaid).then(name)));
+                commands.push(DisplayCommand::Overlay((!is_overlaid).then(name)).into());
             }
         });
     });

@@ -18,6 +18,7 @@ use gdcm_study::stages::uncertainty::Uncertainty;
 
 use super::gain_plots::net_gain_pairs;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::evidence_cache::CachedEvidence;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
@@ -244,8 +245,8 @@ fn tables_ui(
     if let Some(click) = click
         && let Some(of) = differences.get(click.row)
     {
-        commands.push(Command::SelectCondition(of.conditions[0]));
-        commands.push(Command::FocusPair(of.pair));
+        commands.push(SelectionCommand::SelectCondition(of.conditions[0]).into());
+        commands.push(SelectionCommand::FocusPair(of.pair).into());
     }
     let table = second_variable_table(state.dataset(), uncertainty);
     heading(ui, &table.title);

@@ -8,6 +8,7 @@ use gdcm_study::Table;
 
 use super::requirements::requirement_tables;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::named;
@@ -31,7 +32,7 @@ pub fn figure_button_ui(ui: &mut Ui, state: &State, view: View, commands: &mut V
             .on_hover_text("As CSV, to the clipboard")
             .clicked()
         {
-            commands.push(Command::CopyFigure(view));
+            commands.push(OutputCommand::CopyFigure(view).into());
             ui.close();
         }
         for format in FigureFormat::ALL
@@ -40,7 +41,7 @@ pub fn figure_button_ui(ui: &mut Ui, state: &State, view: View, commands: &mut V
         {
             let text = format!("Save as {}…", format.extension().to_uppercase());
             if ui.button(text).on_hover_text(format.words()).clicked() {
-                commands.push(Command::AskSaveFigure(view, format));
+                commands.push(OutputCommand::AskSaveFigure(view, format).into());
                 ui.close();
             }
         }

@@ -17,6 +17,9 @@ use gdcm_study::decisions::setting;
 
 use super::compare::overlaid_analysis;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::commands::study::StudyCommand;
 use crate::gui::plot::bode::{BodeEvent, PANES};
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::curve_menu::CurveWish;
@@ -65,15 +68,18 @@ pub(super) fn frequency_plot_ui(
             BodeEvent::Wished(id, CurveWish::CopyValues) => curves
                 .iter()
                 .find(|curve| curve.id == id)
-                .map(|curve| Command::CopyText(values(quantity, curve))),
+                .map(|curve| Command::Output(OutputCommand::CopyText(values(quantity, curve)))),
             BodeEvent::ChipClicked(index) => of_chips.get(index).cloned(),
             event => command_of(state, event),
         });
     }
     if let Some(CurveId::Model(id)) = &view.hovered {
-        commands.push(Command::Hover(id.clone()));
+        commands.push(SelectionCommand::Hover(id.clone()).into());
     }
-    commands.extend(pointed_words(view, curves, (quantity, unit)).map(Command::Tell));
+    commands.extend(
+        pointed_words(view, curves, (quantity, unit))
+            .map(|value| Command::Selection(SelectionCommand::Tell(value))),
+    );
     commands.extend(
         view.pointed_omega
             .map(|omega| CurveCommand::PointAt(omega).into()),
@@ -85,17 +91,19 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
         BodeEvent::Clicked(CurveId::Model(id)) => Some(reject_or_restore(state, id)),
         BodeEvent::TakenBack(CurveId::Model(id)) => {
             let rejected = state.study.is_rejected(&id);
-            Some(Command::Forget(if rejected {
+            Some(Command::Study(StudyCommand::Forget(if rejected {
                 Edit::Reject(id)
             } else {
                 Edit::Restore(id)
-            }))
+            })))
         }
-        BodeEvent::Isolated(CurveId::Model(id)) => Some(Command::Isolate(id)),
+        BodeEvent::Isolated(CurveId::Model(id)) => {
+            Some(Command::Selection(SelectionCommand::Isolate(id)))
+        }
         BodeEvent::BandDragged { min, max } => Band::new(min, max)
             .ok()
             .map(|band| setting::BAND.to(band).into()),
-        BodeEvent::BandReleased => Some(Command::EndEdit),
+        BodeEvent::BandReleased => Some(Command::Study(StudyCommand::EndEdit)),
         BodeEvent::Display(command) => Some(command.into()),
         BodeEvent::RejectedBecause(CurveId::Model(model), reason) => {
             Some(Edit::RejectBecause { model, reason }.into())
@@ -137,7 +145,9 @@ pub(super) fn wished(state: &State, id: CurveId, wish: CurveWish) -> Option<Comm
         }
         (CurveWish::RejectOrRestore, CurveId::Model(id)) => Some(reject_or_restore(state, id)),
         (CurveWish::Pin, CurveId::Model(id)) => Some(Edit::Pin(id).into()),
-        (CurveWish::Isolate, CurveId::Model(id)) => Some(Command::Isolate(id)),
+        (CurveWish::Isolate, CurveId::Model(id)) => {
+            Some(Command::Selection(SelectionCommand::Isolate(id)))
+        }
         (CurveWish::Hide, CurveId::Model(id)) => Some(CurveCommand::HideModel(id).into()),
         _ => None,
     }
@@ -177,7 +187,7 @@ fn chips(state: &State) -> Vec<(Chip, Command)> {
         chips.push(chip(
             format!("Only {} ×", id.name),
             hint,
-            Command::EndIsolation,
+            Command::Selection(SelectionCommand::EndIsolation),
         ));
     }
     let curves = &state.display.curves;

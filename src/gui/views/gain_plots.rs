@@ -11,6 +11,8 @@ use gdcm_study::stages::uncertainty::Uncertainty;
 use gdcm_study::{Edit, ExplainTarget};
 
 use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::curve_menu::NamedFigure;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords};
 use crate::gui::state::pair_set::PairSet;
@@ -166,14 +168,16 @@ pub fn gain_command(state: &State, event: FigureEvent) -> Option<Command> {
                 .into(),
             )
         }
-        FigureEvent::Clicked(_, MarkId::Condition(condition), _) => {
-            Some(Command::SelectCondition(condition))
+        FigureEvent::Clicked(_, MarkId::Condition(condition), _) => Some(Command::Selection(
+            SelectionCommand::SelectCondition(condition),
+        )),
+        FigureEvent::Asked(figure) => {
+            Some(Command::Selection(SelectionCommand::Explain(Some(figure))))
         }
-        FigureEvent::Asked(figure) => Some(Command::Explain(Some(figure))),
-        FigureEvent::Told(words) => Some(Command::Tell(words)),
-        FigureEvent::Pointed(MarkId::Condition(condition)) => {
-            Some(Command::HoverCondition(condition))
-        }
+        FigureEvent::Told(words) => Some(Command::Selection(SelectionCommand::Tell(words))),
+        FigureEvent::Pointed(MarkId::Condition(condition)) => Some(Command::Selection(
+            SelectionCommand::HoverCondition(condition),
+        )),
         FigureEvent::Clicked(..) | FigureEvent::Pointed(_) => None,
     }
 }
@@ -218,7 +222,7 @@ pub fn bars_switch_ui(
          schedule: where it may lie, and where another condition would fall"
     );
     if toggle_ui(ui, names, shown, &hint) {
-        commands.push(Command::ShowBars(!shown));
+        commands.push(DisplayCommand::ShowBars(!shown).into());
     }
 }
 

@@ -13,6 +13,8 @@ use super::figures::figure_of;
 use super::over_time::{over_time, record_job};
 use super::requirement_limits::{decided, tolerances_ui};
 use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::plot::canvas::figure_legend_ui;
 use crate::gui::plot::{FigureScene, FigureWords, figure_ui};
@@ -120,7 +122,7 @@ fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
         let mut chosen = shown;
         choice_ui(ui, "What models answer to", &mut chosen, &choices);
         if chosen != shown {
-            commands.push(Command::ShowTest(chosen.is_none()));
+            commands.push(DisplayCommand::ShowTest(chosen.is_none()).into());
             commands.extend(chosen.map(|index| RecordsCommand::Choose(index).into()));
         }
     }
@@ -170,7 +172,7 @@ fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
     let decide =
         |what: &'static str, test: TestInput, commands: &mut Vec<Command>| match test.checked() {
             Ok(test) => commands.push(decided(state, what, |settings| settings.test = test)),
-            Err(why) => commands.push(Command::Refuse(why.to_string())),
+            Err(why) => commands.push(FormCommand::Refuse(why.to_string()).into()),
         };
     ui.horizontal_wrapped(|ui| {
         let mut shape = test.shape;

@@ -15,6 +15,7 @@ use super::gain_plots::{
 };
 use super::setting_controls::setting_ui;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
 use crate::gui::plot::{FigureScene, figure_ui};
 use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::view::View;
@@ -52,7 +53,7 @@ pub fn net_gain_header_ui(
     let hint = "Which pairs at one airspeed differ significantly, and what each form of the schedule misses, so that a degree is \
                 chosen on evidence";
     if toggle_ui(ui, ("evidence", "evidence"), shown, hint) {
-        commands.push(Command::ShowEvidence(!shown));
+        commands.push(DisplayCommand::ShowEvidence(!shown).into());
     }
     bars_switch_ui(ui, state, ("bars", "error bars"), commands);
     if let Some((variant, _)) = overlaid_analysis(state) {
@@ -65,7 +66,7 @@ pub fn net_gain_header_ui(
             .on_hover_text(hint)
             .clicked()
         {
-            commands.push(Command::Overlay(None));
+            commands.push(DisplayCommand::Overlay(None).into());
         }
     }
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
@@ -98,14 +99,14 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             .on_hover_text(format!("{name}, the response in focus"))
             .clicked()
         {
-            commands.push(Command::PickPair(pair));
+            commands.push(DisplayCommand::PickPair(pair).into());
         }
     }
     let mut chosen = state.display.net_gain_pairs;
     let sets = PairSet::ALL.map(|set| (set, set.name(), set.purpose()));
     choice_ui(ui, "Responses of the net-gain plots", &mut chosen, &sets);
     if chosen != state.display.net_gain_pairs {
-        commands.push(Command::ShowNetGains(chosen));
+        commands.push(DisplayCommand::ShowNetGains(chosen).into());
     }
 }
 

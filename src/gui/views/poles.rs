@@ -17,6 +17,8 @@ use gdcm_study::{ConditionAnalysis, Edit, Table};
 
 use super::frequency::{bode_options, condition_source};
 use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::canvas::figure_legend_ui;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_ui};
 use crate::gui::state::modes_cache::{CachedModes, MadeOf};
@@ -49,7 +51,7 @@ pub fn poles_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
     let name = format!("zeros of {}", state.dataset().pair_name(state.display.pair));
     let hint = "Transmission zeros of the response in focus, of the nominal model and of both representatives";
     if ui.checkbox(&mut shown, name).on_hover_text(hint).changed() {
-        commands.push(Command::ShowZeros(shown));
+        commands.push(DisplayCommand::ShowZeros(shown).into());
     }
 }
 
@@ -99,9 +101,13 @@ pub fn poles_view_ui(
     };
     for event in figure_ui(ui, &scene, &mut view, palette) {
         commands.push(match event {
-            FigureEvent::Pointed(MarkId::Model(id)) => Command::Hover(id),
-            FigureEvent::Told(words) => Command::Tell(words),
-            FigureEvent::Clicked(_, MarkId::Model(id), keys) if keys.alt => Command::Isolate(id),
+            FigureEvent::Pointed(MarkId::Model(id)) => {
+                Command::Selection(SelectionCommand::Hover(id))
+            }
+            FigureEvent::Told(words) => Command::Selection(SelectionCommand::Tell(words)),
+            FigureEvent::Clicked(_, MarkId::Model(id), keys) if keys.alt => {
+                Command::Selection(SelectionCommand::Isolate(id))
+            }
             FigureEvent::Clicked(_, MarkId::Model(id), _) if state.study.is_rejected(&id) => {
                 Edit::Restore(id).into()
             }
@@ -234,7 +240,7 @@ fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Ve
     let mut sorting = state.display.modes_sorting;
     let clicked = table_ui(ui, table, &mut sorting, &look, palette, commands);
     let model = clicked.and_then(|click| jumping.get(click.row)?.clone());
-    commands.extend(model.map(Command::Isolate));
+    commands.extend(model.map(|value| Command::Selection(SelectionCommand::Isolate(value))));
     state.display.modes_sorting = sorting;
 }
 

@@ -11,6 +11,8 @@ use gdcm_study::Edit;
 use gdcm_study::results::requirements::{OverviewLimits, RequirementSettings};
 
 use crate::gui::commands::command::Command;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::form::FormCommand;
 use crate::gui::state::forms::RequirementTable;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{button_ui, number_entry_ui};
@@ -76,7 +78,9 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
             commands.push(to(ToleranceTable::default()));
         }
         let hint = "Take the tolerances of a file into the study";
-        let ask = Command::AskRequirementTable(RequirementTable::Tolerances);
+        let ask = Command::File(FileCommand::AskRequirementTable(
+            RequirementTable::Tolerances,
+        ));
         button_ui(
             ui,
             Button::new("Open tolerances…").small(),
@@ -89,7 +93,7 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
             ui,
             Button::new("Save tolerances…").small(),
             hint,
-            Command::AskWriteTolerances,
+            FileCommand::AskWriteTolerances,
             commands,
         );
     });
@@ -121,7 +125,7 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     if rows != table.rows() {
         commands.push(match ToleranceTable::new("edited", rows) {
             Ok(table) => to(table),
-            Err(why) => Command::Refuse(why.to_string()),
+            Err(why) => Command::Form(FormCommand::Refuse(why.to_string())),
         });
     }
 }
@@ -184,7 +188,7 @@ pub fn mode_tolerances_ui(
     if rows != table.rows() {
         commands.push(match ModeToleranceTable::try_from(rows) {
             Ok(table) => to(table),
-            Err(why) => Command::Refuse(why.to_string()),
+            Err(why) => Command::Form(FormCommand::Refuse(why.to_string())),
         });
     }
 }
@@ -231,7 +235,7 @@ pub fn overview_limits_ui(
             Ok(limits) => decided(state, "limits of the overview", |settings| {
                 settings.overview = limits
             }),
-            Err(why) => Command::Refuse(why.to_string()),
+            Err(why) => Command::Form(FormCommand::Refuse(why.to_string())),
         });
     }
     if limits != OverviewLimits::default() && ui.small_button("Default limits").clicked() {

@@ -24,6 +24,10 @@ use super::need::Need;
 use super::over_time::{current, over_time_need};
 use super::requirement_limits::{decided, mode_tolerances_ui, overview_limits_ui};
 use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::canvas::figure_legend_ui;
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
@@ -70,7 +74,8 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
     ];
     for (page, name, purpose) in pages {
         let (_, is_clicked) = page_tab_ui(ui, page == shown, name, (name, purpose));
-        commands.extend(is_clicked.then_some(Command::ShowRequirements(page)));
+        commands
+            .extend(is_clicked.then_some(Command::Display(DisplayCommand::ShowRequirements(page))));
     }
 }
 
@@ -205,7 +210,7 @@ fn asked_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Co
             commands.push(decided("levels", &|settings| settings.levels = LevelBoundaries::default()));
         }
         let hint = "Take the levels of a file: none is built in, for they depend on the task and the category (docs/requirements.md)";
-        let ask = Command::AskRequirementTable(RequirementTable::Levels);
+        let ask = Command::File(FileCommand::AskRequirementTable(RequirementTable::Levels));
         button_ui(ui, Button::new("Levels…").small(), hint, ask, commands);
     });
 }
@@ -278,8 +283,8 @@ fn marked_in_bode(
     role: RequirementRole,
 ) -> Vec<Command> {
     let mut commands = vec![
-        Command::SelectCondition(id),
-        Command::FocusPair(pair),
+        Command::Selection(SelectionCommand::SelectCondition(id)),
+        Command::Selection(SelectionCommand::FocusPair(pair)),
         CurveCommand::UnpinCursors.into(),
     ];
     if let Some(of) = requirements.bandwidth_of(id, pair, role) {
@@ -293,7 +298,7 @@ fn marked_in_bode(
             .filter_map(|(name, omega)| Some((name, omega?)));
         commands.push(CurveCommand::MarkCrossings(known.collect()).into());
     }
-    commands.push(Command::ShowView(View::Bode));
+    commands.push(LayoutCommand::ShowView(View::Bode).into());
     commands
 }
 
@@ -429,11 +434,11 @@ fn went_to(
             // Conditions are columns of the overview and rows of the other table.
             let of_row = table.rows.get(row).and_then(|cells| cells[0].parse().ok());
             let id = of_row.or_else(|| table.columns[column].parse().ok());
-            id.map(|id| Command::SelectCondition(ConditionId(id)))
+            id.map(|id| Command::Selection(SelectionCommand::SelectCondition(ConditionId(id))))
                 .into_iter()
                 .collect()
         }
-        RequirementsPage::Modes => vec![Command::ShowView(View::Poles)],
+        RequirementsPage::Modes => vec![Command::Layout(LayoutCommand::ShowView(View::Poles))],
     }
 }
 

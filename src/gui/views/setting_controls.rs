@@ -8,6 +8,8 @@ use gdcm_study::decisions::setting;
 use gdcm_study::decisions::setting_row::{Kind, Setting, Value};
 
 use crate::gui::commands::command::Command;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::study::StudyCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::controls::{Entered, NumberField, named_switch};
@@ -74,9 +76,13 @@ impl SettingControls<'_, '_> {
 
     /// Reports why an entry is refused, and completes the decision.
     fn end(&mut self, entered: Entered) {
-        self.commands.extend(entered.refusal.map(Command::Refuse));
+        self.commands.extend(
+            entered
+                .refusal
+                .map(|value| Command::Form(FormCommand::Refuse(value))),
+        );
         if entered.is_ended {
-            self.commands.push(Command::EndEdit);
+            self.commands.push(StudyCommand::EndEdit.into());
         }
     }
 
@@ -212,7 +218,7 @@ impl SettingControls<'_, '_> {
             self.set(setting, value);
         }
         if slider.drag_stopped() || slider.lost_focus() {
-            self.commands.push(Command::EndEdit);
+            self.commands.push(StudyCommand::EndEdit.into());
         }
         slider.on_hover_text(setting.help);
         self.take(setting, typed);
@@ -242,7 +248,7 @@ impl SettingControls<'_, '_> {
         if clicked {
             self.set(setting, counts.then_some(on));
             // Two clicks are two decisions.
-            self.commands.push(Command::EndEdit);
+            self.commands.push(StudyCommand::EndEdit.into());
         }
         self.take(setting, entered);
     }
@@ -311,7 +317,9 @@ impl SettingControls<'_, '_> {
                 Ok(()) => self.set(setting, ends),
                 // A dragged end stops before the other end.
                 Err(_) if low.is_dragged || high.is_dragged => {}
-                Err(error) => self.commands.push(Command::Refuse(error.to_string())),
+                Err(error) => self
+                    .commands
+                    .push(FormCommand::Refuse(error.to_string()).into()),
             }
         } else if let Some(automatic) = automatic {
             self.set(

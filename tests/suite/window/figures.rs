@@ -2,8 +2,7 @@
 
 use std::fs;
 
-use gdcm::gui::state::view::View;
-use gdcm::gui::state::view::views_with_figure;
+use gdcm::gui::state::view::{View, views_with_figure};
 use gdcm::gui::views::figures::figure_of;
 use gdcm_io::export::figure_file::{csv_text, write_as};
 use gdcm_plot::figure::{ColumnWidth, FigureFormat};

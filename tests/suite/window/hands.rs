@@ -2,6 +2,10 @@
 
 use gdcm::gui::commands::command::Command as Action;
 use gdcm::gui::commands::command_table::every_command;
+use gdcm::gui::commands::form::FormCommand;
+use gdcm::gui::commands::output::OutputCommand;
+use gdcm::gui::commands::selection::SelectionCommand;
+use gdcm::gui::commands::study::StudyCommand;
 use gdcm::gui::state::view::View;
 use gdcm_study::ExplainTarget;
 use gdcm_study::results::derivation::derivation;
@@ -173,14 +177,14 @@ fn a_curve_of_the_overview_is_pointed_at_isolated_and_rejected() {
         .isolated
         .clone()
         .expect("one model is alone");
-    give(&mut window, Action::EndIsolation);
+    give(&mut window, SelectionCommand::EndIsolation);
     secondary_click(&mut window, at);
     click(&mut window, "Reject model");
     assert!(
         state(&window).study.is_rejected(&isolated),
         "{isolated:?}, {meant:?}"
     );
-    give(&mut window, Action::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert!(!state(&window).study.is_rejected(&isolated));
 }
 
@@ -204,7 +208,7 @@ fn every_table_of_a_view_is_saved_as_csv() {
         .expect("the form holds the table");
     window
         .state_mut()
-        .dispatch(Action::SaveTable(table.clone(), path.clone()));
+        .dispatch(OutputCommand::SaveTable(table.clone(), path.clone()));
     settle(&mut window);
     let text = std::fs::read_to_string(path).unwrap();
     let rows = text.lines().filter(|line| !line.starts_with('#')).count();
@@ -219,23 +223,26 @@ fn undo_after_each_command_restores_the_study_exactly() {
     for entry in every_command(state(&window)) {
         if !entry.enabled
             || !stays_within(&entry.command)
-            || matches!(entry.command, Action::Undo | Action::Redo)
+            || matches!(
+                entry.command,
+                Action::Study(StudyCommand::Undo) | Action::Study(StudyCommand::Redo)
+            )
         {
             continue;
         }
         let before = state(&window).study.clone();
         window.state_mut().dispatch(entry.command.clone());
-        window.state_mut().dispatch(Action::ShowForm(None));
+        window.state_mut().dispatch(FormCommand::ShowForm(None));
         if state(&window).study == before {
             continue;
         }
         decisions += 1;
         let after = state(&window).study.clone();
-        window.state_mut().dispatch(Action::Undo);
+        window.state_mut().dispatch(StudyCommand::Undo);
         assert_eq!(state(&window).study, before, "undo of {}", entry.name);
-        window.state_mut().dispatch(Action::Redo);
+        window.state_mut().dispatch(StudyCommand::Redo);
         assert_eq!(state(&window).study, after, "redo of {}", entry.name);
-        window.state_mut().dispatch(Action::Undo);
+        window.state_mut().dispatch(StudyCommand::Undo);
     }
     assert!(decisions > 60, "{decisions} commands decide something");
 }

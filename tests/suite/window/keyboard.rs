@@ -2,7 +2,7 @@
 
 use egui::{Color32, Shape};
 
-use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::commands::selection::SelectionCommand;
 use gdcm::gui::state::forms::FormKind;
 use gdcm::gui::widgets::palette::Palette;
 use gdcm_method::correction::GainBounds;
@@ -53,7 +53,7 @@ fn the_space_bar_holds_and_frees_the_chosen_response() {
 fn alt_and_an_arrow_go_through_the_views_of_the_group_and_leave_the_response() {
     let mut window = window();
     let response = pair(&window, "Q", "PED");
-    give(&mut window, Action::FocusPair(response));
+    give(&mut window, SelectionCommand::FocusPair(response));
     let views: Vec<View> = state(&window).display.arrangement.group().views().collect();
     let view = |window: &Window| state(window).display.arrangement.view();
     assert_eq!(view(&window), views[0]);

@@ -2,6 +2,7 @@
 
 use egui::{LayerId, Order};
 
+use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::state::forms::FormKind;
 use gdcm::gui::state::sheet::Sheet;
 
@@ -63,10 +64,7 @@ fn the_answer_is_on_a_small_screen_in_every_view() {
     for pixels_per_point in [1.0, 1.5] {
         let mut window = window_of(SMALL, pixels_per_point);
         for view in View::ALL {
-            give(
-                &mut window,
-                gdcm::gui::commands::command::Command::ShowView(view),
-            );
+            give(&mut window, LayoutCommand::ShowView(view));
             window.run_steps(2);
             assert_answered(&window, view);
         }

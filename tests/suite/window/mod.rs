@@ -185,7 +185,7 @@ fn choose_condition_10(window: &mut Window) {
 
 /// Unfolds the settings, those that are seldom changed too, or folds them.
 pub(crate) fn unfold_settings(window: &mut Window, is_open: bool) {
-    use gdcm::gui::commands::command::Command::{ShowAdvanced, ShowSettings};
+    use gdcm::gui::commands::layout::LayoutCommand::{ShowAdvanced, ShowSettings};
     for command in [ShowSettings(is_open), ShowAdvanced(is_open)] {
         window.state_mut().dispatch(command);
     }

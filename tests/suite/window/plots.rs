@@ -1,6 +1,6 @@
 //! The plots, worked with the pointer.
 
-use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::commands::display::DisplayCommand;
 use gdcm::gui::state::view::View;
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::responses::{AirspeedCache, airspeed_curves, fitted_values};
@@ -445,7 +445,10 @@ fn airspeeds_is_fitted_to_another_response_and_by_f_and_by_fit() {
         before,
         "they are far apart"
     );
-    give(&mut window, Action::ShowAcross(AcrossRole::Identified));
+    give(
+        &mut window,
+        DisplayCommand::ShowAcross(AcrossRole::Identified),
+    );
     settle(&mut window);
     wait_for_background(&mut window);
     window.run_steps(2);

@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::commands::display::DisplayCommand;
+use gdcm::gui::commands::file::FileCommand;
+use gdcm::gui::commands::output::OutputCommand;
+use gdcm::gui::commands::study::StudyCommand;
 use gdcm::gui::state::forms::RequirementTable;
 use gdcm::gui::state::requirements_page::RequirementsPage;
 use gdcm::gui::state::view::View;
@@ -63,13 +66,13 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
         (RequirementsPage::Modes, "physics ζ"),
         (RequirementsPage::Summary, "in MUAD on-axis [%]"),
     ] {
-        give(&mut window, Action::ShowRequirements(chosen));
+        give(&mut window, DisplayCommand::ShowRequirements(chosen));
         assert!(texts(&window).contains(heading), "{heading}");
     }
     // A click on a mark goes to Bode, where the frequencies are marked that its numbers are read at.
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Bandwidth),
+        DisplayCommand::ShowRequirements(RequirementsPage::Bandwidth),
     );
     window.get_by_label_contains("Phase delay over bandwidth of LAT → P");
     let first = requirements.bandwidth.first().unwrap();
@@ -203,7 +206,7 @@ fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
         of.omega_bw_rad_s, of.omega_phase_rad_s,
         "the bandwidth is that of the phase margin alone"
     );
-    give(&mut window, Action::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert!(shown_requirements(&mut window).attitude_command.is_empty());
 
     let folder = tempfile::tempdir().unwrap();
@@ -215,14 +218,14 @@ fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
     .unwrap();
     give(
         &mut window,
-        Action::ReadRequirementTable(RequirementTable::Levels, path.clone()),
+        FileCommand::ReadRequirementTable(RequirementTable::Levels, path.clone()),
     );
     assert_eq!(state(&window).study.requirements.levels.all().len(), 1);
     assert!(texts(&window).contains("levels: 1"));
     std::fs::write(&path, "[]]").unwrap();
     give(
         &mut window,
-        Action::ReadRequirementTable(RequirementTable::Levels, path),
+        FileCommand::ReadRequirementTable(RequirementTable::Levels, path),
     );
     assert_eq!(
         state(&window).study.requirements.levels.all().len(),
@@ -239,9 +242,9 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
     show(&mut window, View::Requirements);
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Histories),
+        DisplayCommand::ShowRequirements(RequirementsPage::Histories),
     );
-    give(&mut window, Action::ShowTest(true));
+    give(&mut window, DisplayCommand::ShowTest(true));
     let answers = |window: &mut Window| {
         wait_until(window, "the answers", |window| {
             let decided = state(window).study.requirements.test;
@@ -264,7 +267,7 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
         doublet.signal.iter().any(|value| *value < 0.0)
             && step.signal.iter().all(|value| *value >= 0.0)
     );
-    give(&mut window, Action::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert_eq!(answers(&mut window).test, step.test);
 }
 
@@ -275,7 +278,7 @@ fn a_record_stands_within_tolerances_that_are_edited_and_kept_in_a_file() {
     show(&mut window, View::Requirements);
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Histories),
+        DisplayCommand::ShowRequirements(RequirementsPage::Histories),
     );
     let shown = |window: &mut Window| {
         wait_until(window, "the record", |window| {
@@ -332,18 +335,18 @@ fn a_record_stands_within_tolerances_that_are_edited_and_kept_in_a_file() {
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mine.json");
-    give(&mut window, Action::WriteTolerances(path.clone()));
-    give(&mut window, Action::Undo);
+    give(&mut window, FileCommand::WriteTolerances(path.clone()));
+    give(&mut window, StudyCommand::Undo);
     assert_eq!(shares(&shown(&mut window)), first);
     give(
         &mut window,
-        Action::ReadRequirementTable(RequirementTable::Tolerances, path.clone()),
+        FileCommand::ReadRequirementTable(RequirementTable::Tolerances, path.clone()),
     );
     assert_eq!(shares(&shown(&mut window)), wide);
     std::fs::write(&path, "{}").unwrap();
     give(
         &mut window,
-        Action::ReadRequirementTable(RequirementTable::Tolerances, path),
+        FileCommand::ReadRequirementTable(RequirementTable::Tolerances, path),
     );
     assert_eq!(
         shares(&shown(&mut window)),
@@ -361,14 +364,14 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     show(&mut window, View::Requirements);
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Histories),
+        DisplayCommand::ShowRequirements(RequirementsPage::Histories),
     );
     wait_until(&mut window, "the records", |window| {
         !state(window).records.conditions.is_empty()
     });
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Summary),
+        DisplayCommand::ShowRequirements(RequirementsPage::Summary),
     );
     wait_until(&mut window, "the answers", |window| {
         state(window).time_histories().is_some() && state(window).requirements().is_some()
@@ -436,7 +439,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
         refused.contains("expected bandwidth above zero"),
         "{refused}"
     );
-    give(&mut window, Action::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert_eq!(overview(&window), usual);
 
     // What is saved is what is shown: both tables, and as numbers.
@@ -445,7 +448,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     let path = folder.path().join("summary.csv");
     give(
         &mut window,
-        Action::SaveFigure(View::Requirements, width, path.clone()),
+        OutputCommand::SaveFigure(View::Requirements, width, path.clone()),
     );
     let saved = std::fs::read_to_string(path).unwrap();
     assert!(
@@ -456,7 +459,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     let picture = folder.path().join("summary.svg");
     give(
         &mut window,
-        Action::SaveFigure(View::Requirements, width, picture.clone()),
+        OutputCommand::SaveFigure(View::Requirements, width, picture.clone()),
     );
     let refused = state(&window)
         .notice
@@ -475,16 +478,16 @@ fn tolerances_are_reached_without_a_record_and_those_of_modes_are_edited() {
     show(&mut window, View::Requirements);
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Histories),
+        DisplayCommand::ShowRequirements(RequirementsPage::Histories),
     );
-    give(&mut window, Action::ShowTest(true));
+    give(&mut window, DisplayCommand::ShowTest(true));
     click(&mut window, "Tolerances");
     type_into(&mut window, "Absolute tolerance 1", "4.5");
     assert!((state(&window).study.requirements.tolerances.rows()[0].absolute - 4.5).abs() < 1e-12);
 
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Modes),
+        DisplayCommand::ShowRequirements(RequirementsPage::Modes),
     );
     let verdicts = |window: &Window| -> Vec<_> {
         state(window)
@@ -537,7 +540,7 @@ fn the_report_of_the_window_has_the_records_that_are_open_and_what_was_decided_l
     show(&mut window, View::Requirements);
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Histories),
+        DisplayCommand::ShowRequirements(RequirementsPage::Histories),
     );
     wait_until(&mut window, "the records", |window| {
         !state(window).records.conditions.is_empty()
@@ -556,7 +559,7 @@ fn the_report_of_the_window_has_the_records_that_are_open_and_what_was_decided_l
     );
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("report.html");
-    give(&mut window, Action::WriteReport(path.clone()));
+    give(&mut window, OutputCommand::WriteReport(path.clone()));
     wait_until(&mut window, "the report", |_| path.exists());
     let written = std::fs::read_to_string(&path).unwrap();
     for words in [
@@ -594,7 +597,7 @@ fn a_condition_without_rates_and_records_says_so_in_words() {
     );
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Histories),
+        DisplayCommand::ShowRequirements(RequirementsPage::Histories),
     );
     let said = texts(&window);
     assert!(

@@ -19,6 +19,7 @@ use gdcm_plot::figure::axis::FrequencyUnit;
 
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::form::FormCommand;
 use crate::gui::plot::quantity::BodeQuantity;
 use crate::gui::plot::{BodeCurve, BodeScene, CurveId, Role as CurveRole, bode_ui};
 use crate::gui::state::assembling::AssemblyState;
@@ -148,7 +149,7 @@ fn field_ui(ui: &mut Ui, assembly: &AssemblyState, field: &Field, commands: &mut
             refusal = field.say(&text, row).err()
         });
         commands.push(refusal.map_or(command, |why| {
-            Command::Refuse(format!("{}: {why}", field.name))
+            Command::Form(FormCommand::Refuse(format!("{}: {why}", field.name)))
         }));
     }
     if fill_ui(ui, field.name) {

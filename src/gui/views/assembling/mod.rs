@@ -18,6 +18,7 @@ use gdcm_model::units::number;
 
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::form::FormCommand;
 use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::controls::{
     Asks, button_ui, entry_ui, is_entered, named, number_entry_ui, text_field_ui,
@@ -355,7 +356,7 @@ fn signs_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands: 
                 {
                     commands.push(match signs_of(&text) {
                         Ok(signs) => assembly.changed(|rules| *place(rules) = signs),
-                        Err(why) => Command::Refuse(format!("{name}: {why}")),
+                        Err(why) => Command::Form(FormCommand::Refuse(format!("{name}: {why}"))),
                     });
                 }
                 ui.end_row();
@@ -397,7 +398,7 @@ fn declarations_ui(
                                 .retain(|channel, _| !units.contains_key(channel));
                             declared.units = units;
                         }),
-                        Err(why) => Command::Refuse(format!("{name}: {why}")),
+                        Err(why) => Command::Form(FormCommand::Refuse(format!("{name}: {why}"))),
                     });
                 }
                 ui.end_row();
@@ -414,7 +415,7 @@ fn declarations_ui(
                                 .retain(|channel, _| !factors.contains_key(channel));
                             declared.factors = factors;
                         }),
-                        Err(why) => Command::Refuse(format!("{name}: {why}")),
+                        Err(why) => Command::Form(FormCommand::Refuse(format!("{name}: {why}"))),
                     });
                 }
                 ui.end_row();

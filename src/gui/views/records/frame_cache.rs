@@ -1,8 +1,7 @@
 //! Values of the Records view cached between frames.
 
 use std::any::Any;
-use std::hash::Hasher;
-use std::hash::{DefaultHasher, Hash};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 use egui::{Id, Ui};

@@ -21,6 +21,7 @@ use super::numbers;
 use super::page::Page;
 use super::simulation::{simulated, time_models_ui};
 use crate::gui::commands::command::Command;
+use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::plot::chart::{
     Chart, ChartAxis, ChartImage, ChartLine, ChartSpan, chart_ui, chosen_stretch,
@@ -196,10 +197,10 @@ fn part_ui(
     if let Some(text) = text.filter(|text| !text.trim().is_empty()) {
         commands.push(match part_of(&text, span_s) {
             Some(part_s) => RecordsCommand::AddPart(records.chosen, part_s).into(),
-            None => Command::Refuse(format!(
+            None => Command::Form(FormCommand::Refuse(format!(
                 "a part: expected two times in s, the earlier first, as in \"12 40\", or \"+5 +34\" from the start of the record, \
                  found \"{text}\""
-            )),
+            ))),
         });
     }
     let hint = "Dragging in a chart makes that stretch a record of its own, to be fitted or held out, in place of the whole";

@@ -26,7 +26,9 @@ use gdcm_sysid::identification::identification_error::{HIGHEST_ORDER, LONGEST_PA
 use gdcm_sysid::records::LayoutProblem;
 
 use crate::gui::commands::command::Command;
+use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::records::{ConditionRecords, RecordsPage};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::page_tab_ui;
@@ -297,7 +299,7 @@ fn condition_table_ui(
     if let Some(click) = table_ui(ui, &table, sorting, &look, page.palette, commands)
         && let Some(id) = ids.get(click.row)
     {
-        commands.push(Command::SelectCondition(*id));
+        commands.push(SelectionCommand::SelectCondition(*id).into());
     }
 }
 
@@ -426,7 +428,7 @@ fn advanced_ui(
                 if let Some(text) = field_ui(ui, "band [rad/s]", &said, &of_study, palette) {
                     commands.push(match numbers(&text).and_then(|list| band_of(&list)) {
                         Ok(band) => RecordsCommand::SetBand(band).into(),
-                        Err(why) => Command::Refuse(why),
+                        Err(why) => Command::Form(FormCommand::Refuse(why)),
                     });
                 }
                 let is_wanted = *field == Some(REFERENCES);
@@ -437,7 +439,9 @@ fn advanced_ui(
                         commands.push(
                             match numbers(&text).and_then(|list| sets(&mut wanted, &list)) {
                                 Ok(()) => RecordsCommand::SetSearch(wanted).into(),
-                                Err(why) => Command::Refuse(format!("{name}: {why}")),
+                                Err(why) => {
+                                    Command::Form(FormCommand::Refuse(format!("{name}: {why}")))
+                                }
                             },
                         );
                     }

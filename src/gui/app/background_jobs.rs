@@ -337,7 +337,7 @@ impl GdcmApp {
         let state = &self.state;
         let shown = View::ALL
             .into_iter()
-            .filter(|view| state.display.arrangement.is_shown(*view));
+            .filter(|view| state.display.layout.arrangement.is_shown(*view));
         let of_views = shown.flat_map(|view| (view_content(view).needs)(state));
         let judged = are_couplings_judged(state).then(|| Need::Couplings(couplings_job(state)));
         self.needs = of_views

@@ -9,8 +9,8 @@ impl GdcmApp {
     pub(super) fn carry_out_curve(&mut self, command: CurveCommand) {
         let display = &mut self.state.display;
         match command {
-            CurveCommand::DrawPhaseErrors(_) => display.error.release_values(Pane::Phase),
-            CurveCommand::DrawPhases(_) => display.bode.release_values(Pane::Phase),
+            CurveCommand::DrawPhaseErrors(_) => display.frequency.error.release_values(Pane::Phase),
+            CurveCommand::DrawPhases(_) => display.frequency.bode.release_values(Pane::Phase),
             _ => {}
         }
         display.curves.carry_out(command);

@@ -21,26 +21,26 @@ impl GdcmApp {
         match command {
             LayoutCommand::ShowView(view) => {
                 self.state.on_start_page = false;
-                self.state.display.arrangement.show(view);
+                self.state.display.layout.arrangement.show(view);
             }
-            LayoutCommand::ShowGroup(group) => display.arrangement.show_group(group),
-            LayoutCommand::ShowBeside(view) => display.arrangement.show_beside(view),
-            LayoutCommand::ShowInDock(view) => display.arrangement.dock_view(view),
-            LayoutCommand::OpenDock(is_open) => display.arrangement.open_dock(is_open),
+            LayoutCommand::ShowGroup(group) => display.layout.arrangement.show_group(group),
+            LayoutCommand::ShowBeside(view) => display.layout.arrangement.show_beside(view),
+            LayoutCommand::ShowInDock(view) => display.layout.arrangement.dock_view(view),
+            LayoutCommand::OpenDock(is_open) => display.layout.arrangement.open_dock(is_open),
             LayoutCommand::ResetLayout => {
-                display.arrangement = Arrangement::default();
-                display.left_open = None;
+                display.layout.arrangement = Arrangement::default();
+                display.layout.left_open = None;
                 self.ctx.memory_mut(|memory| memory.reset_areas());
             }
-            LayoutCommand::ShowLeft(is_open) => display.left_open = Some(is_open),
-            LayoutCommand::ShowSheet(sheet) => display.sheet = sheet,
-            LayoutCommand::ShowSettings(is_open) => display.settings_open = is_open,
-            LayoutCommand::ShowAdvanced(is_open) => display.advanced_open = is_open,
-            LayoutCommand::ShowIdentified(is_open) => display.identified_open = is_open,
+            LayoutCommand::ShowLeft(is_open) => display.layout.left_open = Some(is_open),
+            LayoutCommand::ShowSheet(sheet) => display.layout.sheet = sheet,
+            LayoutCommand::ShowSettings(is_open) => display.layout.settings_open = is_open,
+            LayoutCommand::ShowAdvanced(is_open) => display.layout.advanced_open = is_open,
+            LayoutCommand::ShowIdentified(is_open) => display.layout.identified_open = is_open,
             LayoutCommand::SetTheme(theme) => self.ctx.set_theme(theme),
             LayoutCommand::FocusField(name) => {
                 // A collapsed field must be open before it can receive the focus.
-                (display.settings_open, display.advanced_open) = (true, true);
+                (display.layout.settings_open, display.layout.advanced_open) = (true, true);
                 self.focus_next(NextFocus::Field(name));
             }
             LayoutCommand::LeaveRegion { forward } => {
@@ -49,7 +49,7 @@ impl GdcmApp {
             LayoutCommand::StartTour => self.state.tour = Some(0),
             LayoutCommand::ShowTourStep(step) => self.state.tour = step,
             LayoutCommand::ShowStart(is_shown) => self.state.on_start_page = is_shown,
-            LayoutCommand::BeginWith(what) => display.opens_with = what,
+            LayoutCommand::BeginWith(what) => display.layout.opens_with = what,
         }
     }
 

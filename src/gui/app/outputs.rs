@@ -141,8 +141,8 @@ impl GdcmApp {
     /// Returns the suffix of `absent_bars` for a view; figures show error bars as soon as they are
     /// computed.
     fn absent_bars_of(&self, view: View) -> &'static str {
-        let shows_bars =
-            view.figure().is_some_and(FigureKind::takes_bars) && !self.state.display.hide_bars;
+        let shows_bars = view.figure().is_some_and(FigureKind::takes_bars)
+            && !self.state.display.gains.hide_bars;
         self.absent_bars(!shows_bars || self.state.uncertainty().is_some())
     }
 

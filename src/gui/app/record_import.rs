@@ -347,9 +347,9 @@ impl GdcmApp {
         let id = self.state.condition().id();
         self.follow_band(id);
         let display = &self.state.display;
-        let is_compared = display.requirements_page == RequirementsPage::Histories;
-        let is_shown = display.arrangement.is_shown(View::Records)
-            || display.arrangement.is_shown(View::Requirements) && is_compared;
+        let is_compared = display.judging.requirements_page == RequirementsPage::Histories;
+        let is_shown = display.layout.arrangement.is_shown(View::Records)
+            || display.layout.arrangement.is_shown(View::Requirements) && is_compared;
         let bench = &self.state.records;
         if !is_shown || bench.reading.is_some() || bench.conditions.contains_key(&id) {
             return;

@@ -11,27 +11,28 @@ impl GdcmApp {
         let display = &mut self.state.display;
         match command {
             SelectionCommand::SelectCondition(condition) => select_condition(display, condition),
-            SelectionCommand::FocusPair(pair) if display.pair != pair => {
-                display.pair = pair;
+            SelectionCommand::FocusPair(pair) if display.selection.pair != pair => {
+                display.selection.pair = pair;
                 display.curves.crossings.clear();
-                display.refit_frequency_plots();
+                display.frequency.refit();
             }
             SelectionCommand::FocusPair(_) => {}
-            SelectionCommand::Hover(model) => display.hovered = Some(model),
+            SelectionCommand::Hover(model) => display.selection.hovered = Some(model),
             SelectionCommand::HoverCondition(condition) => {
-                display.hovered_condition = Some(condition)
+                display.selection.hovered_condition = Some(condition)
             }
-            SelectionCommand::Tell(words) => display.told = Some(words),
+            SelectionCommand::Tell(words) => display.selection.told = Some(words),
             SelectionCommand::Isolate(model) => {
-                display.isolated = if display.isolated.as_ref() == Some(&model) {
+                display.selection.isolated = if display.selection.isolated.as_ref() == Some(&model)
+                {
                     None
                 } else {
                     Some(model)
                 };
             }
-            SelectionCommand::Explain(asked) => display.asked = asked,
+            SelectionCommand::Explain(asked) => display.selection.asked = asked,
             SelectionCommand::EndIsolation => {
-                display.isolated = None;
+                display.selection.isolated = None;
                 display.curves.selected.clear();
             }
         }
@@ -39,11 +40,11 @@ impl GdcmApp {
 }
 
 fn select_condition(display: &mut Display, condition: ConditionId) {
-    if display.condition != condition {
-        display.condition = condition;
-        display.isolated = None;
+    if display.selection.condition != condition {
+        display.selection.condition = condition;
+        display.selection.isolated = None;
         display.curves.selected.clear();
         display.curves.crossings.clear();
-        display.refit_frequency_plots();
+        display.frequency.refit();
     }
 }

@@ -58,6 +58,7 @@ impl GdcmApp {
         self.state.notice = None;
         self.state
             .display
+            .gains
             .once_held
             .extend(self.state.study.settings.constrained.marked());
         self.state.unsaved = self.saved.study.as_ref() != Some(&self.state.study);

@@ -19,9 +19,9 @@ impl GdcmApp {
     pub(super) fn carry_out(&mut self, commands: Vec<Command>) {
         let display = &mut self.state.display;
         let pointed = (
-            display.hovered.take(),
-            display.hovered_condition.take(),
-            display.told.take(),
+            display.selection.hovered.take(),
+            display.selection.hovered_condition.take(),
+            display.selection.told.take(),
         );
         let before = (pointed, display.curves.cursor.take());
         for command in commands {
@@ -29,8 +29,11 @@ impl GdcmApp {
         }
         let display = &self.state.display;
         let ((hovered, condition, told), cursor) = &before;
-        let is_pointed = (&display.hovered, &display.hovered_condition, &display.told)
-            == (hovered, condition, told);
+        let is_pointed = (
+            &display.selection.hovered,
+            &display.selection.hovered_condition,
+            &display.selection.told,
+        ) == (hovered, condition, told);
         if !is_pointed || display.curves.cursor != *cursor {
             self.ctx.request_repaint();
         }

@@ -165,7 +165,7 @@ impl GdcmApp {
             requested: None,
         };
         let begins_there =
-            app.state.is_example && app.state.display.opens_with == OpensWith::StartPage;
+            app.state.is_example && app.state.display.layout.opens_with == OpensWith::StartPage;
         app.state.on_start_page = begins_there && setup.trouble.is_none();
         setup
             .trouble
@@ -332,7 +332,12 @@ impl GdcmApp {
             }
             // While the records of a condition are shown, dropped files are added to them.
             _ if self.state.assembling.is_none()
-                && self.state.display.arrangement.is_shown(View::Records) =>
+                && self
+                    .state
+                    .display
+                    .layout
+                    .arrangement
+                    .is_shown(View::Records) =>
             {
                 commands.push(RecordsCommand::Add(paths).into());
             }
@@ -365,7 +370,7 @@ impl GdcmApp {
             .fill(palette.panel)
             .inner_margin(Margin::symmetric(12, 0));
         let state = &mut self.state;
-        state.display.is_wide = ui.ctx().content_rect().width() >= WIDE;
+        state.display.layout.is_wide = ui.ctx().content_rect().width() >= WIDE;
         let top = Panel::top("menu bar").frame(bar).exact_size(36.0);
         top.show(ui, |ui| bars::menu_bar_ui(ui, state, palette, commands));
         if !state.bars.is_empty() {
@@ -385,7 +390,7 @@ impl GdcmApp {
                 .show(ui, |ui| start_page::start_ui(ui, state, palette, commands));
             return;
         }
-        let is_wide = state.display.is_wide;
+        let is_wide = state.display.layout.is_wide;
         left_ui(ui, state, palette, commands);
         // The panel's name distinguishes the window widths for which its width was dragged.
         let (name, width) = if is_wide {
@@ -419,7 +424,12 @@ const WIDE: f32 = 1400.0;
 /// Draws conditions and models, in full or as a rail.
 fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let side = Frame::new().fill(palette.panel);
-    if !state.display.left_open.unwrap_or(state.display.is_wide) {
+    if !state
+        .display
+        .layout
+        .left_open
+        .unwrap_or(state.display.layout.is_wide)
+    {
         let frame = side.inner_margin(Margin {
             left: 4,
             right: 2,
@@ -480,8 +490,13 @@ fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 
 /// Draws the sheets over the middle of the window.
 fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let asked = state.display.asked.as_ref().map(|_| Sheet::Derivation);
-    let Some(sheet) = asked.or(state.display.sheet) else {
+    let asked = state
+        .display
+        .selection
+        .asked
+        .as_ref()
+        .map(|_| Sheet::Derivation);
+    let Some(sheet) = asked.or(state.display.layout.sheet) else {
         return;
     };
     let is_closed = sheet_ui(ui, centre, sheet, palette, |ui| match sheet {
@@ -542,7 +557,7 @@ impl eframe::App for GdcmApp {
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        let palette = Palette::of(ui.visuals()).with_looks(self.state.display.looks);
+        let palette = Palette::of(ui.visuals()).with_looks(self.state.display.curves.looks);
         self.move_focus();
         let mut commands = keyboard::pressed(&ctx, &self.state);
         self.take_dropped_files(&mut commands);

@@ -171,7 +171,7 @@ fn file_entries(state: &State) -> Vec<Entry> {
             "When the program is started without a file",
             LayoutCommand::BeginWith(what),
         );
-        entry.enabled(state.display.opens_with != what)
+        entry.enabled(state.display.layout.opens_with != what)
     };
     let quit = [Entry::new("Quit", "Close the window", FileCommand::Quit).keys(CTRL, Key::Q)];
     let menu = Menu::File;
@@ -288,7 +288,7 @@ fn edit_entries(state: &State) -> Vec<Entry> {
     ];
     let on_axis = "Hold exactly the on-axis responses".to_owned();
     let held = [
-        hold_entry(state, state.display.pair).free_key(Key::Space),
+        hold_entry(state, state.display.selection.pair).free_key(Key::Space),
         edit(
             on_axis,
             "As the dataset names them, and no others",
@@ -331,7 +331,7 @@ pub(crate) fn hold_entry(state: &State, pair: Pair) -> Entry {
 }
 
 fn view_entries(state: &State) -> Vec<Entry> {
-    let (unit_name, unit) = match state.display.unit {
+    let (unit_name, unit) = match state.display.curves.unit {
         FrequencyUnit::RadPerSecond => ("Frequencies in Hz", FrequencyUnit::Hertz),
         FrequencyUnit::Hertz => ("Frequencies in rad/s", FrequencyUnit::RadPerSecond),
     };
@@ -394,7 +394,7 @@ const PARTS: &str = "Plots, dock, verdict, result, matrix, settings, conditions,
 
 /// Returns the entries for groups of views, their neighbours, panels and folds.
 fn layout_entries(state: &State) -> Vec<Entry> {
-    let arrangement = &state.display.arrangement;
+    let arrangement = &state.display.layout.arrangement;
     let keys = [Key::Num1, Key::Num2, Key::Num3, Key::Num4];
     let groups = ViewGroup::ALL.into_iter().zip(keys).map(|(group, key)| {
         let command = Command::Layout(LayoutCommand::ShowGroup(group));
@@ -418,7 +418,7 @@ fn layout_entries(state: &State) -> Vec<Entry> {
         .keys(Modifiers::ALT, key)
     });
     let display = &state.display;
-    let is_left_open = display.left_open.unwrap_or(display.is_wide);
+    let is_left_open = display.layout.left_open.unwrap_or(display.layout.is_wide);
     let is_dock_open = arrangement.is_dock_open(true);
     let switches = [
         Entry::new(
@@ -432,13 +432,13 @@ fn layout_entries(state: &State) -> Vec<Entry> {
         )
         .keys(CTRL, Key::B),
         Entry::new(
-            if display.settings_open {
+            if display.layout.settings_open {
                 "Fold the settings"
             } else {
                 "Unfold the settings"
             },
             "In place of matrix and card",
-            LayoutCommand::ShowSettings(!display.settings_open),
+            LayoutCommand::ShowSettings(!display.layout.settings_open),
         )
         .keys(CTRL, Key::Comma),
         Entry::new(
@@ -486,7 +486,7 @@ fn steps(state: &State) -> [Entry; 4] {
     };
     let inputs = state.dataset().inputs().len();
     let outputs = state.dataset().outputs().len();
-    let at = state.display.pair.output * inputs + state.display.pair.input;
+    let at = state.display.selection.pair.output * inputs + state.display.selection.pair.input;
     let to_response = |name, key, place: Option<usize>| {
         let found = place.filter(|place| *place < inputs * outputs);
         let place = found.unwrap_or(at);
@@ -602,7 +602,7 @@ pub fn every_command(state: &State) -> Vec<Entry> {
             "In the plots of one response",
             SelectionCommand::FocusPair(pair),
         ));
-        if pair != state.display.pair {
+        if pair != state.display.selection.pair {
             entries.push(hold_entry(state, pair));
         }
     }

@@ -15,7 +15,7 @@ use crate::gui::widgets::palette::{CurveColors, PlotStyle};
 /// Returns the entries for units, read-outs, styles, and hidden curves.
 pub fn curve_entries(state: &State) -> Vec<Entry> {
     let mut entries = unit_entries(state);
-    entries.extend(look_entries(state.display.looks));
+    entries.extend(look_entries(state.display.curves.looks));
     entries.extend(visibility_entries(state));
     entries
 }
@@ -128,7 +128,7 @@ fn look_entries(looks: PlotStyle) -> Vec<Entry> {
 
 fn visibility_entries(state: &State) -> Vec<Entry> {
     let display = &state.display;
-    let is_isolated = display.isolated.is_some() || !display.curves.selected.is_empty();
+    let is_isolated = display.selection.isolated.is_some() || !display.curves.selected.is_empty();
     let is_hidden = !(display.curves.hidden_models.is_empty()
         && display
             .curves

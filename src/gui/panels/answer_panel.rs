@@ -64,7 +64,7 @@ pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
             verdict_ui(ui, &verdict, palette, commands)
         });
         ui.add_space(8.0);
-        if state.display.settings_open {
+        if state.display.layout.settings_open {
             ScrollArea::vertical()
                 .id_salt("settings")
                 .auto_shrink([false, false])
@@ -309,7 +309,7 @@ fn step_ui(
 
 /// Draws the settings in one line; a click unfolds them over matrix and card.
 fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let is_open = state.display.settings_open;
+    let is_open = state.display.layout.settings_open;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::click());
     ui.painter().hline(
         rect.x_range(),
@@ -363,7 +363,7 @@ fn settings_words(state: &State) -> String {
         PhaseCorrection::Lead => "leads",
     };
     let mut words = format!("{alpha} · {} · {phase}", band_words(state));
-    if settings.gain_source == GainSource::MeanOfPairs || state.display.is_wide {
+    if settings.gain_source == GainSource::MeanOfPairs || state.display.layout.is_wide {
         words.push_str(" · ");
         words.push_str(&setting::GAIN_SOURCE.text(setting::GAIN_SOURCE.value(settings)));
     }

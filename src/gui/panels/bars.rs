@@ -327,7 +327,7 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     ui.horizontal_centered(|ui| {
         computation_ui(ui, state, palette, commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            match (&state.display.told, &state.notice) {
+            match (&state.display.selection.told, &state.notice) {
                 (Some(told), _) => {
                     drop(ui.add(Label::new(RichText::new(told).size(SMALL_SIZE)).truncate()))
                 }

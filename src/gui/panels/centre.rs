@@ -46,11 +46,11 @@ pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &m
         });
         frame.show(ui, |ui| example_line_ui(ui, palette, commands));
     }
-    if let Some(dock) = state.display.arrangement.dock() {
+    if let Some(dock) = state.display.layout.arrangement.dock() {
         dock_ui(ui, state, dock, palette, commands);
     }
-    let view = state.display.arrangement.view();
-    let beside = state.display.arrangement.beside();
+    let view = state.display.layout.arrangement.view();
+    let beside = state.display.layout.arrangement.beside();
     let area = ui.available_rect_before_wrap();
     let Some(beside) = beside else {
         return part_ui(ui, area, state, view, palette, commands);
@@ -89,7 +89,7 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         inner.with_min_x(left.response.rect.right() + 8.0),
         true,
         |ui| {
-            figure_button_ui(ui, state, state.display.arrangement.view(), commands);
+            figure_button_ui(ui, state, state.display.layout.arrangement.view(), commands);
             let hint = "Bring every curve into view (F, or double click)";
             button_ui(
                 ui,
@@ -120,7 +120,7 @@ fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     for (group, width) in ViewGroup::ALL.into_iter().zip(widths) {
         let place = Rect::from_min_size(pos2(left, area.top() + 2.0), vec2(width, 26.0));
         left = place.right();
-        let is_front = state.display.arrangement.group() == group;
+        let is_front = state.display.layout.arrangement.group() == group;
         let response = ui.interact(
             place,
             ui.scope_id().with(("group", group.name())),
@@ -158,7 +158,7 @@ fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
 fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &mut Vec<Command>) {
     /// Width of the other controls in the bar \[pt\].
     const TOOLS: f32 = 130.0;
-    let arrangement = &state.display.arrangement;
+    let arrangement = &state.display.layout.arrangement;
     let width = |view: View| text_width(ui, view.name(), medium(BODY_SIZE)) + 16.0;
     let room = bar.right() - ui.cursor().left() - TOOLS;
     if arrangement.group().views().map(width).sum::<f32>() <= room {
@@ -223,7 +223,7 @@ fn tab_ui(
 
 /// Draws the button that shows a second view beside the view in front, or hides it.
 fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let arrangement = &state.display.arrangement;
+    let arrangement = &state.display.layout.arrangement;
     let (button, _) = MenuButton::from_button(Button::new("     ").frame(false)).ui(ui, |ui| {
         let views = View::ALL
             .into_iter()
@@ -350,7 +350,7 @@ fn tools_ui(
     commands: &mut Vec<Command>,
 ) {
     // The bar shows the tools of the view in front.
-    if view != state.display.arrangement.view() {
+    if view != state.display.layout.arrangement.view() {
         figure_button_ui(ui, state, view, commands);
     }
     (view_content(view).tools)(ui, state, palette, commands);
@@ -373,10 +373,13 @@ fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
     let heading = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).font(medium(TITLE_SIZE)));
     match title {
         ViewTitle::Response => {
-            heading(ui, &state.dataset().pair_name(state.display.pair));
+            heading(ui, &state.dataset().pair_name(state.display.selection.pair));
             ui.add(egui::Label::new(palette.dim(of_condition)).truncate());
         }
-        ViewTitle::Focus => drop(heading(ui, &state.dataset().pair_name(state.display.pair))),
+        ViewTitle::Focus => drop(heading(
+            ui,
+            &state.dataset().pair_name(state.display.selection.pair),
+        )),
         ViewTitle::Condition => {
             heading(ui, &format!("Condition {}", condition.id()));
             ui.add(egui::Label::new(palette.dim(&condition.flight_state().name)).truncate());
@@ -399,6 +402,7 @@ fn dock_ui(
     let window = ui.ctx().content_rect().height();
     let is_open = state
         .display
+        .layout
         .arrangement
         .is_dock_open(window >= LEAST_WITH_DOCK);
     let frame = Frame::new().fill(palette.background);

@@ -271,7 +271,7 @@ impl<'a> Map<'a> {
             );
         }
         for (place, column) in self.columns.iter().enumerate() {
-            let is_of_focus = column.pairs.contains(&self.state.display.pair);
+            let is_of_focus = column.pairs.contains(&self.state.display.selection.pair);
             let color = if is_of_focus {
                 palette.text
             } else {
@@ -315,7 +315,7 @@ impl<'a> Map<'a> {
             marks.after_name()
         );
         let is_shown = id == state.condition().id();
-        let is_pointed = state.display.hovered_condition == Some(id);
+        let is_pointed = state.display.selection.hovered_condition == Some(id);
         let height = ROWS[usize::from(self.is_rail)];
         let (row, response) = row_of_height_ui(ui, palette, (is_shown, is_pointed, height), &name);
         if response.contains_pointer() {
@@ -383,7 +383,7 @@ impl<'a> Map<'a> {
             let width = HALF_CELL[0].min(0.5 * self.pitch - 1.5);
             let cell = Rect::from_min_size(corner, vec2(2.0 * width + 1.0, HALF_CELL[1]));
             paint_cost(ui, cell, cost, palette);
-            let is_focus = column.pairs.contains(&self.state.display.pair)
+            let is_focus = column.pairs.contains(&self.state.display.selection.pair)
                 && id == self.state.condition().id();
             if is_focus && !self.is_rail {
                 ui.painter().rect_stroke(
@@ -413,7 +413,7 @@ impl<'a> Map<'a> {
             rect.with_max_y(rect.center().y),
             rect.with_min_y(rect.center().y),
         ];
-        let of = match self.state.display.mapped_cost {
+        let of = match self.state.display.judging.mapped_cost {
             MappedCost::Before => "J before, held responses",
             MappedCost::Own => "J of the held responses",
             MappedCost::Scheduled => "J under the schedule",

@@ -75,14 +75,14 @@ fn held_columns(state: &State) -> Vec<CostColumn> {
 /// Returns J of magnitude and phase of a response in a condition; `None` without a result.
 pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost> {
     let analysis = state.analysis()?;
-    if state.display.mapped_cost == MappedCost::Scheduled {
+    if state.display.judging.mapped_cost == MappedCost::Scheduled {
         let Ok(costs) = analysis.assessment.get(&condition)? else {
             return None;
         };
         return costs[pair].map(|change| change.corrected);
     }
     let result = analysis.condition(condition)?;
-    match state.display.mapped_cost {
+    match state.display.judging.mapped_cost {
         MappedCost::Before => result.before_couplings().representative.cost[pair],
         _ => result.cost[pair].map(|change| change.corrected),
     }

@@ -100,7 +100,7 @@ pub fn derivation_sheet_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let Some(asked) = &state.display.asked else {
+    let Some(asked) = &state.display.selection.asked else {
         return;
     };
     let found = state

@@ -109,7 +109,7 @@ fn cells_ui(
         HEADER_HEIGHT + pitch * outputs.len() as f32,
     );
     let (in_conflict, blamed) = state.shown().map(gain_conflict_marks).unwrap_or_default();
-    let focus = state.display.pair;
+    let focus = state.display.selection.pair;
     let name_look = |channel, is_of_focus| match (blamed.contains(&channel), is_of_focus) {
         (true, _) => (palette.warning, small()),
         (_, true) => (palette.text, medium(SMALL_SIZE)),
@@ -163,7 +163,7 @@ impl<'a> Cell<'a> {
         Self {
             pair,
             name: state.dataset().pair_name(pair),
-            focused: state.display.pair == pair,
+            focused: state.display.selection.pair == pair,
             constrained: state.study.settings.constrained[pair],
             fitted: !state.study.settings.ignored[pair],
             in_conflict,
@@ -551,7 +551,7 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
         StrokeKind::Inside,
     );
     let inner = rect.shrink2(vec2(11.0, 9.0));
-    let pair = state.display.pair;
+    let pair = state.display.selection.pair;
     let held = if state.study.settings.constrained[pair] {
         "held"
     } else {

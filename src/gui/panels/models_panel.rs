@@ -33,7 +33,7 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium,
 /// identified models folded at its foot.
 pub fn models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     region_ui(ui, Region::Models, |ui| {
-        let is_open = state.display.identified_open;
+        let is_open = state.display.layout.identified_open;
         let room = ui.available_height();
         // A single line reports the absence of models.
         let models = state
@@ -349,7 +349,7 @@ impl<'a> ModelRow<'a> {
                 .as_ref()
                 == Some(&id.name),
             represents: shown.is_some_and(|shown| shown.representative_name(kind) == id.name),
-            pointed: state.display.hovered.as_ref() == Some(&id),
+            pointed: state.display.selection.hovered.as_ref() == Some(&id),
             score: shown.and_then(|shown| shown.score(kind, &id.name)),
             ratio: shown
                 .filter(|_| kind == BundleKind::Physics)

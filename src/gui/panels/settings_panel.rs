@@ -48,8 +48,8 @@ pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
             }
         }
         ui.add_space(8.0);
-        advanced_head_ui(ui, state.display.advanced_open, palette, commands);
-        if !state.display.advanced_open {
+        advanced_head_ui(ui, state.display.layout.advanced_open, palette, commands);
+        if !state.display.layout.advanced_open {
             return;
         }
         Grid::new("settings")

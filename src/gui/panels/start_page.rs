@@ -332,7 +332,7 @@ fn picture_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     );
     let map = area.with_max_x(area.left() + 0.44 * area.width());
     cost_picture_ui(ui, map, state, palette);
-    let pair = state.display.pair;
+    let pair = state.display.selection.pair;
     let curves = bode_curves(state, pair);
     let plot = area.with_min_x(area.left() + 0.52 * area.width());
     let title = format!(

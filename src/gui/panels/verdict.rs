@@ -536,7 +536,7 @@ mod tests {
             .iter()
             .for_each(|edit| study.apply(edit).expect("the example takes it"));
         let mut state = State::new(study.clone(), String::new(), Vec::new());
-        state.display.condition = ConditionId(10);
+        state.display.selection.condition = ConditionId(10);
         let analysis = Engine::default()
             .analyze(&study, &Unobserved)
             .expect("nothing stops it");

@@ -4,14 +4,18 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use gdcm_model::dataset::{ConditionId, ModelId, Pair};
+use gdcm_plot::figure::axis::FrequencyUnit;
 
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::plot::{CurveId, Role};
+use crate::gui::widgets::palette::PlotStyle;
 
 /// Display options of the plots over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveDisplay {
+    pub unit: FrequencyUnit,
+    pub looks: PlotStyle,
     pub magnitude: MagnitudeUnit,
     pub phase: PhaseUnit,
     pub phase_error: PhaseErrorUnit,
@@ -41,6 +45,8 @@ pub struct CurveDisplay {
 impl Default for CurveDisplay {
     fn default() -> Self {
         Self {
+            unit: FrequencyUnit::default(),
+            looks: PlotStyle::default(),
             magnitude: MagnitudeUnit::default(),
             phase: PhaseUnit::default(),
             phase_error: PhaseErrorUnit::default(),

@@ -43,10 +43,10 @@ impl Preferences {
     /// Returns the current preferences of a window.
     pub fn of(display: &Display) -> Self {
         Self {
-            arrangement: Some(display.arrangement.clone()),
-            opens_with: display.opens_with,
-            left_open: display.left_open,
-            frequency_unit: display.unit,
+            arrangement: Some(display.layout.arrangement.clone()),
+            opens_with: display.layout.opens_with,
+            left_open: display.layout.left_open,
+            frequency_unit: display.curves.unit,
             magnitude: display.curves.magnitude,
             phase: display.curves.phase,
             phase_error: display.curves.phase_error,
@@ -54,20 +54,20 @@ impl Preferences {
             shows_muad: display.curves.shows_muad,
             shows_bands: display.curves.shows_bands,
             lists_no_values: !display.curves.lists_values,
-            looks: display.looks,
+            looks: display.curves.looks,
         }
     }
 
     /// Applies these preferences to a window.
     pub fn apply(&self, display: &mut Display) {
-        display.arrangement = self
+        display.layout.arrangement = self
             .arrangement
             .clone()
             .and_then(Arrangement::if_whole)
             .unwrap_or_default();
-        display.opens_with = self.opens_with;
-        display.left_open = self.left_open;
-        display.unit = self.frequency_unit;
+        display.layout.opens_with = self.opens_with;
+        display.layout.left_open = self.left_open;
+        display.curves.unit = self.frequency_unit;
         display.curves.magnitude = self.magnitude;
         display.curves.phase = self.phase;
         display.curves.phase_error = self.phase_error;
@@ -75,6 +75,6 @@ impl Preferences {
         display.curves.shows_muad = self.shows_muad;
         display.curves.shows_bands = self.shows_bands;
         display.curves.lists_values = !self.lists_no_values;
-        display.looks = self.looks.within_limits();
+        display.curves.looks = self.looks.within_limits();
     }
 }

@@ -88,12 +88,10 @@ impl State {
             .unwrap_or_default();
         let condition = study.dataset.conditions()[0].id();
         let once_held = study.settings.constrained.marked().collect();
-        let display = Display {
-            condition,
-            pair,
-            once_held,
-            ..Display::default()
-        };
+        let mut display = Display::default();
+        display.selection.condition = condition;
+        display.selection.pair = pair;
+        display.gains.once_held = once_held;
         Self {
             followed: Arc::clone(&study.dataset),
             study,
@@ -134,7 +132,10 @@ impl State {
 
     /// Returns the displayed condition; the first condition if the dataset no longer contains it.
     pub fn condition(&self) -> &Arc<Condition> {
-        let found = self.study.dataset.condition(self.display.condition);
+        let found = self
+            .study
+            .dataset
+            .condition(self.display.selection.condition);
         found.unwrap_or(&self.study.dataset.conditions()[0])
     }
 
@@ -211,7 +212,7 @@ impl State {
             correction,
             average,
             ..
-        } = self.display.assessed;
+        } = self.display.judging.assessed;
         AssessmentChoice {
             model,
             correction,
@@ -231,7 +232,9 @@ impl State {
     pub fn test_answers(&self) -> Option<&Result<Arc<TestAnswers>, String>> {
         let (job, found) = self.results.test_answers.as_ref()?;
         let of_this = Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset);
-        (of_this && (job.condition, job.input) == (self.condition().id(), self.display.pair.input))
+        (of_this
+            && (job.condition, job.input)
+                == (self.condition().id(), self.display.selection.pair.input))
             .then_some(found)
     }
 
@@ -342,19 +345,19 @@ impl State {
             return;
         }
         self.followed = Arc::clone(dataset);
-        let pair = self.display.pair;
+        let pair = self.display.selection.pair;
         if pair.output >= dataset.outputs().len() || pair.input >= dataset.inputs().len() {
-            self.display.pair = dataset
+            self.display.selection.pair = dataset
                 .measuring_pairs()
                 .marked()
                 .next()
                 .unwrap_or_default();
         }
-        self.display.hovered = None;
-        self.display.isolated = None;
+        self.display.selection.hovered = None;
+        self.display.selection.isolated = None;
         self.display.curves.forget_models();
-        self.display.shapes.clear();
-        self.display.fit_frequency_plots();
+        self.display.frequency.shapes.clear();
+        self.display.frequency.fit();
     }
 
     /// Returns the number of kept models in a bundle of the displayed condition: "14 of 19".

@@ -27,7 +27,7 @@ use crate::gui::widgets::tables::{TableLook, table_ui};
 
 /// Draws the selection of the assessed quantity and of its form, from right to left.
 pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let shown = state.display.assessed;
+    let shown = state.display.judging.assessed;
     let mut chosen = shown;
     let forms = [
         (false, "bars", "A bar for each condition"),
@@ -137,7 +137,7 @@ pub fn assessment_view_ui(
         .color(palette.text);
     ui.add(egui::Label::new(text).truncate())
         .on_hover_text(&sentences);
-    if state.display.assessed.as_table {
+    if state.display.judging.assessed.as_table {
         return text_table_ui(ui, state, &table, palette, commands);
     }
     key_ui(ui, palette);
@@ -444,9 +444,9 @@ fn text_table_ui(
     };
     let look = TableLook {
         color: &color,
-        selected: &|row| pairs.get(row) == Some(&state.display.pair),
+        selected: &|row| pairs.get(row) == Some(&state.display.selection.pair),
     };
-    let mut sorting = state.display.assessment_sorting;
+    let mut sorting = state.display.judging.assessment_sorting;
     let clicked = table_ui(ui, &text, &mut sorting, &look, palette, commands);
     if let Some(click) = clicked {
         commands.extend(
@@ -462,16 +462,16 @@ fn text_table_ui(
             Command::Selection(SelectionCommand::SelectCondition(condition.id()))
         }));
     }
-    state.display.assessment_sorting = sorting;
+    state.display.judging.assessment_sorting = sorting;
 }
 
 /// Returns the assessed responses, in the order of the matrix.
 pub fn assessed_pairs(state: &State) -> Vec<Pair> {
     let measuring = state.dataset().measuring_pairs();
-    let is_in = |pair: &Pair| match state.display.assessed.pairs {
+    let is_in = |pair: &Pair| match state.display.judging.assessed.pairs {
         AssessedPairs::OnAxis => measuring[*pair],
         AssessedPairs::OffAxis => !measuring[*pair],
-        AssessedPairs::Focused => *pair == state.display.pair,
+        AssessedPairs::Focused => *pair == state.display.selection.pair,
         AssessedPairs::All => true,
     };
     measuring.pairs().filter(is_in).collect()
@@ -502,7 +502,7 @@ fn why_not(table: &AssessmentTable, condition: ConditionId, pair: Pair) -> Strin
 /// Builds the table with the responses in rows, the conditions in columns, and the signed change of
 /// J in each cell.
 pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
-    let part = state.display.assessed.part;
+    let part = state.display.judging.assessed.part;
     let condition = |of: &std::sync::Arc<Condition>| (of.id(), of.id().to_string());
     let conditions: Vec<(ConditionId, String)> =
         state.dataset().conditions().iter().map(condition).collect();

@@ -40,8 +40,8 @@ pub fn bode_view_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let pair = state.display.pair;
-    let mut view = std::mem::take(&mut state.display.bode);
+    let pair = state.display.selection.pair;
+    let mut view = std::mem::take(&mut state.display.frequency.bode);
     let curves = bode_curves(state, pair);
     let title = state.dataset().pair_name(pair);
     let ratio_unit = ConditionSource::ratio_unit(state.dataset(), pair);
@@ -87,9 +87,9 @@ pub fn bode_view_ui(
         ..BodeScene::of(&title, &curves, band)
     };
     frequency_plot_ui(ui, state, (scene, &mut view), palette, commands);
-    state.display.error.share_frequencies(&view);
-    state.display.bode = view;
-    state.display.drawn = curves;
+    state.display.frequency.error.share_frequencies(&view);
+    state.display.frequency.bode = view;
+    state.display.frequency.drawn = curves;
 }
 
 /// Returns the region where curves only illustrate the price of leads; `None` without leads
@@ -190,7 +190,7 @@ fn notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
 }
 
 fn unit_words(state: &State, omega: f64) -> String {
-    let unit = state.display.unit;
+    let unit = state.display.curves.unit;
     format!("{} {}", number(unit.of_omega(omega)), unit.symbol())
 }
 
@@ -202,8 +202,8 @@ pub fn error_view_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let pair = state.display.pair;
-    let mut view = std::mem::take(&mut state.display.error);
+    let pair = state.display.selection.pair;
+    let mut view = std::mem::take(&mut state.display.frequency.error);
     let options = bode_options(state);
     let curves = error_curves(state, pair, &options);
     let rules = condition_source(state)
@@ -228,9 +228,9 @@ pub fn error_view_ui(
         ..BodeScene::of(&title, &curves, (band.min(), band.max()))
     };
     frequency_plot_ui(ui, state, (scene, &mut view), palette, commands);
-    state.display.bode.share_frequencies(&view);
-    state.display.error = view;
-    state.display.drawn_errors = curves;
+    state.display.frequency.bode.share_frequencies(&view);
+    state.display.frequency.error = view;
+    state.display.frequency.drawn_errors = curves;
 }
 
 /// Draws the selection of the unit of phase differences.
@@ -284,7 +284,7 @@ pub fn across_header_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let mut role = state.display.across_role;
+    let mut role = state.display.frequency.across_role;
     let roles = AcrossRole::ALL.map(|role| {
         (
             role,
@@ -293,7 +293,7 @@ pub fn across_header_ui(
         )
     });
     choice_ui(ui, "Model of each condition", &mut role, &roles);
-    if role != state.display.across_role {
+    if role != state.display.frequency.across_role {
         commands.push(DisplayCommand::ShowAcross(role).into());
     }
     let (least, most) = state.dataset().airspeed_range_kt();
@@ -329,9 +329,9 @@ pub fn across_view_ui(
     let curves = across_curves(state);
     fit_across(state);
     let band = state.study.settings.band;
-    let title = state.dataset().pair_name(state.display.pair);
+    let title = state.dataset().pair_name(state.display.selection.pair);
     let quantity = BodeQuantity::RESPONSE_OF_EVERY_CONDITION;
-    let unit = state.display.unit;
+    let unit = state.display.curves.unit;
     let scene = BodeScene {
         quantity,
         unit,
@@ -339,17 +339,18 @@ pub fn across_view_ui(
         message: Some(state.results.absence()),
         ..BodeScene::of(&title, &curves, (band.min(), band.max()))
     };
-    for event in bode_ui(ui, &scene, &mut state.display.across, palette) {
+    for event in bode_ui(ui, &scene, &mut state.display.frequency.across, palette) {
         if let BodeEvent::Clicked(CurveId::Model(id)) = event {
             commands.push(SelectionCommand::SelectCondition(id.condition).into());
         }
     }
     commands.extend(
-        pointed_words(&state.display.across, &curves, (quantity, unit))
+        pointed_words(&state.display.frequency.across, &curves, (quantity, unit))
             .map(|value| Command::Selection(SelectionCommand::Tell(value))),
     );
     if let Some(transform) = state
         .display
+        .frequency
         .across
         .transform(Pane::Magnitude)
         .filter(|_| !curves.is_empty())
@@ -367,11 +368,14 @@ pub fn across_view_ui(
 
 /// Fits the plot across conditions once the curves of another response or model are available.
 fn fit_across(state: &mut State) {
-    let asked = (state.display.pair, state.display.across_role);
-    if state.display.across_fitted == Some(asked) {
+    let asked = (
+        state.display.selection.pair,
+        state.display.frequency.across_role,
+    );
+    if state.display.frequency.across_fitted == Some(asked) {
         return;
     }
-    state.display.across.request_refit();
+    state.display.frequency.across.request_refit();
     // Until then the previous models' curves are drawn.
     let models = across_job(state).models;
     if state
@@ -380,7 +384,7 @@ fn fit_across(state: &mut State) {
         .as_ref()
         .is_some_and(|(job, _)| job.models == models)
     {
-        state.display.across_fitted = Some(asked);
+        state.display.frequency.across_fitted = Some(asked);
     }
 }
 
@@ -393,7 +397,7 @@ pub fn across_job(state: &State) -> AcrossJob {
     AcrossJob::of(
         &state.study.dataset,
         state.analysis(),
-        state.display.across_role,
+        state.display.frequency.across_role,
         grid,
     )
 }
@@ -404,17 +408,17 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     let Some(curves) = state.across().cloned() else {
         return Vec::new();
     };
-    let pair = state.display.pair;
-    let mut cached = std::mem::take(&mut state.display.across_shapes);
+    let pair = state.display.selection.pair;
+    let mut cached = std::mem::take(&mut state.display.frequency.across_shapes);
     let made_of = (state.dataset(), state.analysis());
-    let role = state.display.across_role;
+    let role = state.display.frequency.across_role;
     let mut drawn = airspeed_curves(made_of, role, pair, &curves, &mut cached);
     for curve in &mut drawn {
         curve.highlighted =
             matches!(&curve.id, CurveId::Model(id) if id.condition == state.condition().id());
         curve.detail.push_str(" · click to show the condition");
     }
-    state.display.across_shapes = cached;
+    state.display.frequency.across_shapes = cached;
     drawn
 }
 
@@ -442,7 +446,7 @@ pub fn overview_view_ui(
             pair,
             curves,
             constrained: state.study.settings.constrained[pair],
-            selected: pair == state.display.pair,
+            selected: pair == state.display.selection.pair,
             note: cost_note(state, pair),
         })
         .collect();
@@ -455,7 +459,7 @@ pub fn overview_view_ui(
         band: (band.min(), band.max()),
         message: Some(state.results.absence()),
     };
-    for event in overview_ui(ui, &scene, &mut state.display.overview, palette) {
+    for event in overview_ui(ui, &scene, &mut state.display.frequency.overview, palette) {
         match event {
             OverviewEvent::PairClicked(pair) => {
                 commands.push(SelectionCommand::FocusPair(pair).into());

@@ -16,7 +16,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Draws the selection of gains or delays and of airspeed or conditions, from right to left.
 pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let shown = state.display.channel_values;
+    let shown = state.display.gains.channel_values;
     let (mut measure, mut across) = shown;
     let axes = [
         (Across::Airspeed, "over airspeed", "With the schedule"),
@@ -57,7 +57,7 @@ pub fn channels_view_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let mut view = std::mem::take(&mut state.display.channels);
+    let mut view = std::mem::take(&mut state.display.gains.channels);
     let plots = channel_plots(state);
     let mut inputs = plots.figure.clone();
     let mut outputs = plots.figure.clone();
@@ -119,13 +119,13 @@ pub fn channels_view_ui(
         );
     }
     ui.advance_cursor_after_rect(rect);
-    state.display.channels = view;
+    state.display.gains.channels = view;
 }
 
 /// Builds a plot for each channel, inputs first: gain or delay in each condition's optimum, and the
 /// schedule.
 pub fn channel_plots(state: &State) -> GainPlots<'_> {
-    let (measure, across) = state.display.channel_values;
+    let (measure, across) = state.display.gains.channel_values;
     let channels = if state.analysis().is_some() {
         all_channels(state.dataset())
     } else {

@@ -34,7 +34,7 @@ pub fn compare_view_ui(
         return;
     }
     for variant in state.study.variants.clone() {
-        let is_overlaid = state.display.overlaid.as_ref() == Some(&variant.name);
+        let is_overlaid = state.display.judging.overlaid.as_ref() == Some(&variant.name);
         variant_ui(ui, &variant, is_overlaid, commands);
     }
     ui.add_space(4.0);
@@ -48,7 +48,7 @@ pub fn compare_view_ui(
             ui.available_height()
         };
         ui.allocate_ui(egui::vec2(ui.available_width(), room), |ui| {
-            let mut sorting = state.display.compare_sorting[index];
+            let mut sorting = state.display.judging.compare_sorting[index];
             table_ui(
                 ui,
                 table,
@@ -57,7 +57,7 @@ pub fn compare_view_ui(
                 palette,
                 commands,
             );
-            state.display.compare_sorting[index] = sorting;
+            state.display.judging.compare_sorting[index] = sorting;
         });
     }
 }
@@ -65,7 +65,7 @@ pub fn compare_view_ui(
 /// Draws the name field and the button that stores the present decisions under that name.
 fn keep_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let name = &mut state.display.variant_name;
+        let name = &mut state.display.judging.variant_name;
         let field = text_field_ui(
             ui,
             "Name of the variant",
@@ -144,14 +144,18 @@ pub fn variant_analysis<'a>(state: &'a State, variant: &Variant) -> Option<&'a A
 
 /// Returns the overlaid variant and its analysis, if available.
 pub fn overlaid_analysis(state: &State) -> Option<(&str, &Analysis)> {
-    let variant = state.study.variant(state.display.overlaid.as_deref()?)?;
+    let variant = state
+        .study
+        .variant(state.display.judging.overlaid.as_deref()?)?;
     Some((&variant.name, variant_analysis(state, variant)?))
 }
 
 /// Returns the job of the overlaid analysis.
 pub fn overlay_job(state: &State) -> Option<VariantJob> {
     Some(VariantJob {
-        study: state.study.of_variant(state.display.overlaid.as_deref()?)?,
+        study: state
+            .study
+            .of_variant(state.display.judging.overlaid.as_deref()?)?,
     })
 }
 

@@ -43,14 +43,14 @@ pub fn evidence_view_ui(
         ui.label(RichText::new(state.results.absence_of_bars()).color(palette.dim_text));
         return;
     };
-    let mut sorting = state.display.evidence_tables;
+    let mut sorting = state.display.gains.evidence_tables;
     ui.label(RichText::new(uncertainty.differences_in_words()).font(medium(BODY_SIZE)));
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         answer_ui(ui, state, &uncertainty, palette);
         scatter_ui(ui, state, &uncertainty, palette);
         tables_ui(ui, state, &uncertainty, (&mut sorting, palette), commands);
     });
-    state.display.evidence_tables = sorting;
+    state.display.gains.evidence_tables = sorting;
 }
 
 /// Draws the significant differences in aligned columns, and a note if no response needs a second
@@ -260,7 +260,7 @@ fn tables_ui(
             commands,
         )
     });
-    let mut cached = std::mem::take(&mut state.display.evidence);
+    let mut cached = std::mem::take(&mut state.display.gains.evidence);
     cached.refresh(state);
     if let Some((_, evidence)) = cached.found() {
         heading(
@@ -272,7 +272,7 @@ fn tables_ui(
             forms_ui(ui, state, evidence, (&mut sorting[2], palette), commands)
         });
     }
-    state.display.evidence = cached;
+    state.display.gains.evidence = cached;
 }
 
 /// Draws the evidence for every form of the schedule; a click on a form selects it.

@@ -17,7 +17,7 @@ use crate::gui::state::window_state::State;
 
 /// Returns the figure of a view; `None` until its results are available.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
-    let bars = !state.display.hide_bars || view.figure().is_some_and(FigureKind::needs_bars);
+    let bars = !state.display.gains.hide_bars || view.figure().is_some_and(FigureKind::needs_bars);
     let with_bars = if bars {
         state.analysis_with_bars()
     } else {
@@ -39,7 +39,7 @@ pub fn figure_name(state: &State, view: View) -> String {
         parts.push(state.condition().id().to_string());
     }
     if matches!(view, View::Bode | View::Error | View::Across | View::Leads) {
-        let (output, input) = state.dataset().channel_names(state.display.pair);
+        let (output, input) = state.dataset().channel_names(state.display.selection.pair);
         parts.extend([input, output]);
     }
     let is_plain = |letter: char| letter.is_alphanumeric() || letter == '-';
@@ -55,11 +55,11 @@ pub fn request(state: &State, view: View) -> Option<FigureRequest> {
     let kind = view.figure()?;
     let pairs = view_content(view).figure_pairs;
     let display = &state.display;
-    let (measure, across) = display.channel_values;
+    let (measure, across) = display.gains.channel_values;
     let plot = match view {
-        View::Bode => Some(&display.bode),
-        View::Error => Some(&display.error),
-        View::Across => Some(&display.across),
+        View::Bode => Some(&display.frequency.bode),
+        View::Error => Some(&display.frequency.error),
+        View::Across => Some(&display.frequency.across),
         _ => None,
     };
     // Axis ranges chosen by the engineer.
@@ -78,7 +78,7 @@ pub fn request(state: &State, view: View) -> Option<FigureRequest> {
         measure,
         across,
         assessed,
-        across_role: display.across_role,
+        across_role: display.frequency.across_role,
         bode,
         couplings,
         requirements,

@@ -26,7 +26,7 @@ pub const LEAST_PLOT: Vec2 = vec2(122.0, 120.0);
 pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
     state
         .uncertainty()
-        .filter(|_| !state.display.hide_bars)
+        .filter(|_| !state.display.gains.hide_bars)
         .map(AsRef::as_ref)
 }
 
@@ -48,7 +48,12 @@ impl GainPlots<'_> {
     ) -> FigureScene<'b> {
         FigureScene {
             selected: Some(MarkId::Condition(self.state.condition().id())),
-            highlighted: self.state.display.hovered_condition.map(MarkId::Condition),
+            highlighted: self
+                .state
+                .display
+                .selection
+                .hovered_condition
+                .map(MarkId::Condition),
             ..FigureScene::new(name, figure, LEAST_PLOT, message, self)
         }
     }
@@ -215,7 +220,7 @@ pub fn bars_switch_ui(
     names: (&str, &str),
     commands: &mut Vec<Command>,
 ) {
-    let shown = !state.display.hide_bars;
+    let shown = !state.display.gains.hide_bars;
     let level = 100.0 * state.study.settings.uncertainty.level;
     let hint = format!(
         "Bars of {level:.0} %: thick for the physics model chosen (identification), thin with not knowing the trim flown. Bands of the \
@@ -230,12 +235,12 @@ pub fn bars_switch_ui(
 pub fn net_gain_pairs(state: &State) -> Vec<Pair> {
     let display = &state.display;
     let constrained = &state.study.settings.constrained;
-    let is_in = |pair: &Pair| match display.net_gain_pairs {
-        PairSet::Held => constrained[*pair] || display.once_held.contains(pair),
-        PairSet::Focused => display.pair == *pair,
+    let is_in = |pair: &Pair| match display.gains.net_gain_pairs {
+        PairSet::Held => constrained[*pair] || display.gains.once_held.contains(pair),
+        PairSet::Focused => display.selection.pair == *pair,
         PairSet::OnAxis => state.dataset().measuring_pairs()[*pair],
         PairSet::All => true,
-        PairSet::Picked => display.picked_pairs.contains(pair),
+        PairSet::Picked => display.gains.picked_pairs.contains(pair),
     };
     constrained.pairs().filter(is_in).collect()
 }

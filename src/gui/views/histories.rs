@@ -66,7 +66,7 @@ pub fn histories_ui(
         .unwrap_or_default();
     view.is_of(&figure.title);
     let accented = match &found {
-        OverTime::Test(_) => Some(1 + state.display.pair.output),
+        OverTime::Test(_) => Some(1 + state.display.selection.pair.output),
         OverTime::Record(..) => None,
     };
     let least = if accented.is_some() {
@@ -118,7 +118,7 @@ fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
         ));
         let shown = records
             .map(|records| records.chosen)
-            .filter(|_| !state.display.shows_test);
+            .filter(|_| !state.display.judging.shows_test);
         let mut chosen = shown;
         choice_ui(ui, "What models answer to", &mut chosen, &choices);
         if chosen != shown {
@@ -159,16 +159,16 @@ fn shares_ui(
         .auto_shrink(false)
         .show(ui, |ui| {
             ui.label(palette.small(&table.title));
-            let mut sorting = state.display.requirements_sorting;
+            let mut sorting = state.display.judging.requirements_sorting;
             table_grid_ui(ui, &table, &mut sorting[0], &look, palette, commands);
-            state.display.requirements_sorting = sorting;
+            state.display.judging.requirements_sorting = sorting;
         });
 }
 
 /// Draws shape, size and duration of the test input.
 fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let test = state.study.requirements.test;
-    let input = &state.dataset().inputs()[state.display.pair.input];
+    let input = &state.dataset().inputs()[state.display.selection.pair.input];
     let decide =
         |what: &'static str, test: TestInput, commands: &mut Vec<Command>| match test.checked() {
             Ok(test) => commands.push(decided(state, what, |settings| settings.test = test)),

@@ -64,7 +64,7 @@ pub fn view_content(view: View) -> ViewContent {
         View::Bode => ViewContent {
             draw: bode_view_ui,
             title: ViewTitle::Response,
-            figure_pairs: |state| vec![state.display.pair],
+            figure_pairs: |state| vec![state.display.selection.pair],
             ..ViewContent::PLAIN
         },
         View::Error => ViewContent {
@@ -72,7 +72,7 @@ pub fn view_content(view: View) -> ViewContent {
             title: ViewTitle::Response,
             tools: |ui, state, _, commands| error_header_ui(ui, state, commands),
             tools_width: 160.0,
-            figure_pairs: |state| vec![state.display.pair],
+            figure_pairs: |state| vec![state.display.selection.pair],
             ..ViewContent::PLAIN
         },
         View::Overview => ViewContent {
@@ -86,7 +86,7 @@ pub fn view_content(view: View) -> ViewContent {
             tools: across_header_ui,
             tools_width: 330.0,
             needs: |state| vec![Need::Across(across_job(state))],
-            figure_pairs: |state| vec![state.display.pair],
+            figure_pairs: |state| vec![state.display.selection.pair],
             ..ViewContent::PLAIN
         },
         View::Poles => ViewContent {
@@ -171,7 +171,7 @@ pub fn view_content(view: View) -> ViewContent {
         View::Leads => ViewContent {
             draw: leads_view_ui,
             title: ViewTitle::Response,
-            figure_pairs: |state| vec![state.display.pair],
+            figure_pairs: |state| vec![state.display.selection.pair],
             ..ViewContent::PLAIN
         },
         View::NetGain => ViewContent {

@@ -31,14 +31,14 @@ pub const NET_GAIN_CONTROLS: f32 = 410.0;
 /// Describes the content of the plots.
 pub fn net_gain_words(state: &State) -> String {
     let level = 100.0 * state.study.settings.uncertainty.level;
-    let bars = if state.display.hide_bars {
+    let bars = if state.display.gains.hide_bars {
         String::new()
     } else {
         format!(", bars of {level:.0} %")
     };
     format!(
         "k of output times k of input, {} responses{bars}",
-        state.display.net_gain_pairs.name()
+        state.display.gains.net_gain_pairs.name()
     )
 }
 
@@ -49,7 +49,7 @@ pub fn net_gain_header_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let shown = state.display.show_evidence;
+    let shown = state.display.gains.show_evidence;
     let hint = "Which pairs at one airspeed differ significantly, and what each form of the schedule misses, so that a degree is \
                 chosen on evidence";
     if toggle_ui(ui, ("evidence", "evidence"), shown, hint) {
@@ -84,9 +84,9 @@ pub fn net_gain_header_ui(
 
 /// Draws the selection of the displayed responses, from right to left.
 fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let pair = state.display.pair;
-    if state.display.net_gain_pairs == PairSet::Picked {
-        let picked = state.display.picked_pairs.contains(&pair);
+    let pair = state.display.selection.pair;
+    if state.display.gains.net_gain_pairs == PairSet::Picked {
+        let picked = state.display.gains.picked_pairs.contains(&pair);
         let (text, verb) = if picked {
             ("−", "Let go")
         } else {
@@ -102,10 +102,10 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             commands.push(DisplayCommand::PickPair(pair).into());
         }
     }
-    let mut chosen = state.display.net_gain_pairs;
+    let mut chosen = state.display.gains.net_gain_pairs;
     let sets = PairSet::ALL.map(|set| (set, set.name(), set.purpose()));
     choice_ui(ui, "Responses of the net-gain plots", &mut chosen, &sets);
-    if chosen != state.display.net_gain_pairs {
+    if chosen != state.display.gains.net_gain_pairs {
         commands.push(DisplayCommand::ShowNetGains(chosen).into());
     }
 }
@@ -120,12 +120,12 @@ pub fn net_gain_view_ui(
     let message = if state.analysis().is_none() {
         state.results.absence()
     } else {
-        match state.display.net_gain_pairs {
+        match state.display.gains.net_gain_pairs {
             PairSet::Picked => "No response is picked: choose one in the matrix, then + above",
             _ => "No response is held: hold one in the matrix",
         }
     };
-    if state.display.show_evidence {
+    if state.display.gains.show_evidence {
         let width = ui.available_width();
         restore_panel_size(ui, "evidence");
         let panel = Panel::right("evidence")
@@ -141,10 +141,14 @@ pub fn net_gain_view_ui(
         .unwrap_or_default();
     let mut plots = net_gain_plots(state);
     let selected = MarkId::Condition(state.condition().id());
-    quieten(&mut plots.figure, &selected, state.display.show_evidence);
+    quieten(
+        &mut plots.figure,
+        &selected,
+        state.display.gains.show_evidence,
+    );
     let accented = net_gain_pairs(state)
         .iter()
-        .position(|pair| *pair == state.display.pair);
+        .position(|pair| *pair == state.display.selection.pair);
     let scene = FigureScene {
         is_compact: true,
         accented,
@@ -161,9 +165,9 @@ pub fn net_gain_view_ui(
 
 /// Draws the evidence for each form of the schedule; a click on a form selects it.
 fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let mut cached = std::mem::take(&mut state.display.evidence);
+    let mut cached = std::mem::take(&mut state.display.gains.evidence);
     cached.refresh(state);
-    let mut sorting = state.display.evidence_sorting;
+    let mut sorting = state.display.gains.evidence_sorting;
     ScrollArea::vertical().show(ui, |ui| match cached.found() {
         None => {
             ui.label(palette.dim(state.results.absence()));
@@ -181,8 +185,8 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
             }
         }
     });
-    state.display.evidence = cached;
-    state.display.evidence_sorting = sorting;
+    state.display.gains.evidence = cached;
+    state.display.gains.evidence_sorting = sorting;
 }
 
 /// Draws the parameters of the schedule's form, line by line.

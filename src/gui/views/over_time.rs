@@ -20,7 +20,7 @@ pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
         .records
         .conditions
         .get(&condition)
-        .filter(|_| !state.display.shows_test)?;
+        .filter(|_| !state.display.judging.shows_test)?;
     let row = records.rows.get(records.chosen)?;
     let record = HistoryRecord {
         flight: Arc::clone(row.used_flight()?).into(),
@@ -38,7 +38,7 @@ pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
 
 fn test_job(state: &State) -> Option<TestAnswersJob> {
     let condition = state.condition().id();
-    let input = state.display.pair.input;
+    let input = state.display.selection.pair.input;
     Some(TestAnswersJob {
         analysis: current(state)?.into(),
         condition,
@@ -68,7 +68,7 @@ pub fn over_time(state: &State) -> Option<Result<OverTime, String>> {
     match record_job(state) {
         Some(job) => {
             let found = state.record_history(&job)?.clone();
-            Some(found.map(|history| OverTime::Record(history, state.display.pair.input)))
+            Some(found.map(|history| OverTime::Record(history, state.display.selection.pair.input)))
         }
         None => Some(state.test_answers()?.clone().map(OverTime::Test)),
     }
@@ -77,6 +77,6 @@ pub fn over_time(state: &State) -> Option<Result<OverTime, String>> {
 /// Returns the same for a figure, if it is shown.
 pub fn shown_over_time(state: &State, kind: FigureKind) -> Option<OverTime> {
     let is_shown = kind == FigureKind::Requirements
-        && state.display.requirements_page == RequirementsPage::Histories;
+        && state.display.judging.requirements_page == RequirementsPage::Histories;
     over_time(state).filter(|_| is_shown)?.ok()
 }

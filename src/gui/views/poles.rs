@@ -47,8 +47,11 @@ const TABLE_PART: f32 = 0.3;
 
 /// Draws the switch of the zeros, from right to left.
 pub fn poles_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let mut shown = state.display.show_zeros;
-    let name = format!("zeros of {}", state.dataset().pair_name(state.display.pair));
+    let mut shown = state.display.poles.show_zeros;
+    let name = format!(
+        "zeros of {}",
+        state.dataset().pair_name(state.display.selection.pair)
+    );
     let hint = "Transmission zeros of the response in focus, of the nominal model and of both representatives";
     if ui.checkbox(&mut shown, name).on_hover_text(hint).changed() {
         commands.push(DisplayCommand::ShowZeros(shown).into());
@@ -62,11 +65,11 @@ pub fn poles_view_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let mut modes = std::mem::take(&mut state.display.modes);
+    let mut modes = std::mem::take(&mut state.display.poles.modes);
     modes.refresh(state);
-    state.display.modes = modes;
+    state.display.poles.modes = modes;
     let height = ui.available_height();
-    if !state.display.modes.table().0.rows.is_empty() {
+    if !state.display.poles.modes.table().0.rows.is_empty() {
         restore_panel_size(ui, "modes");
         let panel = Panel::bottom("modes")
             .resizable(true)
@@ -95,7 +98,7 @@ pub fn poles_view_ui(
             .map_or(0, |plot| plot.panels[0].dots().count()),
     };
     let scene = FigureScene {
-        highlighted: state.display.hovered.clone().map(MarkId::Model),
+        highlighted: state.display.selection.hovered.clone().map(MarkId::Model),
         zooms: true,
         ..FigureScene::new("poles", &figure, LEAST_PLOT, message, &words)
     };
@@ -121,7 +124,7 @@ pub fn poles_view_ui(
 /// Builds the figure of the poles of every model of the displayed condition, optionally with the
 /// zeros of the response in focus; `None` until they are known.
 pub fn poles(state: &State) -> Option<Figure> {
-    let CachedModes { zeros, shifts, .. } = &state.display.modes;
+    let CachedModes { zeros, shifts, .. } = &state.display.poles.modes;
     let found = |id: &ModelId| {
         zeros
             .iter()
@@ -209,7 +212,9 @@ impl FigureWords for PoleWords<'_> {
             .collect(),
             None => vec![format!(
                 "transmission zero of {}",
-                self.state.dataset().pair_name(self.state.display.pair)
+                self.state
+                    .dataset()
+                    .pair_name(self.state.display.selection.pair)
             )],
         };
         let click = if self.state.study.is_rejected(id) {
@@ -223,7 +228,7 @@ impl FigureWords for PoleWords<'_> {
 
 /// Draws the table of modes; a click on a row highlights the model that jumps.
 fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let (table, jumping) = state.display.modes.table();
+    let (table, jumping) = state.display.poles.modes.table();
     let look = TableLook {
         color: &|row, _| {
             jumping
@@ -234,24 +239,26 @@ fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Ve
         selected: &|row| {
             jumping
                 .get(row)
-                .is_some_and(|id| id.is_some() && *id == state.display.hovered)
+                .is_some_and(|id| id.is_some() && *id == state.display.selection.hovered)
         },
     };
-    let mut sorting = state.display.modes_sorting;
+    let mut sorting = state.display.poles.modes_sorting;
     let clicked = table_ui(ui, table, &mut sorting, &look, palette, commands);
     let model = clicked.and_then(|click| jumping.get(click.row)?.clone());
     commands.extend(model.map(|value| Command::Selection(SelectionCommand::Isolate(value))));
-    state.display.modes_sorting = sorting;
+    state.display.poles.modes_sorting = sorting;
 }
 
 impl MadeOf {
     fn of(state: &State, modes: &Arc<ConditionModes>) -> Self {
         let coupled = state.shown().and_then(|shown| shown.coupled.as_ref());
         let couplings = coupled.map(|coupled| Arc::clone(&coupled.fitted));
-        let zeros_of = state
-            .display
-            .show_zeros
-            .then(|| (state.display.pair, models_with_zeros(state, modes)));
+        let zeros_of = state.display.poles.show_zeros.then(|| {
+            (
+                state.display.selection.pair,
+                models_with_zeros(state, modes),
+            )
+        });
         Self {
             modes: Arc::clone(modes),
             reference: reference(state, modes),

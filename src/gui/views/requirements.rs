@@ -49,7 +49,7 @@ const TABLE_PART: f32 = 0.34;
 
 /// Draws the tabs of the pages, from right to left.
 pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let shown = state.display.requirements_page;
+    let shown = state.display.judging.requirements_page;
     let pages = [
         (
             RequirementsPage::Summary,
@@ -92,7 +92,7 @@ pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
 
 /// Returns the computations needed by the selected page.
 pub fn requirements_needs(state: &State) -> Vec<Need> {
-    match state.display.requirements_page {
+    match state.display.judging.requirements_page {
         RequirementsPage::Histories => over_time_need(state).into_iter().collect(),
         page => {
             let of_records =
@@ -125,14 +125,14 @@ pub fn requirements_view_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    if state.display.requirements_page == RequirementsPage::Histories {
+    if state.display.judging.requirements_page == RequirementsPage::Histories {
         return histories_ui(ui, state, palette, commands);
     }
     let Some(requirements) = state.requirements().cloned() else {
         return drop(ui.label(palette.dim(state.results.absence())));
     };
     known_ui(ui, &requirements, palette);
-    match state.display.requirements_page {
+    match state.display.judging.requirements_page {
         RequirementsPage::Bandwidth => asked_ui(ui, state, palette, commands),
         RequirementsPage::Modes => {
             let title =
@@ -239,7 +239,9 @@ fn plots_ui(
     let scene = FigureScene {
         selected: Some(MarkId::Condition(state.condition().id())),
         zooms: true,
-        accented: pairs.iter().position(|pair| *pair == state.display.pair),
+        accented: pairs
+            .iter()
+            .position(|pair| *pair == state.display.selection.pair),
         ..FigureScene::new("requirements", &figure, LEAST_PLOT, message, &words)
     };
     for event in figure_ui(ui, &scene, &mut view, palette) {
@@ -311,7 +313,7 @@ struct ShownTable<'a> {
 /// Returns the tables of the displayed page.
 fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> Vec<ShownTable<'a>> {
     let dataset = state.dataset();
-    match state.display.requirements_page {
+    match state.display.judging.requirements_page {
         RequirementsPage::Bandwidth => {
             let table = requirements.bandwidth_table(dataset);
             vec![ShownTable {
@@ -360,7 +362,7 @@ fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> Vec<ShownTa
 /// nothing is known yet.
 pub fn requirement_tables(state: &State) -> Option<Vec<Table>> {
     let is_table = matches!(
-        state.display.requirements_page,
+        state.display.judging.requirements_page,
         RequirementsPage::Modes | RequirementsPage::Summary
     );
     let requirements = state.requirements().filter(|_| is_table)?;
@@ -380,7 +382,7 @@ fn requirements_tables_ui(
     commands: &mut Vec<Command>,
 ) {
     let id = state.condition().id();
-    let mut sorting = state.display.requirements_sorting;
+    let mut sorting = state.display.judging.requirements_sorting;
     ScrollArea::both()
         .id_salt("requirement tables")
         .auto_shrink(false)
@@ -391,7 +393,7 @@ fn requirements_tables_ui(
             {
                 ui.add(Label::new(palette.small(&table.title)).extend());
                 if table.rows.is_empty() {
-                    let page = state.display.requirements_page;
+                    let page = state.display.judging.requirements_page;
                     let why = requirements
                         .no_modes(id)
                         .filter(|_| page == RequirementsPage::Modes);
@@ -414,7 +416,7 @@ fn requirements_tables_ui(
                 ui.add_space(8.0);
             }
         });
-    state.display.requirements_sorting = sorting;
+    state.display.judging.requirements_sorting = sorting;
 }
 
 /// Returns the command of a click on a row.
@@ -424,7 +426,7 @@ fn went_to(
     (table, click): (&Table, TableClick),
 ) -> Vec<Command> {
     let TableClick { row, column } = click;
-    match state.display.requirements_page {
+    match state.display.judging.requirements_page {
         RequirementsPage::Bandwidth => {
             let of = requirements.bandwidth.get(row);
             of.map(|of| marked_in_bode(requirements, (of.pair, of.condition), of.role))

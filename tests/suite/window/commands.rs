@@ -72,7 +72,7 @@ fn the_palette_finds_commands_by_some_letters() {
     );
     ask(&mut window, "show ped ny");
     let target = pair(&window, "NY", "PED");
-    assert_eq!(state(&window).display.pair, target);
+    assert_eq!(state(&window).display.selection.pair, target);
     ask(&mut window, "release ped ny");
     assert!(!state(&window).study.settings.constrained[target]);
     ask(&mut window, "undo");

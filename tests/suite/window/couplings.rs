@@ -79,6 +79,7 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
     let has_alone = |window: &Window| {
         let display = &state(window).display;
         let is_there = display
+            .frequency
             .drawn
             .iter()
             .any(|curve| curve.role == CurveRole::Coupled);

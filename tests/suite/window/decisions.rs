@@ -289,6 +289,7 @@ fn how_a_figure_of_a_cell_was_computed_is_told_with_its_numbers() {
         state(&window).shown().unwrap().comparison.delta.gain[pair(&window, "Q", "LON")].unwrap();
     let asked = state(&window)
         .display
+        .selection
         .asked
         .clone()
         .expect("the figure is explained");

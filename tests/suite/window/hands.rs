@@ -35,6 +35,7 @@ fn ask(window: &mut Window, entry: &str, expected: f64) {
     window.run_steps(3);
     let asked = state(window)
         .display
+        .selection
         .asked
         .clone()
         .expect("a figure is explained");
@@ -48,7 +49,11 @@ fn ask(window: &mut Window, entry: &str, expected: f64) {
     window.get_by_label_contains("It rests on");
     window.key_press(Key::Escape);
     window.run_steps(3);
-    assert_eq!(state(window).display.asked, None, "Escape closes the sheet");
+    assert_eq!(
+        state(window).display.selection.asked,
+        None,
+        "Escape closes the sheet"
+    );
 }
 
 #[test]
@@ -72,6 +77,7 @@ fn a_dot_of_a_channel_says_how_gain_and_schedule_were_computed() {
     let seventh = ConditionId(7);
     let at = state(&window)
         .display
+        .gains
         .channels
         .outputs
         .screen_position(2, &MarkId::Condition(seventh))
@@ -124,7 +130,7 @@ fn a_bar_of_the_assessment_says_how_it_was_computed() {
         .total();
     window.get_by_label("Change of J").click();
     window.run_steps(3);
-    let asked = state(&window).display.asked.clone();
+    let asked = state(&window).display.selection.asked.clone();
     assert!(
         matches!(&asked, Some(ExplainTarget::CostChange(id, at, _)) if (*id, *at) == (second, pair)),
         "{asked:?}"
@@ -159,6 +165,7 @@ fn a_curve_of_the_overview_is_pointed_at_isolated_and_rejected() {
         let db = 20.0 * curves.physics[model].curve(pair)[middle].norm().log10();
         state
             .display
+            .frequency
             .overview
             .position_in(pair, curves.grid.omega()[middle].log10(), db)
             .unwrap()
@@ -167,6 +174,7 @@ fn a_curve_of_the_overview_is_pointed_at_isolated_and_rejected() {
     window.run_steps(2);
     let meant = state(&window)
         .display
+        .selection
         .hovered
         .clone()
         .expect("a curve is under the pointer");
@@ -174,6 +182,7 @@ fn a_curve_of_the_overview_is_pointed_at_isolated_and_rejected() {
     click(&mut window, "Isolate model");
     let isolated = state(&window)
         .display
+        .selection
         .isolated
         .clone()
         .expect("one model is alone");

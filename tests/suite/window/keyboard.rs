@@ -54,8 +54,14 @@ fn alt_and_an_arrow_go_through_the_views_of_the_group_and_leave_the_response() {
     let mut window = window();
     let response = pair(&window, "Q", "PED");
     give(&mut window, SelectionCommand::FocusPair(response));
-    let views: Vec<View> = state(&window).display.arrangement.group().views().collect();
-    let view = |window: &Window| state(window).display.arrangement.view();
+    let views: Vec<View> = state(&window)
+        .display
+        .layout
+        .arrangement
+        .group()
+        .views()
+        .collect();
+    let view = |window: &Window| state(window).display.layout.arrangement.view();
     assert_eq!(view(&window), views[0]);
     for (key, expected) in [
         (Key::ArrowRight, views[1]),
@@ -66,14 +72,14 @@ fn alt_and_an_arrow_go_through_the_views_of_the_group_and_leave_the_response() {
     ] {
         press(&mut window, Modifiers::ALT, key);
         assert_eq!(
-            (view(&window), state(&window).display.pair),
+            (view(&window), state(&window).display.selection.pair),
             (expected, response),
             "{key:?}"
         );
     }
     press(&mut window, Modifiers::NONE, Key::ArrowRight);
     assert_ne!(
-        state(&window).display.pair,
+        state(&window).display.selection.pair,
         response,
         "without Alt it is the next response"
     );

@@ -130,8 +130,8 @@ pub(crate) fn settle(window: &mut Window) {
     window.run_steps(2);
     wait_until(window, "the results", |window| {
         let state = state(window);
-        let drawn =
-            !state.display.drawn.is_empty() || !state.display.arrangement.is_shown(View::Bode);
+        let drawn = !state.display.frequency.drawn.is_empty()
+            || !state.display.layout.arrangement.is_shown(View::Bode);
         let shown = state.curves().is_some() && drawn;
         !state.results.is_waiting() && shown && state.opening.is_none()
     });
@@ -171,7 +171,7 @@ fn net_gain(window: &Window, output: &str, input: &str) -> f64 {
 }
 
 fn drawn(window: &Window, role: CurveRole) -> BodeCurve {
-    let mut curves = state(window).display.drawn.iter();
+    let mut curves = state(window).display.frequency.drawn.iter();
     curves
         .find(|curve| curve.role == role)
         .expect("a curve of this role is drawn")

@@ -153,7 +153,7 @@ fn picture(window: &Window, textures: &Textures, format: Format) -> Vec<u8> {
         if let Err(error) = frame.mesh(mesh, clip) {
             let shown = View::ALL
                 .into_iter()
-                .filter(|view| state(window).display.arrangement.is_shown(*view));
+                .filter(|view| state(window).display.layout.arrangement.is_shown(*view));
             panic!("a mesh of {:?}: {error:?}", shown.collect::<Vec<View>>());
         }
     }

@@ -873,7 +873,13 @@ fn a_condition_without_identified_models_offers_to_identify_them_from_records_in
         "physics models are drawn all the same"
     );
     click(&mut window, "Identify from records");
-    assert!(state(&window).display.arrangement.is_shown(View::Records));
+    assert!(
+        state(&window)
+            .display
+            .layout
+            .arrangement
+            .is_shown(View::Records)
+    );
     wait_until(&mut window, "its records", |window| rows_shown(window) == 4);
     window.get_by_label("Identify").click();
     let found = |window: &Window| {

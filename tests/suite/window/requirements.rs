@@ -86,10 +86,14 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
     window.drop_at(rests);
     window.run_steps(4);
     assert!(
-        state(&window).display.arrangement.is_shown(View::Bode),
+        state(&window)
+            .display
+            .layout
+            .arrangement
+            .is_shown(View::Bode),
         "the row leads to Bode"
     );
-    assert_eq!(state(&window).display.pair, first.pair);
+    assert_eq!(state(&window).display.selection.pair, first.pair);
     let marked: Vec<Option<f64>> = state(&window)
         .display
         .curves
@@ -253,7 +257,7 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
         state(window).test_answers().unwrap().clone().unwrap()
     };
     let step = answers(&mut window);
-    assert_eq!(step.input, state(&window).display.pair.input);
+    assert_eq!(step.input, state(&window).display.selection.pair.input);
     assert!(
         step.models.iter().all(|(_, answer)| answer.is_ok()),
         "{:?}",

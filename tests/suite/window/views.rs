@@ -29,7 +29,10 @@ pub(super) fn give(window: &mut Window, command: impl Into<Action>) {
 
 pub(super) fn show(window: &mut Window, view: View) {
     give(window, LayoutCommand::ShowView(view));
-    assert!(state(window).display.arrangement.is_shown(view), "{view:?}");
+    assert!(
+        state(window).display.layout.arrangement.is_shown(view),
+        "{view:?}"
+    );
 }
 
 #[test]
@@ -39,7 +42,7 @@ fn every_view_has_a_tab_and_a_click_brings_it_to_the_front() {
         click(&mut window, &format!("Views: {}", group.name()));
         for view in group.views() {
             click(&mut window, view.name());
-            assert_eq!(state(&window).display.arrangement.view(), view);
+            assert_eq!(state(&window).display.layout.arrangement.view(), view);
         }
     }
 }
@@ -82,11 +85,14 @@ fn an_arrangement_is_remembered_and_one_command_resets_it() {
         },
     );
     assert_eq!(
-        state(&other).display.arrangement,
-        state(&window).display.arrangement
+        state(&other).display.layout.arrangement,
+        state(&window).display.layout.arrangement
     );
     give(&mut other, LayoutCommand::ResetLayout);
-    assert_eq!(state(&other).display.arrangement, Arrangement::default());
+    assert_eq!(
+        state(&other).display.layout.arrangement,
+        Arrangement::default()
+    );
 }
 
 #[test]
@@ -108,7 +114,7 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
         .filter_map(|model| model.order())
         .sum();
     assert_eq!(marks.len(), order, "a mark for each state of each model");
-    let (table, _) = state(&window).display.modes.table();
+    let (table, _) = state(&window).display.poles.modes.table();
     // One row a real pole and one a pair of the reference model.
     let reference = condition.model(
         BundleKind::Physics,
@@ -136,6 +142,7 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
     window.run_steps(2);
     let meant = state(&window)
         .display
+        .selection
         .hovered
         .clone()
         .expect("the pole is pointed at");
@@ -174,7 +181,7 @@ fn zeros_of_the_response_in_focus_are_shown_on_wish() {
         "zeros of {}",
         state(&window)
             .dataset()
-            .pair_name(state(&window).display.pair)
+            .pair_name(state(&window).display.selection.pair)
     );
     click(&mut window, &name);
     assert!(zeros(&window) > 0);
@@ -241,6 +248,7 @@ fn a_degree_is_chosen_on_evidence() {
     let evidence = state(&window).analysis().unwrap().compare_forms().unwrap();
     let (conditions, shown) = state(&window)
         .display
+        .gains
         .evidence
         .found()
         .expect("the evidence is there");
@@ -368,7 +376,7 @@ fn an_assessment_can_be_had_for_every_model_correction_and_response() {
     wait(&mut window);
     let table = state(&window).assessment().unwrap();
     assert!(assessment_sentences(state(&window), table)[0].starts_with("better in "));
-    let mut figures = state(&window).display.assessed;
+    let mut figures = state(&window).display.judging.assessed;
     figures.model = AssessedModel::Representative;
     figures.correction = AssessedCorrection::Own;
     figures.pairs = AssessedPairs::All;
@@ -440,7 +448,7 @@ fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
     let lon_q = pair(&window, "Q", "LON");
     give(&mut window, SelectionCommand::FocusPair(lon_q));
     let of = |window: &Window, role: CurveRole| {
-        let drawn = &state(window).display.drawn;
+        let drawn = &state(window).display.frequency.drawn;
         drawn
             .iter()
             .find(|curve| curve.role == role)
@@ -475,7 +483,7 @@ fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
     assert!(has_key(&window));
     show(&mut window, View::Compare);
     click(&mut window, "Overlay variant as it was");
-    assert!(!has_key(&window) && state(&window).display.overlaid.is_none());
+    assert!(!has_key(&window) && state(&window).display.judging.overlaid.is_none());
 }
 
 #[test]
@@ -485,12 +493,12 @@ fn a_condition_pointed_at_in_the_list_is_lit_among_the_dots() {
     window.hover_at(row.left_center() + vec2(30.0, 0.0));
     window.run_steps(3);
     assert_eq!(
-        state(&window).display.hovered_condition,
+        state(&window).display.selection.hovered_condition,
         Some(ConditionId(3))
     );
     window.hover_at(pos2(800.0, 5.0));
     window.run_steps(3);
-    assert_eq!(state(&window).display.hovered_condition, None);
+    assert_eq!(state(&window).display.selection.hovered_condition, None);
 }
 
 #[test]

@@ -307,7 +307,7 @@ fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>) {
         return;
     };
     let title = format!("{}: power over time, dB below the greatest", channel.name);
-    let unit = state.display.unit;
+    let unit = state.display.curves.unit;
     let label = unit.axis_label();
     let mut chart = Chart::new(&title, ChartAxis::Linear, "", &label);
     chart.group = Some(charts());
@@ -443,7 +443,7 @@ pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
         palette,
     } = page;
     let dataset = state.dataset();
-    let unit = state.display.unit;
+    let unit = state.display.curves.unit;
     let band = records.band.map_or(state.study.settings.band, |band| {
         Band::new(band[0], band[1]).unwrap_or(state.study.settings.band)
     });

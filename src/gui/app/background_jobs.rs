@@ -112,7 +112,10 @@ impl BackgroundJobs {
         let answers = JobKind {
             tell: |queue, background| background.analysis = queue.progress(),
             withdraw: Some(GdcmApp::answer_stopped),
-            ..JobKind::new(|app| app.asked.iter().cloned().collect(), GdcmApp::answered)
+            ..JobKind::new(
+                |app| app.work.asked.iter().cloned().collect(),
+                GdcmApp::answered,
+            )
         };
         let curves = JobKind {
             tell: |queue, background| background.curves = queue.progress(),
@@ -278,7 +281,7 @@ impl BackgroundJobs {
             tell: |queue, background| background.report = queue.progress(),
             withdraw: Some(GdcmApp::give_up_report),
             ..JobKind::new(
-                |app| app.reporting.iter().cloned().collect(),
+                |app| app.work.reporting.iter().cloned().collect(),
                 GdcmApp::report_written,
             )
         };
@@ -340,17 +343,17 @@ impl GdcmApp {
             .filter(|view| state.display.layout.arrangement.is_shown(*view));
         let of_views = shown.flat_map(|view| (view_content(view).needs)(state));
         let judged = are_couplings_judged(state).then(|| Need::Couplings(couplings_job(state)));
-        self.needs = of_views
+        self.work.needs = of_views
             .chain(overlay_job(state).map(Need::Variant))
             .chain(judged)
             .collect();
-        let kinds = Rc::clone(&self.jobs.kinds);
+        let kinds = Rc::clone(&self.work.jobs.kinds);
         kinds.iter().for_each(|kind| kind.want(self));
     }
 
     /// Stops every job.
     pub(super) fn stop_jobs(&mut self) {
-        let kinds = Rc::clone(&self.jobs.kinds);
+        let kinds = Rc::clone(&self.work.jobs.kinds);
         kinds.iter().for_each(|kind| kind.stop(self));
     }
 }
@@ -385,7 +388,7 @@ fn pool() -> Box<dyn Executor> {
 
 /// Returns the jobs of one kind needed by the visible views.
 fn needed<J: Clone>(app: &GdcmApp, of: fn(&Need) -> Option<&J>) -> Vec<J> {
-    app.needs.iter().filter_map(of).cloned().collect()
+    app.work.needs.iter().filter_map(of).cloned().collect()
 }
 
 /// Drops the kept outputs of jobs that are not in `jobs`; returns `jobs`.

@@ -5,7 +5,7 @@ use egui::ViewportCommand;
 use gdcm_io::Existing;
 
 use super::GdcmApp;
-use super::files::{DialogPurpose, PendingAction};
+use super::dialogs::{DialogPurpose, PendingAction};
 use crate::gui::commands::file::FileCommand;
 
 impl GdcmApp {
@@ -21,7 +21,7 @@ impl GdcmApp {
             FileCommand::WriteTolerances(path) => self.write_tolerances(path),
             FileCommand::AskOpen => self.ask_path(DialogPurpose::Open, String::new()),
             FileCommand::AskSaveStudy => {
-                self.ask_path(DialogPurpose::SaveStudy, self.proposed_name())
+                self.ask_path(DialogPurpose::SaveStudy, self.files.proposed_name())
             }
             FileCommand::Open(path) => self.open(path, None),
             FileCommand::OpenStudyOf(study, dataset) => self.open(study, Some(dataset)),
@@ -33,12 +33,12 @@ impl GdcmApp {
             FileCommand::Reload => self.reload(),
             FileCommand::KeepOpen => self.keep_open(),
             FileCommand::LookForRecent => self.read_recent(None),
-            FileCommand::Quit if self.state.unsaved && !self.closing => {
+            FileCommand::Quit if self.state.unsaved && !self.dialogs.closing => {
                 self.ask_to_lose(PendingAction::Quit)
             }
             FileCommand::Quit => self.quit(),
             FileCommand::SaveStudy => self.save(),
-            FileCommand::SaveStudyAs(path) => self.save_as(path, self.existing),
+            FileCommand::SaveStudyAs(path) => self.save_as(path, self.dialogs.existing),
         }
     }
 
@@ -48,9 +48,9 @@ impl GdcmApp {
     }
 
     pub(super) fn quit(&mut self) {
-        self.closing = true;
+        self.dialogs.closing = true;
         // The decisions are saved, or the engineer has agreed to lose them.
-        self.autosave.clear();
+        self.recovery.autosave.clear();
         self.ctx.send_viewport_cmd(ViewportCommand::Close);
     }
 }

@@ -53,11 +53,11 @@ impl GdcmApp {
             _ => {}
         }
         // A form that asks for a save path continues with the action that waits for it.
-        if !(self.goes_on_once_saved && form == Some(FormKind::Save)) {
-            self.postponed = None;
-            self.goes_on_once_saved = false;
+        if !(self.dialogs.goes_on_once_saved && form == Some(FormKind::Save)) {
+            self.dialogs.postponed = None;
+            self.dialogs.goes_on_once_saved = false;
         }
-        self.overwriting = None;
+        self.dialogs.overwriting = None;
         self.state.forms.existing.clear();
         self.state.forms.shown = form;
     }
@@ -65,10 +65,10 @@ impl GdcmApp {
     /// Carries out the command whose overwriting was confirmed.
     fn overwrite(&mut self) {
         self.state.forms.existing.clear();
-        if let Some(command) = self.overwriting.take() {
-            self.existing = Existing::Replace;
+        if let Some(command) = self.dialogs.overwriting.take() {
+            self.dialogs.existing = Existing::Replace;
             self.carry_out_one(command);
-            self.existing = Existing::Keep;
+            self.dialogs.existing = Existing::Keep;
         }
     }
 }

@@ -217,7 +217,7 @@ fn run(
         if let Some(models) = models {
             app.dispatch(AssemblingCommand::Add(vec![models]));
         }
-        app.drawn = opening;
+        app.recovery.drawn = opening;
         Ok(Box::new(app))
     };
     eframe::run_native(APP_ID, options, Box::new(build))

@@ -1,7 +1,7 @@
 //! Carries out copying and writing results.
 
 use super::GdcmApp;
-use super::files::DialogPurpose;
+use super::dialogs::DialogPurpose;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::tables::table_of;
 

@@ -39,10 +39,10 @@ impl GdcmApp {
         };
         let chosen = self.state.forms.exported.clone();
         let folder = PathBuf::from(self.state.forms.typed_in(FormKind::Export).trim());
-        let folder = self.at_home(folder);
+        let folder = self.files.at_home(folder);
         let written = write_results(
             &analysis,
-            &self.loaded.sha256,
+            &self.files.loaded.sha256,
             &chosen,
             &folder,
             self.outputs(),
@@ -64,7 +64,7 @@ impl GdcmApp {
 
     /// Proposes a name for an export to other tools if none was typed.
     pub(super) fn propose_export_name(&mut self) {
-        let stem = self.stem();
+        let stem = self.files.stem();
         let extension = self.state.forms.export_format.extension;
         let path = self.state.forms.typed_in(FormKind::ExportAs);
         if path.is_empty() {
@@ -77,10 +77,10 @@ impl GdcmApp {
         let Some(analysis) = self.complete_results() else {
             return;
         };
-        let path = self.at_home(path);
+        let path = self.files.at_home(path);
         let source = ExportSource {
             name: self.state.study_name.clone(),
-            sha256: self.loaded.sha256.clone(),
+            sha256: self.files.loaded.sha256.clone(),
         };
         let request = ExportRequest {
             format,
@@ -200,7 +200,7 @@ impl GdcmApp {
 
     /// Saves a view; asks before overwriting a file.
     pub(super) fn save_figure(&mut self, view: View, width: ColumnWidth, path: PathBuf) {
-        let path = self.at_home(path);
+        let path = self.files.at_home(path);
         let written = match tables_in_place(&self.state, view) {
             Some(tables)
                 if figure_format(&path).is_ok_and(|format| format == FigureFormat::Csv) =>
@@ -258,7 +258,7 @@ impl GdcmApp {
 
     /// Saves a table of the window as CSV; asks before overwriting a file.
     pub(super) fn save_table(&mut self, table: Arc<Table>, path: PathBuf) {
-        let path = self.at_home(path);
+        let path = self.files.at_home(path);
         let written = save_tables(std::slice::from_ref(&*table), &path, self.outputs());
         self.saved_to(
             written,
@@ -271,7 +271,7 @@ impl GdcmApp {
     /// Creates an output set that never overwrites input files, and other files only after
     /// confirmation.
     pub(super) fn outputs(&self) -> OutputSet {
-        OutputSet::new(self.existing, self.inputs())
+        OutputSet::new(self.dialogs.existing, self.files.inputs())
     }
 
     /// Writes the files added by `add`, all or none, once `paths` are confirmed to be free.
@@ -323,17 +323,7 @@ impl GdcmApp {
     pub(super) fn ask_to_overwrite(&mut self, paths: &[PathBuf], form: FormKind, command: Command) {
         self.state.forms.existing = paths.iter().map(|path| sanitized_path(path)).collect();
         self.state.forms.shown = Some(form);
-        self.overwriting = Some(command);
-    }
-
-    /// Returns the input files, which results never overwrite.
-    pub(super) fn inputs(&self) -> Vec<PathBuf> {
-        self.saved
-            .path
-            .iter()
-            .cloned()
-            .chain(self.loaded.origin.file())
-            .collect()
+        self.dialogs.overwriting = Some(command);
     }
 
     /// Asks where to write the report, unless there are no results yet.
@@ -343,7 +333,13 @@ impl GdcmApp {
             .is_some()
         {
             let form = self.state.forms.typed_in(FormKind::Report);
-            let name = report_name(self.saved.path.as_deref().or(self.loaded.path()));
+            let name = report_name(
+                self.files
+                    .saved
+                    .path
+                    .as_deref()
+                    .or(self.files.loaded.path()),
+            );
             *form = Path::new(form.trim())
                 .with_file_name(name)
                 .display()
@@ -357,18 +353,18 @@ impl GdcmApp {
         let Some(analysis) = self.unless_error(self.analysis_to_write("write the report")) else {
             return;
         };
-        let path = self.at_home(path);
-        let inputs = self.inputs();
-        let existing = self.existing;
+        let path = self.files.at_home(path);
+        let inputs = self.files.inputs();
+        let existing = self.dialogs.existing;
         match self.outputs().check(&[&path]) {
             Ok(()) => {
-                let source = ReportSource::of(&self.loaded, self.saved.path.as_deref());
+                let source = ReportSource::of(&self.files.loaded, self.files.saved.path.as_deref());
                 self.state.forms.shown = None;
                 // The live answer does not depend on the requirements and may have older ones.
                 let analysis = Arc::new(analysis.asked_with(&self.state.study.requirements));
                 let records = self.state.records.history_records();
                 let known = self.state.records.known_poles();
-                self.reporting = Some(ReportJob {
+                self.work.reporting = Some(ReportJob {
                     analysis,
                     records,
                     known,
@@ -388,7 +384,7 @@ impl GdcmApp {
 
     /// Reports the outcome of writing a report.
     pub(super) fn report_written(&mut self, job: ReportJob, outcome: Result<(), FileError>) {
-        self.reporting = None;
+        self.work.reporting = None;
         match outcome {
             Ok(()) => self.done(format!("wrote the report {}", sanitized_path(&job.path))),
             Err(error) => self.written(
@@ -401,7 +397,7 @@ impl GdcmApp {
 
     /// Reports that a running report was stopped, by hand or by a fault.
     pub(super) fn give_up_report(&mut self) {
-        if let Some(job) = self.reporting.take() {
+        if let Some(job) = self.work.reporting.take() {
             self.notify_error(format!(
                 "{} was not written: it was stopped",
                 sanitized_path(&job.path)
@@ -411,7 +407,7 @@ impl GdcmApp {
 
     /// Reads a requirement table into the study.
     pub(super) fn read_requirement_table(&mut self, table: RequirementTable, path: PathBuf) {
-        let path = self.at_home(path);
+        let path = self.files.at_home(path);
         let mut settings = RequirementSettings::clone(&self.state.study.requirements);
         let (what, read) = match table {
             RequirementTable::Levels => (
@@ -453,7 +449,7 @@ impl GdcmApp {
 
     /// Writes the study's tolerances; asks before overwriting a file.
     pub(super) fn write_tolerances(&mut self, path: PathBuf) {
-        let path = self.at_home(path);
+        let path = self.files.at_home(path);
         let tolerances = &self.state.study.requirements.tolerances;
         let written = self.write_all(&[], |outputs| add_tolerances(tolerances, &path, outputs));
         self.saved_to(

@@ -61,7 +61,7 @@ impl GdcmApp {
             .gains
             .once_held
             .extend(self.state.study.settings.constrained.marked());
-        self.state.unsaved = self.saved.study.as_ref() != Some(&self.state.study);
+        self.state.unsaved = self.files.saved.study.as_ref() != Some(&self.state.study);
         self.follow_dataset();
         self.keep_unsaved();
     }

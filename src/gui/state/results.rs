@@ -109,28 +109,27 @@ pub struct Results {
     pub analysis: Option<Arc<Analysis>>,
     /// Displayed condition, if it is ahead of that analysis.
     pub first: Option<FirstResult>,
-    /// Costs of constraining or releasing each response of a condition, with their job; see
-    /// [`State::toggles`].
+    /// Costs of constraining or releasing each response of a condition, with their job; see `State::toggles`.
     pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
-    /// Responses for drawing, with their job; see [`State::curves`].
+    /// Responses for drawing, with their job; see `State::curves`.
     pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
-    /// Modes of the models of a condition, with their job; see [`State::modes`].
+    /// Modes of the models of a condition, with their job; see `State::modes`.
     pub modes: Option<(ModesJob, Arc<ConditionModes>)>,
-    /// Requested assessment, with its job; see [`State::assessment`].
+    /// Requested assessment, with its job; see `State::assessment`.
     pub assessment: Option<(AssessmentJob, Arc<AssessmentTable>)>,
-    /// Responses of a model of each condition, with their job; see [`State::across`].
+    /// Responses of a model of each condition, with their job; see `State::across`.
     pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
-    /// Uncertainty of an analysis, with its job; see [`State::uncertainty`].
+    /// Uncertainty of an analysis, with its job; see `State::uncertainty`.
     pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
-    /// Actual or potential effect of couplings, with its job; see [`State::couplings`].
+    /// Actual or potential effect of couplings, with its job; see `State::couplings`.
     pub couplings: Option<(CouplingsJob, AssessedCouplings)>,
-    /// Requirements, with their job; see [`State::requirements`].
+    /// Requirements, with their job; see `State::requirements`.
     pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
-    /// Responses to the test input, with their job; see [`State::test_answers`].
+    /// Responses to the test input, with their job; see `State::test_answers`.
     pub test_answers: Option<(TestAnswersJob, Result<Arc<TestAnswers>, String>)>,
-    /// Comparison of a record with the tolerances; see [`State::record_history`].
+    /// Comparison of a record with the tolerances; see `State::record_history`.
     pub record_history: Option<(RecordHistoryJob, Result<Arc<RecordHistory>, String>)>,
-    /// Models' responses to all records, with their job; see [`State::time_histories`].
+    /// Models' responses to all records, with their job; see `State::time_histories`.
     pub time_histories: Option<(TimeHistoriesJob, Arc<TimeHistories>)>,
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,
     /// Models compared with a record in time, or the reason why not.

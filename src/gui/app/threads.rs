@@ -9,8 +9,6 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use egui::Context;
 
-use gdcm_io::FolderProgress;
-
 use super::GdcmApp;
 
 /// A value that threads wait for; every change wakes them.

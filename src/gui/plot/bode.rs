@@ -18,6 +18,7 @@ use super::bode_pane::{
     pane_ui, rule_ends,
 };
 use super::bode_view::BodeView;
+use super::curve_command::CurveCommand;
 use super::curve_menu::{CurveWish, MenuSubject, menu_ui};
 use super::curve_style::Role;
 use super::drawn_curves::{BodeCurve, CurveId, Pane};
@@ -25,7 +26,6 @@ use super::legend::{Chip, Chips, role_chips};
 use super::navigation::{Hit, nearest, pressed_digit, touched};
 use super::quantity::BodeQuantity;
 use super::readout::{Readout, STRIP_HEIGHT, readout_strip_ui};
-use crate::gui::state::curve_display::CurveCommand;
 use crate::gui::widgets::controls::{elided, named, painted_text, row_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 

@@ -9,11 +9,11 @@ use gdcm_study::ExplainTarget;
 
 use super::bode::{BodeEvent, BodeScene};
 use super::bode_view::BodeView;
+use super::curve_command::CurveCommand;
 use super::curve_style::Role;
 use super::drawn_curves::{BodeCurve, CurveId};
 use super::quantity::{BodeQuantity, PhaseUnit};
-use crate::gui::panels::explanation::QUESTION;
-use crate::gui::state::curve_display::CurveCommand;
+use crate::gui::widgets::controls::QUESTION;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Action on a curve.

@@ -11,9 +11,9 @@ use egui::{
 use gdcm_plot::figure::drawing::Dash;
 
 use super::bode::BodeEvent;
+use super::curve_command::CurveCommand;
 use super::curve_style::{CurveStyle, Role};
 use super::drawn_curves::BodeCurve;
-use crate::gui::state::curve_display::CurveCommand;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Height of a chip, and of a line of chips \[pt\].

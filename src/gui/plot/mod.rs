@@ -8,6 +8,7 @@ pub mod bode_view;
 mod cached_raster;
 pub mod canvas;
 pub mod chart;
+pub mod curve_command;
 pub mod curve_menu;
 pub mod curve_style;
 pub mod drawn_curves;

@@ -4,10 +4,9 @@ use egui::vec2;
 
 use super::*;
 use crate::gui::plot::bode::BodeEvent;
+use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::curve_menu::CurveWish;
-use crate::gui::state::curve_display::CurveCommand;
-use crate::gui::widgets::palette;
-use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::palette::{self, Palette};
 
 pub(super) struct Model {
     pub(super) curves: Vec<BodeCurve>,

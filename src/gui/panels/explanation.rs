@@ -123,7 +123,7 @@ pub fn sheet_ui(
 }
 
 /// Menu text that opens a derivation, used everywhere.
-pub const QUESTION: &str = "How was this computed?";
+pub use crate::gui::plot::questions::QUESTION;
 
 /// Draws the derivation of a value in a sheet; it follows the results while it is open.
 pub fn derivation_sheet_ui(

@@ -6,13 +6,13 @@ use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::responses::fitted_values;
 
-use super::axis_strip::{LimitsForm, PlotAxis};
-use super::bode::{BodeScene, PANES};
-use super::cached_raster::CachedRaster;
-use super::curve_menu::MenuSubject;
-use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves, Pane};
-use super::navigation::ViewedRange;
+use super::bode_scene::BodeScene;
+use super::curve_layer::DrawnPane;
+use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
+use super::limits_form::LimitsForm;
+use super::plot_axis::PlotAxis;
 use super::quantity::ValueUnit;
+use super::viewed_range::{ViewedRange, bounds_of};
 
 /// Decades that can be visible.
 const DECADES: Range = Range {
@@ -45,7 +45,7 @@ pub struct BodeView {
     /// Whether a box is being drawn to select curves.
     pub(super) is_selecting: bool,
     /// Finished selection box.
-    pub(super) selection: Option<(Pane, Rect)>,
+    pub(super) selection: Option<SelectionBox>,
     /// Open form for the limits of an axis.
     pub(super) limits: Option<LimitsForm>,
     must_fit_frequencies: bool,
@@ -56,12 +56,21 @@ pub struct BodeView {
     pub(super) drawn: [DrawnPane; 2],
 }
 
-/// Last drawing of a pane: its place, its lines, and the image of its static lines.
-#[derive(Clone, Debug, Default)]
-pub(super) struct DrawnPane {
-    pub(super) transform: Option<PlotTransform>,
-    pub(super) curves: DrawnCurves,
-    pub(super) image: CachedRaster,
+/// Subject of a menu: a curve or the ground, and the frequency there \[rad/s\].
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MenuSubject {
+    pub(super) curve: Option<CurveId>,
+    pub(super) omega: f64,
+    /// Reason of the rejection, as typed so far.
+    pub(super) reason: String,
+}
+
+/// Finished selection box in a pane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SelectionBox {
+    pub(super) pane: Pane,
+    /// Place on the screen.
+    pub(super) area: Rect,
 }
 
 /// Returns the range from the first to the last frequency of all curves, as `log10 omega`.
@@ -122,7 +131,9 @@ impl BodeView {
     /// Fits all axes to the data at the next frame, including zoomed axes.
     pub fn request_fit(&mut self) {
         self.log_omega.release();
-        self.values.iter_mut().for_each(ViewedRange::release);
+        for values in &mut self.values {
+            values.release();
+        }
         self.must_fit_frequencies = true;
         self.must_fit_values = true;
     }
@@ -166,14 +177,21 @@ impl BodeView {
 
     /// Returns the visible frequencies \[rad/s\] if the engineer chose them.
     pub fn chosen_omega(&self) -> Option<Range> {
+        if !self.log_omega.is_chosen() {
+            return None;
+        }
         let (min, max) = self.omega_range();
-        self.log_omega.is_chosen().then_some(Range { min, max })
+        Some(Range { min, max })
     }
 
     /// Returns the visible range of a pane's vertical axis if the engineer chose it.
     pub fn chosen_values(&self, pane: Pane) -> Option<Range> {
         let viewed = &self.values[pane as usize];
-        viewed.is_chosen().then(|| viewed.range())
+        if viewed.is_chosen() {
+            Some(viewed.range())
+        } else {
+            None
+        }
     }
 
     /// Returns the visible range of a pane's vertical axis.
@@ -186,6 +204,11 @@ impl BodeView {
         self.drawn[pane as usize].transform.as_ref()
     }
 
+    /// Returns the last frame of a pane, without its axes.
+    pub(super) fn frame(&self, pane: Pane) -> Option<Rect> {
+        Some(*self.transform(pane)?.frame())
+    }
+
     /// Returns the screen position of `value` at `omega` \[rad/s\].
     pub fn screen_position(&self, pane: Pane, omega: f64, value: f64) -> Option<Pos2> {
         let transform = self.transform(pane)?;
@@ -194,9 +217,7 @@ impl BodeView {
 
     /// Returns the visible range of a pane as egui_plot bounds.
     pub(super) fn bounds(&self, pane: Pane) -> PlotBounds {
-        let frequencies = self.log_omega.range();
-        let values = self.value_range(pane);
-        PlotBounds::from_min_max([frequencies.min, values.min], [frequencies.max, values.max])
+        bounds_of([self.log_omega.range(), self.value_range(pane)])
     }
 
     /// Pans a pane by a distance on the screen.
@@ -258,14 +279,16 @@ impl BodeView {
     /// Fits all curves of `scene`, including rejected ones, if requested. Without data the request
     /// stays pending.
     pub(super) fn fit_if_requested(&mut self, scene: &BodeScene<'_>) {
-        let ends = scene
+        let computed = scene
             .omega_range
             .map(|(min, max)| Range::new(min.log10(), max.log10()));
-        ends.into_iter().for_each(|ends| self.log_omega.reach(ends));
+        if let Some(computed) = computed {
+            self.log_omega.reach(computed);
+        }
         if !(self.must_fit_frequencies || self.must_fit_values) {
             return;
         }
-        let Some(log_omega) = ends.or_else(|| log_omega_of(scene.curves)) else {
+        let Some(log_omega) = computed.or_else(|| log_omega_of(scene.curves)) else {
             return;
         };
         self.log_omega.reach(log_omega);
@@ -273,15 +296,20 @@ impl BodeView {
             self.log_omega.fit(log_omega);
         }
         if std::mem::take(&mut self.must_fit_values) {
-            let within = (
-                scene.band.0,
-                scene.invalid.map_or(scene.band.1, |invalid| invalid.up_to),
-            );
-            for pane in PANES {
-                if let Some(values) = fitted_values(scene.curves, pane, within) {
-                    self.values[pane as usize]
-                        .fit(values.with_margin(FIT_MARGIN, scene.quantity.least_height(pane)));
-                }
+            self.fit_values(scene);
+        }
+    }
+
+    /// Fits the values of both panes, unless the engineer chose their ranges.
+    fn fit_values(&mut self, scene: &BodeScene<'_>) {
+        let upper = match scene.invalid {
+            Some(invalid) => invalid.up_to,
+            None => scene.band.1,
+        };
+        for pane in PANES {
+            if let Some(values) = fitted_values(scene.curves, pane, (scene.band.0, upper)) {
+                let least = scene.quantity.least_height(pane);
+                self.values[pane as usize].fit(values.with_margin(FIT_MARGIN, least));
             }
         }
     }

@@ -5,8 +5,8 @@ use gdcm_plot::figure::axis::compact;
 pub use gdcm_plot::figure::axis::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use gdcm_plot::figure::{Range, decimals};
 
-use super::axes::{Ticks, VERTICAL_TICK_GAP};
 use super::drawn_curves::Pane;
+use super::ticks::{Ticks, VERTICAL_TICK_GAP};
 
 /// Quantity shown by the two stacked panes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -287,7 +287,9 @@ mod tests {
             bounds: (-20.0, 20.0),
             base_step_size: 40.0 / 300.0,
         };
-        let marks = ValueUnit::Ratio.ticks().spacer()(input);
+        let marks = ValueUnit::Ratio
+            .ticks()
+            .marks(input.bounds, input.base_step_size);
         let labels: Vec<String> = marks
             .into_iter()
             .map(|mark| ValueUnit::Ratio.ticks().text(mark))

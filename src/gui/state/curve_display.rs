@@ -10,6 +10,7 @@ use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use super::window_state::State;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::command_table::{Entry, Menu};
+use crate::gui::plot::bode_event::DisplayRequest;
 use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::plot::{CurveId, Role};
 use crate::gui::widgets::palette::{CurveColors, PlotStyle};
@@ -102,6 +103,19 @@ pub enum CurveCommand {
     ShowMuad(bool),
     /// Selects these models instead of the current selection.
     Select(BTreeSet<ModelId>),
+}
+
+impl From<DisplayRequest> for CurveCommand {
+    fn from(request: DisplayRequest) -> Self {
+        match request {
+            DisplayRequest::ToggleRole(role) => Self::ToggleRole(role),
+            DisplayRequest::ShowRoleAlone(role) => Self::ShowRoleAlone(role),
+            DisplayRequest::RaiseRole(role) => Self::RaiseRole(role),
+            DisplayRequest::ShowBands(wanted) => Self::ShowBands(wanted),
+            DisplayRequest::PinCursor(omega) => Self::PinCursor(omega),
+            DisplayRequest::UnpinCursors => Self::UnpinCursors,
+        }
+    }
 }
 
 impl CurveDisplay {

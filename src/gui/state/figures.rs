@@ -10,7 +10,7 @@ use gdcm_study::Table;
 use super::window_state::State;
 use crate::gui::commands::command::Command;
 use crate::gui::plot::BodeView;
-use crate::gui::plot::bode::PANES;
+use crate::gui::plot::drawn_curves::PANES;
 use crate::gui::views::couplings::shown_couplings;
 use crate::gui::views::frequency::{bode_options, condition_source};
 use crate::gui::views::histories::shown_over_time;

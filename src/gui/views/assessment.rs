@@ -16,7 +16,7 @@ use gdcm_study::{AssessedCorrection, AssessmentTable, ExplainTarget, Table};
 use super::View;
 use crate::gui::commands::command::Command;
 use crate::gui::panels::settings_panel::choice_ui;
-use crate::gui::plot::curve_menu::NamedFigure;
+use crate::gui::plot::questions::NamedFigure;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};

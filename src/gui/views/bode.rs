@@ -20,11 +20,11 @@ use super::frequency::{
 };
 use crate::gui::commands::command::Command;
 use crate::gui::panels::settings_panel::choice_ui;
-use crate::gui::plot::bode::{BodeEvent, InvalidRegion, PaneNote};
-use crate::gui::plot::bode_pane::BodeBand;
+use crate::gui::plot::bode_event::BodeEvent;
+use crate::gui::plot::bode_scene::{BodeBand, InvalidRegion, PaneNote};
 use crate::gui::plot::overview::{OverviewCell, OverviewEvent, OverviewScene, overview_ui};
+use crate::gui::plot::pointed_curve::pointed_words;
 use crate::gui::plot::quantity::{BodeQuantity, PhaseErrorUnit, ResponsePlace};
-use crate::gui::plot::readout::pointed_words;
 use crate::gui::plot::{BodeCurve, BodeScene, CurveId, Pane, Role, bode_ui};
 use crate::gui::state::curve_display::CurveCommand;
 use crate::gui::state::window_state::State;
@@ -342,7 +342,7 @@ pub fn across_view_ui(
         }
     }
     commands
-        .extend(pointed_words(&state.display.across, &curves, (quantity, unit)).map(Command::Tell));
+        .extend(pointed_words(&state.display.across, &curves, quantity, unit).map(Command::Tell));
     if let Some(transform) = state
         .display
         .across

@@ -12,8 +12,8 @@ use gdcm_study::{Edit, ExplainTarget};
 use super::net_gain::bars_switch_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::panels::settings_panel::choice_ui;
-use crate::gui::plot::curve_menu::NamedFigure;
 use crate::gui::plot::figure_view::{figure_within_ui, rows};
+use crate::gui::plot::questions::NamedFigure;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_ui};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
@@ -123,7 +123,8 @@ pub fn channels_view_ui(
         let scene = plots.scene(name, figure, state.results.absence());
         let scene = FigureScene {
             is_compact,
-            words: (&plots, first),
+            words: &plots,
+            first_plot: first,
             ..scene
         };
         let events = figure_within_ui(ui, inner, &scene, view, palette);

@@ -17,11 +17,12 @@ use gdcm_study::decisions::setting;
 
 use super::compare::overlaid_analysis;
 use crate::gui::commands::command::Command;
-use crate::gui::plot::bode::{BodeEvent, PANES};
-use crate::gui::plot::curve_menu::CurveWish;
+use crate::gui::plot::bode_event::{BodeEvent, CurveWish};
+use crate::gui::plot::drawn_curves::PANES;
 use crate::gui::plot::legend::Chip;
+use crate::gui::plot::pointed_curve::pointed_words;
 use crate::gui::plot::quantity::{BodeQuantity, ValueUnit};
-use crate::gui::plot::readout::{Readout, ReadoutCell, pointed_words};
+use crate::gui::plot::readout::{Readout, ReadoutCell};
 use crate::gui::plot::{BodeCurve, BodeScene, BodeView, CurveId, Pane, Role, bode_ui};
 use crate::gui::state::curve_display::CurveCommand;
 use crate::gui::state::window_state::State;
@@ -73,7 +74,7 @@ pub(super) fn frequency_plot_ui(
     if let Some(CurveId::Model(id)) = &view.hovered {
         commands.push(Command::Hover(id.clone()));
     }
-    commands.extend(pointed_words(view, curves, (quantity, unit)).map(Command::Tell));
+    commands.extend(pointed_words(view, curves, quantity, unit).map(Command::Tell));
     commands.extend(
         view.pointed_omega
             .map(|omega| CurveCommand::PointAt(omega).into()),
@@ -96,7 +97,7 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
             .ok()
             .map(|band| setting::BAND.to(band).into()),
         BodeEvent::BandReleased => Some(Command::EndEdit),
-        BodeEvent::Display(command) => Some(command.into()),
+        BodeEvent::Display(request) => Some(CurveCommand::from(request).into()),
         BodeEvent::RejectedBecause(CurveId::Model(model), reason) => {
             Some(Edit::RejectBecause { model, reason }.into())
         }

@@ -3,6 +3,8 @@
 use egui::{Key, vec2};
 use egui_kittest::kittest::Queryable;
 
+use gdcm_plot::figure::Range;
+
 use super::bode::{Model, harness, three_curves, wheel};
 use super::*;
 

@@ -3,9 +3,7 @@ use std::collections::BTreeSet;
 use egui::vec2;
 
 use super::*;
-use crate::gui::plot::bode::BodeEvent;
-use crate::gui::plot::curve_menu::CurveWish;
-use crate::gui::state::curve_display::CurveCommand;
+use crate::gui::plot::bode_event::{BodeEvent, CurveWish, DisplayRequest};
 use crate::gui::widgets::palette::{self, Palette};
 
 pub(super) struct Model {
@@ -463,11 +461,11 @@ fn a_chip_with_alt_shows_its_role_alone_and_with_shift_in_front() {
     for (modifiers, event) in [
         (
             Modifiers::ALT,
-            BodeEvent::Display(CurveCommand::ShowRoleAlone(Role::Nominal)),
+            BodeEvent::Display(DisplayRequest::ShowRoleAlone(Role::Nominal)),
         ),
         (
             Modifiers::SHIFT,
-            BodeEvent::Display(CurveCommand::RaiseRole(Role::Nominal)),
+            BodeEvent::Display(DisplayRequest::RaiseRole(Role::Nominal)),
         ),
     ] {
         harness.event(Event::ModifiersChanged(modifiers));
@@ -486,7 +484,7 @@ fn every_role_has_a_chip_that_is_a_switch_and_a_hidden_curve_is_neither_drawn_no
     harness.run();
     assert_eq!(
         harness.state().events,
-        [BodeEvent::Display(CurveCommand::ToggleRole(
+        [BodeEvent::Display(DisplayRequest::ToggleRole(
             Role::Perturbed
         ))]
     );
@@ -551,7 +549,7 @@ fn a_secondary_click_on_the_ground_marks_the_frequency_there() {
     harness.get_by_label("Mark frequency").click();
     harness.run();
     let marked = harness.state().events.iter().find_map(|event| match event {
-        BodeEvent::Display(CurveCommand::PinCursor(omega)) => Some(*omega),
+        BodeEvent::Display(DisplayRequest::PinCursor(omega)) => Some(*omega),
         _ => None,
     });
     assert!(

@@ -5,7 +5,8 @@ use egui_plot::{PlotBounds, PlotMemory};
 
 use super::bode::wheel;
 use super::*;
-use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine, chart_ui};
+use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine};
+use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::widgets::palette::{self, Palette};
 
 const TITLES: [&str; 2] = ["one", "other"];

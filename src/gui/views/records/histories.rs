@@ -23,9 +23,9 @@ use super::simulation::{simulated, time_models_ui};
 use super::{ConditionRecords, RecordsCommand, numbers};
 use crate::gui::commands::command::Command;
 use crate::gui::panels::settings_panel::choice_ui;
-use crate::gui::plot::chart::{
-    Chart, ChartAxis, ChartImage, ChartLine, ChartSpan, chart_ui, chosen_stretch,
-};
+use crate::gui::plot::chart::{Chart, ChartAxis, ChartImage, ChartLine, ChartSpan};
+use crate::gui::plot::chart_view::chart_ui;
+use crate::gui::plot::stretch::chosen_stretch;
 use crate::gui::widgets::controls::{check_ui, entry_ui};
 use crate::gui::widgets::palette::Palette;
 

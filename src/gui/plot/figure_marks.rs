@@ -128,7 +128,7 @@ impl MarkScene<'_> {
     fn paint_emphasis(&self, canvas: &Canvas<'_>, dots: &Dots) {
         for dot in dots.dots.iter().filter(|dot| dot.id.is_some()) {
             if dot.id.as_ref() == self.emphasized {
-                let at = canvas.from(self.position(dot));
+                let at = canvas.paper_place(self.position(dot));
                 let look = (dots.shape, EMPHASIZED * dots.size.max(0.8));
                 canvas.paint(&dot_shapes(at, look, dots.color, dots.filled));
             }

@@ -97,16 +97,16 @@ pub(super) fn drawn_box_ui(
     if !(is_done || plot.dragged_by(button)) {
         return None;
     }
-    let (origin, now) =
-        ui.input(|input| (input.pointer.press_origin(), input.pointer.latest_pos()));
+    let pointer = ui.input(|input| input.pointer.latest_pos());
+    let pressed_at = ui.input(|input| input.pointer.press_origin());
     // When the button is released, the drag origin is already gone: the last frame's is stored.
     let memory = plot.id.with("box origin");
-    let origin = origin.or_else(|| ui.data(|data| data.get_temp(memory)))?;
+    let origin = pressed_at.or_else(|| ui.data(|data| data.get_temp(memory)))?;
     ui.data_mut(|data| data.insert_temp(memory, origin));
-    let area = Rect::from_two_pos(origin, now?).intersect(frame);
-    let is_wanted = area.width() >= LEAST_SIDE && area.height() >= LEAST_SIDE;
+    let area = Rect::from_two_pos(origin, pointer?).intersect(frame);
     if is_done {
-        return is_wanted.then_some(area);
+        let is_meant = area.width() >= LEAST_SIDE && area.height() >= LEAST_SIDE;
+        return if is_meant { Some(area) } else { None };
     }
     let fill = palette.accent.gamma_multiply(0.12);
     let stroke = Stroke::new(1.0, palette.accent);

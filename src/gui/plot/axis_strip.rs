@@ -11,7 +11,7 @@ use super::navigation::ZoomGesture;
 use super::pane_scene::PaneScene;
 use super::plot_axis::PlotAxis;
 
-/// Strip of the screen taken by an axis of a pane.
+/// Screen strip along an axis.
 struct AxisStrip<'a> {
     axis: PlotAxis,
     pane: PaneScene<'a>,

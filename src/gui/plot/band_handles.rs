@@ -1,4 +1,4 @@
-//! Draggable ends of the band of comparison.
+//! Draggable band ends.
 
 use egui::{CursorIcon, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
@@ -12,10 +12,9 @@ use crate::gui::widgets::palette::Palette;
 
 /// Half-width of the strip that grabs an end \[pt\].
 const GRAB_RADIUS: f32 = 4.0;
-/// Least ratio of the ends, so that the band is never empty.
+/// Least ratio between the ends, so that the band is never empty.
 const LEAST_RATIO: f64 = 1.05;
 
-/// End of the band.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum End {
     Lower,
@@ -23,7 +22,7 @@ enum End {
 }
 
 impl End {
-    /// Returns the frequency of this end \[rad/s\].
+    /// Returns this end's frequency \[rad/s\].
     fn omega(self, band: (f64, f64)) -> f64 {
         match self {
             Self::Lower => band.0,
@@ -47,7 +46,7 @@ impl End {
     }
 }
 
-/// Draws both ends of the band over a pane and makes them draggable.
+/// Draws both band ends over a pane and makes them draggable.
 pub(super) fn band_handles_ui(ui: &Ui, pane: PaneScene<'_>, view: &BodeView) -> Option<BodeEvent> {
     let PaneScene {
         pane,
@@ -95,12 +94,11 @@ fn is_held(response: &Response) -> bool {
     response.hovered() || response.dragged()
 }
 
-/// End of the band on the screen.
+/// Band end on the screen.
 struct Handle {
     x: f32,
-    /// Frequency of the end \[rad/s\].
+    /// Frequency \[rad/s\].
     omega: f64,
-    /// Frame of the pane.
     frame: Rect,
 }
 

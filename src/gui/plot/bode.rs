@@ -29,7 +29,7 @@ const LEAST_SIZE: Vec2 = vec2(140.0, 130.0);
 /// Distance from a reference line within which the pointer is on it, whatever lies below \[pt\].
 const ON_LINE: f32 = 1.0;
 
-/// Draws a Bode plot into the remaining space of `ui`.
+/// Draws a Bode plot into the remaining space in `ui`.
 pub fn bode_ui(
     ui: &mut Ui,
     scene: &BodeScene<'_>,
@@ -75,7 +75,7 @@ pub fn bode_ui(
     events
 }
 
-/// Returns the request of a digit: it switches the role of the chip with this number.
+/// Returns the request for a pressed digit: it switches the chip with this number.
 fn pressed_role(ui: &Ui, scene: &BodeScene<'_>, palette: &Palette) -> Option<DisplayRequest> {
     let digit = pressed_digit(ui)?;
     let chips = role_chips(scene.curves, scene.hidden_roles, palette);
@@ -83,7 +83,7 @@ fn pressed_role(ui: &Ui, scene: &BodeScene<'_>, palette: &Palette) -> Option<Dis
     Some(DisplayRequest::ToggleRole(chip.role))
 }
 
-/// Draws the switches of all curves, including hidden curves, and the current restrictions of the
+/// Draws the switches for all curves, including hidden curves, and the current restrictions on the
 /// plot; returns their height.
 fn chips_ui(
     ui: &Ui,
@@ -123,7 +123,7 @@ fn has_data(curves: &[BodeCurve]) -> bool {
         .any(|curve| curve.points(Pane::Magnitude).any(|point| is_finite(&point)))
 }
 
-/// Draws both panes and handles their interaction; returns whether one of them has the focus.
+/// Draws both panes and handles their interaction; returns whether either has the focus.
 fn panes_ui(
     ui: &mut Ui,
     layout: &BodeLayout,
@@ -177,7 +177,7 @@ fn panes_ui(
     has_focus
 }
 
-/// Opens the menu of the curve, or of the empty ground, on a secondary click.
+/// Opens the menu for the curve, or for the empty ground, on a secondary click.
 fn open_menu(
     response: &Response,
     scene: &BodeScene<'_>,

@@ -1,4 +1,4 @@
-//! Events of a Bode plot: gestures and menu entries, as requests to its owner.
+//! Bode events: gestures and menu entries, as requests to the owner.
 
 use super::curve_style::Role;
 use super::drawn_curves::CurveId;
@@ -22,7 +22,7 @@ pub enum BodeEvent {
     BandReleased,
     /// Another display of curves, or marks at frequencies, were requested.
     Display(DisplayRequest),
-    /// Rejection of a curve's model was requested, with a reason.
+    /// The model is to be rejected, with a reason.
     RejectedBecause(CurveId, String),
     /// An entry of a curve's menu was chosen.
     Wished(CurveId, CurveWish),
@@ -41,7 +41,7 @@ pub enum DisplayRequest {
     ShowRoleAlone(Role),
     /// Draws the curves of this role above all others; repeated, restores the usual order.
     RaiseRole(Role),
-    /// Shows or hides the bands of the identified models.
+    /// Shows or hides the identified models' bands.
     ShowBands(bool),
     /// Marks a frequency \[rad/s\].
     PinCursor(f64),
@@ -54,7 +54,7 @@ pub enum DisplayRequest {
 pub enum CurveWish {
     /// Reject its model, or restore it.
     RejectOrRestore,
-    /// Make its model the representative of the bundle.
+    /// Make its model the bundle's representative.
     Pin,
     /// Show it alone beside the representatives, or show all again.
     Isolate,

@@ -1,4 +1,4 @@
-//! Texts around the panes of a Bode plot: contents, effect of the correction, names of curves.
+//! Texts around the Bode panes: contents, effect of the correction, curve names.
 
 use egui::{Align2, Rect, Ui, pos2};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -17,10 +17,10 @@ use super::reference_lines::line_labels;
 use crate::gui::widgets::controls::{elided, painted_text, row_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
-/// Gap between two texts of a heading \[pt\].
+/// Gap between two texts in a heading \[pt\].
 const GAP: f32 = 12.0;
 
-/// Roles named at the ends of their curves.
+/// Roles whose curves have names beside them.
 const NAMED: [Role; 5] = [
     Role::IdentifiedRepresentative,
     Role::Corrected,
@@ -29,8 +29,8 @@ const NAMED: [Role; 5] = [
     Role::Nominal,
 ];
 
-/// Draws the texts around the panes: their contents, the effect of the correction, the values at
-/// the cursor, the names at the ends of the heavy curves, and whether newer curves are expected.
+/// Draws the texts around the panes: contents, effect of the correction, values at
+/// the cursor, names beside the heavy curves, and whether newer curves are expected.
 pub(super) fn headings_ui(
     ui: &Ui,
     layout: &BodeLayout,
@@ -67,7 +67,7 @@ pub(super) fn headings_ui(
     }
 }
 
-/// Paints the quantity of a pane and its unit; returns the right end of the text.
+/// Paints quantity and unit; returns the right end.
 fn paint_quantity(
     ui: &Ui,
     line: Rect,
@@ -83,7 +83,7 @@ fn paint_quantity(
     row_text(ui, line, beside, unit, BODY_SIZE, palette.dim_text).right()
 }
 
-/// Returns the increase of the magnitude by the leads, if there is no margin for it beside the
+/// Returns the magnitude added by the leads, if there is no margin for it beside the
 /// bracket.
 fn price_in_heading(scene: &BodeScene<'_>, pane: Pane) -> Option<String> {
     if pane != Pane::Magnitude || scene.names_curves {
@@ -92,7 +92,7 @@ fn price_in_heading(scene: &BodeScene<'_>, pane: Pane) -> Option<String> {
     Some(format!("leads {}", scene.price_words()?))
 }
 
-/// Paints a note at the right of a heading: its verdict, the price of the leads, and the cost as
+/// Paints a note at the right in a heading: verdict, price of the leads, and the cost as
 /// far as there is room.
 fn paint_note(ui: &Ui, room: Rect, note: &PaneNote, price: Option<String>, palette: &Palette) {
     let color = if note.warns {
@@ -110,7 +110,6 @@ fn paint_note(ui: &Ui, room: Rect, note: &PaneNote, price: Option<String>, palet
     row_text(ui, rest, -0.01, &cost, BODY_SIZE, palette.dim_text);
 }
 
-/// Paints the unit of the frequencies at the end of their axis.
 fn paint_frequency_unit(ui: &Ui, frame: Rect, scene: &BodeScene<'_>, palette: &Palette) {
     let at = pos2(frame.right() + 14.0, frame.bottom() + 0.5 * TICKS_HEIGHT);
     ui.painter().text(
@@ -122,7 +121,7 @@ fn paint_frequency_unit(ui: &Ui, frame: Rect, scene: &BodeScene<'_>, palette: &P
     );
 }
 
-/// Returns the names of the heavy curves at their ends and of the reference lines, and the price of
+/// Returns the names beside the heavy curves and the reference lines, and the price paid for
 /// the leads.
 fn pane_labels(
     scene: &BodeScene<'_>,
@@ -164,7 +163,7 @@ fn pane_labels(
     labels
 }
 
-/// Returns the last visible point of the first curve of a role.
+/// Returns the last visible point in a role's first curve.
 fn curve_end(scene: &BodeScene<'_>, role: Role, pane: Pane, last_omega: f64) -> Option<PlotPoint> {
     let curve = scene.curves.iter().find(|curve| curve.role == role)?;
     let omega = curve.omega.last()?.min(last_omega);

@@ -1,17 +1,17 @@
-//! Keys of a focused pane of a Bode plot.
+//! Keys that pan and zoom a focused Bode pane.
 
 use egui::{EventFilter, Key, Modifiers, Response, Ui, vec2};
 
 use super::bode_view::BodeView;
 use super::drawn_curves::Pane;
 
-/// Share of the visible range by which an arrow key pans.
+/// Share of the visible range per arrow key.
 const STEP: f32 = 0.1;
-/// Zoom factor of the + key.
+/// Zoom factor per press of the + key.
 const CLOSER: f64 = 1.25;
 
-/// Handles the keys of a focused pane: arrows pan, + and − zoom (with Shift only the frequencies),
-/// Home fits, Escape leaves the plot.
+/// Handles the keys if the pane has the focus: arrows pan, + and − zoom (with Shift only the
+/// frequencies), Home fits, Escape leaves the plot.
 pub(super) fn handle_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView) {
     if !response.has_focus() {
         return;
@@ -26,7 +26,7 @@ pub(super) fn handle_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut B
         return;
     };
     let is_shifted = ui.input(|input| input.modifiers.shift);
-    // The view moves in the direction of the arrow, and the drawing in the opposite direction.
+    // The view follows the arrow, and the drawing moves in the opposite direction.
     let along = presses(ui, Key::ArrowRight) - presses(ui, Key::ArrowLeft);
     let up = presses(ui, Key::ArrowUp) - presses(ui, Key::ArrowDown);
     let closer = presses(ui, Key::Plus) + presses(ui, Key::Equals) - presses(ui, Key::Minus);
@@ -48,7 +48,7 @@ pub(super) fn handle_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut B
     }
 }
 
-/// Takes the presses of a key out of the input and counts them.
+/// Takes a key's presses out of the input and counts them.
 fn presses(ui: &Ui, key: Key) -> f32 {
     ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as f32
 }

@@ -1,4 +1,4 @@
-//! Places of the panes of a Bode plot, and of the texts and strips around them.
+//! Bode layout: places for panes, and for the texts and strips around them.
 
 use egui::{Rect, pos2, vec2};
 
@@ -6,28 +6,27 @@ use super::bode_scene::BodeScene;
 use super::panel_axis::TICKS_HEIGHT;
 use super::readout::STRIP_HEIGHT;
 
-/// Width of the vertical axes \[pt\], equal in both panes so that the frequencies align.
+/// Vertical axis width \[pt\], equal in both panes so that the frequencies align.
 pub(super) const VALUE_AXIS_WIDTH: f32 = 40.0;
-/// Share of the height taken by the magnitude plot.
+/// Share of the height for the magnitude.
 const MAGNITUDE_PART: f32 = 0.52;
-/// Height of the line above a pane \[pt\].
+/// Line height above a pane \[pt\].
 const HEADING: f32 = 20.0;
 /// Space above and below the read-out \[pt\].
 const GAP: f32 = 6.0;
-/// Space at the right for the unit of the frequencies \[pt\].
+/// Space at the right for the frequency unit \[pt\].
 const UNIT_MARGIN: f32 = 36.0;
-/// Space at the right for the names of curves \[pt\].
+/// Space at the right for curve names \[pt\].
 const CURVE_NAME_MARGIN: f32 = 78.0;
-/// Space at the right for the names of reference lines \[pt\].
+/// Space at the right for reference-line names \[pt\].
 const LINE_NAME_MARGIN: f32 = 118.0;
 /// Least plot height with room for the values between the panes \[pt\].
 const LEAST_WITH_STRIP: f32 = 300.0;
-/// Height of the coherence strip \[pt\].
 const COHERENCE_HEIGHT: f32 = 52.0;
 /// Least plot height with room for the coherence strip \[pt\].
 const LEAST_WITH_COHERENCE: f32 = 380.0;
 
-/// Places of headings, panes and strips.
+/// Places for headings, panes and strips.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct BodeLayout {
     /// Lines above the panes.
@@ -41,7 +40,7 @@ pub(super) struct BodeLayout {
 }
 
 impl BodeLayout {
-    /// Divides an area of the screen.
+    /// Divides an area on the screen.
     pub(super) fn new(area: Rect, scene: &BodeScene<'_>) -> Self {
         let mut inner = area.with_max_x(area.right() - right_margin(scene));
         let mut coherence = None;
@@ -85,7 +84,7 @@ fn line_above(pane: Rect) -> Rect {
     Rect::from_min_max(pos2(pane.left(), pane.top() - HEADING), pane.right_top())
 }
 
-/// Returns the width of the right margin \[pt\].
+/// Returns the right margin \[pt\].
 fn right_margin(scene: &BodeScene<'_>) -> f32 {
     if !scene.rules.is_empty() {
         LINE_NAME_MARGIN

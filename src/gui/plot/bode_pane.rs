@@ -1,4 +1,4 @@
-//! Pane of a Bode plot: its layers from bottom to top, and its gestures.
+//! Bode pane: layers from bottom to top, and gestures.
 
 use egui::{PointerButton, Rect, Response, Stroke, Ui, vec2};
 use egui_plot::{PlotBounds, PlotTransform, PlotUi};
@@ -22,9 +22,9 @@ use super::reference_lines::paint_reference_lines;
 use super::ticks::Ticks;
 use crate::gui::widgets::palette::Palette;
 
-/// Greatest distance of a drawn line from its curve \[pt\].
+/// Greatest distance between a drawn line and its curve \[pt\].
 const TOLERANCE: f64 = 0.1;
-/// Height of a strip along the lower edge \[pt\].
+/// Strip height along the lower edge \[pt\].
 const STRIP_HEIGHT: f32 = 5.0;
 
 /// Draws a pane, and pans and zooms it with the pointer.
@@ -101,7 +101,7 @@ fn zoom_by_scrolling(pane: Pane, response: &Response, view: &mut BodeView) {
     }
 }
 
-/// Draws the frequencies of `ranges` \[rad/s\] as strips along the lower edge of a plot.
+/// Draws frequency ranges \[rad/s\] as strips along the lower edge.
 fn paint_strips(ui: &Ui, ranges: &[(f64, f64)], transform: &PlotTransform, palette: &Palette) {
     let frame = *transform.frame();
     let painter = ui.painter().with_clip_rect(frame);
@@ -156,7 +156,7 @@ impl<'a> PaneScene<'a> {
         add_shade(plot, max.log10()..=f64::INFINITY, veil);
     }
 
-    /// Draws the visible part of a band, in segments: non-finite values and jumps of a wrapped
+    /// Draws a band's visible part, in segments: non-finite values and jumps of a wrapped
     /// phase leave a gap.
     fn add_band(self, plot: &mut PlotUi<'_>, band: &BodeBand, view: &PlotBounds) {
         let values = match self.pane {
@@ -211,7 +211,7 @@ impl<'a> PaneScene<'a> {
     }
 }
 
-/// Returns whether part of the band between two points, each a place with its lower and upper
+/// Returns whether any of the band between two points, each a place with its lower and upper
 /// value, is visible.
 fn is_in_view(from: &[f64; 3], to: &[f64; 3], view: &PlotBounds) -> bool {
     let [min_x, min_y] = view.min();

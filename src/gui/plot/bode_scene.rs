@@ -1,4 +1,4 @@
-//! Content of a Bode plot: magnitude over phase of every model of a condition for a pair, or the
+//! Bode content: magnitude and phase of every model of a condition for a pair, or the
 //! corresponding errors used by the fit.
 
 use std::collections::BTreeSet;
@@ -19,49 +19,49 @@ use super::readout::Readout;
 pub struct BodeScene<'a> {
     /// Responses, or the errors used by the fit.
     pub quantity: BodeQuantity<'a>,
-    /// Title of the pair: "LON → Q".
+    /// "LON → Q".
     pub pair_title: &'a str,
     /// Curves, in any order.
     pub curves: &'a [BodeCurve],
     /// Labelled reference lines across the panes.
     pub rules: &'a [ReferenceLine],
-    /// Reference curve of the comparison: a click on it decides nothing.
+    /// Reference in the comparison: a click on it decides nothing.
     pub reference: Option<&'a CurveId>,
     pub bands: &'a [BodeBand],
-    /// Coherence of measured responses, in a strip below the panes.
+    /// Measured coherence, in a strip below the panes.
     pub coherence: &'a [CoherenceCurve],
     /// Least coherence at which a frequency counts.
     pub least_coherence: f64,
-    /// Frequencies marked along the lower edge of each pane \[rad/s\].
+    /// Frequencies marked along each lower edge \[rad/s\].
     pub strips: &'a [(f64, f64)],
-    /// Frequency range after fitting \[rad/s\]; `None` for the range of the curves.
+    /// Frequency range after fitting \[rad/s\]; `None` for that covered by the curves.
     pub omega_range: Option<(f64, f64)>,
     /// Cursor controlled by another plot \[rad/s\].
     pub cursor: Option<f64>,
     /// Marked frequencies \[rad/s\].
     pub pinned: &'a [f64],
-    /// Frequencies, with their names, at which values of the response are read \[rad/s\].
+    /// Frequencies, with their names, at which the response is read \[rad/s\].
     pub crossings: &'a [(&'static str, f64)],
-    /// Values of every role at the cursor.
+    /// Values at the cursor for every role.
     pub readout: Option<&'a Readout>,
-    /// Note at the right above each pane: effect of the correction, and whether it is a warning.
+    /// Note at the right above each pane: the correction's effect, and whether it is a warning.
     pub notes: [Option<&'a PaneNote>; 2],
     /// Remaining phase error: the area between the corrected and the identified model, within the
     /// band.
     pub missing: Option<&'a BodeBand>,
-    /// Region where curves only illustrate the price of the leads; `None` without leads.
+    /// Region where curves only illustrate the price paid for leads; `None` without leads.
     pub invalid: Option<&'a InvalidRegion>,
     /// Whether bands are drawn; `None` if there are no bands.
     pub shows_bands: Option<bool>,
     /// Role drawn above all others.
     pub raised: Option<Role>,
-    /// Whether the ends of the heavy curves are named in the margin.
+    /// Whether the heavy curves are named in the margin.
     pub names_curves: bool,
     /// Roles whose curves are hidden; `None` if there are none.
     pub hidden_roles: Option<&'a BTreeSet<Role>>,
-    /// Current restrictions of the plot.
+    /// Current restrictions.
     pub chips: &'a [Chip],
-    /// Band of comparison: lower and upper end \[rad/s\].
+    /// Lower and upper end of the comparison band \[rad/s\].
     pub band: (f64, f64),
     pub unit: FrequencyUnit,
     /// Whether the curves are older than the settings: they are dimmed until new curves arrive.
@@ -85,22 +85,22 @@ pub struct PaneNote {
 /// leads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InvalidRegion {
-    /// End of the region, which is the end of the curves \[rad/s\].
+    /// Upper end, which is also where the curves end \[rad/s\].
     pub up_to: f64,
     /// "not valid above 12 rad/s".
     pub words: String,
-    /// Magnitudes of the corrected model with and without leads at its end \[dB\].
+    /// Corrected magnitudes with and without leads at its end \[dB\].
     pub ends_db: Option<[f64; 2]>,
 }
 
 impl<'a> BodeScene<'a> {
-    /// Returns "+19.4 dB": the increase of the magnitude by the leads at the end of the curves.
+    /// Returns "+19.4 dB": the magnitude added by the leads where the curves end.
     pub(super) fn price_words(&self) -> Option<String> {
         let [with, without] = self.invalid?.ends_db?;
         Some(format!("{} dB", signed(with - without, 1)))
     }
 
-    /// Creates a scene with the responses of a pair in decibels, degrees and rad/s, and nothing
+    /// Creates a scene with a pair's responses in decibels, degrees and rad/s, and nothing
     /// else.
     pub fn of(pair_title: &'a str, curves: &'a [BodeCurve], band: (f64, f64)) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! State of the Bode plot between frames: visible ranges and screen positions.
+//! Bode state between frames: visible ranges and screen positions.
 
 use egui::{Pos2, Rect, Vec2};
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
@@ -24,10 +24,10 @@ const LOG_OMEGA: Range = Range {
     min: -30.0,
     max: 30.0,
 };
-/// Space above and below the curves after fitting, as a share of their height.
+/// Space above and below the curves after fitting, relative to their height.
 const FIT_MARGIN: f64 = 0.04;
 
-/// State of the Bode plot between frames.
+/// State of a Bode plot between frames.
 ///
 /// Recomputed curves do not move the view; only the engineer does. Value ranges that have not been
 /// zoomed are fitted once to another response or condition.
@@ -40,28 +40,28 @@ pub struct BodeView {
     /// Frequency under the pointer \[rad/s\].
     pub pointed_omega: Option<f64>,
     pub(super) last_clicked: Option<CurveId>,
-    /// Subject of the menu that is open or was open last.
+    /// Subject while the menu is open, and after.
     pub(super) menu_subject: Option<MenuSubject>,
     /// Whether a box is being drawn to select curves.
     pub(super) is_selecting: bool,
     /// Finished selection box.
     pub(super) selection: Option<SelectionBox>,
-    /// Open form for the limits of an axis.
+    /// Open form for axis limits.
     pub(super) limits: Option<LimitsForm>,
     must_fit_frequencies: bool,
     must_fit_values: bool,
-    /// Frequency range of the curves when last followed, as `log10 omega`.
+    /// Frequency range when last followed, as `log10 omega`.
     followed: Option<Range>,
-    /// Last drawing of each pane.
+    /// Panes as last drawn.
     pub(super) drawn: [DrawnPane; 2],
 }
 
-/// Subject of a menu: a curve or the ground, and the frequency there \[rad/s\].
+/// Menu subject: a curve or the ground, and the frequency there \[rad/s\].
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MenuSubject {
     pub(super) curve: Option<CurveId>,
     pub(super) omega: f64,
-    /// Reason of the rejection, as typed so far.
+    /// Rejection reason, as typed so far.
     pub(super) reason: String,
 }
 
@@ -73,7 +73,7 @@ pub(super) struct SelectionBox {
     pub(super) area: Rect,
 }
 
-/// Returns the range from the first to the last frequency of all curves, as `log10 omega`.
+/// Returns the range from the first to the last frequency, as `log10 omega`.
 fn log_omega_of(curves: &[BodeCurve]) -> Option<Range> {
     Range::of(
         curves
@@ -138,19 +138,19 @@ impl BodeView {
         self.must_fit_values = true;
     }
 
-    /// Fits the values of other curves at the next frame, on axes that have not been zoomed; the
+    /// Fits other curves' values at the next frame, on axes that have not been zoomed; the
     /// frequencies stay.
     pub fn request_refit(&mut self) {
         self.must_fit_values = true;
     }
 
-    /// Fits the values of a pane at the next frame, because their unit changes.
+    /// Fits a pane's values at the next frame, because their unit changes.
     pub fn release_values(&mut self, pane: Pane) {
         self.values[pane as usize].release();
         self.must_fit_values = true;
     }
 
-    /// Fits the frequencies if those of the curves have changed, unless the engineer chose the
+    /// Fits the frequencies if those in the curves have changed, unless the engineer chose the
     /// range.
     pub(super) fn follow_curves(&mut self, curves: &[BodeCurve]) {
         let ends = log_omega_of(curves);
@@ -163,7 +163,7 @@ impl BodeView {
         }
     }
 
-    /// Adopts the frequency range of another plot.
+    /// Adopts another plot's frequency range.
     pub fn share_frequencies(&mut self, other: &Self) {
         self.log_omega = other.log_omega;
         self.must_fit_frequencies = other.must_fit_frequencies;
@@ -184,7 +184,7 @@ impl BodeView {
         Some(Range { min, max })
     }
 
-    /// Returns the visible range of a pane's vertical axis if the engineer chose it.
+    /// Returns a pane's visible values if the engineer chose them.
     pub fn chosen_values(&self, pane: Pane) -> Option<Range> {
         let viewed = &self.values[pane as usize];
         if viewed.is_chosen() {
@@ -194,28 +194,28 @@ impl BodeView {
         }
     }
 
-    /// Returns the visible range of a pane's vertical axis.
+    /// Returns a pane's visible values.
     pub fn value_range(&self, pane: Pane) -> Range {
         self.values[pane as usize].range()
     }
 
-    /// Returns the last transform of a pane: x is `log10 omega`, y is in dB or in degrees.
+    /// Returns a pane's last transform: x is `log10 omega`, y is in dB or in degrees.
     pub fn transform(&self, pane: Pane) -> Option<&PlotTransform> {
         self.drawn[pane as usize].transform.as_ref()
     }
 
-    /// Returns the last frame of a pane, without its axes.
+    /// Returns a pane's last frame, without its axes.
     pub(super) fn frame(&self, pane: Pane) -> Option<Rect> {
         Some(*self.transform(pane)?.frame())
     }
 
-    /// Returns the screen position of `value` at `omega` \[rad/s\].
+    /// Returns where `value` at `omega` \[rad/s\] lies on the screen.
     pub fn screen_position(&self, pane: Pane, omega: f64, value: f64) -> Option<Pos2> {
         let transform = self.transform(pane)?;
         Some(transform.position_from_point(&PlotPoint::new(omega.log10(), value)))
     }
 
-    /// Returns the visible range of a pane as egui_plot bounds.
+    /// Returns a pane's visible range as egui_plot bounds.
     pub(super) fn bounds(&self, pane: Pane) -> PlotBounds {
         bounds_of([self.log_omega.range(), self.value_range(pane)])
     }
@@ -256,7 +256,7 @@ impl BodeView {
         }
     }
 
-    /// Fits an axis to all of the curves at the next frame.
+    /// Fits an axis to all curves at the next frame.
     pub(super) fn fit_axis(&mut self, axis: PlotAxis) {
         self.axis_mut(axis).release();
         match axis {
@@ -265,7 +265,7 @@ impl BodeView {
         }
     }
 
-    /// Zooms into an `area` of the screen.
+    /// Zooms into an area on the screen.
     pub(super) fn zoom_to(&mut self, pane: Pane, area: Rect) {
         let Some(transform) = self.transform(pane) else {
             return;
@@ -276,7 +276,7 @@ impl BodeView {
         self.values[pane as usize].choose(Range::new(a.y, b.y));
     }
 
-    /// Fits all curves of `scene`, including rejected ones, if requested. Without data the request
+    /// Fits all curves, including rejected ones, if requested. Without data the request
     /// stays pending.
     pub(super) fn fit_if_requested(&mut self, scene: &BodeScene<'_>) {
         let computed = scene
@@ -300,7 +300,7 @@ impl BodeView {
         }
     }
 
-    /// Fits the values of both panes, unless the engineer chose their ranges.
+    /// Fits the values in both panes, unless the engineer chose their ranges.
     fn fit_values(&mut self, scene: &BodeScene<'_>) {
         let upper = match scene.invalid {
             Some(invalid) => invalid.up_to,

@@ -1,4 +1,4 @@
-//! Cached raster image of many static curves.
+//! Cached raster image for many static curves.
 
 use egui::{
     Color32, ColorImage, Context, Pos2, Rect, Shape, Stroke, TextureHandle, TextureOptions, pos2,
@@ -9,19 +9,19 @@ use vello_cpu::{Pixmap, RenderContext, RenderSettings, Resources};
 
 use super::curve_style::CurveStyle;
 
-/// Number of curves from which an image is worth its memory: filling their lines takes longer than
+/// Least curve count for which an image is worth its memory: filling their lines takes longer than
 /// everything else in a frame.
 pub(super) const MANY: usize = 200;
-/// Greatest distance of a drawn circle from a true circle \[pt\].
+/// Greatest distance between a drawn and a true circle \[pt\].
 const TOLERANCE: f64 = 0.05;
 
 /// Content of an image, which is valid as long as this stays the same.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct StillScene {
-    /// Place of the curves on the screen \[pt\].
+    /// Place on the screen \[pt\].
     pub(super) frame: Rect,
     pub(super) pixels_per_point: f32,
-    /// Serial number of each curve's points, and its style; from bottom to top.
+    /// Serial number and style for each curve, from bottom to top.
     pub(super) curves: Vec<(u64, CurveStyle)>,
 }
 
@@ -30,7 +30,7 @@ pub(super) struct StillScene {
 ///
 /// ```text
 /// the scene is another than in the frame before:  lines are drawn; no image
-/// the same, and no image yet:                     the lines are filled once, into an image of the frame's pixels
+/// the same, and no image yet:                     the lines are filled once, into an image
 /// the same, with its image:                       one rectangle is drawn
 /// ```
 #[derive(Clone, Default)]
@@ -49,7 +49,7 @@ impl std::fmt::Debug for CachedRaster {
 }
 
 impl CachedRaster {
-    /// Returns the image of `scene` if it has not changed since the last frame; `shapes` returns
+    /// Returns the image if `scene` has not changed since the last frame; `shapes` returns
     /// its content.
     pub(super) fn image_of(
         &mut self,
@@ -82,7 +82,7 @@ impl CachedRaster {
     }
 }
 
-/// Rectangle of whole pixels on the screen.
+/// Whole pixels on the screen.
 struct PixelArea {
     /// Place \[pt\].
     rect: Rect,
@@ -91,7 +91,7 @@ struct PixelArea {
     pixels: [u16; 2],
 }
 
-/// Returns the least rectangle of whole pixels around `frame`, if an image can be so large.
+/// Returns the whole pixels around `frame`, if an image can be so large.
 fn whole_pixels(frame: Rect, pixels_per_point: f32) -> Option<PixelArea> {
     let min = (frame.min * pixels_per_point).floor();
     let max = (frame.max * pixels_per_point).ceil();
@@ -103,7 +103,7 @@ fn whole_pixels(frame: Rect, pixels_per_point: f32) -> Option<PixelArea> {
     })
 }
 
-/// Returns the length of a side in pixels, if an image can have such a side.
+/// Returns a side in pixels, if an image can be so long.
 fn pixel_count(length: f32) -> Option<u16> {
     if (1.0..=f32::from(u16::MAX)).contains(&length) {
         Some(length as u16)
@@ -139,7 +139,7 @@ fn filled(shapes: &[Shape], area: &PixelArea) -> ColorImage {
     )
 }
 
-/// Fills a shape of a line: strokes, and discs for dots.
+/// Fills strokes, and discs for dots.
 fn fill(context: &mut RenderContext, shape: &Shape) {
     match shape {
         Shape::Vec(shapes) => {

@@ -15,18 +15,17 @@ use crate::gui::widgets::palette::Palette;
 
 /// Screen points per paper point: printed lines are finer by this factor.
 pub(super) const SCALE: f32 = 1.8;
-/// Font size, in points of paper.
+/// Font size \[pt on paper\].
 pub(super) const LETTERS_PT: f64 = 10.5 / SCALE as f64;
 
-/// Part of the screen on which shapes are drawn.
+/// Screen area on which shapes are drawn.
 pub(super) struct Canvas<'a> {
     pub(super) painter: &'a Painter,
-    /// Screen position of the origin.
     pub(super) origin: Pos2,
     pub(super) palette: &'a Palette,
 }
 
-/// Converts a rectangle of the screen to an area of paper with its origin at the corner.
+/// Converts a screen rectangle to paper, with the origin at its corner.
 pub(super) fn area(rect: Rect) -> Area {
     Area::new(
         0.0,
@@ -176,10 +175,10 @@ impl Canvas<'_> {
     }
 }
 
-/// Size of a sample \[pt\].
+/// Sample size \[pt\].
 const SAMPLE_SIZE: Vec2 = vec2(18.0, 14.0);
 
-/// Draws a sample and a name for each key among the marks of a figure, as in the printed legend.
+/// Draws a sample and a name for each key among the figure's marks, as in the printed legend.
 pub fn figure_legend_ui(ui: &mut Ui, figure: &Figure, palette: &Palette) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(4.0, 0.0);

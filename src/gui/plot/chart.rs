@@ -1,4 +1,4 @@
-//! Content of a chart: lines, bands and marks with error bars over a linear or logarithmic axis.
+//! Chart content: lines, bands and marks with error bars over a linear or logarithmic axis.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use egui::{Color32, Id, TextureId};
 
 use gdcm_plot::figure::axis::FrequencyUnit;
 
-/// Quantity of the horizontal axis of a chart.
+/// Quantity along the horizontal axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ChartAxis {
     /// Plain values.
@@ -17,7 +17,7 @@ pub enum ChartAxis {
 }
 
 impl ChartAxis {
-    /// Returns the place of a value on the axis.
+    /// Returns a value's place along the axis.
     pub(super) fn place(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
@@ -26,7 +26,7 @@ impl ChartAxis {
     }
 }
 
-/// Line of a chart.
+/// Chart line.
 #[derive(Clone, Debug)]
 pub struct ChartLine {
     /// Points, ascending along the horizontal axis; invisible points and details finer than a pixel
@@ -49,7 +49,7 @@ pub struct ChartBand {
 /// Marks with the same style.
 #[derive(Clone, Debug)]
 pub struct ChartMarks {
-    /// Places, values, and half-lengths of the vertical error bars; 0 for none.
+    /// Places, values, and vertical error bars (half-lengths, 0 for none).
     pub points: Vec<[f64; 3]>,
     /// Half-lengths of the horizontal error bars; empty for none.
     pub sideways: Vec<f64>,
@@ -59,7 +59,7 @@ pub struct ChartMarks {
     pub crosses: bool,
 }
 
-/// Marked stretch of the horizontal axis.
+/// Marked horizontal stretch.
 #[derive(Clone, Debug)]
 pub struct ChartSpan {
     pub ends: [f64; 2],
@@ -71,17 +71,16 @@ pub struct ChartSpan {
 pub struct Chart<'a> {
     /// Title, which is also its accessible name.
     pub title: &'a str,
-    /// Words at the right end of the title line, with their colours.
+    /// Words right in the title line, with their colours.
     pub notes: Vec<(String, Color32)>,
     pub across: ChartAxis,
-    /// Label of the horizontal axis; an empty label keeps the axis low.
+    /// Horizontal label; an empty label keeps the axis low.
     pub across_label: &'a str,
-    /// Label of the vertical axis.
     pub value_label: &'a str,
     /// Whether the visible values fill the height: then only the horizontal axis can be zoomed and
     /// panned.
     pub fits_values: bool,
-    /// Charts of a group share the visible stretch of the horizontal axis.
+    /// Charts in a group share the visible horizontal stretch.
     pub group: Option<Id>,
     /// Marked stretches.
     pub spans: Vec<ChartSpan>,
@@ -94,21 +93,21 @@ pub struct Chart<'a> {
     pub verticals: Vec<f64>,
     /// Image below everything else.
     pub image: Option<ChartImage>,
-    /// Whether dragging chooses a stretch of the horizontal axis, returned by [`chosen_stretch`]
-    /// for the group, instead of panning.
+    /// Whether dragging chooses a horizontal stretch instead of panning;
+    /// [`chosen_stretch`](super::stretch::chosen_stretch) returns it for the group.
     pub chooses: bool,
 }
 
-/// Image over a stretch of both axes; the vertical axis shows frequencies \[rad/s\].
+/// Image over a stretch along both axes; the vertical axis shows frequencies \[rad/s\].
 #[derive(Clone, Copy, Debug)]
 pub struct ChartImage {
     /// Texture with the highest frequency at the top.
     pub texture: TextureId,
-    /// Places of the left and right edges.
+    /// Left and right edge.
     pub across: [f64; 2],
-    /// Frequencies of the lower and upper edges \[rad/s\].
+    /// Frequencies at the lower and upper edges \[rad/s\].
     pub omega: [f64; 2],
-    /// Display unit of the frequencies.
+    /// Display unit for frequencies.
     pub unit: FrequencyUnit,
 }
 

@@ -1,4 +1,4 @@
-//! Layers of a chart, from bottom to top: image, stretches, areas, lines and marks.
+//! Chart layers, from bottom to top: image, stretches, areas, lines and marks.
 
 use egui::{Stroke, vec2};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotImage, PlotPoint, PlotPoints, PlotUi, Points};
@@ -10,14 +10,13 @@ use super::layers::{add_area, add_dotted_vertical, add_shade};
 use super::thinning::{pixel_of, thinned_between};
 use crate::gui::widgets::palette::Palette;
 
-/// Greatest distance of a drawn line from its data \[pt\].
+/// Greatest distance between a drawn line and its data \[pt\].
 const TOLERANCE: f64 = 0.1;
-/// Upper bound on the width of a screen \[pixels\].
+/// Upper bound on a screen's width \[pixels\].
 const MOST_PIXELS: f64 = 10_000.0;
-/// Radius of a mark \[pt\].
 const MARK_RADIUS: f32 = 3.0;
 
-/// Adds the content of a chart to its panel. Lines and marks are items of egui_plot, which fits the
+/// Adds the chart's content to its panel. Lines and marks are egui_plot items, since it fits the
 /// ranges to them.
 pub(super) fn add_layers(plot: &mut PlotUi<'_>, chart: &Chart<'_>, palette: &Palette) {
     if let Some(image) = &chart.image {
@@ -68,7 +67,7 @@ fn add_image(plot: &mut PlotUi<'_>, image: &ChartImage) {
     plot.image(PlotImage::new("", image.texture, middle, size).allow_hover(false));
 }
 
-/// Returns the visible ends of the horizontal axis: unbounded if the plot is about to be fitted.
+/// Returns the visible horizontal ends: unbounded if the plot is about to be fitted.
 pub(super) fn visible_ends(plot: &PlotUi<'_>) -> [f64; 2] {
     if plot.auto_bounds().x {
         return [f64::NEG_INFINITY, f64::INFINITY];
@@ -77,7 +76,7 @@ pub(super) fn visible_ends(plot: &PlotUi<'_>) -> [f64; 2] {
     [bounds.min()[0], bounds.max()[0]]
 }
 
-/// Returns the points of a line that are drawn. A line over frequencies has few.
+/// Returns the points to draw. A line over frequencies has few.
 fn visible_points(
     plot: &PlotUi<'_>,
     across: ChartAxis,
@@ -94,8 +93,8 @@ fn visible_points(
     }
 }
 
-/// Returns the pixel of the plot as last drawn; before the first drawing, a pixel finer than that
-/// of any screen.
+/// Returns the pixel as last drawn; before the first drawing, a pixel finer than that
+/// on any screen.
 fn pixel_in(plot: &PlotUi<'_>, points: &[[f64; 2]]) -> Pixel {
     let pixel = pixel_of(plot.transform(), plot.ctx().pixels_per_point(), TOLERANCE);
     if pixel.width.is_finite() && pixel.width > 0.0 {

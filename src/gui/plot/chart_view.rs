@@ -17,16 +17,16 @@ use super::viewed_range::{ZoomLimit, ranges_of, zoomed_within};
 use crate::gui::widgets::palette::Palette;
 
 const TITLE_HEIGHT: f32 = 18.0;
-/// Width of the longest number, so that the frames of stacked charts align \[pt\].
+/// Room for the longest number, so that stacked frames align \[pt\].
 const VALUE_AXIS_WIDTH: f32 = 54.0;
 const RIGHT_MARGIN: f32 = 8.0;
 /// Gap between two notes \[pt\].
 const NOTE_GAP: f32 = 8.0;
-/// Space at either end of the horizontal axis, as a share of its length.
+/// Space left and right, relative to the width.
 const EDGE: f64 = 0.01;
-/// Space at either end of the vertical axis, as a share of its length.
+/// Space above and below, relative to the height.
 const VALUE_EDGE: f32 = 0.08;
-/// Least distance between the numbers of a linear horizontal axis \[pt\].
+/// Least distance between numbers along a linear horizontal axis \[pt\].
 const TICK_GAP: f64 = 50.0;
 
 /// Draws a chart into `rect`: dragging pans, the wheel zooms, a double click shows everything.
@@ -109,7 +109,7 @@ fn vertical_axis(chart: &Chart<'_>) -> PanelAxis {
     PanelAxis::new(ticks, VALUE_AXIS_WIDTH).labelled(chart.value_label)
 }
 
-/// Paints the title at the left and the notes at the right of the line above `frame`.
+/// Paints the title at the left above `frame`, the notes at the right.
 fn paint_title(ui: &Ui, rect: Rect, frame: Rect, chart: &Chart<'_>, palette: &Palette) {
     let painter = ui.painter();
     let mut at = pos2(frame.left(), rect.top() + 0.5 * TITLE_HEIGHT);
@@ -152,8 +152,8 @@ fn zoom_by_scrolling(plot: &mut PlotUi<'_>, chart: &Chart<'_>) {
         .input_mut(|input| input.smooth_scroll_delta = Vec2::ZERO);
 }
 
-/// Returns the greatest ranges that zooming out reaches: the ends of a time axis, a decade or ten
-/// widths of other data, anything without data.
+/// Returns the greatest ranges that zooming out reaches: the data along a time axis, a decade or
+/// ten widths for other data, anything without data.
 fn zoom_limits(chart: &Chart<'_>) -> [Range; 2] {
     let mut across = Vec::new();
     let mut values = Vec::new();

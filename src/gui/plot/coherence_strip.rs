@@ -1,4 +1,4 @@
-//! Coherence of the measured responses, in a strip below the panes of a Bode plot.
+//! Coherence strip below the panes: measured responses only.
 
 use egui::{Align2, Id, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, pos2};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -12,10 +12,10 @@ use crate::gui::widgets::palette::Palette;
 
 /// Coherence at the upper edge of the strip.
 const HIGHEST: f64 = 1.05;
-/// Distance of the numbers from the strip \[pt\].
+/// Distance between numbers and strip \[pt\].
 const BESIDE: f32 = 6.0;
 
-/// Draws the coherence over the frequencies of the pane with this `transform`, with the least
+/// Draws the coherence over the same frequencies as the pane with this `transform`, with the least
 /// coherence that counts.
 pub(super) fn coherence_ui(
     ui: &Ui,
@@ -55,7 +55,7 @@ pub(super) fn coherence_ui(
     );
 }
 
-/// Paints the symbol of the coherence and its limits at the left.
+/// Paints symbol and limits at the left.
 fn paint_axis(painter: &Painter, strip: Rect, palette: &Palette) {
     for value in [0.0, 1.0] {
         let y = height_of(strip, value).clamp(strip.top() + 5.0, strip.bottom() - 5.0);

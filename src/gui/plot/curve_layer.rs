@@ -1,4 +1,4 @@
-//! Layer of the curves of a pane: their order, styles and lines, and the image of many static ones.
+//! Curve layer: order, styles and lines, and the image that replaces many static curves.
 
 use egui::{Context, Pos2, Shape};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -8,20 +8,20 @@ use super::curve_style::{CurveStyle, Role};
 use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves};
 use crate::gui::widgets::palette::Palette;
 
-/// Opacity of curves that are being recomputed.
+/// Opacity while curves are being recomputed.
 pub(super) const STALE: f32 = 0.5;
 
-/// Last drawing of a pane: its place, its lines, and the image of its static lines.
+/// Pane as last drawn: place, lines, and the image of its static lines.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnPane {
-    /// Transform of the last drawing, where x counts decades of frequency; `None` if there was
+    /// Last transform, where x is `log10 omega`; `None` if there was
     /// nothing to draw.
     pub(super) transform: Option<PlotTransform>,
     pub(super) curves: DrawnCurves,
     pub(super) image: CachedRaster,
 }
 
-/// Emphasis and size of the curves of a pane.
+/// Emphasis and size of the curves in a pane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CurveLooks<'a> {
     /// Curve under the pointer.
@@ -40,7 +40,6 @@ impl CurveLooks<'_> {
         curve.highlighted || self.pointed == Some(&curve.id)
     }
 
-    /// Returns the style of a curve.
     pub(super) fn style(&self, curve: &BodeCurve, palette: &Palette) -> CurveStyle {
         let mut style = palette.role_style(curve.role, curve.rejected);
         if self.is_miniature {
@@ -70,7 +69,7 @@ impl CurveLooks<'_> {
     }
 }
 
-/// Adds the lines of a curve with these runs of points to the shapes on the screen.
+/// Adds the lines through these runs of points to the shapes on the screen.
 pub(super) fn add_curve_lines(
     runs: &[Vec<PlotPoint>],
     style: CurveStyle,
@@ -92,7 +91,8 @@ pub(super) fn lies_at_the_bottom(curve: &BodeCurve) -> bool {
 }
 
 impl DrawnPane {
-    /// Returns the image of the curves at the bottom, if there are a great many and they are static.
+    /// Returns the image of the curves at the bottom, if there are a great many and they are
+    /// static.
     pub(super) fn image_of_many(
         &mut self,
         ctx: &Context,

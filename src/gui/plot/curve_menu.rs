@@ -1,4 +1,4 @@
-//! Context menus of a curve and of the empty ground between curves.
+//! Context menus: on a curve, and on the empty ground between curves.
 
 use egui::{
     Button, Key, Popup, PopupCloseBehavior, Response, RichText, Role as WidgetRole, TextEdit, Ui,
@@ -13,7 +13,7 @@ use super::drawn_curves::{BodeCurve, CurveId};
 use super::quantity::{BodeQuantity, PhaseUnit};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Shows the menu of a pane while it is open.
+/// Shows a pane's menu while it is open.
 pub(super) fn menu_ui(
     response: &Response,
     scene: &BodeScene<'_>,
@@ -56,7 +56,6 @@ fn entry_ui(ui: &mut Ui, text: &str, hint: &str) -> bool {
     clicked
 }
 
-/// Draws the name of a curve and its details.
 fn name_ui(ui: &mut Ui, curve: &BodeCurve, palette: &Palette) {
     ui.label(RichText::new(&curve.label).strong());
     if !curve.detail.is_empty() {
@@ -66,7 +65,7 @@ fn name_ui(ui: &mut Ui, curve: &BodeCurve, palette: &Palette) {
     ui.separator();
 }
 
-/// Draws the field for the reason of a rejection, if the curve has a model to reject; returns
+/// Draws the field for the rejection's reason, if the curve has a model to reject; returns
 /// whether the rejection was confirmed.
 fn reason_ui(ui: &mut Ui, curve: &BodeCurve, reason: &mut String) -> bool {
     if !matches!(curve.id, CurveId::Model(_)) || curve.rejected {
@@ -169,7 +168,7 @@ pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWis
     wished
 }
 
-/// Draws the menu of the ground at the frequency `omega` \[rad/s\].
+/// Draws the menu on empty ground at `omega` \[rad/s\].
 fn ground_menu_ui(
     ui: &mut Ui,
     scene: &BodeScene<'_>,

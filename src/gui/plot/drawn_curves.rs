@@ -1,4 +1,4 @@
-//! Visible points of a pane's curves, cached as long as they would not change.
+//! Cache for the visible points in a pane.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ const LINE_MARGIN: f64 = 0.02;
 /// The same for dashes and dots: a small pan must not change where they begin.
 const PATTERN_MARGIN: f64 = 1.0;
 
-/// Part of the axes that is visible, and its finest detail.
+/// Visible part of both axes, and its finest detail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct VisiblePart {
     pub(super) bounds: PlotBounds,
@@ -27,7 +27,7 @@ pub(super) struct VisiblePart {
 }
 
 impl VisiblePart {
-    /// Returns the visible part of a plot with this `transform`, where lines may be `tolerance_pt`
+    /// Returns the visible part under this `transform`, where lines may be `tolerance_pt`
     /// points away from their curves.
     pub(super) fn new(transform: &PlotTransform, pixels_per_point: f32, tolerance_pt: f64) -> Self {
         Self {
@@ -37,18 +37,18 @@ impl VisiblePart {
     }
 }
 
-/// Visible points of a pane's curves: with a thousand models, finding them takes longer than
+/// Visible points in a pane: with a thousand models, finding them takes longer than
 /// drawing them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnCurves {
     visible: Option<VisiblePart>,
-    /// Drawn curves, in the order of the curves.
+    /// In the order of the scene's curves.
     curves: Vec<DrawnCurve>,
     /// Number of curves thinned so far.
     made: u64,
 }
 
-/// Points of a curve, and the numbers they were thinned from.
+/// Thinned points, and the numbers they were made from.
 #[derive(Clone, Debug)]
 struct DrawnCurve {
     omega: Arc<[f64]>,
@@ -60,7 +60,7 @@ struct DrawnCurve {
 }
 
 impl DrawnCurves {
-    /// Recomputes the points of the curves that have changed since the last frame.
+    /// Recomputes the points where curves have changed since the last frame.
     pub(super) fn update(
         &mut self,
         curves: &[BodeCurve],
@@ -100,7 +100,7 @@ impl DrawnCurves {
         self.curves = drawn;
     }
 
-    /// Returns whether the drawn curves are those of `curves`, in their order.
+    /// Returns whether exactly these curves were drawn, in this order.
     fn are_drawn_from(&self, curves: &[BodeCurve], pane: Pane, palette: &Palette) -> bool {
         self.curves.len() == curves.len()
             && self
@@ -118,14 +118,14 @@ impl DrawnCurves {
         }
     }
 
-    /// Returns the serial number of the lines of the curve at an index, which changes whenever they
+    /// Returns the serial number of a curve's lines, which changes whenever they
     /// are recomputed.
     pub(super) fn serial(&self, index: usize) -> u64 {
         self.curves.get(index).map_or(0, |curve| curve.serial)
     }
 }
 
-/// Takes the drawing of `curve` out of `kept`. Usually the curves are those of the last frame, in
+/// Takes the drawn `curve` out of `kept`. Usually the curves are those from the last frame, in
 /// the same order.
 fn take_known(
     kept: &mut [Option<DrawnCurve>],
@@ -171,7 +171,7 @@ fn are_same(one: &Arc<[f64]>, other: &Arc<[f64]>) -> bool {
             .eq(other.iter().map(|value| value.to_bits()))
 }
 
-/// Returns the distance outside the view within which a curve is drawn, as a share of the view.
+/// Returns the distance outside the view within which a curve is drawn, relative to the view.
 fn margin(curve: &BodeCurve, palette: &Palette) -> f64 {
     if palette.role_style(curve.role, curve.rejected).is_broken() {
         PATTERN_MARGIN

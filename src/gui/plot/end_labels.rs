@@ -1,4 +1,4 @@
-//! Labels in the right margin of a pane, at the height where their lines end.
+//! Labels in the right margin, at the height where their lines end.
 
 use egui::{Align2, Color32, Rect, Ui, pos2};
 
@@ -6,12 +6,12 @@ use super::panel_text::caption_font;
 
 /// Least distance between two labels \[pt\].
 const LABEL_GAP: f32 = 14.0;
-/// Distance of the first and the last label from the corners of the frame \[pt\].
+/// Least distance from the frame's corners \[pt\].
 const MARGIN: f32 = 5.0;
-/// Distance of the labels from the frame \[pt\].
+/// Distance from the frame \[pt\].
 const BESIDE: f32 = 6.0;
 
-/// Label of a line in the margin.
+/// Line label in the margin.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct EndLabel {
     /// Height on the screen \[pt\].
@@ -20,7 +20,7 @@ pub(super) struct EndLabel {
     pub(super) color: Color32,
 }
 
-/// Returns a height limited to the room of the labels beside `frame`.
+/// Limits a height to the room beside `frame`.
 pub(super) fn height_beside(frame: Rect, y: f32) -> f32 {
     y.clamp(frame.top() + MARGIN, frame.bottom() - MARGIN)
 }

@@ -1,4 +1,4 @@
-//! Marks of a panel of a figure on the screen: as on paper, and emphasized under the pointer.
+//! Figure marks on the screen: as on paper, and emphasized under the pointer.
 
 use egui::{Color32, Painter, Pos2, Rect, Stroke, Ui};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -15,18 +15,17 @@ use crate::gui::widgets::palette::Palette;
 
 /// Radius of the ring around a focused or highlighted dot \[pt\].
 pub(super) const RING: f32 = 8.0;
-/// Width of the ring \[pt\].
 const RING_WIDTH: f32 = 1.4;
 /// Magnification of a highlighted dot.
 const EMPHASIZED: f64 = 1.3;
 
-/// Shapes of a panel as last drawn: placing labels takes longer than drawing them.
+/// Shapes as last drawn: placing labels takes longer than drawing them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnMarks {
     drawn: Option<DrawnPanel>,
 }
 
-/// Shapes of a panel, and what they were made from.
+/// Shapes of a panel, and the arguments from which they were made.
 #[derive(Clone, Debug)]
 struct DrawnPanel {
     panel: Panel,
@@ -41,7 +40,7 @@ impl DrawnMarks {
         Some(&self.drawn.as_ref()?.panel)
     }
 
-    /// Returns the shapes of a panel over this part of its axes, recomputed only if changed.
+    /// Returns the panel's shapes for these ranges, recomputed only if changed.
     fn shapes(&mut self, panel: &Panel, area: Area, ranges: [Range; 2]) -> &[Shape] {
         let is_same = self.drawn.as_ref().is_some_and(|drawn| {
             drawn.area == area && drawn.ranges == ranges && drawn.panel == *panel
@@ -62,11 +61,11 @@ impl DrawnMarks {
     }
 }
 
-/// Marks of a panel, and those emphasized.
+/// Marks to draw, and which are emphasized.
 pub(super) struct MarkScene<'a> {
     pub(super) panel: &'a Panel,
     pub(super) transform: PlotTransform,
-    /// Marks of the columns, if these are interactive instead of the dots.
+    /// Column marks, if columns are interactive instead of dots.
     pub(super) columns: &'a [MarkId],
     /// Mark in focus.
     pub(super) selected: Option<&'a MarkId>,
@@ -144,14 +143,14 @@ impl MarkScene<'_> {
         painter.circle_stroke(at, RING, Stroke::new(RING_WIDTH, color));
     }
 
-    /// Returns the position of a dot on the screen.
+    /// Returns a dot's position on the screen.
     fn position(&self, dot: &Dot) -> Pos2 {
         self.transform
             .position_from_point(&PlotPoint::new(dot.x, dot.y))
     }
 }
 
-/// Returns the range of the values at these places of the horizontal axis; on the screen, a
+/// Returns the values at these places along the horizontal axis; on the screen, a
 /// logarithmic axis has logarithms.
 fn values_at(panel: &Panel, places: Range) -> Range {
     match panel.x.scale {

@@ -1,4 +1,4 @@
-//! Panel of a figure: its axes, the mark under the pointer, and zooming and panning.
+//! Figure panel: axes, the mark under the pointer, zooming and panning.
 
 use egui::{Align2, Id, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -18,20 +18,20 @@ use super::ticks::Ticks;
 use super::viewed_range::{ZoomLimit, bounds_of, ranges_of, zoomed_within};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, medium};
 
-/// Height of the title above the first panel \[pt\].
+/// Title height above the first panel \[pt\].
 pub(super) const TITLE_HEIGHT: f32 = 18.0;
-/// Width of a vertical axis \[pt\].
+/// Vertical axis width \[pt\].
 pub(super) const VALUE_AXIS_WIDTH: f32 = 38.0;
 const RIGHT_MARGIN: f32 = 8.0;
-/// Gap between the panels of a plot \[pt\].
+/// Gap between panels \[pt\].
 const PANEL_GAP: f32 = 4.0;
-/// Least distance between the ticks of an axis \[pt\].
+/// Least distance between ticks \[pt\].
 const TICK_GAP: f64 = 26.0;
 /// The same in a low plot, which has as many numbers as fit \[pt\].
 const COMPACT_TICK_GAP: f64 = 17.0;
-/// Greatest visible width, relative to the width of the whole panel.
+/// Greatest visible width, relative to the whole panel.
 const FARTHEST: f64 = 10.0;
-/// Least visible width of an axis.
+/// Least visible width.
 const LEAST_WIDTH: f64 = 1e-4;
 
 /// State of a panel between frames.
@@ -39,13 +39,13 @@ const LEAST_WIDTH: f64 = 1e-4;
 pub(super) struct PanelView {
     /// Visible ranges, if zoomed or panned.
     pub(super) ranges: Option<[Range; 2]>,
-    /// Transform of the last drawing; on the screen, a logarithmic horizontal axis has logarithms.
+    /// Last transform; on the screen, a logarithmic horizontal axis has logarithms.
     pub(super) transform: Option<PlotTransform>,
     pub(super) marks: DrawnMarks,
 }
 
 impl PanelView {
-    /// Adopts the range of the horizontal axis of another panel of the plot.
+    /// Adopts the horizontal range from another panel.
     pub(super) fn share_places(&mut self, panel: &Panel, other: &Self) {
         let Some([x, _]) = other.ranges else {
             self.ranges = None;
@@ -59,12 +59,12 @@ impl PanelView {
     }
 }
 
-/// Panel of a figure at its place.
+/// Figure panel at its place.
 pub(super) struct PlacedPanel<'a> {
     pub(super) scene: &'a FigureScene<'a>,
-    /// Index of the plot in the figure.
+    /// Plot index in the figure.
     pub(super) plot: usize,
-    /// Index of the panel in the plot, from top to bottom.
+    /// Panel index in the plot, from top to bottom.
     pub(super) number: usize,
     pub(super) id: Id,
     pub(super) rect: Rect,
@@ -150,7 +150,7 @@ impl PlacedPanel<'_> {
         !self.scene.is_compact || is_first_column
     }
 
-    /// Returns the place of the frame with its axes.
+    /// Returns the place for frame and axes.
     fn frame_with_axes(&self, has_values: bool) -> Rect {
         let above = if self.number == 0 {
             TITLE_HEIGHT
@@ -167,7 +167,7 @@ impl PlacedPanel<'_> {
         rect
     }
 
-    /// Returns the horizontal and the vertical axis of a frame of this size.
+    /// Returns the horizontal and the vertical axis for a frame with this size.
     fn axes(&self, ui: &Ui, size: Vec2, has_values: bool) -> (PanelAxis, PanelAxis) {
         let panel = self.panel();
         let is_last = self.number + 1 == self.scene.figure.plots[self.plot].panels.len();
@@ -234,7 +234,7 @@ impl PlacedPanel<'_> {
     }
 
     /// Draws the name above a plot, with a bar in the accent colour if it is in focus; beside the
-    /// last plot of a compact figure, the unit of the horizontal axis.
+    /// last plot in a compact figure, the horizontal unit.
     fn title_ui(&self, ui: &Ui, frame: Rect) {
         let palette = self.palette;
         let is_accented = self.scene.accented == Some(self.plot);
@@ -267,7 +267,7 @@ impl PlacedPanel<'_> {
     }
 }
 
-/// Returns the distance between the numbers or names of a horizontal axis.
+/// Returns the distance between numbers or names along a horizontal axis.
 fn spacing_across(ui: &Ui, panel: &Panel, palette: &Palette) -> TickSpacing {
     let named = panel.x.names.as_deref().unwrap_or_default();
     if named.is_empty() {
@@ -297,7 +297,7 @@ fn label_within(ui: &Ui, label: &str, room: f32, palette: &Palette) -> String {
     label.to_owned()
 }
 
-/// Returns the width of a text beside an axis \[pt\].
+/// Returns a text's width beside an axis \[pt\].
 fn tick_width(ui: &Ui, text: &str, palette: &Palette) -> f32 {
     let galley = ui
         .painter()
@@ -330,7 +330,7 @@ fn navigate(panel: &Panel, response: &Response, transform: &PlotTransform, view:
     }
 }
 
-/// Returns the zoom limits: the ends of a time axis, a decade or ten widths of other data.
+/// Returns the zoom limits: the data along a time axis, a decade or ten widths for other data.
 fn zoom_limits(panel: &Panel) -> [ZoomLimit; 2] {
     let widths = ZoomLimit::TenWidths { least: LEAST_WIDTH };
     let across = match panel.x.scale {
@@ -341,7 +341,7 @@ fn zoom_limits(panel: &Panel) -> [ZoomLimit; 2] {
     [across, widths]
 }
 
-/// Returns the full ranges of a panel; on the screen, a logarithmic horizontal axis has logarithms.
+/// Returns a panel's full ranges; on the screen, a logarithmic horizontal axis has logarithms.
 fn whole(panel: &Panel) -> [Range; 2] {
     let x = panel.shown(Along::X);
     let y = panel.shown(Along::Y);

@@ -7,12 +7,12 @@ use gdcm_study::ExplainTarget;
 
 use super::questions::NamedFigure;
 
-/// Descriptions of the plots of a figure.
+/// Descriptions for a figure's plots.
 pub trait FigureWords {
     /// Describes a plot for screen readers.
     fn plot(&self, plot: usize) -> String;
 
-    /// Describes a dot at a place of the axes for screen readers; `None` if dots are not described
+    /// Describes a dot at a place on the axes for screen readers; `None` if dots are not described
     /// individually.
     fn dot(&self, _plot: usize, _id: &MarkId, _at: [f64; 2]) -> Option<String> {
         None
@@ -35,33 +35,32 @@ impl FigureWords for Figure {
     }
 }
 
-/// Figure with its interaction on the screen. The panels of a plot are stacked; interactive marks
+/// Figure with its interaction on the screen. Panels are stacked; interactive marks
 /// are in the first panel.
 pub struct FigureScene<'a> {
-    /// Distinguishes the widgets from those of other figures.
+    /// Distinguishes the widgets from those in other figures.
     pub name: &'static str,
     pub figure: &'a Figure,
     /// Mark in focus.
     pub selected: Option<MarkId>,
     /// Mark highlighted by another view.
     pub highlighted: Option<MarkId>,
-    /// Marks at the names of the horizontal axes, if the columns are interactive instead of the
+    /// Marks at the names along the horizontal axes, if the columns are interactive instead of the
     /// dots.
     pub columns: &'a [MarkId],
     /// Whether the plots can be zoomed and panned.
     pub zooms: bool,
-    /// Least size of a plot \[pt\].
+    /// Least plot size \[pt\].
     pub least: Vec2,
     /// Message shown if there is nothing to draw.
     pub message: &'a str,
-    /// Whether the label of the vertical axis appears once, at the left of each row, and the unit
+    /// Whether the vertical label appears once per row, at the left, and the unit
     /// of the horizontal axis at its end.
     pub is_compact: bool,
     /// Plot in focus, which has a bar in the accent colour.
     pub accented: Option<usize>,
-    /// Descriptions of the plots.
     pub words: &'a dyn FigureWords,
-    /// Number of this figure's first plot in the descriptions and in events.
+    /// Number that this figure's first plot has in the descriptions and in events.
     pub first_plot: usize,
 }
 
@@ -100,6 +99,6 @@ pub enum FigureEvent {
     Told(String),
     /// A mark was clicked in this plot, with these modifier keys.
     Clicked(usize, MarkId, Modifiers),
-    /// The derivation of a value was requested.
+    /// A derivation was requested.
     Asked(ExplainTarget),
 }

@@ -14,9 +14,9 @@ use super::questions::Questions;
 use super::tiles::{Tiles, tiles_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Width of the strip at the left with the common label of the vertical axes \[pt\].
+/// Strip at the left with the common vertical label \[pt\].
 const LABEL_STRIP: f32 = 16.0;
-/// Width of the unit beside the last plot of a compact figure \[pt\].
+/// Room for the unit beside the last plot in a compact figure \[pt\].
 const UNIT_MARGIN: f32 = 14.0;
 
 /// State of a figure between frames.
@@ -25,17 +25,16 @@ pub struct FigureView {
     hovered: Option<MarkId>,
     /// Place on the axes of the dot under the pointer.
     pointed_at: Option<[f64; 2]>,
-    /// Subject of the plots, if known.
+    /// Subject, if known.
     subject: String,
     plots: Vec<PlotView>,
     questions: Questions,
 }
 
-/// State of a plot.
 #[derive(Clone, Debug, Default)]
 struct PlotView {
     first: PanelView,
-    /// States of the other panels, from top to bottom.
+    /// The other panels, from top to bottom.
     lower: Vec<PanelView>,
 }
 
@@ -47,7 +46,7 @@ impl FigureView {
         }
     }
 
-    /// Sets the subject of the plots: a new subject fits all of them.
+    /// Sets the subject: a new subject fits all plots.
     pub fn is_of(&mut self, subject: &str) {
         if self.subject != subject {
             subject.clone_into(&mut self.subject);
@@ -55,28 +54,28 @@ impl FigureView {
         }
     }
 
-    /// Returns the place, on the axes of its plot, of the dot under the pointer.
+    /// Returns the place on the axes where the dot under the pointer lies.
     pub fn pointed_at(&self) -> Option<[f64; 2]> {
         self.pointed_at
     }
 
-    /// Returns the visible ranges of a plot as last drawn.
+    /// Returns a plot's visible ranges as last drawn.
     pub fn ranges(&self, plot: usize) -> Option<[Range; 2]> {
         self.plots.get(plot)?.first.ranges
     }
 
-    /// Returns the last transform of a plot.
+    /// Returns a plot's last transform.
     pub fn transform(&self, plot: usize) -> Option<&PlotTransform> {
         self.plots.get(plot)?.first.transform.as_ref()
     }
 
-    /// Returns the screen position of a place on the axes of a plot.
+    /// Returns the screen position for a place on a plot's axes.
     pub fn position(&self, plot: usize, [x, y]: [f64; 2]) -> Option<Pos2> {
         let transform = self.transform(plot)?;
         Some(transform.position_from_point(&PlotPoint::new(x, y)))
     }
 
-    /// Returns the last screen position of a mark's dot in a plot.
+    /// Returns the last screen position of a dot.
     pub fn screen_position(&self, plot: usize, id: &MarkId) -> Option<Pos2> {
         let panel = self.plots.get(plot)?.first.marks.panel()?;
         let dot = panel.dots().find(|dot| dot.id.as_ref() == Some(id))?;
@@ -118,7 +117,7 @@ fn click_event(response: &Response, plot: usize, mark: PointedMark) -> Option<Fi
     Some(FigureEvent::Clicked(plot, mark.id, modifiers))
 }
 
-/// Draws a figure into the remaining space of `ui`.
+/// Draws a figure into the remaining space in `ui`.
 pub fn figure_ui(
     ui: &mut Ui,
     scene: &FigureScene<'_>,
@@ -131,7 +130,7 @@ pub fn figure_ui(
     events
 }
 
-/// Returns the number of rows of a figure's plots in an area of `size`, with no plot smaller than
+/// Returns the number of rows into which a figure's plots are arranged, with no plot smaller than
 /// `least`.
 pub fn rows(figure: &Figure, size: Vec2, least: Vec2) -> usize {
     match figure.plots.len() {
@@ -183,7 +182,7 @@ pub fn figure_within_ui(
     events
 }
 
-/// Returns the label of the vertical axes, if they share it.
+/// Returns the vertical label, if all plots share it.
 fn common_label(figure: &Figure) -> Option<&str> {
     if !figure.shared.y {
         return None;
@@ -192,7 +191,7 @@ fn common_label(figure: &Figure) -> Option<&str> {
     Some(&panel.y.label)
 }
 
-/// Paints the common label of the vertical axes, upright at the left edge.
+/// Paints the common vertical label, upright at the left edge.
 fn upright_label_ui(ui: &Ui, rect: Rect, label: &str, palette: &Palette) {
     let font = FontId::proportional(SMALL_SIZE);
     let galley = ui
@@ -204,7 +203,6 @@ fn upright_label_ui(ui: &Ui, rect: Rect, label: &str, palette: &Palette) {
         .add(text.with_angle(-std::f32::consts::FRAC_PI_2));
 }
 
-/// Painter of the plots of a figure.
 struct FigurePainter<'a> {
     scene: &'a FigureScene<'a>,
     /// Mark highlighted in this figure or by another view.
@@ -213,8 +211,8 @@ struct FigurePainter<'a> {
 }
 
 impl FigurePainter<'_> {
-    /// Draws the stacked panels of a plot into `rect`, over the same part of their horizontal axis;
-    /// returns the response of the first panel.
+    /// Draws a plot's stacked panels into `rect`, over the same part of their horizontal axis;
+    /// returns the first panel's response.
     fn plot_ui(&self, ui: &mut Ui, rect: Rect, plot: usize, view: &mut PlotView) -> PlacedResponse {
         let panels = &self.scene.figure.plots[plot].panels;
         let total: f64 = panels.iter().map(|panel| panel.weight).sum();

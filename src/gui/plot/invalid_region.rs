@@ -1,5 +1,5 @@
 //! Frequencies above the band at which the corrected model is invalid: a hatched region, and the
-//! increase of the magnitude by the leads.
+//! magnitude added by the leads.
 
 use egui::{Align2, FontId, Rect, Shape, Stroke, Ui, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform, PlotUi};
@@ -9,9 +9,9 @@ use super::layers::DrawnItem;
 use crate::gui::widgets::controls::elided;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Distance between two lines of the hatching \[pt\].
+/// Distance between hatching lines \[pt\].
 const HATCH_STEP: f32 = 7.0;
-/// Least width of the strip with the words \[pt\].
+/// Least width with room for words \[pt\].
 const LEAST_STRIP: f32 = 40.0;
 
 /// Hatches the frequencies above `omega` \[rad/s\].
@@ -42,8 +42,8 @@ fn hatch(region: Rect, stroke: Stroke, shapes: &mut Vec<Shape>) {
     }
 }
 
-/// Draws a strip over the upper edge from the upper end of the band \[rad/s\], with the frequency
-/// above which the model is invalid; and the increase of the magnitude by the leads.
+/// Draws a strip over the upper edge from the band's upper end \[rad/s\], with the frequency
+/// above which the model is invalid; and the magnitude added by the leads.
 pub(super) fn paint_invalid_strip(
     ui: &Ui,
     band_end: f64,

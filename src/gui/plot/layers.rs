@@ -1,4 +1,4 @@
-//! Layers of a panel that are common to several plots.
+//! Layers common to several plots: shades, areas, lines across a panel.
 
 use std::ops::RangeInclusive;
 
@@ -8,10 +8,10 @@ use egui_plot::{
     Span, VLine,
 };
 
-/// Distance between the dots of a dotted line \[pt\].
+/// Distance between dots \[pt\].
 const DOT_SPACING: f32 = 4.0;
 
-/// Shades a stretch of the horizontal axis.
+/// Shades a horizontal stretch.
 pub(super) fn add_shade(plot: &mut PlotUi<'_>, stretch: RangeInclusive<f64>, fill: Color32) {
     plot.span(Span::new("", stretch).fill(fill).border_width(0.0));
 }
@@ -46,10 +46,9 @@ fn vertical(place: f64, stroke: Stroke) -> VLine {
     VLine::new("", place).stroke(stroke)
 }
 
-/// Adds shapes to those of a panel.
 type Drawing<'a> = Box<dyn Fn(&PlotTransform, &mut Vec<Shape>) + 'a>;
 
-/// Layer of shapes in screen coordinates. It has no part in fitting and in the hovering of
+/// Layer with shapes in screen coordinates. It has no part in fitting and hovering by
 /// egui_plot.
 pub(super) struct DrawnItem<'a> {
     base: PlotItemBase,

@@ -15,22 +15,21 @@ use super::curve_style::{CurveStyle, Role};
 use super::drawn_curves::BodeCurve;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Height of a chip \[pt\].
 const CHIP_HEIGHT: f32 = 22.0;
-/// Height of a line of chips \[pt\].
+/// Line height with the gap below \[pt\].
 const LINE_HEIGHT: f32 = 27.0;
 /// Gap between two chips \[pt\].
 const GAP: f32 = 5.0;
-/// Length of a curve's sample \[pt\].
+/// Sample length \[pt\].
 const SAMPLE: f32 = 18.0;
 /// The same in a tight chip \[pt\].
 const TIGHT_SAMPLE: f32 = 12.0;
 const SAMPLE_GAP: f32 = 6.0;
-/// Padding at both ends of a chip \[pt\].
+/// Padding at both ends \[pt\].
 const PAD: f32 = 6.0;
-/// Longest name of a single model shown beside its role, in characters.
+/// Longest model name beside its role \[characters\].
 const NAME_LENGTH: usize = 22;
-/// Width of the line that stands for a band \[pt\].
+/// Line width in the sample of a band \[pt\].
 const BAND_SAMPLE_WIDTH: f32 = 7.0;
 
 /// Chip that switches curves.
@@ -39,14 +38,14 @@ pub(super) struct RoleChip {
     pub(super) role: Role,
     pub(super) text: String,
     pub(super) look: CurveStyle,
-    /// Whether the curves of the role are drawn.
+    /// Whether the role's curves are drawn.
     pub(super) shown: bool,
-    /// Whether the pointer is on a curve of the role, or on its counterpart in another view.
+    /// Whether the pointer is on such a curve, or on its counterpart in another view.
     pub(super) lit: bool,
 }
 
 impl RoleChip {
-    /// Removes the name of a single model or variant from the chip, and shortens the longest words.
+    /// Removes a single model's or variant's name, and shortens the longest words.
     fn shorten(&mut self) {
         match self.role {
             Role::Representative => "repr.".clone_into(&mut self.text),
@@ -85,7 +84,7 @@ pub(super) fn role_chips(
     chips
 }
 
-/// Returns the name of a role, with the name of its only curve if that says more.
+/// Returns the role's name, with that of its only curve if that says more.
 fn chip_text(role: Role, members: &[&BodeCurve]) -> String {
     let name = role.name();
     match (role, members) {
@@ -98,7 +97,6 @@ fn chip_text(role: Role, members: &[&BodeCurve]) -> String {
     }
 }
 
-/// Returns the beginning of a name.
 fn shortened(label: &str) -> String {
     let mut start: String = label.chars().take(NAME_LENGTH).collect();
     if start.len() < label.len() {
@@ -116,9 +114,8 @@ pub struct Chip {
     pub hint: String,
 }
 
-/// All chips of a plot.
 pub(super) struct Chips<'a> {
-    /// Distinguishes these chips from those of other plots.
+    /// Suffix that distinguishes these chips from those in other plots.
     pub(super) plot: &'a str,
     pub(super) roles: Vec<RoleChip>,
     /// Whether bands are drawn; `None` if there are no bands.
@@ -130,7 +127,7 @@ pub(super) struct Chips<'a> {
 
 /// Chips as drawn.
 pub(super) struct ChipsResponse {
-    /// Height of all lines of chips \[pt\].
+    /// Height taken by all lines \[pt\].
     pub(super) height: f32,
     /// Effect of the clicked chip.
     pub(super) event: Option<BodeEvent>,
@@ -157,7 +154,7 @@ impl Chips<'_> {
         switches.chain(states).sum::<f32>() - GAP
     }
 
-    /// Draws the chips in lines from the upper left corner of `area`.
+    /// Draws the chips in lines from the upper left corner.
     pub(super) fn ui(&self, ui: &Ui, area: Rect, palette: &Palette) -> ChipsResponse {
         let mut row = Row {
             area,
@@ -196,7 +193,6 @@ impl Chips<'_> {
         ChipsResponse { height, event }
     }
 
-    /// Draws the switch of a role.
     fn role_chip_ui(
         &self,
         ui: &Ui,
@@ -229,7 +225,7 @@ impl Chips<'_> {
         })
     }
 
-    /// Draws the switch of the bands; returns whether it was clicked.
+    /// Returns whether the switch was clicked.
     fn bands_chip_ui(&self, ui: &Ui, row: &mut Row, is_shown: bool, palette: &Palette) -> bool {
         let style = CurveStyle {
             color: palette.identified.gamma_multiply(0.45),
@@ -249,7 +245,6 @@ impl Chips<'_> {
             .clicked()
     }
 
-    /// Returns the text of the bands' chip.
     fn bands_text(&self) -> &'static str {
         if self.is_tight {
             "95 %"
@@ -258,13 +253,13 @@ impl Chips<'_> {
         }
     }
 
-    /// Returns the length of a curve's sample \[pt\].
+    /// Returns the sample length \[pt\].
     fn sample(&self) -> f32 {
         if self.is_tight { TIGHT_SAMPLE } else { SAMPLE }
     }
 }
 
-/// Returns the width of a chip without a sample, and of the gap beside it \[pt\].
+/// Returns the width without a sample, and with the gap beside it \[pt\].
 fn chip_width(ui: &Ui, text: &str) -> f32 {
     let font = FontId::proportional(SMALL_SIZE);
     let galley = ui
@@ -273,17 +268,16 @@ fn chip_width(ui: &Ui, text: &str) -> f32 {
     galley.size().x + 2.0 * PAD + GAP
 }
 
-/// Appearance of a chip.
 struct ChipFace<'a> {
     text: &'a str,
     /// Accessible name.
     name: &'a str,
-    /// Sample of the curves that it switches, if any.
+    /// Curve sample, if the chip switches curves.
     sample: Option<Sample>,
     is_lit: bool,
 }
 
-/// Sample of a curve.
+/// Curve sample.
 #[derive(Clone, Copy)]
 struct Sample {
     style: CurveStyle,
@@ -298,16 +292,16 @@ impl ChipFace<'_> {
     }
 }
 
-/// Place of the next chip.
+/// Place for the next chip.
 struct Row {
     area: Rect,
     corner: egui::Pos2,
-    /// Length of a sample \[pt\].
+    /// Sample length \[pt\].
     sample: f32,
 }
 
 impl Row {
-    /// Draws a chip with the sample of a curve, pale and dashed if hidden; in the accent colour if
+    /// Draws a chip with a curve sample, pale and dashed if hidden; in the accent colour if
     /// it has no sample.
     fn chip_ui(&mut self, ui: &Ui, face: &ChipFace<'_>, palette: &Palette) -> Response {
         let color = if face.is_hidden() {
@@ -345,7 +339,7 @@ impl Row {
         response.on_hover_cursor(CursorIcon::PointingHand)
     }
 
-    /// Returns the place of the next chip, in the next line if there is no room in this line.
+    /// Returns the next chip's place, in the next line if there is no room in this line.
     fn next_place(&mut self, width: f32) -> Rect {
         let size = vec2(width, CHIP_HEIGHT);
         if self.corner.x + size.x > self.area.right() && self.corner.x > self.area.left() {
@@ -369,7 +363,7 @@ impl Row {
     }
 }
 
-/// Paints the ground and the outline of a chip; dashed if its curves are hidden.
+/// Paints ground and outline; dashed if its curves are hidden.
 fn paint_outline(ui: &Ui, place: Rect, face: &ChipFace<'_>, is_lit: bool, palette: &Palette) {
     let radius = 0.5 * place.height();
     let color = if is_lit { palette.accent } else { palette.line };
@@ -388,7 +382,7 @@ fn paint_outline(ui: &Ui, place: Rect, face: &ChipFace<'_>, is_lit: bool, palett
         .rect(place, radius, fill, line, StrokeKind::Inside);
 }
 
-/// Returns the outline of a rectangle with semicircular ends, as a single path.
+/// Returns a rectangle with semicircular ends, as a single path.
 fn rounded(place: Rect, radius: f32) -> Vec<egui::Pos2> {
     const STEPS: usize = 8;
     let quarter = std::f32::consts::FRAC_PI_2;

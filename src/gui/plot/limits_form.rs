@@ -1,4 +1,4 @@
-//! Form for the limits of an axis.
+//! Form for axis limits.
 
 use egui::{RichText, Role, TextEdit, Ui, WidgetInfo};
 
@@ -7,7 +7,6 @@ use super::drawn_curves::Pane;
 use super::plot_axis::PlotAxis;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Form for the limits of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LimitsForm {
     axis: PlotAxis,
@@ -19,7 +18,6 @@ pub(super) struct LimitsForm {
     is_new: bool,
 }
 
-/// Answer of the form.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum FormAnswer {
     #[default]
@@ -29,7 +27,7 @@ pub(super) enum FormAnswer {
 }
 
 impl LimitsForm {
-    /// Opens the form of an axis beside a pane, with the limits as numbers.
+    /// Opens the form beside a pane, with the limits as numbers.
     pub(super) fn new(axis: PlotAxis, pane: Pane, texts: [String; 2]) -> Self {
         Self {
             axis,
@@ -93,7 +91,7 @@ impl LimitsForm {
         answer
     }
 
-    /// Draws the field of a limit; returns whether it was entered.
+    /// Draws the field; returns whether the limit was entered.
     fn limit_ui(&mut self, ui: &mut Ui, index: usize, name: &str, unit: &str) -> bool {
         let mut is_entered = false;
         ui.horizontal(|ui| {

@@ -1,17 +1,17 @@
-//! Plots: each takes a scene and its state of the last frame, and returns the engineer's actions.
+//! Plots: each takes a scene and its state from the last frame, and returns the engineer's actions.
 //!
 //! Every panel with axes is drawn by [`painter`]. A scene ([`bode_scene`], [`figure_scene`],
 //! [`chart`], [`overview`]) describes its content; the parts below serve all of them:
 //!
 //! ```text
-//! painter           frame, axes, grid, gestures of a panel; layers of its scene
+//! painter           frame, axes, grid and gestures; each scene adds its layers
 //! panel_axis, ticks numbers and grid lines
-//! viewed_range      visible ranges and limits of zooming
+//! viewed_range      visible ranges and zoom limits
 //! navigation        wheel, pinching, boxes
 //! picking           curve or dot under the pointer
 //! thinning          visible points, no finer than the pixels; drawn_curves keeps them
-//! curve_layer       order and styles of curves; cached_raster is the image of many
-//! layers, canvas    areas, lines across a panel; shapes of a printed figure
+//! curve_layer       order and styles of curves; cached_raster holds the image of many
+//! layers, canvas    areas, lines across a panel; shapes from printed figures
 //! legend, readout   chips above a plot, values at the pointer
 //! ```
 

@@ -1,4 +1,4 @@
-//! Gestures of the mouse and keys common to the plots: zooming by wheel and pinching, boxes, digits.
+//! Gestures common to the plots: zooming by wheel and pinching, boxes, digits.
 
 use egui::{
     Context, Key, Modifiers, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui, Vec2,
@@ -6,7 +6,7 @@ use egui::{
 
 use crate::gui::widgets::palette::Palette;
 
-/// Takes the digit from 1 to 9 that is pressed out of the input.
+/// Takes a pressed digit from 1 to 9 out of the input.
 pub(super) fn pressed_digit(ui: &Ui) -> Option<usize> {
     const DIGITS: [Key; 9] = [
         Key::Num1,
@@ -27,9 +27,9 @@ pub(super) fn pressed_digit(ui: &Ui) -> Option<usize> {
     None
 }
 
-/// Zoom factor of a notch of the wheel.
+/// Zoom factor per notch.
 const NOTCH: f32 = 1.1;
-/// Scroll distance of a notch \[pt\].
+/// Scroll distance per notch \[pt\].
 const NOTCH_PT: f32 = 40.0;
 
 /// Zoom requested by wheel or pinching.
@@ -44,7 +44,7 @@ pub(super) struct ZoomGesture {
 }
 
 impl ZoomGesture {
-    /// Returns the zoom requested of the widget under the pointer; `None` without input.
+    /// Returns the zoom requested on the widget under the pointer; `None` without input.
     pub(super) fn find(ctx: &Context, response: &Response) -> Option<Self> {
         let pointer = response.hover_pos()?;
         let scrolled = ctx.input(|input| input.smooth_scroll_delta());
@@ -76,12 +76,12 @@ impl ZoomGesture {
     }
 }
 
-/// Returns the zoom factor of a scroll distance; a touchpad scrolls by fractions of a notch.
+/// Returns the zoom factor for a scroll distance; a touchpad scrolls by fractions of a notch.
 fn factor_of(points: f32) -> f32 {
     NOTCH.powf(points / NOTCH_PT)
 }
 
-/// Least width and height of a box; a smaller box is accidental \[pt\].
+/// Least side; a smaller box is accidental \[pt\].
 const LEAST_SIDE: f32 = 5.0;
 
 /// Draws the selection box while it is dragged over `frame` with `button`; returns it when it is

@@ -21,15 +21,15 @@ use super::sketch::{Sketch, range_text};
 use crate::gui::widgets::controls::{elided, row_text};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Size of the corner beside the names of outputs and above the names of inputs \[pt\].
+/// Size of the corner between the names of outputs and inputs \[pt\].
 const HEADER: Vec2 = vec2(52.0, 22.0);
 /// Gap between two cells \[pt\].
 const GAP: f32 = 4.0;
-/// Share of a cell's height taken by the magnitude if the phase is shown too.
+/// Share of the height for the magnitude if the phase is shown too.
 const MAGNITUDE_PART: f32 = 0.58;
 /// Least cell size with texts \[pt\].
 const LEAST_WITH_TEXT: Vec2 = vec2(96.0, 54.0);
-/// Height of the line of text above the curves of a cell \[pt\].
+/// Line height above the curves in a cell \[pt\].
 const CELL_HEAD: f32 = 16.0;
 
 /// Response in the overview.
@@ -47,13 +47,13 @@ pub struct OverviewCell<'a> {
 /// Content of the overview.
 #[derive(Clone, Copy, Debug)]
 pub struct OverviewScene<'a> {
-    /// Names of the inputs: the columns.
+    /// Input names: the columns.
     pub inputs: &'a [String],
-    /// Names of the outputs: the rows.
+    /// Output names: the rows.
     pub outputs: &'a [String],
     /// Responses, in any order.
     pub cells: &'a [OverviewCell<'a>],
-    /// Band of comparison: lower and upper end \[rad/s\].
+    /// Lower and upper end of the comparison band \[rad/s\].
     pub band: (f64, f64),
     /// Message shown if there is nothing to draw.
     pub message: Option<&'a str>,
@@ -65,7 +65,7 @@ pub enum OverviewEvent {
     PairClicked(Pair),
     /// A curve is under the pointer.
     Hovered(CurveId),
-    /// Description of the element under the pointer.
+    /// Description for the element under the pointer.
     Told(String),
     /// A curve was clicked with Alt pressed.
     Isolated(CurveId),
@@ -90,12 +90,12 @@ pub struct OverviewView {
 }
 
 impl OverviewView {
-    /// Returns the last transform of a response in a pane.
+    /// Returns a cell's last transform.
     fn transform(&self, pair: Pair, pane: Pane) -> Option<&PlotTransform> {
         self.sketches.get(&(pair, pane))?.transform.as_ref()
     }
 
-    /// Returns the curve of a cell under the pointer, if any.
+    /// Returns the cell's curve under the pointer, if any.
     fn curve_at<'c>(&self, cell: &OverviewCell<'c>, pointer: Pos2) -> Option<&'c BodeCurve> {
         let mut best: Option<Hit> = None;
         for pane in PANES {
@@ -114,20 +114,20 @@ impl OverviewView {
         cell.curves.get(best?.curve)
     }
 
-    /// Returns the screen position of a magnitude of a response: decades of frequency and decibels.
+    /// Returns where a magnitude lies on the screen: `log10 omega` and decibels.
     pub fn position_in(&self, pair: Pair, log_omega: f64, magnitude_db: f64) -> Option<Pos2> {
         let transform = self.transform(pair, Pane::Magnitude)?;
         Some(transform.position_from_point(&PlotPoint::new(log_omega, magnitude_db)))
     }
 
-    /// Returns the screen position of the centre of a response's magnitude.
+    /// Returns the centre of a cell's magnitude on the screen.
     pub fn screen_position(&self, pair: Pair) -> Option<Pos2> {
         let transform = self.transform(pair, Pane::Magnitude)?;
         Some(transform.frame().center())
     }
 }
 
-/// Draws the overview into the remaining space of `ui`.
+/// Draws the overview into the remaining space in `ui`.
 pub fn overview_ui(
     ui: &mut Ui,
     scene: &OverviewScene<'_>,
@@ -167,7 +167,7 @@ pub fn overview_ui(
     events
 }
 
-/// Returns the decades of frequency of all curves. Frequencies ascend: their ends are sufficient.
+/// Returns the decades over which curves exist. Frequencies ascend: their ends are sufficient.
 fn log_omega_of(cells: &[OverviewCell<'_>]) -> Option<Range> {
     let mut ends = Vec::new();
     for curve in cells.iter().flat_map(|cell| cell.curves) {
@@ -208,7 +208,7 @@ impl Table {
         Rect::from_min_size(area.min + offset, inner)
     }
 
-    /// Paints the names of the inputs above the columns and of the outputs beside the rows.
+    /// Paints input names above the columns and output names beside the rows.
     fn paint_names(&self, ui: &Ui, scene: &OverviewScene<'_>, palette: &Palette) {
         let mut names = Vec::new();
         for (input, name) in scene.inputs.iter().enumerate() {
@@ -227,7 +227,7 @@ impl Table {
     }
 }
 
-/// Draws the switch of the phases in the corner of the table.
+/// Draws the switch in the table's corner.
 fn phase_switch_ui(ui: &mut Ui, table: &Table, view: &mut OverviewView) {
     let place = Rect::from_min_size(table.rect.min, HEADER - vec2(4.0, 4.0));
     let switch = Button::selectable(view.show_phase, RichText::new("phase").size(SMALL_SIZE))
@@ -247,9 +247,9 @@ struct PlacedCell<'a> {
     place: Rect,
     /// Accessible name.
     name: String,
-    /// Band of comparison: lower and upper end \[rad/s\].
+    /// Lower and upper end of the comparison band \[rad/s\].
     band: (f64, f64),
-    /// Visible decades of frequency.
+    /// Visible range of `log10 omega`.
     log_omega: Range,
     palette: &'a Palette,
 }
@@ -311,7 +311,7 @@ impl PlacedCell<'_> {
         }
     }
 
-    /// Paints the vertical ranges of the cell, which has no axis, and its note: above its curves,
+    /// Paints the vertical ranges, as the cell has no axis, and its note: above its curves,
     /// not on them.
     fn paint_head(&self, ui: &Ui, head: Rect, ranges: &str) {
         let palette = self.palette;
@@ -322,7 +322,7 @@ impl PlacedCell<'_> {
         row_text(ui, head, 0.0, &ranges, SMALL_SIZE, palette.dim_text);
     }
 
-    /// Shades the band of comparison, and closes a pane below.
+    /// Shades the comparison band, and closes a pane below.
     fn paint_band(&self, painter: &Painter, rect: Rect) {
         let (min, max) = self.band;
         let ends = self.place_across(rect, min)..=self.place_across(rect, max);
@@ -332,7 +332,7 @@ impl PlacedCell<'_> {
         painter.hline(rect.x_range(), rect.bottom(), line);
     }
 
-    /// Returns the place of a frequency \[rad/s\] across a pane, limited to the pane.
+    /// Returns where a frequency \[rad/s\] lies across a pane, limited to the pane.
     fn place_across(&self, rect: Rect, omega: f64) -> f32 {
         let fraction = (omega.log10() - self.log_omega.min) / self.log_omega.width();
         rect.left() + fraction.clamp(0.0, 1.0) as f32 * rect.width()
@@ -374,7 +374,7 @@ impl PlacedCell<'_> {
         events
     }
 
-    /// Returns the curve of the open menu, if it is in this cell.
+    /// Returns the open menu's curve, if it is in this cell.
     fn menu_curve(&self, view: &OverviewView) -> Option<&BodeCurve> {
         let menu = view.menu_curve.as_ref()?;
         if menu.pair != self.cell.pair {
@@ -384,7 +384,7 @@ impl PlacedCell<'_> {
     }
 }
 
-/// Returns the panes of a cell and their places.
+/// Returns a cell's panes and their places.
 fn pane_rects(rect: Rect, show_phase: bool) -> Vec<(Pane, Rect)> {
     if !show_phase {
         return vec![(Pane::Magnitude, rect)];

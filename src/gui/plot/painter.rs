@@ -1,4 +1,4 @@
-//! Painter of a panel: frame, axes, grid, and the layers added by the scene. Every plot with axes
+//! Panel painter: frame, axes, grid, and the layers added by the scene. Every plot with axes
 //! is drawn here.
 
 use egui::{Color32, Id, Rect, Response, Sense, Ui, UiBuilder, Vec2, Vec2b, WidgetInfo};
@@ -8,7 +8,7 @@ use super::panel_axis::PanelAxis;
 use super::ticks::GRID_SPACING;
 use crate::gui::widgets::palette::Palette;
 
-/// Description of a panel on the screen, except for its content.
+/// Panel on the screen, except for its content.
 pub(super) struct PanelPainter<'a> {
     pub(super) id: Id,
     /// Place of the panel with its axes.
@@ -43,9 +43,9 @@ pub(super) enum Gestures {
 pub(super) struct Follow {
     /// Axes along which dragging pans.
     pub(super) pans: Vec2b,
-    /// Space at either end of each axis, as a share of its length.
+    /// Space at either end, relative to the axis' length.
     pub(super) margins: Vec2,
-    /// Panels of a group share the range of the horizontal axis.
+    /// Panels in a group share their horizontal range.
     pub(super) group: Option<Id>,
 }
 
@@ -139,7 +139,7 @@ fn following<'p>(plot: Plot<'p>, follow: Follow) -> Plot<'p> {
     }
 }
 
-/// Sets the frame colours of the panels in `ui` from the palette, whatever the surrounding style.
+/// Takes the frame colours in `ui` from the palette, whatever the surrounding style.
 pub(super) fn use_frame_colors(ui: &mut Ui, palette: &Palette) {
     let visuals = ui.visuals_mut();
     visuals.extreme_bg_color = palette.background;

@@ -1,4 +1,4 @@
-//! A pane of a Bode plot: its place, content and cursor.
+//! Bode pane with its place, content and cursor.
 
 use egui::Rect;
 
@@ -7,7 +7,6 @@ use super::curve_layer::CurveLooks;
 use super::drawn_curves::Pane;
 use crate::gui::widgets::palette::Palette;
 
-/// Pane of a Bode plot.
 #[derive(Clone, Copy)]
 pub(super) struct PaneScene<'a> {
     pub(super) pane: Pane,

@@ -1,4 +1,4 @@
-//! Axis of a panel: ticks, label and thickness.
+//! Panel axis: ticks, label and thickness.
 
 use std::ops::RangeInclusive;
 
@@ -8,36 +8,34 @@ use egui_plot::{Axis, AxisHints, GridInput, GridMark};
 use super::ticks::{LABEL_SPACING, Ticks, named_marks};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Font size of tick labels \[pt\].
+/// Font size in tick labels \[pt\].
 const TICK_SIZE: f32 = 11.0;
-/// Height of an axis with tick labels only \[pt\].
+/// Axis height with tick labels only \[pt\].
 pub(super) const TICKS_HEIGHT: f32 = 15.0;
-/// Height of an axis with tick labels and a label \[pt\].
+/// Axis height with tick labels and a label \[pt\].
 pub(super) const LABELLED_HEIGHT: f32 = 33.0;
 
-/// Returns the font of tick labels.
 pub(super) fn tick_font() -> FontId {
     FontId::proportional(TICK_SIZE)
 }
 
-/// Axis of a panel.
 #[derive(Clone, Debug)]
 pub(super) struct PanelAxis {
     pub(super) ticks: Ticks,
     pub(super) spacing: TickSpacing,
     /// Quantity and unit beside the numbers; may be empty.
     pub(super) label: String,
-    /// Height of a horizontal axis, width of a vertical axis \[pt\].
+    /// Height if horizontal, width if vertical \[pt\].
     pub(super) thickness: f32,
     /// Whether numbers and label are drawn; without them the axis takes no room and leaves its grid
     /// lines.
     pub(super) is_drawn: bool,
 }
 
-/// Distance between the numbers of an axis.
+/// Distance between the numbers along an axis.
 #[derive(Clone, Debug)]
 pub(super) enum TickSpacing {
-    /// Distance of the kind of ticks.
+    /// Distance that suits the kind of ticks.
     Usual,
     /// As the usual distance, and room for the widest number where a digit has this width \[pt\].
     WidestNumber { digit_pt: f64 },
@@ -46,7 +44,7 @@ pub(super) enum TickSpacing {
 }
 
 impl PanelAxis {
-    /// Creates an axis of this kind and thickness \[pt\], with its numbers and without a label.
+    /// Creates an axis with numbers and without a label; `thickness` in \[pt\].
     pub(super) fn new(ticks: Ticks, thickness: f32) -> Self {
         Self {
             ticks,

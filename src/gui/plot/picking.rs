@@ -1,4 +1,4 @@
-//! Picking of the curve or dot under the pointer: the nearest, not the topmost.
+//! Picking: the nearest curve or dot under the pointer, not the topmost.
 
 use egui::{Pos2, Rect, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -9,22 +9,22 @@ use gdcm_plot::figure::{MarkId, Panel};
 use super::drawn_curves::{BodeCurve, CurveId, LogFrequencies, Pane};
 use super::thinning::is_finite;
 
-/// Greatest distance of the pointer from a curve under it \[pt\].
+/// Greatest distance between the pointer and a curve under it \[pt\].
 pub const PICK_RADIUS: f32 = 8.0;
-/// Greatest distance of the pointer from a dot under it \[pt\].
+/// Greatest distance between the pointer and a dot under it \[pt\].
 const DOT_RADIUS: f32 = 10.0;
 
 /// Curve under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hit {
     pub(super) curve: usize,
-    /// Frequency of its point nearest to the pointer \[rad/s\].
+    /// Frequency at its point nearest to the pointer \[rad/s\].
     pub(super) omega: f64,
     /// Distance from the pointer \[pt\].
     pub(super) distance: f32,
 }
 
-/// Returns the curve nearest to `pointer` within [`PICK_RADIUS`]; of equally near curves, the
+/// Returns the curve nearest to `pointer` within [`PICK_RADIUS`]; among equally near curves, the
 /// topmost.
 pub(super) fn nearest(
     curves: &[BodeCurve],
@@ -69,7 +69,7 @@ pub(super) struct PointedMark {
     pub(super) at: [f64; 2],
 }
 
-/// Returns the nearest dot with an id; of equally near dots, the topmost, which is drawn last.
+/// Returns the nearest dot with an id; among equally near dots, the topmost, which is drawn last.
 pub(super) fn nearest_dot(
     panel: &Panel,
     transform: &PlotTransform,
@@ -93,7 +93,7 @@ pub(super) fn nearest_dot(
     })
 }
 
-/// Returns the curves that run through `area` of the screen.
+/// Returns the curves that run through an area on the screen.
 pub(super) fn touched(
     curves: &[BodeCurve],
     pane: Pane,
@@ -132,7 +132,7 @@ fn runs_through(
     false
 }
 
-/// Returns the position of a point on the screen; `None` for a gap.
+/// Returns a point's position on the screen; `None` for a gap.
 fn position_of(point: [f64; 2], transform: &PlotTransform) -> Option<Pos2> {
     if is_finite(&point) {
         Some(transform.position_from_point(&PlotPoint::from(point)))
@@ -141,7 +141,7 @@ fn position_of(point: [f64; 2], transform: &PlotTransform) -> Option<Pos2> {
     }
 }
 
-/// Returns whether part of the segment between two points lies in `area`.
+/// Returns whether a segment passes through `area`.
 ///
 /// Of the segment `from + t (to - from)`, 0 <= t <= 1, each pair of edges leaves an interval of t
 /// (Liang and Barsky, "A new concept and method for line clipping", ACM TOG 3(1), 1984); the
@@ -167,7 +167,7 @@ fn meets(from: Pos2, to: Pos2, area: Rect) -> bool {
     first <= last
 }
 
-/// Point of a line nearest to the pointer.
+/// Point nearest to the pointer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ClosestPoint {
     pub(super) position: Pos2,
@@ -175,7 +175,7 @@ pub(super) struct ClosestPoint {
     pub(super) distance: f32,
 }
 
-/// Returns the point of a line nearest to `pointer`; `None` if no part of the line lies within
+/// Returns the point nearest to `pointer`; `None` if no part of the line lies within
 /// [`PICK_RADIUS`] to its left or right.
 pub(super) fn closest_point(
     points: impl Iterator<Item = [f64; 2]>,

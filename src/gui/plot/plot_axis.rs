@@ -1,4 +1,4 @@
-//! Axes of a Bode plot: their names and units, and the numbers typed for their limits.
+//! Bode axes: names and units, and the numbers typed for their limits.
 
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::axis::compact;
@@ -7,12 +7,11 @@ use super::bode_scene::BodeScene;
 use super::drawn_curves::Pane;
 use super::ticks::Ticks;
 
-/// Axis of a Bode plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PlotAxis {
     /// Frequency axis, shared by both panes.
     Frequency,
-    /// Vertical axis of a pane.
+    /// A pane's vertical axis.
     Values(Pane),
 }
 
@@ -39,7 +38,6 @@ impl PlotAxis {
         }
     }
 
-    /// Returns the kind of tick labels.
     fn ticks(self, scene: &BodeScene<'_>) -> Ticks {
         match self {
             Self::Frequency => Ticks::Frequency(scene.unit),
@@ -47,7 +45,7 @@ impl PlotAxis {
         }
     }
 
-    /// Formats the ends of a range for typing.
+    /// Formats both ends for typing.
     pub(super) fn texts(self, scene: &BodeScene<'_>, range: Range) -> [String; 2] {
         [range.min, range.max].map(|place| compact(self.ticks(scene).number(place)))
     }

@@ -8,7 +8,7 @@ use super::bode_view::BodeView;
 use super::drawn_curves::{BodeCurve, Pane};
 use super::quantity::BodeQuantity;
 
-/// Formats frequency, name and values of the curve under the pointer in a single line.
+/// Formats frequency, name and values for the curve under the pointer in a single line.
 pub fn pointed_words(
     view: &BodeView,
     curves: &[BodeCurve],

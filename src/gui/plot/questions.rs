@@ -1,10 +1,10 @@
-//! Menu of the values under the pointer whose derivations can be shown.
+//! Menu for values under the pointer whose derivations can be shown.
 
 use egui::{Id, Response};
 
 use gdcm_study::ExplainTarget;
 
-/// Request for the derivation of a value.
+/// Request for a derivation.
 pub const QUESTION: &str = "How was this computed?";
 
 /// Value with a derivation, and its name.
@@ -16,7 +16,6 @@ pub(super) struct Questions {
     open: Option<OpenMenu>,
 }
 
-/// Menu of a plot.
 #[derive(Clone, Debug)]
 struct OpenMenu {
     plot: Id,
@@ -24,7 +23,7 @@ struct OpenMenu {
 }
 
 impl Questions {
-    /// Opens the menu of a plot on a secondary click on the values `pointed`; returns the value
+    /// Opens a plot's menu on a secondary click on the values `pointed`; returns the value
     /// chosen in it.
     pub(super) fn ui(
         &mut self,

@@ -1,4 +1,4 @@
-//! Values of every role at the pointer, in a strip between the panes.
+//! Read-out: values at the pointer for every role, in a strip between the panes.
 
 use egui::{FontId, Rect, Role as WidgetRole, Sense, Stroke, Ui, WidgetInfo, vec2};
 
@@ -6,20 +6,20 @@ use super::curve_style::Role;
 use crate::gui::widgets::controls::{elided, painted_text, row_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
-/// Height of the strip \[pt\].
+/// Strip height \[pt\].
 pub(super) const STRIP_HEIGHT: f32 = 40.0;
-/// Least width of a cell \[pt\].
+/// Least cell width \[pt\].
 const LEAST_CELL: f32 = 96.0;
-/// Width of the columns of the frequency and of the difference, whose names are longer, relative to
-/// the columns of the roles.
+/// Column width for frequency and difference, whose names are longer, relative to
+/// a role's column.
 const WIDE_COLUMN: f32 = 1.25;
-/// Padding at the left and right of a column \[pt\].
+/// Padding left and right in a column \[pt\].
 const PAD: f32 = 8.0;
-/// Length of the sample of a curve, and gap beside it \[pt\].
+/// Sample length, and gap beside it \[pt\].
 const SAMPLE: f32 = 14.0;
 const SAMPLE_GAP: f32 = 6.0;
 
-/// Values of a role, or the difference of two roles.
+/// Values for a role, or the difference between two roles.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadoutCell {
     /// Role; `None` for a difference.
@@ -33,12 +33,12 @@ pub struct ReadoutCell {
 }
 
 impl ReadoutCell {
-    /// Returns the values as part of a sentence.
+    /// Returns the values within a sentence.
     fn sentence(&self) -> String {
         format!("{}: {}, {}", self.name, self.values[0], self.values[1])
     }
 
-    /// Draws the values into a column of the strip.
+    /// Draws the values into a column.
     fn ui(&self, ui: &Ui, column: Rect, palette: &Palette) {
         let [upper, lower] = halves(column);
         let mut from = 0.0;
@@ -78,14 +78,14 @@ impl ReadoutCell {
     }
 }
 
-/// Values of the roles at a frequency.
+/// Values at a frequency for every role.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Readout {
-    /// Kind of the frequency: "ω at the pointer".
+    /// "ω at the pointer".
     pub heading: String,
     /// Formatted frequency: "6.00 rad/s".
     pub frequency: String,
-    /// Roles in the order of the chips; the difference last.
+    /// Roles in the order of the chips, the difference last.
     pub cells: Vec<ReadoutCell>,
 }
 
@@ -120,7 +120,7 @@ pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette:
     response.widget_info(|| WidgetInfo::labeled(WidgetRole::Label, true, readout.sentence()));
 }
 
-/// Returns the place of a column within a strip of the frequency and `cells` cells.
+/// Returns a column's place in a strip with the frequency and `cells` cells.
 fn column(strip: Rect, place: usize, cells: usize) -> Rect {
     let left = strip.left() + width_before(place, cells) * strip.width();
     let right = strip.left() + width_before(place + 1, cells) * strip.width();
@@ -130,7 +130,7 @@ fn column(strip: Rect, place: usize, cells: usize) -> Rect {
         .shrink2(vec2(PAD, 3.0))
 }
 
-/// Returns the share of the width taken by the columns before a place.
+/// Returns the share of the width before a column.
 fn width_before(place: usize, cells: usize) -> f32 {
     let width = |column: usize| {
         if column == 0 || column == cells {
@@ -142,7 +142,7 @@ fn width_before(place: usize, cells: usize) -> f32 {
     (0..place).map(width).sum::<f32>() / (0..=cells).map(width).sum::<f32>()
 }
 
-/// Returns the upper and the lower half of a column.
+/// Returns the upper and the lower half.
 fn halves(column: Rect) -> [Rect; 2] {
     let middle = column.center().y;
     [column.with_max_y(middle), column.with_min_y(middle)]

@@ -1,4 +1,4 @@
-//! Reference lines across the panes of a Bode plot: painting, picking, and their labels.
+//! Reference lines across a Bode pane: painting, picking, labels.
 
 use egui::{Pos2, Ui};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -10,7 +10,7 @@ use super::end_labels::EndLabel;
 use super::picking::closest_point;
 use crate::gui::widgets::palette::Palette;
 
-/// Draws the reference lines of a pane into a plot with this `transform`.
+/// Draws a pane's reference lines.
 pub(super) fn paint_reference_lines(
     ui: &Ui,
     lines: &[ReferenceLine],
@@ -28,7 +28,7 @@ pub(super) fn paint_reference_lines(
     painter.extend(shapes);
 }
 
-/// Returns the distance of the nearest reference line of a pane from `pointer` \[pt\]; `None` if
+/// Returns the distance between `pointer` and a pane's nearest reference line \[pt\]; `None` if
 /// none is near.
 pub(super) fn distance_to_lines(
     lines: &[ReferenceLine],
@@ -49,7 +49,7 @@ pub(super) fn distance_to_lines(
     least
 }
 
-/// Returns the labels of the reference lines of a pane, each at the height where its line leaves
+/// Returns the labels for a pane's reference lines, each at the height where its line leaves
 /// the plot, with any further text below.
 pub(super) fn line_labels(
     lines: &[ReferenceLine],
@@ -82,13 +82,13 @@ pub(super) fn line_labels(
     labels
 }
 
-/// Returns the points of a line over the visible frequencies.
+/// Returns a line's points over the visible frequencies.
 fn visible_points(level: &Level, transform: &PlotTransform) -> Vec<[f64; 2]> {
     let bounds = transform.bounds();
     level.points(bounds.min()[0], bounds.max()[0])
 }
 
-/// Returns the path of a line on the screen. Parts far outside the frame are skipped, because their
+/// Returns a line's path on the screen. Parts far outside the frame are skipped, because their
 /// many dashes would take time.
 fn path(level: &Level, transform: &PlotTransform) -> Vec<Pos2> {
     let frame = transform.frame();

@@ -10,19 +10,19 @@ use super::drawn_curves::{BodeCurve, Pane, VisiblePart};
 use super::viewed_range::{bounds_of, ranges_of};
 use crate::gui::widgets::palette::Palette;
 
-/// Greatest distance of a drawn line from the curve \[pt\].
+/// Greatest distance between a drawn line and its curve \[pt\].
 const TOLERANCE: f64 = 0.25;
-/// Space above and below the curves, as a share of their height.
+/// Space above and below the curves, relative to their height.
 const MARGIN: f64 = 0.06;
-/// Least height of the visible range \[dB\] or \[deg\].
+/// Least visible height \[dB\] or \[deg\].
 const LEAST_HEIGHT: f64 = 1.0;
 
-/// Small plot of the values of curves.
+/// Small plot of curves.
 pub(super) struct Sketch<'a> {
     pub(super) curves: &'a [BodeCurve],
     pub(super) pane: Pane,
     pub(super) rect: Rect,
-    /// Visible decades of frequency.
+    /// Visible range of `log10 omega`.
     pub(super) log_omega: Range,
     pub(super) palette: &'a Palette,
 }
@@ -61,7 +61,7 @@ impl Sketch<'_> {
     }
 }
 
-/// Describes the last visible range of the vertical axis; empty if there was nothing to draw.
+/// Describes the last visible values; empty if there was nothing to draw.
 pub(super) fn range_text(drawn: &DrawnPane, pane: Pane) -> String {
     let Some(transform) = drawn.transform else {
         return String::new();

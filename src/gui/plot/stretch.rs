@@ -1,22 +1,22 @@
-//! Choice of a stretch of the horizontal axis by dragging in a group of charts.
+//! Stretch that is chosen by dragging in a group of charts.
 
 use egui::{Id, Pos2, Ui};
 use egui_plot::PlotUi;
 
-/// Stretch of the horizontal axis chosen by dragging.
+/// Horizontal stretch chosen by dragging.
 #[derive(Clone, Copy, Debug)]
 struct DraggedStretch {
-    /// Start and current place of the drag.
+    /// Start and current place.
     ends: [f64; 2],
     has_ended: bool,
 }
 
-/// Returns the id under which the stretch of a group is kept.
+/// Returns the id under which a group's stretch is kept.
 fn stretch_id(group: Id) -> Id {
     group.with("stretch")
 }
 
-/// Keeps the stretch that is being dragged in a panel of the group.
+/// Keeps the stretch that is being dragged in a panel.
 pub(super) fn choose_by_dragging(plot: &PlotUi<'_>, group: Id) {
     let response = plot.response();
     if !response.dragged() && !response.drag_stopped() {
@@ -42,7 +42,7 @@ pub(super) fn choose_by_dragging(plot: &PlotUi<'_>, group: Id) {
     });
 }
 
-/// Returns the stretch chosen by dragging in a group of charts, lower end first, and whether the
+/// Returns the stretch chosen by dragging in a chart group, lower end first, and whether the
 /// drag has ended; a finished stretch is returned once.
 pub fn chosen_stretch(ui: &Ui, group: Id) -> Option<([f64; 2], bool)> {
     let id = stretch_id(group);

@@ -1,10 +1,10 @@
-//! Points of a curve that are drawn: the visible ones, no finer than the pixels.
+//! Thinning: only visible points are drawn, no finer than the pixels.
 
 use egui_plot::{PlotBounds, PlotTransform};
 
 use gdcm_plot::figure::thinning::{Pixel, thinned};
 
-/// Returns the pixel of a plot with this `transform`, where lines may be `tolerance_pt` points away
+/// Returns the pixel under this `transform`, where lines may be `tolerance_pt` points away
 /// from their curves.
 pub(super) fn pixel_of(
     transform: &PlotTransform,
@@ -66,7 +66,6 @@ pub(super) fn runs_in_view(
     runs
 }
 
-/// Returns whether both coordinates of a point are finite.
 pub(super) fn is_finite(point: &[f64; 2]) -> bool {
     point[0].is_finite() && point[1].is_finite()
 }

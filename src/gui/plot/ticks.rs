@@ -1,4 +1,4 @@
-//! Ticks and grid lines of an axis: places, and the numbers written there.
+//! Ticks and grid lines: places, and the numbers written there.
 
 use egui::Rangef;
 use egui_plot::{GridInput, GridMark};
@@ -7,12 +7,12 @@ use gdcm_model::units::{db_to_ratio, ratio_to_db};
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::axis::{FrequencyUnit, Scale, Tick, TickGaps, compact, ticks_of};
 
-/// Least distance between the ticks of a vertical axis \[pt\].
+/// Least distance between ticks on a vertical axis \[pt\].
 pub(super) const VERTICAL_TICK_GAP: f64 = 27.0;
 
-/// Nominal distance of a labelled mark from the next \[pt\].
+/// Nominal distance between labelled marks \[pt\].
 const LABELLED: f64 = 100.0;
-/// Nominal distance of a minor mark from the next \[pt\].
+/// Nominal distance between minor marks \[pt\].
 const MINOR: f64 = 25.0;
 
 /// `grid_spacing` for which the nominal distances mean full and half strength.
@@ -26,9 +26,9 @@ pub(super) const LABEL_SPACING: Rangef = Rangef {
     max: 51.0,
 };
 
-/// Least distance between two labels of a decade \[pt\].
+/// Least distance between two labels within a decade \[pt\].
 const DECADE_LABEL_GAP: f64 = 34.0;
-/// Least distance between two grid lines of a decade \[pt\].
+/// Least distance between two grid lines within a decade \[pt\].
 const DECADE_LINE_GAP: f64 = 5.0;
 /// Least distance between labelled ticks \[pt\]; letters are 11 high.
 const CLOSEST: f64 = 13.0;
@@ -40,7 +40,7 @@ const NAME_GAP: f64 = 6.0;
 pub(super) enum Ticks {
     /// Plain values with labels at this distance in points: decibels, knots, gains.
     Decimal(f64),
-    /// Plain values at fractions of a turn.
+    /// Plain values with labels at fractions of a turn.
     Degrees,
     /// Values of `log10(omega)`, labelled as frequencies in a unit.
     Frequency(FrequencyUnit),
@@ -67,7 +67,7 @@ impl Ticks {
         }
     }
 
-    /// Returns the ticks and grid lines between two places on an axis of `units_per_point`.
+    /// Returns the ticks and grid lines between two places on an axis.
     pub(super) fn marks(self, bounds: (f64, f64), units_per_point: f64) -> Vec<GridMark> {
         let is_finite = [bounds.0, bounds.1, units_per_point]
             .into_iter()
@@ -123,7 +123,7 @@ impl Ticks {
         ticks_of(scale, range, length, gaps)
     }
 
-    /// Returns [`Self::marks`] of a horizontal axis, far enough apart for the widest label where a
+    /// Returns [`Self::marks`] for a horizontal axis, far enough apart for the widest label where a
     /// letter is `digit` points wide.
     pub(super) fn marks_beside(
         self,
@@ -146,7 +146,6 @@ impl Ticks {
         }
     }
 
-    /// Returns the text of a tick.
     pub(super) fn text(self, mark: GridMark) -> String {
         compact(self.number(mark.value))
     }
@@ -156,7 +155,7 @@ fn count_labels(ticks: &[Tick]) -> usize {
     ticks.iter().filter(|tick| tick.label.is_some()).count()
 }
 
-/// Returns the marks of `count` names at 0, 1, 2 …: of every second, third … name if the widest
+/// Returns marks for `count` names at 0, 1, 2 …: only for every second, third … name if the widest
 /// does not fit otherwise.
 pub(super) fn named_marks(input: &GridInput, count: usize, widest_pt: f64) -> Vec<GridMark> {
     let every = ((widest_pt + NAME_GAP) * input.base_step_size)

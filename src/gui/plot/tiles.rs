@@ -3,12 +3,12 @@
 
 use egui::{Rect, ScrollArea, Ui, UiBuilder, Vec2, vec2};
 
-/// Preferred ratio of width to height of a small plot.
+/// Preferred ratio of width to height.
 const ASPECT: f32 = 1.15;
 /// Gain in size required to accept a gap in the last row \[pt\].
 const PRICE_OF_GAP: f32 = 4.0;
 
-/// Arrangement of plots in rows and columns, and their size.
+/// Arrangement in rows and columns, and plot size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Tiles {
     pub(super) columns: usize,
@@ -54,7 +54,6 @@ impl Tiles {
         (self.size.x / ASPECT).min(self.size.y) - PRICE_OF_GAP * gaps as f32
     }
 
-    /// Returns the total size of the tiles.
     fn total_size(self) -> Vec2 {
         vec2(
             self.columns as f32 * self.size.x,
@@ -72,7 +71,7 @@ impl Tiles {
         }
     }
 
-    /// Returns the place of a tile in an area that begins at `origin`.
+    /// Returns a tile's place in an area that begins at `origin`.
     fn rect(self, index: usize, origin: egui::Pos2) -> Rect {
         let column = index % self.columns;
         let row = index / self.columns;

@@ -1,22 +1,22 @@
-//! Visible range of an axis, and the limits of zooming and panning.
+//! Visible range along an axis, and the limits for zooming and panning.
 
 use egui_plot::PlotBounds;
 
 use gdcm_plot::figure::Range;
 
-/// Widths of the data that can be visible beyond each of their ends.
+/// Room beyond either end, relative to the data's width.
 const BEYOND: f64 = 4.5;
 
 /// Greatest range that zooming out reaches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ZoomLimit {
-    /// Range of the data: a record has no values before its start and after its end.
+    /// Data range: a record has no values before its start and after its end.
     Data,
-    /// Range of the data, and this share of its width on either side.
+    /// Data range, and this share of its width on either side.
     DataWithMargin(f64),
     /// A decade beyond the data, on a logarithmic axis.
     Decade,
-    /// Ten times the width of the data, and at least this width.
+    /// Ten times the data's width, and at least this width.
     TenWidths { least: f64 },
 }
 
@@ -32,8 +32,8 @@ impl ZoomLimit {
     }
 }
 
-/// Returns `range` magnified by `factor` about `fixed`, within `limit`; `None` if nothing within the
-/// limit would be visible.
+/// Returns `range` magnified by `factor` about `fixed`, within `limit`; `None` if nothing within
+/// the limit would be visible.
 pub(super) fn zoomed_within(range: Range, factor: f64, fixed: f64, limit: Range) -> Option<Range> {
     let zoomed = range.zoomed(factor, fixed);
     let within = Range {
@@ -47,19 +47,19 @@ pub(super) fn zoomed_within(range: Range, factor: f64, fixed: f64, limit: Range)
     }
 }
 
-/// Returns the ranges of both axes.
+/// Returns the horizontal and the vertical range.
 pub(super) fn ranges_of(bounds: &PlotBounds) -> [Range; 2] {
     let min = bounds.min();
     let max = bounds.max();
     [0, 1].map(|axis| Range::new(min[axis], max[axis]))
 }
 
-/// Returns the bounds of a plot with these ranges of its axes.
+/// Returns the bounds of a plot with these ranges.
 pub(super) fn bounds_of([x, y]: [Range; 2]) -> PlotBounds {
     PlotBounds::from_min_max([x.min, y.min], [x.max, y.max])
 }
 
-/// Visible part of an axis. The engineer's choice persists until a fit of everything is requested.
+/// Visible range. The engineer's choice persists until everything is to be fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ViewedRange {
     range: Range,
@@ -128,7 +128,7 @@ impl ViewedRange {
         self.is_chosen = false;
     }
 
-    /// Returns the nearest range of a permitted width, if it lies within the permitted values.
+    /// Returns the nearest range with a permitted width, if it lies within the permitted values.
     fn allowed(&self, range: Range) -> Option<Range> {
         let range = range.limited(self.widths)?;
         if self.ends.contains(range.min) && self.ends.contains(range.max) {

@@ -229,7 +229,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stretch_counts_where_it_reaches_into_the_view() {
+    fn a_segment_of_a_band_is_drawn_if_part_of_it_is_visible() {
         let view = PlotBounds::from_min_max([0.0, 0.0], [1.0, 10.0]);
         let is_seen = |from, to| is_in_view(&from, &to, &view);
         assert!(is_seen([0.2, 1.0, 2.0], [0.3, 1.0, 2.0]));

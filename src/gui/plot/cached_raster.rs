@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_still_for_a_frame_becomes_an_image_until_it_moves() {
+    fn static_curves_become_an_image_until_they_move() {
         let ctx = Context::default();
         ctx.run_ui(RawInput::default(), |_| {})
             .drop_without_applying_deltas();
@@ -243,9 +243,9 @@ mod tests {
         assert_eq!(
             image(&mut still, &ctx, scene(&[1, 2], 10.2)),
             None,
-            "it may be moving"
+            "the first frame may be part of a motion"
         );
-        let area = image(&mut still, &ctx, scene(&[1, 2], 10.2)).expect("it stands still");
+        let area = image(&mut still, &ctx, scene(&[1, 2], 10.2)).expect("the scene is static");
         assert!(area.contains_rect(scene(&[], 10.2).frame));
         let pixels = area.scale_from_center(1.0).min * 1.5;
         assert!(

@@ -80,7 +80,7 @@ fn reason_ui(ui: &mut Ui, curve: &BodeCurve, reason: &mut String) -> bool {
         WidgetInfo::labeled(WidgetRole::TextInput, true, "Reason of the rejection")
     });
     let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-    field.on_hover_text("Why the model is rejected, in words: kept in the study; Enter rejects it");
+    field.on_hover_text("Reason of the rejection, kept in the study; Enter rejects the model");
     let has_reason = !reason.trim().is_empty();
     let is_clicked = ui
         .add_enabled(has_reason, Button::new("Reject with reason"))
@@ -130,7 +130,7 @@ pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWis
     }
     let mut wished = None;
     let is_chosen = if curve.rejected {
-        entry_ui(ui, "Restore model", "Put the model back into its bundle")
+        entry_ui(ui, "Restore model", "Return the model to its bundle")
     } else {
         entry_ui(ui, "Reject model", "Take the model out of its bundle")
     };
@@ -146,7 +146,7 @@ pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWis
         && entry_ui(
             ui,
             "Use as representative",
-            "Use this model as the representative of its bundle, whatever the medoid is",
+            "Use this model as the representative of its bundle instead of the medoid",
         )
     {
         wished = Some(CurveWish::Pin);
@@ -161,7 +161,7 @@ pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWis
     if entry_ui(
         ui,
         "Hide curve",
-        "Do not draw this model; it counts all the same",
+        "Do not draw this model; it still counts in every result",
     ) {
         wished = Some(CurveWish::Hide);
     }
@@ -182,12 +182,12 @@ fn ground_menu_ui(
     if entry_ui(
         ui,
         "Mark frequency",
-        "Leave a cursor at this frequency; two show what changes between them",
+        "Mark this frequency; two marks show the change between them",
     ) {
         events.push(BodeEvent::Display(DisplayRequest::PinCursor(omega)));
     }
     let has_marks = !(scene.pinned.is_empty() && scene.crossings.is_empty());
-    if has_marks && entry_ui(ui, "Remove marks", "Take the marks of frequencies away") {
+    if has_marks && entry_ui(ui, "Remove marks", "Remove all frequency marks") {
         events.push(BodeEvent::Display(DisplayRequest::UnpinCursors));
     }
 }

@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_solid_or_broken_in_the_window_is_so_on_paper() {
+    fn lines_are_broken_in_the_window_as_on_paper() {
         for role in Role::ALL {
             let window = Palette::light().role_style(role, false);
             let paper = role.stroke(false);

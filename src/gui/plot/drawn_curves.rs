@@ -218,10 +218,14 @@ mod tests {
         let first = places(&drawn);
         curves[0].highlighted = true;
         update(&mut drawn, &curves, 10.0);
-        assert_eq!(places(&drawn), first, "a look is no matter of points");
+        assert_eq!(
+            places(&drawn),
+            first,
+            "the style does not change the points"
+        );
         curves.swap(0, 1);
         update(&mut drawn, &curves, 10.0);
-        assert_eq!(places(&drawn), [first[1], first[0]], "nor is the order");
+        assert_eq!(places(&drawn), [first[1], first[0]], "nor does the order");
         curves[0] = curve(1, &[2.0; 3]);
         update(&mut drawn, &curves, 10.0);
         assert_eq!(places(&drawn)[1], first[0]);
@@ -229,7 +233,7 @@ mod tests {
         assert_eq!(
             [drawn.serial(0), drawn.serial(1)],
             [3, 1],
-            "what is made anew has a number of its own"
+            "a recomputed curve has a new number"
         );
         // Of the curve that rises to 9 and returns to 5, the segments up to 6 and further are
         // invisible.
@@ -238,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_has_no_points() {
+    fn a_missing_curve_has_no_points() {
         assert!(DrawnCurves::default().runs(3).is_empty());
     }
 }

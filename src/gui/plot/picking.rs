@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_curve_is_meant_wherever_it_stands_in_the_list() {
+    fn the_nearest_curve_is_picked_whatever_the_order() {
         let curves = [
             flat(1, 50.0, Role::Perturbed),
             flat(2, 54.0, Role::Corrected),
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn of_equally_near_curves_the_one_on_top_is_meant() {
+    fn the_topmost_of_equally_near_curves_is_picked() {
         let curves = [
             flat(1, 50.0, Role::Corrected),
             flat(2, 50.0, Role::Perturbed),
@@ -273,14 +273,14 @@ mod tests {
     }
 
     #[test]
-    fn the_frequency_is_that_under_the_pointer() {
+    fn a_hit_has_the_frequency_under_the_pointer() {
         let curves = [flat(1, 50.0, Role::Nominal)];
         let hit = nearest(&curves, Pane::Magnitude, pos2(50.0, 48.0), &transform());
         assert!(hit.is_some_and(|hit| (hit.omega - 10f64.sqrt()).abs() < 1e-4));
     }
 
     #[test]
-    fn a_box_touches_the_curves_that_run_through_it_without_a_point_in_it_too() {
+    fn a_box_touches_curves_that_have_no_point_in_it() {
         let curves = [
             flat(1, 50.0, Role::Perturbed),
             flat(2, 54.0, Role::Corrected),
@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn a_segment_meets_a_box_that_it_cuts_a_corner_of() {
+    fn a_segment_meets_a_box_whose_corner_it_cuts() {
         let area = Rect::from_min_max(pos2(0.0, 0.0), pos2(10.0, 10.0));
         assert!(meets(pos2(-5.0, 2.0), pos2(4.0, -1.0), area));
         assert!(!meets(pos2(-5.0, 2.0), pos2(2.0, -5.0), area));
@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn gaps_cannot_be_meant() {
+    fn gaps_cannot_be_picked() {
         let curves = [flat(1, 50.0, Role::Nominal)];
         assert_eq!(
             nearest(&curves, Pane::Phase, pos2(50.0, 100.0), &transform()),

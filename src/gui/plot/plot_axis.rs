@@ -57,7 +57,7 @@ impl PlotAxis {
         if min < max {
             Ok(Range { min, max })
         } else {
-            Err("the lower limit has to be below the upper one".to_owned())
+            Err("the lower limit must be below the upper limit".to_owned())
         }
     }
 
@@ -68,7 +68,7 @@ impl PlotAxis {
             Self::Frequency => "frequency",
             Self::Values(_) => "value",
         };
-        let refusal = || format!("\"{text}\" is no {kind}");
+        let refusal = || format!("\"{text}\" is not a {kind}");
         let number: f64 = text
             .replace('\u{2212}', "-")
             .parse()
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn limits_that_are_none_are_refused_with_a_word() {
+    fn invalid_limits_are_refused_with_a_message() {
         let scene = BodeScene::of("", &[], (0.5, 12.0));
         let frequencies = |min, max| {
             PlotAxis::Frequency
@@ -128,14 +128,14 @@ mod tests {
         };
         assert_eq!(
             frequencies("3", "2"),
-            "the lower limit has to be below the upper one"
+            "the lower limit must be below the upper limit"
         );
         assert_eq!(
             frequencies("2", "2"),
-            "the lower limit has to be below the upper one"
+            "the lower limit must be below the upper limit"
         );
-        assert_eq!(frequencies("0", "2"), "\"0\" is no frequency");
-        assert_eq!(frequencies("1", "two"), "\"two\" is no frequency");
+        assert_eq!(frequencies("0", "2"), "\"0\" is not a frequency");
+        assert_eq!(frequencies("1", "two"), "\"two\" is not a frequency");
         let values = PlotAxis::Values(Pane::Magnitude);
         assert_eq!(
             values.range(&scene, &texts("\u{2212}20", "5")),

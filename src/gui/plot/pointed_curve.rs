@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn another_branch_than_the_principal_one_is_told() {
+    fn a_branch_other_than_the_principal_is_reported() {
         assert_eq!(
             branch_text(-459.0).as_deref(),
             Some(" (\u{2212}99° less 1 turn)")

@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_far_outside_the_view_is_not_drawn() {
+    fn points_far_outside_the_view_are_not_drawn() {
         let points = (-100..100).map(|k| [f64::from(k), 0.5]);
         for (margin, count) in [(0.0, 4), (1.0, 6)] {
             let runs = runs_in_view(points.clone(), &unit_view(), margin);
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_keeps_every_peak_in_view_and_every_sample_that_the_screen_can_tell_apart() {
+    fn a_thinned_line_keeps_visible_peaks_and_distinguishable_samples() {
         let mut points: Vec<[f64; 2]> = (0..10_000)
             .map(|k| [f64::from(k), f64::from(k % 2)])
             .collect();

@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_that_are_no_range_give_no_ticks() {
+    fn invalid_bounds_give_no_ticks() {
         assert!(Ticks::Decimal(28.0).marks((1.0, 1.0), 0.0).is_empty());
         // Chart of a record, 58 points high.
         assert_eq!(
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_that_are_no_range_give_no_marks() {
+    fn invalid_frequencies_give_no_marks() {
         assert!(
             Ticks::Frequency(FrequencyUnit::RadPerSecond)
                 .marks((1.0, 1.0), 0.1)

@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_chosen_stays_until_it_is_released() {
+    fn a_chosen_range_stays_until_it_is_released() {
         let mut viewed = viewed();
         viewed.fit(Range::new(2.0, 3.0));
         assert_eq!(
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn zooming_out_ends_a_decade_beyond_what_is_computed() {
+    fn zooming_out_ends_a_decade_beyond_the_computed_range() {
         let mut viewed = viewed();
         viewed.reach(Range::new(-0.5, 1.25));
         (0..100).for_each(|_| viewed.zoom(1.0 / 1.1, 0.3));
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn choosing_what_is_in_view_already_is_no_choice() {
+    fn choosing_the_visible_range_is_no_choice() {
         let mut viewed = viewed();
         viewed.choose(Range::new(0.0, 1.0));
         assert!(!viewed.is_chosen());

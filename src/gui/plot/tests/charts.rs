@@ -3,7 +3,6 @@
 use egui::{Id, Rect, vec2};
 use egui_plot::{PlotBounds, PlotMemory};
 
-use super::bode::wheel;
 use super::*;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine};
 use crate::gui::plot::chart_view::chart_ui;
@@ -82,17 +81,7 @@ fn the_wheel_zooms_the_time_of_every_chart_and_the_values_in_view_fill_each() {
             "{view:?}"
         );
     }
-    for pressed in [true, false, true, false] {
-        let button = PointerButton::Primary;
-        let modifiers = Modifiers::NONE;
-        harness.event(Event::PointerButton {
-            pos: at,
-            button,
-            pressed,
-            modifiers,
-        });
-        harness.step();
-    }
+    double_click(&mut harness, at);
     harness.run();
     assert_eq!(harness.state(), &whole, "a double click shows all");
 }

@@ -102,7 +102,7 @@ impl<'a> BodeScene<'a> {
 
     /// Creates a scene with a pair's responses in decibels, degrees and rad/s, and nothing
     /// else.
-    pub fn of(pair_title: &'a str, curves: &'a [BodeCurve], band: (f64, f64)) -> Self {
+    pub fn new(pair_title: &'a str, curves: &'a [BodeCurve], band: (f64, f64)) -> Self {
         Self {
             pair_title,
             curves,

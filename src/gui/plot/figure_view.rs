@@ -47,7 +47,7 @@ impl FigureView {
     }
 
     /// Sets the subject: a new subject fits all plots.
-    pub fn is_of(&mut self, subject: &str) {
+    pub fn set_subject(&mut self, subject: &str) {
         if self.subject != subject {
             subject.clone_into(&mut self.subject);
             self.request_fit();

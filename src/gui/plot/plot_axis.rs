@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn typed_frequencies_are_places_on_the_logarithmic_axis() {
-        let scene = BodeScene::of("", &[], (0.5, 12.0));
+        let scene = BodeScene::new("", &[], (0.5, 12.0));
         let range = PlotAxis::Frequency
             .range(&scene, &texts("0.1", " 100 "))
             .unwrap();
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn invalid_limits_are_refused_with_a_message() {
-        let scene = BodeScene::of("", &[], (0.5, 12.0));
+        let scene = BodeScene::new("", &[], (0.5, 12.0));
         let frequencies = |min, max| {
             PlotAxis::Frequency
                 .range(&scene, &texts(min, max))

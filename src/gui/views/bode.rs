@@ -81,7 +81,7 @@ pub fn bode_view_ui(
         invalid: invalid.as_ref(),
         notes,
         message,
-        ..BodeScene::of(&title, &curves, band)
+        ..BodeScene::new(&title, &curves, band)
     };
     frequency_plot_ui(ui, state, (scene, &mut view), palette, commands);
     state.display.error.share_frequencies(&view);
@@ -222,7 +222,7 @@ pub fn error_view_ui(
         strips: &strips,
         omega_range: grid.and_then(|omega| Some((*omega.first()?, *omega.last()?))),
         message: Some(&message),
-        ..BodeScene::of(&title, &curves, (band.min(), band.max()))
+        ..BodeScene::new(&title, &curves, (band.min(), band.max()))
     };
     frequency_plot_ui(ui, state, (scene, &mut view), palette, commands);
     state.display.bode.share_frequencies(&view);
@@ -334,7 +334,7 @@ pub fn across_view_ui(
         unit,
         stale: state.results.is_stale(ui.input(|input| input.time)),
         message: Some(state.results.absence()),
-        ..BodeScene::of(&title, &curves, (band.min(), band.max()))
+        ..BodeScene::new(&title, &curves, (band.min(), band.max()))
     };
     for event in bode_ui(ui, &scene, &mut state.display.across, palette) {
         if let BodeEvent::Clicked(CurveId::Model(id)) = event {

@@ -30,7 +30,7 @@ pub(super) fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
             |ui, model: &mut Model| {
                 let scene = BodeScene {
                     hidden_roles: Some(&model.hidden_roles),
-                    ..BodeScene::of("LON → Q", &model.curves, model.band)
+                    ..BodeScene::new("LON → Q", &model.curves, model.band)
                 };
                 let palette = Palette::of(ui.visuals());
                 for event in bode_ui(ui, &scene, &mut model.view, &palette) {

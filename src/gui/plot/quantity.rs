@@ -36,6 +36,43 @@ pub enum ResponsePlace {
     FoundModel,
 }
 
+/// Texts that distinguish the controls of a plot from those of others.
+struct PlotNames {
+    /// Id salt of its widgets.
+    salt: &'static str,
+    /// Suffix behind the label of a control.
+    label: &'static str,
+    /// Suffix behind the name of a pane.
+    pane: &'static str,
+    /// Suffix behind a pane within a sentence.
+    place: &'static str,
+}
+
+const CONDITION_NAMES: PlotNames = PlotNames {
+    salt: "bode",
+    label: "",
+    pane: "",
+    place: " plot",
+};
+const EVERY_CONDITION_NAMES: PlotNames = PlotNames {
+    salt: "airspeeds",
+    label: ", plot of airspeeds",
+    pane: " in every condition",
+    place: " plot of every condition",
+};
+const FOUND_MODEL_NAMES: PlotNames = PlotNames {
+    salt: "found model",
+    label: ", plot of a found model",
+    pane: " of a found model",
+    place: " plot of a found model",
+};
+const ERROR_NAMES: PlotNames = PlotNames {
+    salt: "error",
+    label: ", error plot",
+    pane: " error",
+    place: " error plot",
+};
+
 impl Default for BodeQuantity<'_> {
     fn default() -> Self {
         Self::RESPONSE
@@ -61,44 +98,27 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Returns the texts that distinguish this plot from others: for its widgets, for its labels,
-    /// and the suffixes of a pane's name and of its place.
-    fn words(self) -> [&'static str; 4] {
-        match self {
-            Self::Response {
-                place: ResponsePlace::Condition,
-                ..
-            } => ["bode", "", "", " plot"],
-            Self::Response {
-                place: ResponsePlace::EveryCondition,
-                ..
-            } => [
-                "airspeeds",
-                ", plot of airspeeds",
-                " in every condition",
-                " plot of every condition",
-            ],
-            Self::Response {
-                place: ResponsePlace::FoundModel,
-                ..
-            } => [
-                "found model",
-                ", plot of a found model",
-                " of a found model",
-                " plot of a found model",
-            ],
-            Self::Error { .. } => ["error", ", error plot", " error", " error plot"],
+    /// Returns the texts that distinguish this plot from others.
+    fn names(self) -> PlotNames {
+        let place = match self {
+            Self::Response { place, .. } => place,
+            Self::Error { .. } => return ERROR_NAMES,
+        };
+        match place {
+            ResponsePlace::Condition => CONDITION_NAMES,
+            ResponsePlace::EveryCondition => EVERY_CONDITION_NAMES,
+            ResponsePlace::FoundModel => FOUND_MODEL_NAMES,
         }
     }
 
     /// Returns the id salt that distinguishes this plot's widgets from others.
     pub(super) fn salt(self) -> &'static str {
-        self.words()[0]
+        self.names().salt
     }
 
     /// Returns the suffix that distinguishes this plot's labels from the Bode plot's.
     pub(super) fn label_suffix(self) -> &'static str {
-        self.words()[1]
+        self.names().label
     }
 
     /// Returns whether the plot shows the displayed condition, not a comparison across conditions
@@ -116,12 +136,13 @@ impl BodeQuantity<'_> {
 
     /// Returns a pane's name: "Magnitude".
     pub(super) fn name(self, pane: Pane) -> String {
-        format!("{pane:?}{}", self.words()[2])
+        format!("{pane:?}{}", self.names().pane)
     }
 
     /// Returns a pane within a sentence: "magnitude plot".
     pub(super) fn place(self, pane: Pane) -> String {
-        format!("{}{}", format!("{pane:?}").to_lowercase(), self.words()[3])
+        let pane = format!("{pane:?}").to_lowercase();
+        format!("{pane}{}", self.names().place)
     }
 
     /// Returns a pane's display unit.

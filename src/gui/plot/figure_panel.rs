@@ -86,7 +86,9 @@ impl PlacedPanel<'_> {
         let has_values = self.has_values(ui);
         let rect = self.frame_with_axes(has_values);
         let bounds = bounds_of(view.ranges.unwrap_or_else(|| whole(panel)));
-        let (across, values) = self.axes(ui, rect.size(), has_values);
+        let across = self.horizontal_axis(ui);
+        let room = rect.height() - across.thickness;
+        let values = self.vertical_axis(ui, room, has_values);
         let painter = PanelPainter {
             id: self.id,
             rect,
@@ -167,32 +169,35 @@ impl PlacedPanel<'_> {
         rect
     }
 
-    /// Returns the horizontal and the vertical axis for a frame with this size.
-    fn axes(&self, ui: &Ui, size: Vec2, has_values: bool) -> (PanelAxis, PanelAxis) {
+    fn horizontal_axis(&self, ui: &Ui) -> PanelAxis {
         let panel = self.panel();
-        let is_last = self.number + 1 == self.scene.figure.plots[self.plot].panels.len();
         let ticks = match panel.x.scale {
             Scale::Logarithmic => Ticks::Frequency(FrequencyUnit::RadPerSecond),
             Scale::Linear | Scale::Degrees => Ticks::Decimal(TICK_GAP),
         };
-        let mut across = PanelAxis::new(ticks, TICKS_HEIGHT);
-        across.spacing = spacing_across(ui, panel, self.palette);
+        let mut axis = PanelAxis::new(ticks, TICKS_HEIGHT);
+        axis.spacing = spacing_across(ui, panel, self.palette);
+        let is_last = self.number + 1 == self.scene.figure.plots[self.plot].panels.len();
         if is_last && !self.scene.is_compact {
-            across.thickness = LABELLED_HEIGHT;
-            across.label.clone_from(&panel.x.label);
+            axis.thickness = LABELLED_HEIGHT;
+            axis.label.clone_from(&panel.x.label);
         }
+        axis
+    }
+
+    /// Returns the vertical axis, with a label if it fits into `room` \[pt\].
+    fn vertical_axis(&self, ui: &Ui, room: f32, has_values: bool) -> PanelAxis {
         let gap = if self.scene.is_compact {
             COMPACT_TICK_GAP
         } else {
             TICK_GAP
         };
-        let mut values = PanelAxis::new(Ticks::Decimal(gap), VALUE_AXIS_WIDTH);
-        values.is_drawn = has_values;
+        let mut axis = PanelAxis::new(Ticks::Decimal(gap), VALUE_AXIS_WIDTH);
+        axis.is_drawn = has_values;
         if !self.scene.figure.shared.y {
-            let room = size.y - across.thickness;
-            values.label = label_within(ui, &panel.y.label, room, self.palette);
+            axis.label = label_within(ui, &self.panel().y.label, room, self.palette);
         }
-        (across, values)
+        axis
     }
 
     /// Returns the mark under the pointer: the nearest dot, or the column.

@@ -40,7 +40,7 @@ pub struct BodeView {
     /// Frequency under the pointer \[rad/s\].
     pub pointed_omega: Option<f64>,
     pub(super) last_clicked: Option<CurveId>,
-    /// Subject while the menu is open, and after.
+    /// Subject of the menu that is open or was open last.
     pub(super) menu_subject: Option<MenuSubject>,
     /// Whether a box is being drawn to select curves.
     pub(super) is_selecting: bool,

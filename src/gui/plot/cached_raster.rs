@@ -29,9 +29,9 @@ pub(super) struct StillScene {
 /// thousand curves dominates the time of a frame, although none of them moves with the pointer.
 ///
 /// ```text
-/// the scene is another than in the frame before:  lines are drawn; no image
-/// the same, and no image yet:                     the lines are filled once, into an image
-/// the same, with its image:                       one rectangle is drawn
+/// scene changed since the last frame:  draw the lines; drop the image
+/// same scene, no image yet:            fill the lines once, into an image
+/// same scene, with its image:          draw a rectangle
 /// ```
 #[derive(Clone, Default)]
 pub(super) struct CachedRaster {

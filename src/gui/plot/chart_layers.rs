@@ -16,8 +16,8 @@ const TOLERANCE: f64 = 0.1;
 const MOST_PIXELS: f64 = 10_000.0;
 const MARK_RADIUS: f32 = 3.0;
 
-/// Adds the chart's content to its panel. Lines and marks are egui_plot items, since it fits the
-/// ranges to them.
+/// Adds the chart's content to its panel. Lines and marks are items of egui_plot, because the
+/// panel fits its ranges to them.
 pub(super) fn add_layers(plot: &mut PlotUi<'_>, chart: &Chart<'_>, palette: &Palette) {
     if let Some(image) = &chart.image {
         add_image(plot, image);

@@ -18,8 +18,8 @@ pub(super) fn pixel_of(
     }
 }
 
-/// Returns the points, ascending in x, between `ends` and the next on either side, no finer than
-/// the pixels. All of them are finite.
+/// Returns the points between `ends` and the next on either side, no finer than the pixels. All
+/// `points` have to be finite and ascend in x.
 pub(super) fn thinned_between(points: &[[f64; 2]], ends: [f64; 2], pixel: Pixel) -> Vec<[f64; 2]> {
     let from = points
         .partition_point(|point| point[0] < ends[0])

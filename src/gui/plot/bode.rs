@@ -14,7 +14,7 @@ use super::bode_view::{BodeView, MenuSubject};
 use super::curve_layer::CurveLooks;
 use super::curve_menu::menu_ui;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
-use super::legend::{Chips, role_chips};
+use super::legend::{Chips, ChipsResponse, role_chips};
 use super::navigation::pressed_digit;
 use super::painter::use_frame_colors;
 use super::pane_scene::PaneScene;
@@ -63,10 +63,14 @@ pub fn bode_ui(
     let builder = UiBuilder::new().id_salt(scene.quantity.salt());
     ui.scope_builder(builder.max_rect(rect), |ui| {
         use_frame_colors(ui, palette);
-        let height = chips_ui(ui, rect, scene, view, palette, &mut events);
-        let layout = BodeLayout::new(rect.with_min_y(rect.top() + height), scene);
-        let has_focus = panes_ui(ui, &layout, &visible, view, palette, &mut events);
-        if has_focus && let Some(request) = pressed_role(ui, scene, palette) {
+        let chips = chips_ui(ui, rect, scene, view, palette);
+        events.extend(chips.event);
+        let layout = BodeLayout::new(rect.with_min_y(rect.top() + chips.height), scene);
+        let panes = panes_ui(ui, &layout, &visible, view, palette);
+        events.extend(panes.events);
+        if panes.has_focus
+            && let Some(request) = pressed_role(ui, scene, palette)
+        {
             events.push(BodeEvent::Display(request));
         }
         headings_ui(ui, &layout, &visible, view, palette);
@@ -84,15 +88,14 @@ fn pressed_role(ui: &Ui, scene: &BodeScene<'_>, palette: &Palette) -> Option<Dis
 }
 
 /// Draws the switches for all curves, including hidden curves, and the current restrictions on the
-/// plot; returns their height.
+/// plot.
 fn chips_ui(
     ui: &Ui,
     rect: Rect,
     scene: &BodeScene<'_>,
     view: &BodeView,
     palette: &Palette,
-    events: &mut Vec<BodeEvent>,
-) -> f32 {
+) -> ChipsResponse {
     let mut roles = role_chips(scene.curves, scene.hidden_roles, palette);
     let hovered = view.hovered.as_ref();
     if let Some(curve) = scene.curves.iter().find(|curve| Some(&curve.id) == hovered) {
@@ -111,9 +114,7 @@ fn chips_ui(
     if chips.width(ui) > rect.width() {
         chips.tighten();
     }
-    let shown = chips.ui(ui, rect, palette);
-    events.extend(shown.event);
-    shown.height
+    chips.ui(ui, rect, palette)
 }
 
 /// Returns whether a curve has a point that can be drawn.
@@ -123,19 +124,26 @@ fn has_data(curves: &[BodeCurve]) -> bool {
         .any(|curve| curve.points(Pane::Magnitude).any(|point| is_finite(&point)))
 }
 
-/// Draws both panes and handles their interaction; returns whether either has the focus.
+/// Panes as drawn.
+struct PanesResponse {
+    events: Vec<BodeEvent>,
+    /// Whether either pane has the focus.
+    has_focus: bool,
+}
+
+/// Draws both panes and handles their interaction.
 fn panes_ui(
     ui: &mut Ui,
     layout: &BodeLayout,
     scene: &BodeScene<'_>,
     view: &mut BodeView,
     palette: &Palette,
-    events: &mut Vec<BodeEvent>,
-) -> bool {
+) -> PanesResponse {
+    let mut events = Vec::new();
     let pointing = Pointing::find(ui, scene, view);
     let hit = pointing.and_then(|pointing| pointing.hit);
     let pointed = hit.map(|hit| scene.curves[hit.curve].id.clone());
-    set_hovered(view, pointed.clone(), events);
+    set_hovered(view, pointed.clone(), &mut events);
     view.pointed_omega = pointing.map(|pointing| 10f64.powf(pointing.log_omega));
     let cursor = match pointing {
         Some(pointing) => Some(pointing.log_omega),
@@ -161,11 +169,11 @@ fn panes_ui(
             palette,
         };
         let response = pane_ui(ui, pane_scene, view);
-        handle_click(pane, scene, &response, view, events);
+        handle_click(pane, scene, &response, view, &mut events);
         events.extend(band_handles_ui(ui, pane_scene, view));
         open_menu(&response, scene, pointing, view);
         has_focus |= response.has_focus();
-        menu_ui(&response, scene, view, palette, events);
+        menu_ui(&response, scene, view, palette, &mut events);
         response.on_hover_cursor(icon);
     }
     if let Some(selection) = view.selection.take()
@@ -174,7 +182,7 @@ fn panes_ui(
         let curves = touched(scene.curves, selection.pane, selection.area, transform);
         events.push(BodeEvent::Boxed(curves));
     }
-    has_focus
+    PanesResponse { events, has_focus }
 }
 
 /// Opens the menu for the curve, or for the empty ground, on a secondary click.

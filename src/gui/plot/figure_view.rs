@@ -11,7 +11,7 @@ use super::painter::use_frame_colors;
 use super::panel_text::message_ui;
 use super::picking::PointedMark;
 use super::questions::Questions;
-use super::tiles::{Tiles, tiles_ui};
+use super::tiles::{TiledArea, Tiles, tiles_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Strip at the left with the common vertical label \[pt\].
@@ -171,7 +171,13 @@ pub fn figure_within_ui(
             emphasized: hovered.as_ref().or(scene.highlighted.as_ref()),
             palette,
         };
-        tiles_ui(ui, "panels", inner, count, scene.least, |ui, plot, rect| {
+        let area = TiledArea {
+            name: "panels",
+            rect: inner,
+            count,
+            least: scene.least,
+        };
+        tiles_ui(ui, &area, |ui, plot, rect| {
             let shown = painter.plot_ui(ui, rect, plot, &mut view.plots[plot]);
             view.report(scene, plot, shown, &mut events);
         });

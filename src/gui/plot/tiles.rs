@@ -80,16 +80,28 @@ impl Tiles {
     }
 }
 
-/// Calls `tile_ui(ui, index, rect)` for each of `count` tiles in `rect`, with scroll bars if they
-/// do not fit.
+/// Tiles to be drawn into an area.
+pub(super) struct TiledArea {
+    /// Distinguishes the scroll bars from those of other areas.
+    pub(super) name: &'static str,
+    pub(super) rect: Rect,
+    pub(super) count: usize,
+    /// Least size of a tile \[pt\].
+    pub(super) least: Vec2,
+}
+
+/// Calls `tile_ui(ui, index, rect)` for each tile, with scroll bars if they do not fit.
 pub(super) fn tiles_ui(
     ui: &mut Ui,
-    name: &str,
-    rect: Rect,
-    count: usize,
-    least: Vec2,
+    area: &TiledArea,
     mut tile_ui: impl FnMut(&mut Ui, usize, Rect),
 ) {
+    let TiledArea {
+        name,
+        rect,
+        count,
+        least,
+    } = *area;
     let mut tiles = Tiles::arrange(count, rect.size(), least);
     let wanted = tiles.total_size();
     let fits = wanted.x <= rect.width() + 0.5 && wanted.y <= rect.height() + 0.5;

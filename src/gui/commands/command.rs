@@ -16,7 +16,7 @@ use crate::gui::panels::bars::Bar;
 use crate::gui::panels::cost_map::MappedCost;
 use crate::gui::panels::explanation::Sheet;
 use crate::gui::panels::start_page::OpensWith;
-use crate::gui::state::curve_display::CurveCommand;
+use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::state::display::ViewGroup;
 use crate::gui::views::assembling::AssemblingCommand;
 use crate::gui::views::records::RecordsCommand;

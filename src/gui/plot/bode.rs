@@ -5,12 +5,13 @@ use egui::{CursorIcon, Pos2, Rect, Response, Ui, UiBuilder, Vec2, vec2};
 use egui_plot::PlotTransform;
 
 use super::band_handles::band_handles_ui;
-use super::bode_event::{BodeEvent, DisplayRequest};
+use super::bode_event::BodeEvent;
 use super::bode_headings::headings_ui;
 use super::bode_layout::BodeLayout;
 use super::bode_pane::pane_ui;
 use super::bode_scene::BodeScene;
 use super::bode_view::{BodeView, MenuSubject};
+use super::curve_command::CurveCommand;
 use super::curve_layer::CurveLooks;
 use super::curve_menu::menu_ui;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
@@ -80,11 +81,11 @@ pub fn bode_ui(
 }
 
 /// Returns the request for a pressed digit: it switches the chip with this number.
-fn pressed_role(ui: &Ui, scene: &BodeScene<'_>, palette: &Palette) -> Option<DisplayRequest> {
+fn pressed_role(ui: &Ui, scene: &BodeScene<'_>, palette: &Palette) -> Option<CurveCommand> {
     let digit = pressed_digit(ui)?;
     let chips = role_chips(scene.curves, scene.hidden_roles, palette);
     let chip = chips.get(digit - 1)?;
-    Some(DisplayRequest::ToggleRole(chip.role))
+    Some(CurveCommand::ToggleRole(chip.role))
 }
 
 /// Draws the switches for all curves, including hidden curves, and the current restrictions on the

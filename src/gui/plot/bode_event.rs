@@ -1,6 +1,6 @@
 //! Bode events: gestures and menu entries, as requests to the owner.
 
-use super::curve_style::Role;
+use super::curve_command::CurveCommand;
 use super::drawn_curves::CurveId;
 
 /// Event in a Bode plot.
@@ -21,7 +21,7 @@ pub enum BodeEvent {
     /// The band was released after dragging.
     BandReleased,
     /// Another display of curves, or marks at frequencies, were requested.
-    Display(DisplayRequest),
+    Display(CurveCommand),
     /// The model is to be rejected, with a reason.
     RejectedBecause(CurveId, String),
     /// An entry of a curve's menu was chosen.
@@ -30,23 +30,6 @@ pub enum BodeEvent {
     Boxed(Vec<CurveId>),
     /// A chip was clicked; the argument is its index.
     ChipClicked(usize),
-}
-
-/// Request to change how curves are shown.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum DisplayRequest {
-    /// Hides or shows the curves of a role.
-    ToggleRole(Role),
-    /// Draws the curves of this role alone; repeated, draws all of them.
-    ShowRoleAlone(Role),
-    /// Draws the curves of this role above all others; repeated, restores the usual order.
-    RaiseRole(Role),
-    /// Shows or hides the identified models' bands.
-    ShowBands(bool),
-    /// Marks a frequency \[rad/s\].
-    PinCursor(f64),
-    /// Removes the marked frequencies.
-    UnpinCursors,
 }
 
 /// Action on a curve.

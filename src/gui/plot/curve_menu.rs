@@ -5,9 +5,10 @@ use egui::{
     WidgetInfo,
 };
 
-use super::bode_event::{BodeEvent, CurveWish, DisplayRequest};
+use super::bode_event::{BodeEvent, CurveWish};
 use super::bode_scene::BodeScene;
 use super::bode_view::BodeView;
+use super::curve_command::CurveCommand;
 use super::curve_style::Role;
 use super::drawn_curves::{BodeCurve, CurveId};
 use super::quantity::{BodeQuantity, PhaseUnit};
@@ -184,10 +185,10 @@ fn ground_menu_ui(
         "Mark frequency",
         "Mark this frequency; two marks show the change between them",
     ) {
-        events.push(BodeEvent::Display(DisplayRequest::PinCursor(omega)));
+        events.push(BodeEvent::Display(CurveCommand::PinCursor(omega)));
     }
     let has_marks = !(scene.pinned.is_empty() && scene.crossings.is_empty());
     if has_marks && entry_ui(ui, "Remove marks", "Remove all frequency marks") {
-        events.push(BodeEvent::Display(DisplayRequest::UnpinCursors));
+        events.push(BodeEvent::Display(CurveCommand::UnpinCursors));
     }
 }

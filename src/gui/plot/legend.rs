@@ -10,7 +10,8 @@ use egui::{
 
 use gdcm_plot::figure::drawing::Dash;
 
-use super::bode_event::{BodeEvent, DisplayRequest};
+use super::bode_event::BodeEvent;
+use super::curve_command::CurveCommand;
 use super::curve_style::{CurveStyle, Role};
 use super::drawn_curves::BodeCurve;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
@@ -170,7 +171,7 @@ impl Chips<'_> {
         if let Some(shown) = self.bands
             && self.bands_chip_ui(ui, &mut row, shown, palette)
         {
-            event = Some(BodeEvent::Display(DisplayRequest::ShowBands(!shown)));
+            event = Some(BodeEvent::Display(CurveCommand::ShowBands(!shown)));
         }
         for (index, chip) in self.states.iter().enumerate() {
             let face = ChipFace {
@@ -199,7 +200,7 @@ impl Chips<'_> {
         row: &mut Row,
         chip: &RoleChip,
         palette: &Palette,
-    ) -> Option<DisplayRequest> {
+    ) -> Option<CurveCommand> {
         let face = ChipFace {
             text: &chip.text,
             name: &format!("Show {}{}", chip.role.name(), self.plot),
@@ -217,11 +218,11 @@ impl Chips<'_> {
         }
         let modifiers = ui.input(|input| input.modifiers);
         Some(if modifiers.alt {
-            DisplayRequest::ShowRoleAlone(chip.role)
+            CurveCommand::ShowRoleAlone(chip.role)
         } else if modifiers.shift {
-            DisplayRequest::RaiseRole(chip.role)
+            CurveCommand::RaiseRole(chip.role)
         } else {
-            DisplayRequest::ToggleRole(chip.role)
+            CurveCommand::ToggleRole(chip.role)
         })
     }
 

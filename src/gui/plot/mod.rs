@@ -31,6 +31,7 @@ pub mod chart;
 mod chart_layers;
 pub mod chart_view;
 mod coherence_strip;
+pub mod curve_command;
 mod curve_layer;
 mod curve_menu;
 pub mod curve_style;

@@ -10,7 +10,7 @@ use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use super::window_state::State;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::command_table::{Entry, Menu};
-use crate::gui::plot::bode_event::DisplayRequest;
+use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::plot::{CurveId, Role};
 use crate::gui::widgets::palette::{CurveColors, PlotStyle};
@@ -62,58 +62,6 @@ impl Default for CurveDisplay {
             selected: BTreeSet::new(),
             shows_bands: false,
             raised: None,
-        }
-    }
-}
-
-/// Request to change how curves are shown.
-#[derive(Clone, Debug, PartialEq)]
-pub enum CurveCommand {
-    /// Changes the unit of magnitudes.
-    ReadMagnitudes(MagnitudeUnit),
-    /// Changes the form of phases.
-    DrawPhases(PhaseUnit),
-    /// Changes the form of phase differences.
-    DrawPhaseErrors(PhaseErrorUnit),
-    /// Hides or shows the curves of a role.
-    ToggleRole(Role),
-    /// Draws the curves of this role alone; repeated, draws all of them.
-    ShowRoleAlone(Role),
-    /// Draws the curves of this role above all others; repeated, restores the usual order.
-    RaiseRole(Role),
-    /// Shows or hides the bands of the identified models.
-    ShowBands(bool),
-    /// Hides a model.
-    HideModel(ModelId),
-    /// Shows every model, and the roles shown by default.
-    ShowHidden,
-    /// Shifts the phase of a curve by whole turns: condition, response, curve, turns up.
-    Turn(ConditionId, Pair, CurveId, i32),
-    /// Highlights a frequency \[rad/s\] in every plot; repeated in each frame.
-    PointAt(f64),
-    /// Marks a frequency \[rad/s\]; a third mark replaces the first.
-    PinCursor(f64),
-    /// Sets the frequencies, with their names, that define the bandwidth of the displayed response.
-    MarkCrossings(Vec<(&'static str, f64)>),
-    /// Removes the marked frequencies.
-    UnpinCursors,
-    /// Shows or hides the list of values at the cursor.
-    ListValues(bool),
-    /// Shows or hides the envelopes of maximum unnoticeable added dynamics in the plot of errors.
-    ShowMuad(bool),
-    /// Selects these models instead of the current selection.
-    Select(BTreeSet<ModelId>),
-}
-
-impl From<DisplayRequest> for CurveCommand {
-    fn from(request: DisplayRequest) -> Self {
-        match request {
-            DisplayRequest::ToggleRole(role) => Self::ToggleRole(role),
-            DisplayRequest::ShowRoleAlone(role) => Self::ShowRoleAlone(role),
-            DisplayRequest::RaiseRole(role) => Self::RaiseRole(role),
-            DisplayRequest::ShowBands(wanted) => Self::ShowBands(wanted),
-            DisplayRequest::PinCursor(omega) => Self::PinCursor(omega),
-            DisplayRequest::UnpinCursors => Self::UnpinCursors,
         }
     }
 }

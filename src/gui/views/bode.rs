@@ -22,11 +22,11 @@ use crate::gui::commands::command::Command;
 use crate::gui::panels::settings_panel::choice_ui;
 use crate::gui::plot::bode_event::BodeEvent;
 use crate::gui::plot::bode_scene::{BodeBand, InvalidRegion, PaneNote};
+use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::overview::{OverviewCell, OverviewEvent, OverviewScene, overview_ui};
 use crate::gui::plot::pointed_curve::pointed_words;
 use crate::gui::plot::quantity::{BodeQuantity, PhaseErrorUnit, ResponsePlace};
 use crate::gui::plot::{BodeCurve, BodeScene, CurveId, Pane, Role, bode_ui};
-use crate::gui::state::curve_display::CurveCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 

@@ -18,13 +18,13 @@ use gdcm_study::decisions::setting;
 use super::compare::overlaid_analysis;
 use crate::gui::commands::command::Command;
 use crate::gui::plot::bode_event::{BodeEvent, CurveWish};
+use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::drawn_curves::PANES;
 use crate::gui::plot::legend::Chip;
 use crate::gui::plot::pointed_curve::pointed_words;
 use crate::gui::plot::quantity::{BodeQuantity, ValueUnit};
 use crate::gui::plot::readout::{Readout, ReadoutCell};
 use crate::gui::plot::{BodeCurve, BodeScene, BodeView, CurveId, Pane, Role, bode_ui};
-use crate::gui::state::curve_display::CurveCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 
@@ -97,7 +97,7 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
             .ok()
             .map(|band| setting::BAND.to(band).into()),
         BodeEvent::BandReleased => Some(Command::EndEdit),
-        BodeEvent::Display(request) => Some(CurveCommand::from(request).into()),
+        BodeEvent::Display(command) => Some(command.into()),
         BodeEvent::RejectedBecause(CurveId::Model(model), reason) => {
             Some(Edit::RejectBecause { model, reason }.into())
         }

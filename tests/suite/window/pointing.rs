@@ -100,7 +100,7 @@ fn marked_frequencies_are_named_over_the_plot_and_not_over_its_curves() {
     let marks = vec![("ω180", 4.0)];
     give(
         &mut window,
-        gdcm::gui::state::curve_display::CurveCommand::MarkCrossings(marks),
+        gdcm::gui::plot::curve_command::CurveCommand::MarkCrossings(marks),
     );
     let chip = window.get_by_label_contains("ω180 4.0").rect();
     let frame = *state(&window)

@@ -3,7 +3,8 @@ use std::collections::BTreeSet;
 use egui::vec2;
 
 use super::*;
-use crate::gui::plot::bode_event::{BodeEvent, CurveWish, DisplayRequest};
+use crate::gui::plot::bode_event::{BodeEvent, CurveWish};
+use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::widgets::palette::{self, Palette};
 
 pub(super) struct Model {
@@ -448,11 +449,11 @@ fn a_chip_with_alt_shows_its_role_alone_and_with_shift_in_front() {
     for (modifiers, event) in [
         (
             Modifiers::ALT,
-            BodeEvent::Display(DisplayRequest::ShowRoleAlone(Role::Nominal)),
+            BodeEvent::Display(CurveCommand::ShowRoleAlone(Role::Nominal)),
         ),
         (
             Modifiers::SHIFT,
-            BodeEvent::Display(DisplayRequest::RaiseRole(Role::Nominal)),
+            BodeEvent::Display(CurveCommand::RaiseRole(Role::Nominal)),
         ),
     ] {
         harness.event(Event::ModifiersChanged(modifiers));
@@ -471,7 +472,7 @@ fn every_role_has_a_switch_and_a_hidden_curve_is_neither_drawn_nor_picked() {
     harness.run();
     assert_eq!(
         harness.state().events,
-        [BodeEvent::Display(DisplayRequest::ToggleRole(
+        [BodeEvent::Display(CurveCommand::ToggleRole(
             Role::Perturbed
         ))]
     );
@@ -536,7 +537,7 @@ fn a_secondary_click_on_the_ground_marks_the_frequency_there() {
     harness.get_by_label("Mark frequency").click();
     harness.run();
     let marked = harness.state().events.iter().find_map(|event| match event {
-        BodeEvent::Display(DisplayRequest::PinCursor(omega)) => Some(*omega),
+        BodeEvent::Display(CurveCommand::PinCursor(omega)) => Some(*omega),
         _ => None,
     });
     assert!(

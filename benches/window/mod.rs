@@ -44,7 +44,7 @@ impl Window {
 
     /// How many curves of how many points the large plot holds.
     pub fn curves_drawn(&self) -> String {
-        let drawn = &self.harness.state().state().display.drawn;
+        let drawn = &self.harness.state().state().display.frequency.drawn;
         let points = drawn.first().map_or(0, |curve| curve.omega.len());
         format!("{} curves of {points} points", drawn.len())
     }

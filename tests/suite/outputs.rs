@@ -6,7 +6,7 @@ use std::path::Path;
 
 use egui_kittest::kittest::Queryable;
 
-use gdcm::gui::state::window_state::NoticeKind;
+use gdcm::gui::state::notices::NoticeKind;
 use gdcm_io::{load_dataset, save_study};
 use gdcm_study::Study;
 

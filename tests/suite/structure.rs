@@ -104,6 +104,11 @@ const MAY_NOT_NAME: &[(&str, &[&str])] = &[
     ("executor.rs", &["crate::"]),
 ];
 
+/// Folders of the window from the bottom up: each names only those before it.
+const GUI_FOLDERS: &[&str] = &[
+    "widgets", "plot", "state", "commands", "views", "panels", "app",
+];
+
 pub(super) fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -226,6 +231,36 @@ fn drawing_names_no_files_and_the_commands_no_window() {
         }
         assert!(files > 0, "{folder} is there");
     }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn every_folder_of_the_window_imports_only_folders_before_it() {
+    let mut wrong = Vec::new();
+    let mut seen = 0;
+    for (_, path, code) in modules("") {
+        let parts: Vec<&str> = path
+            .iter()
+            .map(|part| part.to_str().unwrap().trim_end_matches(".rs"))
+            .collect();
+        if parts[0] != "gui" || parts[1] == "mod" {
+            continue;
+        }
+        let rank = |folder: &str| GUI_FOLDERS.iter().position(|known| *known == folder);
+        let own = rank(parts[1]).unwrap_or_else(|| panic!("gui/{} is not listed", parts[1]));
+        for (at, prefix) in code.match_indices("crate::gui::") {
+            let named: String = code[at + prefix.len()..]
+                .chars()
+                .take_while(|c| c.is_ascii_alphanumeric() || *c == '_')
+                .collect();
+            seen += 1;
+            // A path that names no folder, such as `crate::gui::{`, escapes this test.
+            if rank(&named).is_none_or(|place| place > own) {
+                wrong.push(format!("{} names gui::{named}", path.display()));
+            }
+        }
+    }
+    assert!(seen > 300, "the imports were found: {seen}");
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 

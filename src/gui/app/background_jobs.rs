@@ -20,8 +20,11 @@ use super::GdcmApp;
 use super::job_queue::JobQueue;
 use super::threads::{Fault, ReplySender};
 use crate::executor::Pool;
-use crate::gui::state::window_state::{Background, FirstResult, State};
-use crate::gui::views::{Need, View, are_couplings_judged, couplings_job, overlay_job};
+use crate::gui::state::results::{Background, FirstResult};
+use crate::gui::state::view::View;
+use crate::gui::state::window_state::State;
+use crate::gui::views::need::Need;
+use crate::gui::views::{are_couplings_judged, couplings_job, overlay_job, view_content};
 
 /// Creates an engine, at the start and after a panic, which may leave its caches inconsistent.
 pub type EngineMaker = Arc<dyn Fn() -> Engine + Send + Sync>;
@@ -109,7 +112,10 @@ impl BackgroundJobs {
         let answers = JobKind {
             tell: |queue, background| background.analysis = queue.progress(),
             withdraw: Some(GdcmApp::answer_stopped),
-            ..JobKind::new(|app| app.asked.iter().cloned().collect(), GdcmApp::answered)
+            ..JobKind::new(
+                |app| app.work.asked.iter().cloned().collect(),
+                GdcmApp::answered,
+            )
         };
         let curves = JobKind {
             tell: |queue, background| background.curves = queue.progress(),
@@ -275,7 +281,7 @@ impl BackgroundJobs {
             tell: |queue, background| background.report = queue.progress(),
             withdraw: Some(GdcmApp::give_up_report),
             ..JobKind::new(
-                |app| app.reporting.iter().cloned().collect(),
+                |app| app.work.reporting.iter().cloned().collect(),
                 GdcmApp::report_written,
             )
         };
@@ -334,20 +340,20 @@ impl GdcmApp {
         let state = &self.state;
         let shown = View::ALL
             .into_iter()
-            .filter(|view| state.display.arrangement.is_shown(*view));
-        let of_views = shown.flat_map(|view| (view.kind().needs)(state));
+            .filter(|view| state.display.layout.arrangement.is_shown(*view));
+        let of_views = shown.flat_map(|view| (view_content(view).needs)(state));
         let judged = are_couplings_judged(state).then(|| Need::Couplings(couplings_job(state)));
-        self.needs = of_views
+        self.work.needs = of_views
             .chain(overlay_job(state).map(Need::Variant))
             .chain(judged)
             .collect();
-        let kinds = Rc::clone(&self.jobs.kinds);
+        let kinds = Rc::clone(&self.work.jobs.kinds);
         kinds.iter().for_each(|kind| kind.want(self));
     }
 
     /// Stops every job.
     pub(super) fn stop_jobs(&mut self) {
-        let kinds = Rc::clone(&self.jobs.kinds);
+        let kinds = Rc::clone(&self.work.jobs.kinds);
         kinds.iter().for_each(|kind| kind.stop(self));
     }
 }
@@ -382,7 +388,7 @@ fn pool() -> Box<dyn Executor> {
 
 /// Returns the jobs of one kind needed by the visible views.
 fn needed<J: Clone>(app: &GdcmApp, of: fn(&Need) -> Option<&J>) -> Vec<J> {
-    app.needs.iter().filter_map(of).cloned().collect()
+    app.work.needs.iter().filter_map(of).cloned().collect()
 }
 
 /// Drops the kept outputs of jobs that are not in `jobs`; returns `jobs`.

@@ -7,61 +7,23 @@ use gdcm_io::files::study_file::{STUDY_EXTENSION, holds_models, open_study_of};
 use gdcm_io::files::user_state::{add_recent_file, recent_files};
 use gdcm_io::formats::variables::ReadingBudget;
 use gdcm_io::output_set::OutputSet;
-use gdcm_io::source::{at_home, file_exists};
+use gdcm_io::source::file_exists;
 use gdcm_io::{Existing, FileError, LoadedDataset, Opened, embedded_example, load_any, save_study};
 use gdcm_model::message_text::{sanitized, sanitized_path};
-use gdcm_study::Study;
 use gdcm_study::decisions::differences::Difference;
 
 use super::GdcmApp;
+use super::dialogs::{DialogPurpose, PendingAction};
+use super::document_files::{ReadFor, SavedStudy};
 use super::threads::caught;
-use crate::gui::commands::command::{Command, FormKind, RequirementTable};
-use crate::gui::panels::bars::Bar;
-use crate::gui::state::display::Preferences;
+use crate::gui::commands::assembling::AssemblingCommand;
+use crate::gui::commands::command::Command;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::state::forms::{FormKind, RequirementTable};
+use crate::gui::state::notices::Bar;
+use crate::gui::state::preferences::Preferences;
 use crate::gui::state::window_state::{RecentFile, State};
-use crate::gui::views::assembling::AssemblingCommand;
-use crate::gui::views::records::RecordsCommand;
-
-/// The study as last saved.
-#[derive(Clone, Debug)]
-pub(super) struct SavedStudy {
-    /// Path of the file; `None` for a new study.
-    pub(super) path: Option<PathBuf>,
-    /// The saved study, or the initial state of a new one; `None` for restored decisions.
-    pub(super) study: Option<Study>,
-}
-
-/// Purpose of reading a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ReadFor {
-    /// Shown instead of the open study.
-    Opening,
-    /// Replaces the open dataset, which was read from the same file earlier.
-    Reloading,
-    /// Continues unsaved decisions; holds the number of the offer.
-    Restoring(usize),
-}
-
-/// Purpose of a file dialog.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum DialogPurpose {
-    Open,
-    SaveStudy,
-    ExportFolder,
-    ModelFolder,
-    RecordFolder,
-    RequirementTable(RequirementTable),
-}
-
-/// Action postponed until the engineer confirms that unsaved decisions may be lost.
-#[derive(Debug)]
-pub(super) enum PendingAction {
-    /// Shows a file that was read successfully.
-    Show(ReadFor, Box<Opened>),
-    /// Returns to the start page and closes everything that is open.
-    Close,
-    Quit,
-}
 
 impl GdcmApp {
     /// Returns the initial state, dataset and saved study with which the window shows `opened`.
@@ -101,27 +63,27 @@ impl GdcmApp {
         state.bars = std::mem::take(&mut self.state.bars);
         state.bars.retain(|bar| matches!(bar, Bar::Recovery { .. }));
         self.state = state;
-        self.record_reader.give_up();
+        self.readers.record_reader.give_up();
         // Request numbers continue, so that late answers about the old dataset can be recognised.
         self.state.results.requested = requested;
         self.state.results.received = requested;
-        self.loaded = loaded;
-        self.earlier.clear();
-        self.saved = saved;
+        self.files.loaded = loaded;
+        self.files.earlier.clear();
+        self.files.saved = saved;
         self.keep_unsaved();
         self.done(format!("opened {name}"));
     }
 
     /// Puts the open study, or else the open dataset, first in the list of recent files.
     pub(super) fn look_for_recent(&self) {
-        let dataset = || self.loaded.path().map(Path::to_owned);
-        self.read_recent(self.saved.path.clone().or_else(dataset));
+        let dataset = || self.files.loaded.path().map(Path::to_owned);
+        self.read_recent(self.files.saved.path.clone().or_else(dataset));
     }
 
     /// Reads the list of recent files and checks which of them exist; puts `newest` first. Runs in
     /// its own thread, because a network drive may be slow.
     pub(super) fn read_recent(&self, newest: Option<PathBuf>) {
-        let Some(directory) = self.directory.clone() else {
+        let Some(directory) = self.files.directory.clone() else {
             return;
         };
         let read = move || -> Result<Vec<RecentFile>, FileError> {
@@ -141,8 +103,8 @@ impl GdcmApp {
     /// Opens a dataset or a study; the open study stays until the file is read. `moved` is the new
     /// path of a study's dataset.
     pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>) {
-        let path = self.at_home(path);
-        let moved = moved.map(|dataset| self.at_home(dataset));
+        let path = self.files.at_home(path);
+        let moved = moved.map(|dataset| self.files.at_home(dataset));
         if path.extension().is_some() && holds_models(&path) {
             let path = sanitized_path(&path);
             return self.notify_error(format!(
@@ -150,6 +112,7 @@ impl GdcmApp {
             ));
         }
         let lost = self
+            .recovery
             .offers
             .iter()
             .position(|lost| lost.as_ref().is_some_and(|lost| lost.path() == path));
@@ -171,10 +134,10 @@ impl GdcmApp {
         read: impl FnOnce(&ReadingBudget<'_>) -> Result<Opened, FileError> + Send + 'static,
     ) {
         self.state.opening = Some(name);
-        let (number, stop) = self.opener.begin();
+        let (number, stop) = self.readers.opener.begin();
         let read = move || read(&ReadingBudget::default().stopped_by(stop));
         self.in_thread("the reading of a file", read, move |app, opened| {
-            if !app.opener.is_newest(number) {
+            if !app.readers.opener.is_newest(number) {
                 return;
             }
             app.state.opening = None;
@@ -222,22 +185,22 @@ impl GdcmApp {
 
     /// Asks whether unsaved decisions may be lost to the postponed action.
     pub(super) fn ask_to_lose(&mut self, postponed: PendingAction) {
-        self.postponed = Some(postponed);
-        self.goes_on_once_saved = false;
+        self.dialogs.postponed = Some(postponed);
+        self.dialogs.goes_on_once_saved = false;
         self.state.forms.shown = Some(FormKind::Unsaved);
     }
 
     /// Saves the study, then carries out the action postponed until it is saved.
     pub(super) fn save_and_go_on(&mut self) {
         self.state.forms.shown = None;
-        self.goes_on_once_saved = true;
+        self.dialogs.goes_on_once_saved = true;
         self.save();
     }
 
     /// Carries out the action postponed because of unsaved decisions.
     pub(super) fn go_on(&mut self) {
-        self.goes_on_once_saved = false;
-        match self.postponed.take() {
+        self.dialogs.goes_on_once_saved = false;
+        match self.dialogs.postponed.take() {
             Some(PendingAction::Show(purpose, opened)) => self.show_read(purpose, *opened),
             Some(PendingAction::Close) => self.close_study(),
             Some(PendingAction::Quit) => self.quit(),
@@ -259,14 +222,14 @@ impl GdcmApp {
 
     /// Opens a file dialog of the desktop unless one is open; a save dialog proposes `file_name`.
     pub(super) fn ask_path(&mut self, purpose: DialogPurpose, file_name: String) {
-        if self.dialog_open {
+        if self.dialogs.dialog_open {
             return;
         }
-        self.dialog_open = true;
+        self.dialogs.dialog_open = true;
         // A desktop without dialogs counts as a dialog closed without a choice.
         let ask = move || caught(|| dialog(purpose, &file_name)).ok().flatten();
         self.in_thread("the dialog", ask, move |app, chosen| {
-            app.dialog_open = false;
+            app.dialogs.dialog_open = false;
             match chosen.flatten() {
                 Some(path) => app.path_chosen(purpose, path),
                 None => app.nothing_chosen(purpose),
@@ -304,7 +267,7 @@ impl GdcmApp {
         match purpose {
             DialogPurpose::Open => self.state.forms.shown = Some(FormKind::Open),
             DialogPurpose::SaveStudy => {
-                *self.state.forms.typed_in(FormKind::Save) = self.proposed_name();
+                *self.state.forms.typed_in(FormKind::Save) = self.files.proposed_name();
                 self.state.forms.shown = Some(FormKind::Save);
             }
             DialogPurpose::RequirementTable(table) => {
@@ -318,75 +281,54 @@ impl GdcmApp {
 
     /// Saves the study to its own file, or asks for a path.
     pub(super) fn save(&mut self) {
-        match self.saved.path.clone() {
+        match self.files.saved.path.clone() {
             Some(path) => self.save_as(path, Existing::Replace),
-            None => self.ask_path(DialogPurpose::SaveStudy, self.proposed_name()),
+            None => self.ask_path(DialogPurpose::SaveStudy, self.files.proposed_name()),
         }
     }
 
     /// Saves the study to a file. Asks before overwriting a file other than the study's own, unless
     /// the engineer has already agreed.
     pub(super) fn save_as(&mut self, path: PathBuf, existing: Existing) {
-        let path = with_study_extension(self.at_home(path));
-        let is_own = self.saved.path.as_ref() == Some(&path);
+        let path = with_study_extension(self.files.at_home(path));
+        let is_own = self.files.saved.path.as_ref() == Some(&path);
         let place = OutputSet::new(
             if is_own { Existing::Replace } else { existing },
             Vec::new(),
         );
         match place
             .check(&[&path])
-            .and_then(|()| save_study(&self.state.study, &self.loaded, &path))
+            .and_then(|()| save_study(&self.state.study, &self.files.loaded, &path))
         {
             Ok(()) => {
                 self.state.forms.shown = None;
                 self.state.study_name = study_name(Some(&path));
                 self.state.unsaved = false;
                 self.done(format!("saved {}", sanitized_path(&path)));
-                self.saved = SavedStudy {
+                self.files.saved = SavedStudy {
                     path: Some(path),
                     study: Some(self.state.study.clone()),
                 };
                 self.keep_unsaved();
                 self.look_for_recent();
-                if self.goes_on_once_saved {
+                if self.dialogs.goes_on_once_saved {
                     self.go_on();
                 }
             }
             Err(FileError::Exists { paths }) => {
                 *self.state.forms.typed_in(FormKind::Save) = path.display().to_string();
-                self.ask_to_overwrite(&paths, FormKind::Save, Command::SaveStudyAs(path));
+                self.ask_to_overwrite(
+                    &paths,
+                    FormKind::Save,
+                    Command::File(FileCommand::SaveStudyAs(path)),
+                );
             }
             Err(error) => {
-                self.goes_on_once_saved = false;
-                self.postponed = None;
+                self.dialogs.goes_on_once_saved = false;
+                self.dialogs.postponed = None;
                 self.notify_error(error.to_string());
             }
         }
-    }
-
-    /// Expands `~` in a typed path to the home directory.
-    pub(super) fn at_home(&self, typed: PathBuf) -> PathBuf {
-        at_home(&typed, self.home.as_deref())
-    }
-
-    /// Returns a proposed file name for the study.
-    pub(super) fn proposed_name(&self) -> String {
-        if let Some(path) = &self.saved.path {
-            return path.display().to_string();
-        }
-        format!("{}.{STUDY_EXTENSION}", self.stem())
-    }
-
-    /// Returns the stem of the names of files about the dataset.
-    pub(super) fn stem(&self) -> String {
-        let stem = self
-            .loaded
-            .path()
-            .and_then(Path::file_stem)
-            .map(|stem| stem.to_string_lossy().into_owned());
-        stem.unwrap_or_else(|| "example".to_owned())
-            .trim_end_matches(".json")
-            .to_owned()
     }
 }
 

@@ -6,9 +6,10 @@ use std::cmp::Reverse;
 use egui::{Context, Event, Key, KeyboardShortcut, Plugin, Popup, RawInput};
 
 use crate::gui::commands::command::Command;
-use crate::gui::commands::command_table::{Entry, Reach, command_table};
-use crate::gui::state::focus::was_focused;
+use crate::gui::commands::command_table::command_table;
+use crate::gui::commands::entry::{Entry, Reach};
 use crate::gui::state::window_state::State;
+use crate::gui::widgets::focus::was_focused;
 
 /// Returns the commands of the keys pressed since the last frame.
 pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {

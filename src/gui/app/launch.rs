@@ -21,14 +21,14 @@ use gdcm_study::Engine;
 use gdcm_study::stages::engine::LIVE_PROOF;
 
 use super::recovery::{Autosave, LAST_WAIT, end_words};
-use super::threads::{self, Fault, caught};
+use super::threads::{Fault, caught};
 use super::window::PREFERENCES;
-use super::{EngineMaker, GdcmApp};
+use super::{EngineMaker, GdcmApp, threads};
 use crate::executor::{Pool, start_threads};
-use crate::gui::commands::command::Command;
-use crate::gui::panels::start_page::OpensWith;
-use crate::gui::state::display::Preferences;
-use crate::gui::views::assembling::AssemblingCommand;
+use crate::gui::commands::assembling::AssemblingCommand;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::state::opens_with::OpensWith;
+use crate::gui::state::preferences::Preferences;
 
 /// Application id on the desktop, and name of the data directory.
 pub(super) const APP_ID: &str = "gdcm";
@@ -212,12 +212,12 @@ fn run(
         let last = last_opened(&setup).filter(|_| is_unasked);
         let mut app = GdcmApp::with(&creation.egui_ctx, opened, setup)?;
         if let Some(path) = last {
-            app.dispatch(Command::Open(path));
+            app.dispatch(FileCommand::Open(path));
         }
         if let Some(models) = models {
-            app.dispatch(AssemblingCommand::Add(vec![models]).into());
+            app.dispatch(AssemblingCommand::Add(vec![models]));
         }
-        app.drawn = opening;
+        app.recovery.drawn = opening;
         Ok(Box::new(app))
     };
     eframe::run_native(APP_ID, options, Box::new(build))

@@ -16,10 +16,11 @@ use gdcm_model::assembly::Rules;
 use gdcm_model::message_text::sanitized_path;
 
 use super::GdcmApp;
-use super::files::DialogPurpose;
+use super::dialogs::DialogPurpose;
 use super::threads::ReplySender;
-use crate::gui::commands::command::FormKind;
-use crate::gui::views::assembling::{AssemblingCommand, AssemblyState, Reading};
+use crate::gui::commands::assembling::AssemblingCommand;
+use crate::gui::state::assembling::{AssemblyState, Reading};
+use crate::gui::state::forms::FormKind;
 
 /// Bytes of values between two progress reports while a file is read.
 const TOLD_EVERY: u64 = 16 << 20;
@@ -55,7 +56,7 @@ impl Teller {
                 .state
                 .assembling
                 .as_mut()
-                .filter(|_| app.models.is_newest(number))
+                .filter(|_| app.readers.models.is_newest(number))
             {
                 change(&mut bench.reading);
             }
@@ -98,17 +99,20 @@ impl GdcmApp {
         match command {
             AssemblingCommand::Open => {}
             AssemblingCommand::Close => {
-                self.models.give_up();
+                self.readers.models.give_up();
                 self.state.assembling = None;
             }
             AssemblingCommand::AskFolder => {
                 self.ask_path(DialogPurpose::ModelFolder, String::new())
             }
             AssemblingCommand::Add(paths) => {
-                let paths = paths.into_iter().map(|path| self.at_home(path)).collect();
+                let paths = paths
+                    .into_iter()
+                    .map(|path| self.files.at_home(path))
+                    .collect();
                 self.read_models(Sources::More(paths));
             }
-            AssemblingCommand::StopReading => self.models.stop(),
+            AssemblingCommand::StopReading => self.readers.models.stop(),
             AssemblingCommand::Change(rules) => bench.change(*rules),
             AssemblingCommand::Undo => bench.undo(),
             AssemblingCommand::Redo => bench.redo(),
@@ -129,10 +133,10 @@ impl GdcmApp {
     /// Reads models in a thread; tables are read with the headings given for them.
     fn read_models(&mut self, sources: Sources) {
         let headings = self.said().map(|rules| rules.headings).unwrap_or_default();
-        let (number, stop) = self.models.begin();
+        let (number, stop) = self.readers.models.begin();
         let teller = Teller {
             number,
-            replies: self.replies.clone(),
+            replies: self.work.replies.clone(),
             stop,
             told: Cell::new(0),
         };
@@ -148,7 +152,7 @@ impl GdcmApp {
                 .state
                 .assembling
                 .as_mut()
-                .filter(|_| app.models.is_newest(number))
+                .filter(|_| app.readers.models.is_newest(number))
             else {
                 return;
             };
@@ -166,7 +170,7 @@ impl GdcmApp {
         };
         let paths = match sources {
             Sources::More(paths) => paths,
-            Sources::Again(_) if self.models.is_stopped() => {
+            Sources::Again(_) if self.readers.models.is_stopped() => {
                 return self.done("stopped: the models are those that were read before".to_owned());
             }
             Sources::Again(paths) => {
@@ -203,7 +207,7 @@ impl GdcmApp {
     }
 
     fn take_rules(&mut self, path: PathBuf) {
-        let path = self.at_home(path);
+        let path = self.files.at_home(path);
         let Some((rules, cautions)) = self.unless_error(load_rules(&path)) else {
             return;
         };
@@ -230,7 +234,7 @@ impl GdcmApp {
     /// Writes the rules; asks before overwriting a file.
     fn save_rules(&mut self, path: PathBuf) {
         let Some(rules) = self.said() else { return };
-        let path = self.at_home(path);
+        let path = self.files.at_home(path);
         let saved = self.write_all(&[], |outputs| add_rules(&rules, &path, outputs));
         self.saved_to(
             saved,
@@ -245,7 +249,7 @@ impl GdcmApp {
         let Some(bench) = &self.state.assembling else {
             return;
         };
-        let path = self.at_home(path);
+        let path = self.files.at_home(path);
         let folder = relative_folder(sources_folder(&bench.sources), &path);
         let Some(dataset) = bench.assembly().dataset(&folder) else {
             return self.notify_error(

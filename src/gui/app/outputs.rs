@@ -23,9 +23,13 @@ use gdcm_study::{Analysis, Edit, Engine, Table};
 
 use super::GdcmApp;
 use super::files::study_name;
-use crate::gui::commands::command::{Command, FormKind, RequirementTable};
-use crate::gui::state::figures::{figure_name, figure_of, tables_in_place};
-use crate::gui::views::{View, all_records, known_poles};
+use crate::gui::commands::command::Command;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::state::forms::{FormKind, RequirementTable};
+use crate::gui::state::view::View;
+use crate::gui::views::figure_button::tables_in_place;
+use crate::gui::views::figures::{figure_name, figure_of};
 
 impl GdcmApp {
     /// Writes the corrections of the conditions selected in the form.
@@ -35,10 +39,10 @@ impl GdcmApp {
         };
         let chosen = self.state.forms.exported.clone();
         let folder = PathBuf::from(self.state.forms.typed_in(FormKind::Export).trim());
-        let folder = self.at_home(folder);
+        let folder = self.files.at_home(folder);
         let written = write_results(
             &analysis,
-            &self.loaded.sha256,
+            &self.files.loaded.sha256,
             &chosen,
             &folder,
             self.outputs(),
@@ -51,12 +55,16 @@ impl GdcmApp {
                 sanitized_path(&folder)
             )
         };
-        self.written(written.map(words), FormKind::Export, Command::Export);
+        self.written(
+            written.map(words),
+            FormKind::Export,
+            Command::Output(OutputCommand::Export),
+        );
     }
 
     /// Proposes a name for an export to other tools if none was typed.
     pub(super) fn propose_export_name(&mut self) {
-        let stem = self.stem();
+        let stem = self.files.stem();
         let extension = self.state.forms.export_format.extension;
         let path = self.state.forms.typed_in(FormKind::ExportAs);
         if path.is_empty() {
@@ -69,10 +77,10 @@ impl GdcmApp {
         let Some(analysis) = self.complete_results() else {
             return;
         };
-        let path = self.at_home(path);
+        let path = self.files.at_home(path);
         let source = ExportSource {
             name: self.state.study_name.clone(),
-            sha256: self.loaded.sha256.clone(),
+            sha256: self.files.loaded.sha256.clone(),
         };
         let request = ExportRequest {
             format,
@@ -101,7 +109,7 @@ impl GdcmApp {
         self.written(
             written.map(words),
             FormKind::ExportAs,
-            Command::ExportAs(format, path.clone()),
+            Command::Output(OutputCommand::ExportAs(format, path.clone())),
         );
     }
 
@@ -133,8 +141,8 @@ impl GdcmApp {
     /// Returns the suffix of `absent_bars` for a view; figures show error bars as soon as they are
     /// computed.
     fn absent_bars_of(&self, view: View) -> &'static str {
-        let shows_bars =
-            view.figure().is_some_and(FigureKind::takes_bars) && !self.state.display.hide_bars;
+        let shows_bars = view.figure().is_some_and(FigureKind::takes_bars)
+            && !self.state.display.gains.hide_bars;
         self.absent_bars(!shows_bars || self.state.uncertainty().is_some())
     }
 
@@ -192,7 +200,7 @@ impl GdcmApp {
 
     /// Saves a view; asks before overwriting a file.
     pub(super) fn save_figure(&mut self, view: View, width: ColumnWidth, path: PathBuf) {
-        let path = self.at_home(path);
+        let path = self.files.at_home(path);
         let written = match tables_in_place(&self.state, view) {
             Some(tables)
                 if figure_format(&path).is_ok_and(|format| format == FigureFormat::Csv) =>
@@ -220,7 +228,7 @@ impl GdcmApp {
                 self.absent_bars_of(view)
             )
         };
-        let again = Command::SaveFigure(view, width, path.clone());
+        let again = Command::Output(OutputCommand::SaveFigure(view, width, path.clone()));
         self.written(written.map(words), FormKind::SaveFigure, again);
     }
 
@@ -250,20 +258,20 @@ impl GdcmApp {
 
     /// Saves a table of the window as CSV; asks before overwriting a file.
     pub(super) fn save_table(&mut self, table: Arc<Table>, path: PathBuf) {
-        let path = self.at_home(path);
+        let path = self.files.at_home(path);
         let written = save_tables(std::slice::from_ref(&*table), &path, self.outputs());
         self.saved_to(
             written,
             &path,
             FormKind::SaveTable,
-            Command::SaveTable(table, path.clone()),
+            Command::Output(OutputCommand::SaveTable(table, path.clone())),
         );
     }
 
     /// Creates an output set that never overwrites input files, and other files only after
     /// confirmation.
     pub(super) fn outputs(&self) -> OutputSet {
-        OutputSet::new(self.existing, self.inputs())
+        OutputSet::new(self.dialogs.existing, self.files.inputs())
     }
 
     /// Writes the files added by `add`, all or none, once `paths` are confirmed to be free.
@@ -315,17 +323,7 @@ impl GdcmApp {
     pub(super) fn ask_to_overwrite(&mut self, paths: &[PathBuf], form: FormKind, command: Command) {
         self.state.forms.existing = paths.iter().map(|path| sanitized_path(path)).collect();
         self.state.forms.shown = Some(form);
-        self.overwriting = Some(command);
-    }
-
-    /// Returns the input files, which results never overwrite.
-    pub(super) fn inputs(&self) -> Vec<PathBuf> {
-        self.saved
-            .path
-            .iter()
-            .cloned()
-            .chain(self.loaded.origin.file())
-            .collect()
+        self.dialogs.overwriting = Some(command);
     }
 
     /// Asks where to write the report, unless there are no results yet.
@@ -335,7 +333,13 @@ impl GdcmApp {
             .is_some()
         {
             let form = self.state.forms.typed_in(FormKind::Report);
-            let name = report_name(self.saved.path.as_deref().or(self.loaded.path()));
+            let name = report_name(
+                self.files
+                    .saved
+                    .path
+                    .as_deref()
+                    .or(self.files.loaded.path()),
+            );
             *form = Path::new(form.trim())
                 .with_file_name(name)
                 .display()
@@ -349,18 +353,18 @@ impl GdcmApp {
         let Some(analysis) = self.unless_error(self.analysis_to_write("write the report")) else {
             return;
         };
-        let path = self.at_home(path);
-        let inputs = self.inputs();
-        let existing = self.existing;
+        let path = self.files.at_home(path);
+        let inputs = self.files.inputs();
+        let existing = self.dialogs.existing;
         match self.outputs().check(&[&path]) {
             Ok(()) => {
-                let source = ReportSource::of(&self.loaded, self.saved.path.as_deref());
+                let source = ReportSource::of(&self.files.loaded, self.files.saved.path.as_deref());
                 self.state.forms.shown = None;
                 // The live answer does not depend on the requirements and may have older ones.
                 let analysis = Arc::new(analysis.asked_with(&self.state.study.requirements));
-                let records = all_records(&self.state);
-                let known = known_poles(&self.state);
-                self.reporting = Some(ReportJob {
+                let records = self.state.records.history_records();
+                let known = self.state.records.known_poles();
+                self.work.reporting = Some(ReportJob {
                     analysis,
                     records,
                     known,
@@ -370,24 +374,30 @@ impl GdcmApp {
                     inputs,
                 });
             }
-            Err(error) => self.written(Err(error), FormKind::Report, Command::WriteReport(path)),
+            Err(error) => self.written(
+                Err(error),
+                FormKind::Report,
+                Command::Output(OutputCommand::WriteReport(path)),
+            ),
         }
     }
 
     /// Reports the outcome of writing a report.
     pub(super) fn report_written(&mut self, job: ReportJob, outcome: Result<(), FileError>) {
-        self.reporting = None;
+        self.work.reporting = None;
         match outcome {
             Ok(()) => self.done(format!("wrote the report {}", sanitized_path(&job.path))),
-            Err(error) => {
-                self.written(Err(error), FormKind::Report, Command::WriteReport(job.path))
-            }
+            Err(error) => self.written(
+                Err(error),
+                FormKind::Report,
+                Command::Output(OutputCommand::WriteReport(job.path)),
+            ),
         }
     }
 
     /// Reports that a running report was stopped, by hand or by a fault.
     pub(super) fn give_up_report(&mut self) {
-        if let Some(job) = self.reporting.take() {
+        if let Some(job) = self.work.reporting.take() {
             self.notify_error(format!(
                 "{} was not written: it was stopped",
                 sanitized_path(&job.path)
@@ -397,7 +407,7 @@ impl GdcmApp {
 
     /// Reads a requirement table into the study.
     pub(super) fn read_requirement_table(&mut self, table: RequirementTable, path: PathBuf) {
-        let path = self.at_home(path);
+        let path = self.files.at_home(path);
         let mut settings = RequirementSettings::clone(&self.state.study.requirements);
         let (what, read) = match table {
             RequirementTable::Levels => (
@@ -439,14 +449,14 @@ impl GdcmApp {
 
     /// Writes the study's tolerances; asks before overwriting a file.
     pub(super) fn write_tolerances(&mut self, path: PathBuf) {
-        let path = self.at_home(path);
+        let path = self.files.at_home(path);
         let tolerances = &self.state.study.requirements.tolerances;
         let written = self.write_all(&[], |outputs| add_tolerances(tolerances, &path, outputs));
         self.saved_to(
             written,
             &path,
             FormKind::WriteTolerances,
-            Command::WriteTolerances(path.clone()),
+            Command::File(FileCommand::WriteTolerances(path.clone())),
         );
     }
 }

@@ -25,13 +25,17 @@ use gdcm_sysid::records::{
 };
 
 use super::GdcmApp;
-use super::files::DialogPurpose;
-use super::threads::Untold;
-use crate::gui::commands::command::{Command, FormKind};
-use crate::gui::views::records::{
-    AddedRecord, ConditionRecords, RecordsBefore, RecordsCommand, RecordsPage, WantedDataset,
+use super::dialogs::DialogPurpose;
+use super::document_files::DatasetOfRecords;
+use super::readers::Untold;
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::records::{
+    AddedRecord, ConditionRecords, RecordsBefore, RecordsPage, WantedDataset,
 };
-use crate::gui::views::{RequirementsPage, View};
+use crate::gui::state::requirements_page::RequirementsPage;
+use crate::gui::state::view::View;
 
 /// Records read, by condition, and the faults found.
 #[derive(Default)]
@@ -210,7 +214,7 @@ impl GdcmApp {
             records.choose(index);
         }
         self.state.records.page = RecordsPage::Columns;
-        self.dispatch(Command::SelectCondition(id));
+        self.dispatch(SelectionCommand::SelectCondition(id));
     }
 
     /// Returns the identification band of a condition: its own, or the study's.
@@ -270,9 +274,10 @@ impl GdcmApp {
 
     /// Returns how the displayed dataset was made from records, if it was.
     fn made_of_records(&self) -> Option<&DatasetOfRecords> {
-        self.made_of_records
+        self.files
+            .made_of_records
             .as_ref()
-            .filter(|made| self.loaded.path() == Some(&made.path))
+            .filter(|made| self.files.loaded.path() == Some(&made.path))
     }
 
     /// Asks for the channels of a new dataset, with a proposal based on the displayed record.
@@ -304,12 +309,12 @@ impl GdcmApp {
         };
         let sources = records.sources.clone();
         let typed = PathBuf::from(records.wanted.path.trim());
-        let path = self.at_home(typed);
-        let (number, stop) = self.record_reader.join();
+        let path = self.files.at_home(typed);
+        let (number, stop) = self.readers.record_reader.join();
         self.state.records.reading = Some("records".to_owned());
         let make = move || dataset_of_files(&sources, channels, band, path, &Untold(stop));
         self.in_thread("a dataset of records", make, move |app, made| {
-            if !app.record_reader.is_newest(number) {
+            if !app.readers.record_reader.is_newest(number) {
                 return;
             }
             app.state.records.reading = None;
@@ -328,7 +333,7 @@ impl GdcmApp {
             Ok(()) => {
                 self.state.forms.shown = None;
                 self.open(made.path.clone(), None);
-                self.made_of_records = Some(made);
+                self.files.made_of_records = Some(made);
             }
             Err(error) => self.written(
                 Err(error),
@@ -344,14 +349,14 @@ impl GdcmApp {
         let id = self.state.condition().id();
         self.follow_band(id);
         let display = &self.state.display;
-        let is_compared = display.requirements_page == RequirementsPage::Histories;
-        let is_shown = display.arrangement.is_shown(View::Records)
-            || display.arrangement.is_shown(View::Requirements) && is_compared;
+        let is_compared = display.judging.requirements_page == RequirementsPage::Histories;
+        let is_shown = display.layout.arrangement.is_shown(View::Records)
+            || display.layout.arrangement.is_shown(View::Requirements) && is_compared;
         let bench = &self.state.records;
         if !is_shown || bench.reading.is_some() || bench.conditions.contains_key(&id) {
             return;
         }
-        self.state.records.is_example = self.loaded.origin == DatasetOrigin::EmbeddedExample;
+        self.state.records.is_example = self.files.loaded.origin == DatasetOrigin::EmbeddedExample;
         let own = self.own_records();
         if !own.has_some(id) {
             self.records_of(id);
@@ -370,12 +375,15 @@ impl GdcmApp {
     fn own_records(&self) -> OwnRecords {
         OwnRecords {
             dataset: Arc::clone(&self.state.study.dataset),
-            origin: self.loaded.origin.clone(),
+            origin: self.files.loaded.origin.clone(),
         }
     }
 
     fn add_records(&mut self, paths: Vec<PathBuf>) {
-        let paths: Vec<PathBuf> = paths.into_iter().map(|path| self.at_home(path)).collect();
+        let paths: Vec<PathBuf> = paths
+            .into_iter()
+            .map(|path| self.files.at_home(path))
+            .collect();
         let sources = self.state.records.sources.clone();
         self.state.records.sources.extend(paths.iter().cloned());
         let name = paths
@@ -402,10 +410,10 @@ impl GdcmApp {
         let clock_band_end = channels.resampling.band_end;
         let of = Arc::clone(self.state.study.file_dataset());
         self.state.records.reading = Some(name);
-        let (number, stop) = self.record_reader.join();
+        let (number, stop) = self.readers.record_reader.join();
         let read = move || read(&channels, stop);
         self.in_thread("the reading of records", read, move |app, found| {
-            if !app.record_reader.is_newest(number)
+            if !app.readers.record_reader.is_newest(number)
                 || !Arc::ptr_eq(&of, app.state.study.file_dataset())
             {
                 return;
@@ -920,15 +928,6 @@ fn of_files(
         .collect();
     own.read(&unknown, channels, &progress.stop(), &mut found)?;
     Ok(found)
-}
-
-/// A dataset made from records.
-pub(super) struct DatasetOfRecords {
-    path: PathBuf,
-    /// Location of its channels in the records, and their units.
-    channels: RecordChannels,
-    /// Omitted records, with reasons.
-    left_out: Vec<String>,
 }
 
 /// Maximum number of reported problems.

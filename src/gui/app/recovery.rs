@@ -16,9 +16,10 @@ use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_study::Study;
 
 use super::GdcmApp;
-use super::files::{ReadFor, study_name};
+use super::document_files::ReadFor;
+use super::files::study_name;
 use super::threads::ReplySender;
-use crate::gui::panels::bars::Bar;
+use crate::gui::state::notices::Bar;
 
 /// Folder of the recovery files in the program's directory.
 const FOLDER: &str = "recovery";
@@ -283,16 +284,26 @@ fn keep(
 /// How long a closing window waits for the disk to store the latest decisions.
 pub(super) const LAST_WAIT: Duration = Duration::from_secs(2);
 
+/// Protection against the loss of unsaved decisions.
+pub(super) struct Recovery {
+    pub(super) autosave: Autosave,
+    /// Set once the window has drawn a frame; gives the caller that opened the window access to the
+    /// autosave.
+    pub(super) drawn: Arc<OnceLock<Autosave>>,
+    /// Lost studies by the number of the offer, until restored or discarded.
+    pub(super) offers: Vec<Option<LostStudy>>,
+}
+
 impl GdcmApp {
     /// Offers to restore lost decisions.
     fn offer(&mut self, lost: Vec<LostStudy>) {
         for lost in lost {
             let sentence = offer_words(&lost, &TimeZone::system());
             self.state.bars.push(Bar::Recovery {
-                offer: self.offers.len(),
+                offer: self.recovery.offers.len(),
                 sentence,
             });
-            self.offers.push(Some(lost));
+            self.recovery.offers.push(Some(lost));
         }
     }
 
@@ -300,20 +311,20 @@ impl GdcmApp {
     pub(super) fn keep_unsaved(&self) {
         if self.state.unsaved {
             let study = self.state.study.clone();
-            let loaded = self.loaded.clone();
-            self.autosave.keep(Unsaved {
+            let loaded = self.files.loaded.clone();
+            self.recovery.autosave.keep(Unsaved {
                 study,
                 loaded,
-                saved_as: self.saved.path.clone(),
+                saved_as: self.files.saved.path.clone(),
             });
         } else {
-            self.autosave.clear();
+            self.recovery.autosave.clear();
         }
     }
 
     /// Opens lost decisions; the bar disappears once they are open.
     pub(super) fn restore(&mut self, offer: usize) {
-        if let Some(Some(lost)) = self.offers.get(offer) {
+        if let Some(Some(lost)) = self.recovery.offers.get(offer) {
             let path = lost.path().to_owned();
             let read = move |budget: &ReadingBudget<'_>| load_any(&path, budget);
             self.read(
@@ -326,7 +337,7 @@ impl GdcmApp {
 
     /// Shows restored decisions, which are still unsaved.
     pub(super) fn show_restored(&mut self, offer: usize, opened: Opened) {
-        let Some(lost) = self.offers.get_mut(offer).and_then(Option::take) else {
+        let Some(lost) = self.recovery.offers.get_mut(offer).and_then(Option::take) else {
             return;
         };
         let words = format!(
@@ -336,9 +347,9 @@ impl GdcmApp {
         let saved_as = lost.saved_as.clone();
         self.show(opened);
         self.state.study_name = study_name(saved_as.as_deref());
-        self.saved.path = saved_as;
-        self.saved.study = None;
-        self.autosave.send(Task::Restored(lost));
+        self.files.saved.path = saved_as;
+        self.files.saved.study = None;
+        self.recovery.autosave.send(Task::Restored(lost));
         self.close_offer(offer);
         self.look_for_recent();
         self.study_changed();
@@ -346,8 +357,8 @@ impl GdcmApp {
     }
 
     pub(super) fn discard(&mut self, offer: usize) {
-        if let Some(lost) = self.offers.get_mut(offer).and_then(Option::take) {
-            self.autosave.send(Task::Discard(lost));
+        if let Some(lost) = self.recovery.offers.get_mut(offer).and_then(Option::take) {
+            self.recovery.autosave.send(Task::Discard(lost));
         }
         self.close_offer(offer);
     }

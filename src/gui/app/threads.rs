@@ -4,13 +4,10 @@
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use egui::Context;
-
-use gdcm_io::FolderProgress;
 
 use super::GdcmApp;
 
@@ -62,7 +59,7 @@ pub(super) type Reply = Box<dyn FnOnce(&mut GdcmApp) + Send>;
 
 /// Sender for the replies of threads; each reply wakes the window.
 #[derive(Clone)]
-pub(super) struct ReplySender {
+pub struct ReplySender {
     sender: Sender<Reply>,
     ctx: Context,
 }
@@ -100,7 +97,7 @@ impl GdcmApp {
     {
         // The work is sent once the thread exists.
         let (order, ordered) = channel::<(Work, Take)>();
-        let replies = self.replies.clone();
+        let replies = self.work.replies.clone();
         let thread = move || {
             let Ok((work, take)) = ordered.recv() else {
                 return;
@@ -119,7 +116,7 @@ impl GdcmApp {
             .spawn(thread)
         {
             Ok(_) => drop(order.send((work, take))),
-            Err(error) => self.replies.send(move |app| {
+            Err(error) => self.work.replies.send(move |app| {
                 app.notify_error(format!("{what} cannot begin: {error}"));
                 take(app, None);
             }),
@@ -133,75 +130,13 @@ impl GdcmApp {
         let Some(name) = opening.or_else(|| records.clone()) else {
             return self.stop_jobs();
         };
-        self.opener.give_up();
-        self.record_reader.give_up();
+        self.readers.opener.give_up();
+        self.readers.record_reader.give_up();
         if records.is_some() {
             // An existing entry prevents another automatic search.
             self.records_of(self.state.condition().id());
         }
         self.done(format!("stopped reading {name}; what was open stays"));
-    }
-}
-
-/// The newest reading thread for one purpose, or several in parallel.
-#[derive(Default)]
-pub(super) struct Reader {
-    newest: u64,
-    stop: Arc<AtomicBool>,
-}
-
-impl Reader {
-    /// Starts a reading that replaces the current one; returns its number and its stop flag.
-    pub(super) fn begin(&mut self) -> (u64, Arc<AtomicBool>) {
-        self.give_up();
-        self.stop = Arc::default();
-        (self.newest, Arc::clone(&self.stop))
-    }
-
-    /// Starts a reading beside the current one; returns the common number and stop flag.
-    pub(super) fn join(&mut self) -> (u64, Arc<AtomicBool>) {
-        if self.is_stopped() {
-            return self.begin();
-        }
-        (self.newest, Arc::clone(&self.stop))
-    }
-
-    /// Returns whether the answer of this thread still counts.
-    pub(super) fn is_newest(&self, number: u64) -> bool {
-        self.newest == number
-    }
-
-    /// Stops the reading; the content read so far counts.
-    pub(super) fn stop(&self) {
-        self.stop.store(true, Ordering::Release);
-    }
-
-    /// Returns whether the reading was stopped.
-    pub(super) fn is_stopped(&self) -> bool {
-        self.stop.load(Ordering::Acquire)
-    }
-
-    /// Stops the reading and discards its answer, however long a drive blocks the thread.
-    pub(super) fn give_up(&mut self) {
-        self.stop();
-        self.newest += 1;
-    }
-}
-
-impl Drop for Reader {
-    fn drop(&mut self) {
-        self.stop();
-    }
-}
-
-/// Progress of a reading that can be stopped but reports nothing.
-pub(super) struct Untold(pub(super) Arc<AtomicBool>);
-
-impl FolderProgress for Untold {
-    fn reading(&self, _: usize, _: usize, _: &str) {}
-
-    fn stop(&self) -> Arc<AtomicBool> {
-        Arc::clone(&self.0)
     }
 }
 

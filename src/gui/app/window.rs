@@ -1,106 +1,63 @@
 //! The window: its state, the compute threads, and the dialogs.
 
 use std::path::PathBuf;
-use std::sync::mpsc::Receiver;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use egui::{
     CentralPanel, Context, Frame, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, ViewportCommand,
     Visuals,
 };
 
+use gdcm_io::Opened;
 use gdcm_io::files::study_file::holds_models;
-use gdcm_io::files::user_state::{LostStudy, is_first_start};
-use gdcm_io::{Existing, LoadedDataset, Opened};
-use gdcm_method::correction::Solution;
-use gdcm_method::correction::problem::ProblemError;
-use gdcm_model::dataset::{BundleKind, ConditionId};
-use gdcm_study::jobs::job::{CurvesJob, ProofJob};
-use gdcm_study::stages::condition_responses::ConditionCurves;
-use gdcm_study::{Analysis, Study};
+use gdcm_io::files::user_state::is_first_start;
+use gdcm_model::dataset::BundleKind;
 
-use super::Setup;
-use super::background_jobs::{AnalysisJob, BackgroundJobs, Proof};
-use super::files::{PendingAction, SavedStudy};
-use super::keyboard::{self, KeyOrder};
-use super::outputs::ReportJob;
-use super::record_import::DatasetOfRecords;
-use super::recovery::{Autosave, LAST_WAIT};
-use super::reload::DiskWatch;
-use super::threads::{Fault, Reader, Reply, ReplySender};
-use super::update::NextFocus;
+use super::background_jobs::BackgroundJobs;
+use super::computation::Computation;
+use super::dialogs::{Dialogs, PendingAction};
+use super::disk_watch::DiskWatch;
+use super::document_files::DocumentFiles;
+use super::keyboard::KeyOrder;
+use super::layout_commands::NextFocus;
+use super::readers::Readers;
+use super::recovery::{Autosave, LAST_WAIT, Recovery};
+use super::threads::ReplySender;
+use super::{Setup, keyboard};
+use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
-use crate::gui::panels::bars::Bar;
-use crate::gui::panels::explanation::{Sheet, sheet_ui};
-use crate::gui::panels::start_page::OpensWith;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::panels::explanation::sheet_ui;
 use crate::gui::panels::{
     answer_panel, bars, centre, conditions_panel, explanation, forms, help, models_panel,
     start_page,
 };
-use crate::gui::state::display::Preferences;
-use crate::gui::state::focus;
+use crate::gui::state::opens_with::OpensWith;
+use crate::gui::state::preferences::Preferences;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::views::assembling::{AssemblingCommand, assembling_ui};
-use crate::gui::views::records::RecordsCommand;
-use crate::gui::views::{Need, View};
+use crate::gui::views::assembling::assembling_ui;
 use crate::gui::widgets::controls::restore_panel_size;
-use crate::gui::widgets::palette::{self, Palette};
+use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::{focus, palette};
 
 /// The program's window.
 pub struct GdcmApp {
     pub(super) ctx: Context,
     pub(super) state: State,
-    pub(super) loaded: LoadedDataset,
-    pub(super) saved: SavedStudy,
-    /// Last requested live answer.
-    pub(super) asked: Option<AnalysisJob>,
-    pub(super) jobs: BackgroundJobs,
-    /// Proofs that the results do not contain yet.
-    proven: Vec<Proof>,
-    /// Jobs needed by the visible views, beside the live answer.
-    pub(super) needs: Vec<Need>,
-    pub(super) replies: ReplySender,
-    /// Replies from threads.
-    received: Receiver<Reply>,
-    pub(super) dialog_open: bool,
-    /// Reads imported models.
-    pub(super) models: Reader,
-    /// Reads opened files.
-    pub(super) opener: Reader,
-    pub(super) record_reader: Reader,
-    /// Dataset most recently made from records.
-    pub(super) made_of_records: Option<DatasetOfRecords>,
-    /// Action waiting for the answer whether unsaved decisions may be lost.
-    pub(super) postponed: Option<PendingAction>,
-    /// Whether the postponed action is carried out after saving.
-    pub(super) goes_on_once_saved: bool,
-    /// Command waiting for the answer whether to overwrite files.
-    pub(super) overwriting: Option<Command>,
-    /// Treatment of existing files: they are replaced only during the command that the engineer
-    /// confirmed.
-    pub(super) existing: Existing,
-    pub(super) closing: bool,
-    /// Report being written.
-    pub(super) reporting: Option<ReportJob>,
-    /// Datasets open before a reload, or after a reload that was undone.
-    pub(super) earlier: Vec<LoadedDataset>,
-    pub(super) autosave: Autosave,
-    /// Set once the window has drawn a frame; gives the caller that opened the window access to the
-    /// autosave.
-    pub(super) drawn: Arc<OnceLock<Autosave>>,
-    /// Lost studies by the number of the offer, until restored or discarded.
-    pub(super) offers: Vec<Option<LostStudy>>,
-    pub(super) disk: DiskWatch,
-    /// Directory of the list of recent files; without it the list is not kept.
-    pub(super) directory: Option<PathBuf>,
-    /// Expansion of `~` in typed paths.
-    pub(super) home: Option<PathBuf>,
+    pub(super) files: DocumentFiles,
+    pub(super) dialogs: Dialogs,
+    pub(super) readers: Readers,
+    pub(super) work: Computation,
+    pub(super) recovery: Recovery,
     /// Target of the focus in the next frame.
     pub(super) next_focus: Option<NextFocus>,
     /// Last window title set.
     title: String,
-    /// Study and condition of the newest request.
-    requested: Option<(Study, ConditionId)>,
 }
 
 impl GdcmApp {
@@ -128,44 +85,44 @@ impl GdcmApp {
         let mut app = Self {
             ctx: ctx.clone(),
             state,
-            loaded,
-            saved,
-            asked: None,
-            jobs,
-            proven: Vec::new(),
-            needs: Vec::new(),
-            replies,
-            received,
-            dialog_open: false,
-            models: Reader::default(),
-            opener: Reader::default(),
-            record_reader: Reader::default(),
-            made_of_records: None,
-            postponed: None,
-            goes_on_once_saved: false,
-            overwriting: None,
-            existing: Existing::Keep,
-            closing: false,
-            reporting: None,
-            earlier: Vec::new(),
-            autosave,
-            drawn: Arc::default(),
-            offers: Vec::new(),
-            disk,
-            directory: setup.directory,
-            home: setup.home,
+            files: DocumentFiles {
+                loaded,
+                saved,
+                earlier: Vec::new(),
+                made_of_records: None,
+                disk,
+                directory: setup.directory,
+                home: setup.home,
+            },
+            dialogs: Dialogs::new(),
+            readers: Readers::default(),
+            work: Computation {
+                asked: None,
+                jobs,
+                proven: Vec::new(),
+                needs: Vec::new(),
+                requested: None,
+                reporting: None,
+                replies,
+                received,
+            },
+            recovery: Recovery {
+                autosave,
+                drawn: Arc::default(),
+                offers: Vec::new(),
+            },
             next_focus: None,
             title: String::new(),
-            requested: None,
         };
         let begins_there =
-            app.state.is_example && app.state.display.opens_with == OpensWith::StartPage;
+            app.state.is_example && app.state.display.layout.opens_with == OpensWith::StartPage;
         app.state.on_start_page = begins_there && setup.trouble.is_none();
         setup
             .trouble
             .into_iter()
             .for_each(|words| app.notify_error(words));
-        let is_first = setup.offers_tour && app.directory.as_deref().is_some_and(is_first_start);
+        let is_first =
+            setup.offers_tour && app.files.directory.as_deref().is_some_and(is_first_start);
         app.state.tour = is_first.then_some(0);
         app.look_for_recent();
         Ok(app)
@@ -174,141 +131,6 @@ impl GdcmApp {
     /// Returns the state shown by the window.
     pub fn state(&self) -> &State {
         &self.state
-    }
-
-    /// Returns the time \[s\] on the window's clock.
-    fn now(&self) -> f64 {
-        self.ctx.input(|input| input.time)
-    }
-
-    /// Requests the results for the current study and condition, unless already requested.
-    fn request(&mut self) {
-        let now = self.now();
-        let study = &self.state.study;
-        let condition = self.state.condition().id();
-        if self
-            .requested
-            .as_ref()
-            .is_some_and(|(of, at)| *at == condition && asks_the_same(of, study))
-        {
-            return;
-        }
-        self.requested = Some((study.clone(), condition));
-        let results = &mut self.state.results;
-        results.requested += 1;
-        results.stopped = false;
-        results.waiting_since.get_or_insert(now);
-        self.ask();
-    }
-
-    /// Sends the newest request with all available proofs.
-    fn ask(&mut self) {
-        let Some((study, condition)) = self.requested.clone() else {
-            return;
-        };
-        let number = self.asked.as_ref().map_or(0, |job| job.number + 1);
-        let generation = self.state.results.requested;
-        let proofs = self.proven.clone();
-        let replies = self.replies.clone();
-        self.asked = Some(AnalysisJob {
-            number,
-            generation,
-            study,
-            condition,
-            proofs,
-            replies,
-        });
-    }
-
-    /// Records that the live answer was stopped, by hand or by a fault; the displayed results stay.
-    pub(super) fn answer_stopped(&mut self) {
-        self.proven.clear();
-        let results = &mut self.state.results;
-        results.stopped = results.is_behind();
-        results.waiting_since = None;
-    }
-
-    /// Requests the stopped computation again.
-    pub(super) fn compute_again(&mut self) {
-        self.requested = None;
-        self.state
-            .bars
-            .retain(|bar| !matches!(bar, Bar::Fault { .. }));
-        self.jobs.resume();
-    }
-
-    /// Applies the replies of the threads.
-    fn receive(&mut self) {
-        while let Ok(reply) = self.received.try_recv() {
-            reply(self);
-        }
-        let now = self.now();
-        let results = &mut self.state.results;
-        results.background = self.jobs.told();
-        results
-            .background
-            .proofs
-            .extend(self.proven.iter().map(|(problem, _)| Arc::clone(problem)));
-        results.background_since = results
-            .background
-            .is_busy()
-            .then(|| results.background_since.unwrap_or(now));
-    }
-
-    /// Shows an analysis and requests the jobs that it leaves open.
-    pub(super) fn answered(
-        &mut self,
-        job: AnalysisJob,
-        (analysis, elapsed_ms): (Arc<Analysis>, f64),
-    ) {
-        let now = self.now();
-        let results = &mut self.state.results;
-        // A job repeated with a proof has the request number of the original job and took no time.
-        if results.received != job.generation {
-            results.elapsed_ms = elapsed_ms;
-        }
-        results.received = job.generation;
-        results.analysis = Some(analysis);
-        results.first = None;
-        results.stopped &= results.is_behind();
-        results.waiting_since = results.is_waiting().then_some(now);
-        self.proven
-            .retain(|(of, _)| !job.proofs.iter().any(|(proven, _)| Arc::ptr_eq(of, proven)));
-        self.want_jobs();
-    }
-
-    /// Repeats the newest request with a proof. The live answer has already reported a problem
-    /// without a solution.
-    pub(super) fn take_proof(&mut self, job: ProofJob, proof: Result<Arc<Solution>, ProblemError>) {
-        if let Ok(solution) = proof {
-            self.proven.push((job.problem, solution));
-            self.ask();
-        }
-    }
-
-    /// Stores the curves of a condition if they belong to the displayed condition and dataset.
-    pub(super) fn take_curves(&mut self, job: CurvesJob, curves: Option<Arc<ConditionCurves>>) {
-        let Some(curves) = curves else { return };
-        let study = &self.state.study;
-        if Arc::ptr_eq(&job.dataset, &study.dataset) && job.condition == self.state.condition().id()
-        {
-            self.state.results.curves = Some((job, curves));
-        }
-    }
-
-    /// Reports a panic: its effect, the decisions kept, and the details to send.
-    pub(super) fn tell_fault(&mut self, ended: &str, fault: &Fault) {
-        let sentence = format!(
-            "A fault in the program ended {ended}; your decisions are kept and can be saved: please send this message, the \
-             saved study and the dataset {} to the program's authors (gdcm {}: {}).",
-            self.loaded.origin,
-            env!("CARGO_PKG_VERSION"),
-            fault.words(),
-        );
-        self.state
-            .bars
-            .retain(|bar| !matches!(bar, Bar::Fault { .. }));
-        self.state.bars.push(Bar::Fault { sentence });
     }
 
     fn take_dropped_files(&mut self, commands: &mut Vec<Command>) {
@@ -322,11 +144,16 @@ impl GdcmApp {
         match paths.as_slice() {
             [] => {}
             [path] if self.state.assembling.is_none() && !holds_models(path) => {
-                commands.push(Command::Open(path.clone()))
+                commands.push(FileCommand::Open(path.clone()).into())
             }
             // While the records of a condition are shown, dropped files are added to them.
             _ if self.state.assembling.is_none()
-                && self.state.display.arrangement.is_shown(View::Records) =>
+                && self
+                    .state
+                    .display
+                    .layout
+                    .arrangement
+                    .is_shown(View::Records) =>
             {
                 commands.push(RecordsCommand::Add(paths).into());
             }
@@ -337,7 +164,7 @@ impl GdcmApp {
     fn guard_closing(&mut self) {
         if self.ctx.input(|input| input.viewport().close_requested())
             && self.state.unsaved
-            && !self.closing
+            && !self.dialogs.closing
         {
             self.ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.ask_to_lose(PendingAction::Quit);
@@ -359,7 +186,7 @@ impl GdcmApp {
             .fill(palette.panel)
             .inner_margin(Margin::symmetric(12, 0));
         let state = &mut self.state;
-        state.display.is_wide = ui.ctx().content_rect().width() >= WIDE;
+        state.display.layout.is_wide = ui.ctx().content_rect().width() >= WIDE;
         let top = Panel::top("menu bar").frame(bar).exact_size(36.0);
         top.show(ui, |ui| bars::menu_bar_ui(ui, state, palette, commands));
         if !state.bars.is_empty() {
@@ -379,7 +206,7 @@ impl GdcmApp {
                 .show(ui, |ui| start_page::start_ui(ui, state, palette, commands));
             return;
         }
-        let is_wide = state.display.is_wide;
+        let is_wide = state.display.layout.is_wide;
         left_ui(ui, state, palette, commands);
         // The panel's name distinguishes the window widths for which its width was dragged.
         let (name, width) = if is_wide {
@@ -413,7 +240,12 @@ const WIDE: f32 = 1400.0;
 /// Draws conditions and models, in full or as a rail.
 fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let side = Frame::new().fill(palette.panel);
-    if !state.display.left_open.unwrap_or(state.display.is_wide) {
+    if !state
+        .display
+        .layout
+        .left_open
+        .unwrap_or(state.display.layout.is_wide)
+    {
         let frame = side.inner_margin(Margin {
             left: 4,
             right: 2,
@@ -474,8 +306,13 @@ fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 
 /// Draws the sheets over the middle of the window.
 fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let asked = state.display.asked.as_ref().map(|_| Sheet::Derivation);
-    let Some(sheet) = asked.or(state.display.sheet) else {
+    let asked = state
+        .display
+        .selection
+        .asked
+        .as_ref()
+        .map(|_| Sheet::Derivation);
+    let Some(sheet) = asked.or(state.display.layout.sheet) else {
         return;
     };
     let is_closed = sheet_ui(ui, centre, sheet, palette, |ui| match sheet {
@@ -491,12 +328,12 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
     // A click outside may ask about another value, which is then shown.
     let asks = commands
         .iter()
-        .any(|command| matches!(command, Command::Explain(_)));
+        .any(|command| matches!(command, Command::Selection(SelectionCommand::Explain(_))));
     if is_closed && !asks {
         commands.push(if sheet == Sheet::Derivation {
-            Command::Explain(None)
+            Command::Selection(SelectionCommand::Explain(None))
         } else {
-            Command::ShowSheet(None)
+            Command::Layout(LayoutCommand::ShowSheet(None))
         });
     }
 }
@@ -504,15 +341,8 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
 impl Drop for GdcmApp {
     /// Keeps the latest decisions, even if the window panics.
     fn drop(&mut self) {
-        self.autosave.close(LAST_WAIT);
+        self.recovery.autosave.close(LAST_WAIT);
     }
-}
-
-/// Returns whether two studies need the same results for the identical dataset. Datasets are
-/// compared by pointer: comparing values would take time in every frame, and results belong to one
-/// dataset even if another is equal.
-fn asks_the_same(a: &Study, b: &Study) -> bool {
-    Arc::ptr_eq(&a.dataset, &b.dataset) && a.settings == b.settings && a.choices == b.choices
 }
 
 /// Storage key of the preferences.
@@ -536,7 +366,7 @@ impl eframe::App for GdcmApp {
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        let palette = Palette::of(ui.visuals()).with_looks(self.state.display.looks);
+        let palette = Palette::of(ui.visuals()).with_looks(self.state.display.curves.looks);
         self.move_focus();
         let mut commands = keyboard::pressed(&ctx, &self.state);
         self.take_dropped_files(&mut commands);
@@ -544,7 +374,9 @@ impl eframe::App for GdcmApp {
         forms::forms_ui(&ctx, &mut self.state, &palette, &mut commands);
         help::tour_ui(&ctx, &self.state, &palette, &mut commands);
         focus::focus_ring_ui(&ctx, &palette);
-        self.drawn.get_or_init(|| self.autosave.clone());
+        self.recovery
+            .drawn
+            .get_or_init(|| self.recovery.autosave.clone());
         self.carry_out(commands);
         self.name_window();
         self.request();

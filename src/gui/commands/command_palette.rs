@@ -6,7 +6,10 @@ use egui::text::{CCursor, CCursorRange};
 use egui::{Key, Modifiers, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use super::command::Command;
-use super::command_table::{Entry, every_command};
+use super::command_table::every_command;
+use super::entry::Entry;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::state::forms::PaletteForm;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{Room, row_text, row_text_within, row_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
@@ -15,15 +18,6 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 const HEIGHT: f32 = 340.0;
 /// Most rows drawn; further letters narrow a longer list.
 const MOST_ROWS: usize = 60;
-
-/// State of the open palette.
-#[derive(Clone, Debug, Default)]
-pub struct PaletteForm {
-    /// Search text as typed.
-    pub query: String,
-    /// Row carried out by Enter.
-    pub chosen: usize,
-}
 
 /// Draws the field and the matching commands. Up and Down select, Enter carries out.
 pub fn command_palette_ui(
@@ -78,7 +72,7 @@ pub fn command_palette_ui(
         .map(|place| &entries[place])
         .filter(|entry| entry.enabled)
     {
-        commands.push(Command::ShowForm(None));
+        commands.push(FormCommand::ShowForm(None).into());
         commands.push(entry.command.clone());
     }
 }

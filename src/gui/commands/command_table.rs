@@ -1,6 +1,6 @@
 //! Table of all commands: the source of the menus, the shortcuts, the palette and the page of keys.
 
-use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
+use egui::{Key, Modifiers, ThemePreference};
 
 use gdcm_model::dataset::{BundleKind, ModelId, Pair};
 use gdcm_plot::figure::FigureFormat;
@@ -10,97 +10,28 @@ use gdcm_study::decisions::changed_models::OfferedModels;
 use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::{Kind, Value};
 
-use super::command::{Command, FormKind};
-use crate::gui::panels::explanation::Sheet;
-use crate::gui::panels::start_page::OpensWith;
-use crate::gui::state::curve_display::curve_entries;
-use crate::gui::state::display::ViewGroup;
-use crate::gui::state::figures::views_with_figure;
+use super::assembling::AssemblingCommand;
+use super::command::Command;
+use super::curve_entries::curve_entries;
+use super::entry::{Entry, Menu};
+use super::records::RecordsCommand;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::commands::study::StudyCommand;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::opens_with::OpensWith;
+use crate::gui::state::pair_set::PairSet;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::tables::TableKind;
+use crate::gui::state::view::{View, ViewGroup, views_with_figure};
 use crate::gui::state::window_state::State;
-use crate::gui::views::assembling::AssemblingCommand;
-use crate::gui::views::records::RecordsCommand;
-use crate::gui::views::{PairSet, View};
-use crate::gui::widgets::tables::TableKind;
-
-/// Menu of the bar at the top.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Menu {
-    /// Opening, saving, exporting.
-    File,
-    Edit,
-    /// Displayed content and its form.
-    View,
-    /// Style of curves: a submenu of `View`.
-    Curves,
-    Help,
-}
-
-/// Where a shortcut works.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
-    /// Everywhere, also while text is being typed.
-    Everywhere,
-    /// Only without a focused control and without an open form: lists, fields and texts use these
-    /// keys too.
-    WithoutFocus,
-}
-
-/// Entry of a menu or of the palette.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
-    /// Name in menus and in the palette.
-    pub name: String,
-    /// Explanation, if the name is not sufficient.
-    pub meaning: &'static str,
-    /// Shortcuts; the first is displayed.
-    pub shortcuts: Vec<KeyboardShortcut>,
-    pub reach: Reach,
-    /// Menu and group within it; groups are separated by lines.
-    pub menu: Option<(Menu, u8)>,
-    pub enabled: bool,
-    pub command: Command,
-}
-
-impl Entry {
-    /// Creates an entry for the palette alone, without shortcut.
-    pub(crate) fn new(name: impl Into<String>, meaning: &'static str, command: Command) -> Self {
-        let shortcuts = Vec::new();
-        let reach = Reach::Everywhere;
-        Self {
-            name: name.into(),
-            meaning,
-            shortcuts,
-            reach,
-            menu: None,
-            enabled: true,
-            command,
-        }
-    }
-
-    pub(crate) fn keys(mut self, modifiers: Modifiers, key: Key) -> Self {
-        self.shortcuts.push(KeyboardShortcut::new(modifiers, key));
-        self
-    }
-
-    /// Adds a key without modifiers that works only while nothing has the focus.
-    pub(crate) fn free_key(mut self, key: Key) -> Self {
-        self.reach = Reach::WithoutFocus;
-        self.keys(Modifiers::NONE, key)
-    }
-
-    pub(crate) fn within(mut self, menu: Menu, group: u8) -> Self {
-        self.menu = Some((menu, group));
-        self
-    }
-
-    pub(crate) fn enabled(mut self, enabled: bool) -> Self {
-        self.enabled = enabled;
-        self
-    }
-}
 
 /// Builds the entries of a group of a menu.
-fn group<const N: usize>(
+pub fn group<const N: usize>(
     menu: Menu,
     group: u8,
     entries: [Entry; N],
@@ -130,12 +61,12 @@ pub fn command_table(state: &State) -> Vec<Entry> {
         entries.push(Entry::new(
             copy,
             "As text, one line a row",
-            Command::CopyTable(kind),
+            OutputCommand::CopyTable(kind),
         ));
         entries.push(Entry::new(
             save,
             "As a CSV file",
-            Command::AskSaveTable(kind),
+            OutputCommand::AskSaveTable(kind),
         ));
     }
     for view in views_with_figure() {
@@ -144,9 +75,9 @@ pub fn command_table(state: &State) -> Vec<Entry> {
         entries.push(Entry::new(
             copy,
             "As CSV, to the clipboard",
-            Command::CopyFigure(view),
+            OutputCommand::CopyFigure(view),
         ));
-        let command = Command::AskSaveFigure(view, FigureFormat::Svg);
+        let command = Command::Output(OutputCommand::AskSaveFigure(view, FigureFormat::Svg));
         entries.push(Entry::new(
             save,
             "As SVG, PNG or PDF, or its numbers as CSV",
@@ -159,7 +90,7 @@ pub fn command_table(state: &State) -> Vec<Entry> {
 
 /// Returns the command that shows a form.
 fn form(form: FormKind) -> Command {
-    Command::ShowForm(Some(form))
+    Command::Form(FormCommand::ShowForm(Some(form)))
 }
 
 fn file_entries(state: &State) -> Vec<Entry> {
@@ -167,7 +98,7 @@ fn file_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             "Open…",
             "A dataset or a study, with the desktop's dialog",
-            Command::AskOpen,
+            FileCommand::AskOpen,
         )
         .keys(CTRL, Key::O),
         Entry::new(
@@ -179,25 +110,30 @@ fn file_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             "Open the example",
             "The simulated dataset that comes with the program",
-            Command::OpenExample,
+            FileCommand::OpenExample,
         ),
         Entry::new(
             "Import models…",
             "A dataset of a folder of model files: MATLAB, NumPy, JSON, text",
-            AssemblingCommand::Open.into(),
+            AssemblingCommand::Open,
         ),
         Entry::new(
             "Add flight records…",
             "Of the condition that their names say, or of the one shown",
-            RecordsCommand::AskFiles.into(),
+            RecordsCommand::AskFiles,
         ),
     ];
     let save = [
-        Entry::new("Save study", "Where it was saved last", Command::SaveStudy).keys(CTRL, Key::S),
+        Entry::new(
+            "Save study",
+            "Where it was saved last",
+            FileCommand::SaveStudy,
+        )
+        .keys(CTRL, Key::S),
         Entry::new(
             "Save study as…",
             "With the desktop's dialog",
-            Command::AskSaveStudy,
+            FileCommand::AskSaveStudy,
         )
         .keys(CTRL_SHIFT, Key::S),
     ];
@@ -207,7 +143,7 @@ fn file_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             "Write report…",
             "All that was done and found as one page to print, with every plot",
-            Command::AskReport,
+            OutputCommand::AskReport,
         ),
         Entry::new(
             "Export as…",
@@ -220,24 +156,24 @@ fn file_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             "Close",
             "Put away what is open, and show the start page",
-            Command::CloseStudy,
+            FileCommand::CloseStudy,
         )
         .keys(CTRL, Key::W),
         Entry::new(
             "Start page",
             "Three ways in, and what was open of late",
-            Command::ShowStart(true),
+            LayoutCommand::ShowStart(true),
         ),
     ];
     let begin = |what: OpensWith| {
         let entry = Entry::new(
             what.name(),
             "When the program is started without a file",
-            Command::BeginWith(what),
+            LayoutCommand::BeginWith(what),
         );
-        entry.enabled(state.display.opens_with != what)
+        entry.enabled(state.display.layout.opens_with != what)
     };
-    let quit = [Entry::new("Quit", "Close the window", Command::Quit).keys(CTRL, Key::Q)];
+    let quit = [Entry::new("Quit", "Close the window", FileCommand::Quit).keys(CTRL, Key::Q)];
     let menu = Menu::File;
     let entries = group(menu, 0, open)
         .chain(group(menu, 1, save))
@@ -261,7 +197,7 @@ fn record_entries(state: &State) -> [Entry; 4] {
         .conditions
         .values()
         .any(|records| records.used_rows().next().is_some());
-    let entry = |name, meaning, command: RecordsCommand| Entry::new(name, meaning, command.into());
+    let entry = |name, meaning, command: RecordsCommand| Entry::new(name, meaning, command);
     let here = "Into the condition shown";
     [
         entry(
@@ -316,19 +252,19 @@ fn edit_entries(state: &State) -> Vec<Entry> {
     } else {
         "Include this condition in the schedule"
     };
-    let edit = |name: String, meaning, edit: Edit| Entry::new(name, meaning, edit.into());
+    let edit = |name: String, meaning, edit: Edit| Entry::new(name, meaning, edit);
     let history = [
         Entry::new(
             step("Undo", undo),
             "Take the last decision back",
-            Command::Undo,
+            StudyCommand::Undo,
         )
         .keys(CTRL, Key::Z)
         .enabled(undo.is_some()),
         Entry::new(
             step("Redo", redo),
             "Bring a decision taken back again",
-            Command::Redo,
+            StudyCommand::Redo,
         )
         .keys(CTRL_SHIFT, Key::Z)
         .keys(CTRL, Key::Y)
@@ -352,7 +288,7 @@ fn edit_entries(state: &State) -> Vec<Entry> {
     ];
     let on_axis = "Hold exactly the on-axis responses".to_owned();
     let held = [
-        hold_entry(state, state.display.pair).free_key(Key::Space),
+        hold_entry(state, state.display.selection.pair).free_key(Key::Space),
         edit(
             on_axis,
             "As the dataset names them, and no others",
@@ -389,13 +325,13 @@ pub(crate) fn hold_entry(state: &State, pair: Pair) -> Entry {
             format!("Hold {name} exactly")
         },
         "Hold its net gain exactly, and its delay where one can, or leave both to the fit",
-        Edit::Hold(pair, !held).into(),
+        Edit::Hold(pair, !held),
     )
     .enabled(held || !is_undefined)
 }
 
 fn view_entries(state: &State) -> Vec<Entry> {
-    let (unit_name, unit) = match state.display.unit {
+    let (unit_name, unit) = match state.display.curves.unit {
         FrequencyUnit::RadPerSecond => ("Frequencies in Hz", FrequencyUnit::Hertz),
         FrequencyUnit::Hertz => ("Frequencies in rad/s", FrequencyUnit::RadPerSecond),
     };
@@ -403,20 +339,20 @@ fn view_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             "Fit the plots",
             "Bring every curve back into view",
-            Command::FitPlots,
+            DisplayCommand::FitPlots,
         )
         .free_key(Key::F),
         Entry::new(
             unit_name,
             "In every plot over frequency",
-            Command::SetFrequencyUnit(unit),
+            DisplayCommand::SetFrequencyUnit(unit),
         ),
     ];
     let show = |view: View| {
         Entry::new(
             format!("Show {}", view.name()),
-            view.kind().purpose,
-            Command::ShowView(view),
+            view.facts().purpose,
+            LayoutCommand::ShowView(view),
         )
     };
     let parts = [
@@ -424,7 +360,7 @@ fn view_entries(state: &State) -> Vec<Entry> {
         (Modifiers::SHIFT, "Previous part of the window", false),
     ];
     let part = |(modifiers, name, forward)| {
-        Entry::new(name, PARTS, Command::LeaveRegion { forward }).keys(modifiers, Key::F6)
+        Entry::new(name, PARTS, LayoutCommand::LeaveRegion { forward }).keys(modifiers, Key::F6)
     };
     let themes = [
         (
@@ -443,7 +379,7 @@ fn view_entries(state: &State) -> Vec<Entry> {
             ThemePreference::Light,
         ),
     ];
-    let theme = |(name, meaning, theme)| Entry::new(name, meaning, Command::SetTheme(theme));
+    let theme = |(name, meaning, theme)| Entry::new(name, meaning, LayoutCommand::SetTheme(theme));
     let menu = Menu::View;
     let entries = group(menu, 0, plots)
         .chain(group(menu, 1, steps(state)))
@@ -458,10 +394,10 @@ const PARTS: &str = "Plots, dock, verdict, result, matrix, settings, conditions,
 
 /// Returns the entries for groups of views, their neighbours, panels and folds.
 fn layout_entries(state: &State) -> Vec<Entry> {
-    let arrangement = &state.display.arrangement;
+    let arrangement = &state.display.layout.arrangement;
     let keys = [Key::Num1, Key::Num2, Key::Num3, Key::Num4];
     let groups = ViewGroup::ALL.into_iter().zip(keys).map(|(group, key)| {
-        let command = Command::ShowGroup(group);
+        let command = Command::Layout(LayoutCommand::ShowGroup(group));
         Entry::new(
             format!("Views: {}", group.name()),
             "The group, with the view that it showed last",
@@ -477,12 +413,12 @@ fn layout_entries(state: &State) -> Vec<Entry> {
         Entry::new(
             name,
             "Of the group in front",
-            Command::ShowView(arrangement.neighbour(by)),
+            LayoutCommand::ShowView(arrangement.neighbour(by)),
         )
         .keys(Modifiers::ALT, key)
     });
     let display = &state.display;
-    let is_left_open = display.left_open.unwrap_or(display.is_wide);
+    let is_left_open = display.layout.left_open.unwrap_or(display.layout.is_wide);
     let is_dock_open = arrangement.is_dock_open(true);
     let switches = [
         Entry::new(
@@ -492,17 +428,17 @@ fn layout_entries(state: &State) -> Vec<Entry> {
                 "Conditions and models in full"
             },
             "The left side of the window",
-            Command::ShowLeft(!is_left_open),
+            LayoutCommand::ShowLeft(!is_left_open),
         )
         .keys(CTRL, Key::B),
         Entry::new(
-            if display.settings_open {
+            if display.layout.settings_open {
                 "Fold the settings"
             } else {
                 "Unfold the settings"
             },
             "In place of matrix and card",
-            Command::ShowSettings(!display.settings_open),
+            LayoutCommand::ShowSettings(!display.layout.settings_open),
         )
         .keys(CTRL, Key::Comma),
         Entry::new(
@@ -512,17 +448,17 @@ fn layout_entries(state: &State) -> Vec<Entry> {
                 "Unfold the dock"
             },
             "The plots below the view in front",
-            Command::OpenDock(!is_dock_open),
+            LayoutCommand::OpenDock(!is_dock_open),
         ),
         Entry::new(
             "Why the result is so",
             "Its cautions, where a lag may come from, the proof",
-            Command::ShowSheet(Some(Sheet::Reasons)),
+            LayoutCommand::ShowSheet(Some(Sheet::Reasons)),
         ),
         Entry::new(
             "Reset the layout",
             "Every panel and plot goes back to its place",
-            Command::ResetLayout,
+            LayoutCommand::ResetLayout,
         ),
     ];
     groups
@@ -541,18 +477,23 @@ fn steps(state: &State) -> [Entry; 4] {
         .unwrap_or(0);
     let to_condition = |name, key, place: Option<usize>| {
         let found = place.and_then(|place| conditions.get(place));
-        let command = Command::SelectCondition(found.unwrap_or(&conditions[here]).id());
+        let command = Command::Selection(SelectionCommand::SelectCondition(
+            found.unwrap_or(&conditions[here]).id(),
+        ));
         Entry::new(name, "In the order of the list", command)
             .free_key(key)
             .enabled(found.is_some())
     };
     let inputs = state.dataset().inputs().len();
     let outputs = state.dataset().outputs().len();
-    let at = state.display.pair.output * inputs + state.display.pair.input;
+    let at = state.display.selection.pair.output * inputs + state.display.selection.pair.input;
     let to_response = |name, key, place: Option<usize>| {
         let found = place.filter(|place| *place < inputs * outputs);
         let place = found.unwrap_or(at);
-        let command = Command::FocusPair(Pair::new(place / inputs, place % inputs));
+        let command = Command::Selection(SelectionCommand::FocusPair(Pair::new(
+            place / inputs,
+            place % inputs,
+        )));
         Entry::new(name, "Row by row of the matrix", command)
             .free_key(key)
             .enabled(found.is_some())
@@ -577,7 +518,7 @@ fn setting_entries(state: &State) -> Vec<Entry> {
             entries.push(Entry::new(
                 name,
                 "Goes to its field",
-                Command::FocusField(label),
+                LayoutCommand::FocusField(label),
             ));
         };
         match setting.kind {
@@ -592,7 +533,7 @@ fn setting_entries(state: &State) -> Vec<Entry> {
                 let now = get(&state.study.settings);
                 entries.extend(words.iter().enumerate().map(|(index, [_, text, _])| {
                     let name = format!("{}: {text}", setting.control.label);
-                    Entry::new(name, setting.help, setting.to(Value::Choice(index)).into())
+                    Entry::new(name, setting.help, setting.to(Value::Choice(index)))
                         .enabled(index != now)
                 }));
             }
@@ -619,7 +560,7 @@ fn help_entries() -> impl Iterator<Item = Entry> {
         Entry::new(
             "Guided tour",
             "Five steps through the window",
-            Command::StartTour,
+            LayoutCommand::StartTour,
         ),
     ];
     let about = [Entry::new(
@@ -634,28 +575,34 @@ fn help_entries() -> impl Iterator<Item = Entry> {
 /// file.
 pub fn every_command(state: &State) -> Vec<Entry> {
     let mut entries = command_table(state);
-    entries.retain(|entry| entry.command != Command::ShowForm(Some(FormKind::Palette)));
+    entries.retain(|entry| {
+        entry.command != Command::Form(FormCommand::ShowForm(Some(FormKind::Palette)))
+    });
     entries.extend(PairSet::ALL.map(|set| {
         Entry::new(
             format!("Net gains of the responses {}", set.name()),
             set.purpose(),
-            Command::ShowNetGains(set),
+            DisplayCommand::ShowNetGains(set),
         )
     }));
     entries.extend(state.dataset().conditions().iter().map(|condition| {
         let id = condition.id();
         let flight_state = condition.flight_state();
         let name = format!("Condition {id} · {}", flight_state.name);
-        Entry::new(name, "Show this condition", Command::SelectCondition(id))
+        Entry::new(
+            name,
+            "Show this condition",
+            SelectionCommand::SelectCondition(id),
+        )
     }));
     for pair in state.dataset().on_axis().pairs() {
         let name = state.dataset().pair_name(pair);
         entries.push(Entry::new(
             format!("Show {name}"),
             "In the plots of one response",
-            Command::FocusPair(pair),
+            SelectionCommand::FocusPair(pair),
         ));
-        if pair != state.display.pair {
+        if pair != state.display.selection.pair {
             entries.push(hold_entry(state, pair));
         }
     }
@@ -665,7 +612,7 @@ pub fn every_command(state: &State) -> Vec<Entry> {
         Entry::new(
             name,
             "Opened or saved of late",
-            Command::Open(file.path.clone()),
+            FileCommand::Open(file.path.clone()),
         )
         .enabled(!file.missing)
     }));
@@ -681,9 +628,10 @@ fn model_entries(state: &State) -> Vec<Entry> {
         for name in condition.bundle(bundle).iter().map(|model| &model.name) {
             let id = ModelId::new(condition.id(), bundle, name);
             let choice = choice.bundle(bundle);
-            let mut entry =
-                |text: String, meaning, command| entries.push(Entry::new(text, meaning, command));
-            let ask = Command::AskReason(id.clone());
+            let mut entry = |text: String, meaning, command: Command| {
+                entries.push(Entry::new(text, meaning, command))
+            };
+            let ask = Command::Form(FormCommand::AskReason(id.clone()));
             let kept_in_words = "In words, kept in the study";
             if choice.rejected.contains(name) {
                 entry(

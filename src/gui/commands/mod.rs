@@ -1,5 +1,17 @@
 //! Commands of the window: one table for menu, keys and palette.
 
+pub mod assembling;
 pub mod command;
 pub mod command_palette;
 pub mod command_table;
+pub mod computing;
+pub mod curve_entries;
+pub mod display;
+pub mod entry;
+pub mod file;
+pub mod form;
+pub mod layout;
+pub mod output;
+pub mod records;
+pub mod selection;
+pub mod study;

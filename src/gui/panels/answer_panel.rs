@@ -11,13 +11,16 @@ use gdcm_model::units::number;
 use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::setting;
 
-use super::explanation::Sheet;
 use super::verdict::{Step, Verdict, VerdictRow, band_words, export};
 use super::{matrix_panel, result_panel, settings_panel};
 use crate::gui::commands::command::Command;
-use crate::gui::state::focus::{Region, region_ui, take_escape};
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::state::sheet::Sheet;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{Asks, elided, named, named_switch, painted_text, text_width};
+use crate::gui::widgets::controls::{
+    Asks, chevron, elided, named, named_switch, painted_text, text_width,
+};
+use crate::gui::widgets::focus::{Region, region_ui, take_escape};
 use crate::gui::widgets::palette::{
     BODY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
 };
@@ -61,7 +64,7 @@ pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
             verdict_ui(ui, &verdict, palette, commands)
         });
         ui.add_space(8.0);
-        if state.display.settings_open {
+        if state.display.layout.settings_open {
             ScrollArea::vertical()
                 .id_salt("settings")
                 .auto_shrink([false, false])
@@ -210,7 +213,7 @@ fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Ve
 }
 
 fn is_of_reasons(step: &Step) -> bool {
-    step.command == Command::ShowSheet(Some(Sheet::Reasons))
+    step.command == Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons)))
 }
 
 /// Returns the link to the list of reasons if no other step leads there.
@@ -218,7 +221,7 @@ fn notes_step(verdict: &Verdict) -> Option<Step> {
     let is_offered = verdict.steps.iter().any(is_of_reasons);
     let notes = Step {
         label: format!("{} notes", verdict.reasons),
-        command: Command::ShowSheet(Some(Sheet::Reasons)),
+        command: Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons))),
     };
     (!is_offered && verdict.reasons > 0).then_some(notes)
 }
@@ -306,7 +309,7 @@ fn step_ui(
 
 /// Draws the settings in one line; a click unfolds them over matrix and card.
 fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let is_open = state.display.settings_open;
+    let is_open = state.display.layout.settings_open;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::click());
     ui.painter().hline(
         rect.x_range(),
@@ -337,26 +340,12 @@ fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mu
     );
     let response = named_switch(response, Role::Button, is_open, "Settings");
     if response.clicked() || (is_open && take_escape(ui.ctx())) {
-        commands.push(Command::ShowSettings(!is_open));
+        commands.push(LayoutCommand::ShowSettings(!is_open).into());
     }
     response.on_hover_text(format!(
         "{words}. Click, or Ctrl+comma: {} them",
         if is_open { "fold" } else { "open" }
     ));
-}
-
-/// Paints a small arrow: to the right if its section is folded, down if it is open.
-pub(crate) fn chevron(ui: &Ui, center: egui::Pos2, is_open: bool, palette: &Palette) {
-    let turn = |x: f32, y: f32| {
-        if is_open {
-            center + vec2(-y, x)
-        } else {
-            center + vec2(x, y)
-        }
-    };
-    let points = vec![turn(-2.0, -4.0), turn(2.0, 0.0), turn(-2.0, 4.0)];
-    ui.painter()
-        .line(points, egui::Stroke::new(1.3, palette.dim_text));
 }
 
 /// "α 1 · 0.5–12 rad/s · delays · representatives".
@@ -374,7 +363,7 @@ fn settings_words(state: &State) -> String {
         PhaseCorrection::Lead => "leads",
     };
     let mut words = format!("{alpha} · {} · {phase}", band_words(state));
-    if settings.gain_source == GainSource::MeanOfPairs || state.display.is_wide {
+    if settings.gain_source == GainSource::MeanOfPairs || state.display.layout.is_wide {
         words.push_str(" · ");
         words.push_str(&setting::GAIN_SOURCE.text(setting::GAIN_SOURCE.value(settings)));
     }

@@ -8,10 +8,20 @@ use egui::{
 
 use gdcm_model::dataset::{BundleKind, Condition};
 
-use crate::gui::commands::command::{Command, FormKind};
-use crate::gui::commands::command_table::{Menu, command_table};
-use crate::gui::state::window_state::{Background, NoticeKind, RecentFile, State, bar_words};
-use crate::gui::views::records::RecordsState;
+use crate::gui::commands::command::Command;
+use crate::gui::commands::command_table::command_table;
+use crate::gui::commands::computing::ComputingCommand;
+use crate::gui::commands::entry::Menu;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::commands::study::StudyCommand;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::notices::{Bar, NoticeKind};
+use crate::gui::state::records::RecordsState;
+use crate::gui::state::results::{Background, bar_words};
+use crate::gui::state::window_state::{RecentFile, State};
 use crate::gui::widgets::controls::{
     Asks, button_ui, elided, in_line_ui, named, painted_text, text_width,
 };
@@ -25,7 +35,7 @@ pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
             ui.label(RichText::new("gdcm").font(medium(BODY_SIZE)));
             ui.add_space(4.0);
             let file = ui.menu_button("File", |ui| menu_ui(ui, state, Menu::File, commands));
-            file.response.asks(Command::LookForRecent, commands);
+            file.response.asks(FileCommand::LookForRecent, commands);
             for (name, menu) in [
                 ("Edit", Menu::Edit),
                 ("View", Menu::View),
@@ -70,7 +80,7 @@ fn search_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) -> f32
     let keys = ui.ctx().format_shortcut(&keys);
     painted_text(ui, inner, -0.01, &keys, small(), palette.dim_text);
     named(response, Role::Button, "Find a command")
-        .asks(Command::ShowForm(Some(FormKind::Palette)), commands);
+        .asks(FormCommand::ShowForm(Some(FormKind::Palette)), commands);
     rect.left()
 }
 
@@ -85,7 +95,8 @@ fn menu_ui(ui: &mut Ui, state: &State, menu: Menu, commands: &mut Vec<Command>) 
         if last.replace(group).is_some_and(|last| last != group) {
             ui.separator();
         }
-        let is_recent_place = entry.command == Command::OpenExample && !state.recent.is_empty();
+        let is_recent_place =
+            entry.command == Command::File(FileCommand::OpenExample) && !state.recent.is_empty();
         if is_recent_place {
             ui.menu_button("Open recent", |ui| recent_menu_ui(ui, state, commands));
         }
@@ -127,7 +138,7 @@ fn recent_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             .on_disabled_hover_text(format!("It is not in {folder} any more"))
             .clicked()
         {
-            commands.push(Command::Open(path.clone()));
+            commands.push(FileCommand::Open(path.clone()).into());
             ui.close();
         }
     }
@@ -139,13 +150,13 @@ fn history_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             "↶ Undo",
             state.history.undo_label(),
             "Take the last decision back (Ctrl+Z)",
-            Command::Undo,
+            Command::Study(StudyCommand::Undo),
         ),
         (
             "↷ Redo",
             state.history.redo_label(),
             "Bring it back again (Ctrl+Shift+Z)",
-            Command::Redo,
+            Command::Study(StudyCommand::Redo),
         ),
     ] {
         let text = label.map_or(verb.to_owned(), |label| format!("{verb} {label}"));
@@ -165,7 +176,7 @@ fn theme_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     let button = named(ui.add(Button::new("◐").frame(false)), Role::Button, name);
     button
         .on_hover_text(name)
-        .asks(Command::SetTheme(other), commands);
+        .asks(LayoutCommand::SetTheme(other), commands);
 }
 
 /// Draws dataset and study in the middle of the bar if there is room.
@@ -206,30 +217,6 @@ fn title_ui(ui: &mut Ui, bar: Rect, room: Rect, state: &State, palette: &Palette
     response.on_hover_text(format!("{}\n{is_saved}", state.dataset().description()));
 }
 
-/// Event that concerns the program or its files.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Bar {
-    /// A computation panicked.
-    Fault {
-        /// What happened, what was preserved, and what to send to whom.
-        sentence: String,
-    },
-    /// Decisions of an earlier window that ended without saving them.
-    Recovery {
-        offer: usize,
-        /// Study and date.
-        sentence: String,
-    },
-    /// The dataset's file has changed since it was opened.
-    Changed { name: String },
-    /// The dataset was read again and has changed.
-    Differences {
-        name: String,
-        /// Changes, and decisions that no longer apply.
-        sentences: Vec<String>,
-    },
-}
-
 /// Draws every bar, oldest first.
 pub fn bars_ui(ui: &mut Ui, bars: &[Bar], palette: &Palette, commands: &mut Vec<Command>) {
     for bar in bars {
@@ -243,20 +230,23 @@ pub fn bars_ui(ui: &mut Ui, bars: &[Bar], palette: &Palette, commands: &mut Vec<
 }
 
 fn bar_ui(ui: &mut Ui, bar: &Bar, palette: &Palette, commands: &mut Vec<Command>) {
-    let close = Command::CloseBar(bar.clone());
+    let close = Command::Form(FormCommand::CloseBar(bar.clone()));
     let (sentence, buttons) = match bar {
         Bar::Fault { sentence } => {
-            let copy = Command::CopyText(sentence.clone());
+            let copy = Command::Output(OutputCommand::CopyText(sentence.clone()));
             let buttons = vec![
-                ("Compute again", Command::Compute),
+                (
+                    "Compute again",
+                    Command::Computing(ComputingCommand::Compute),
+                ),
                 ("Copy this message", copy),
                 ("Put away", close),
             ];
             (sentence.clone(), buttons)
         }
         Bar::Recovery { offer, sentence } => {
-            let restore = Command::RestoreRecovery(*offer);
-            let discard = Command::DiscardRecovery(*offer);
+            let restore = Command::File(FileCommand::RestoreRecovery(*offer));
+            let discard = Command::File(FileCommand::DiscardRecovery(*offer));
             (
                 sentence.clone(),
                 vec![("Restore", restore), ("Discard", discard), ("Later", close)],
@@ -264,8 +254,8 @@ fn bar_ui(ui: &mut Ui, bar: &Bar, palette: &Palette, commands: &mut Vec<Command>
         }
         Bar::Changed { name } => {
             let buttons = vec![
-                ("Reload", Command::Reload),
-                ("Keep what is open", Command::KeepOpen),
+                ("Reload", Command::File(FileCommand::Reload)),
+                ("Keep what is open", Command::File(FileCommand::KeepOpen)),
             ];
             (format!("{name} has changed on disk."), buttons)
         }
@@ -337,7 +327,7 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     ui.horizontal_centered(|ui| {
         computation_ui(ui, state, palette, commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            match (&state.display.told, &state.notice) {
+            match (&state.display.selection.told, &state.notice) {
                 (Some(told), _) => {
                     drop(ui.add(Label::new(RichText::new(told).size(SMALL_SIZE)).truncate()))
                 }
@@ -346,7 +336,7 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
                         ui,
                         Button::new("Dismiss").small(),
                         "",
-                        Command::DismissNotice,
+                        FormCommand::DismissNotice,
                         commands,
                     );
                     let color = if notice.kind == NoticeKind::Done {
@@ -416,7 +406,7 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
             ui,
             Button::new("Compute").small(),
             "",
-            Command::Compute,
+            ComputingCommand::Compute,
             commands,
         );
     } else if is_reading || state.results.is_stale(now) || beside.is_some() {
@@ -424,7 +414,7 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
             ui,
             Button::new("Stop").small(),
             "",
-            Command::StopComputing,
+            ComputingCommand::StopComputing,
             commands,
         );
     }

@@ -6,17 +6,19 @@ use egui::{
     StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
 
-use super::answer_panel::chevron;
 use super::start_page::example_line_ui;
 use crate::gui::commands::command::Command;
-use crate::gui::state::display::ViewGroup;
-use crate::gui::state::figures::figure_button_ui;
-use crate::gui::state::focus::{Region, region_ui};
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::state::view::{View, ViewGroup};
 use crate::gui::state::window_state::State;
-use crate::gui::views::{View, ViewTitle};
+use crate::gui::views::figure_button::figure_button_ui;
+use crate::gui::views::{ViewTitle, view_content};
 use crate::gui::widgets::controls::{
-    Asks, button_ui, entries_ui, in_line_ui, named, named_switch, restore_panel_size, text_width,
+    Asks, button_ui, chevron, entries_ui, in_line_ui, named, named_switch, restore_panel_size,
+    text_width,
 };
+use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, TITLE_SIZE, body, medium};
 
 /// Height of the bar of the views \[pt\].
@@ -44,11 +46,11 @@ pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &m
         });
         frame.show(ui, |ui| example_line_ui(ui, palette, commands));
     }
-    if let Some(dock) = state.display.arrangement.dock() {
+    if let Some(dock) = state.display.layout.arrangement.dock() {
         dock_ui(ui, state, dock, palette, commands);
     }
-    let view = state.display.arrangement.view();
-    let beside = state.display.arrangement.beside();
+    let view = state.display.layout.arrangement.view();
+    let beside = state.display.layout.arrangement.beside();
     let area = ui.available_rect_before_wrap();
     let Some(beside) = beside else {
         return part_ui(ui, area, state, view, palette, commands);
@@ -87,13 +89,13 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         inner.with_min_x(left.response.rect.right() + 8.0),
         true,
         |ui| {
-            figure_button_ui(ui, state, state.display.arrangement.view(), commands);
+            figure_button_ui(ui, state, state.display.layout.arrangement.view(), commands);
             let hint = "Bring every curve into view (F, or double click)";
             button_ui(
                 ui,
                 Button::new("Fit").frame(false),
                 hint,
-                Command::FitPlots,
+                DisplayCommand::FitPlots,
                 commands,
             );
             beside_ui(ui, state, palette, commands);
@@ -118,7 +120,7 @@ fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     for (group, width) in ViewGroup::ALL.into_iter().zip(widths) {
         let place = Rect::from_min_size(pos2(left, area.top() + 2.0), vec2(width, 26.0));
         left = place.right();
-        let is_front = state.display.arrangement.group() == group;
+        let is_front = state.display.layout.arrangement.group() == group;
         let response = ui.interact(
             place,
             ui.scope_id().with(("group", group.name())),
@@ -148,7 +150,7 @@ fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
         let names: Vec<&str> = group.views().map(View::name).collect();
         response
             .on_hover_text(names.join(", "))
-            .asks(Command::ShowGroup(group), commands);
+            .asks(LayoutCommand::ShowGroup(group), commands);
     }
 }
 
@@ -156,7 +158,7 @@ fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
 fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &mut Vec<Command>) {
     /// Width of the other controls in the bar \[pt\].
     const TOOLS: f32 = 130.0;
-    let arrangement = &state.display.arrangement;
+    let arrangement = &state.display.layout.arrangement;
     let width = |view: View| text_width(ui, view.name(), medium(BODY_SIZE)) + 16.0;
     let room = bar.right() - ui.cursor().left() - TOOLS;
     if arrangement.group().views().map(width).sum::<f32>() <= room {
@@ -171,7 +173,7 @@ fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &
         let views = arrangement.group().views();
         entries_ui(
             ui,
-            views.map(|view| (view.name(), Command::ShowView(view))),
+            views.map(|view| (view.name(), Command::Layout(LayoutCommand::ShowView(view)))),
             commands,
         );
     });
@@ -215,13 +217,13 @@ fn tab_ui(
     }
     let response = named_switch(response, Role::Tab, is_front, view.name());
     response
-        .on_hover_text(view.kind().purpose)
-        .asks(Command::ShowView(view), commands);
+        .on_hover_text(view.facts().purpose)
+        .asks(LayoutCommand::ShowView(view), commands);
 }
 
 /// Draws the button that shows a second view beside the view in front, or hides it.
 fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let arrangement = &state.display.arrangement;
+    let arrangement = &state.display.layout.arrangement;
     let (button, _) = MenuButton::from_button(Button::new("     ").frame(false)).ui(ui, |ui| {
         let views = View::ALL
             .into_iter()
@@ -231,7 +233,7 @@ fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
             views.map(|view| {
                 (
                     format!("{} beside it", view.name()),
-                    Command::ShowBeside(Some(view)),
+                    Command::Layout(LayoutCommand::ShowBeside(Some(view))),
                 )
             }),
             commands,
@@ -240,7 +242,10 @@ fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
             ui.separator();
             entries_ui(
                 ui,
-                [("One view alone", Command::ShowBeside(None))],
+                [(
+                    "One view alone",
+                    Command::Layout(LayoutCommand::ShowBeside(None)),
+                )],
                 commands,
             );
         }
@@ -271,7 +276,7 @@ fn part_ui(
     let top = if state.is_example { 0 } else { 6 };
     clipped_ui(ui, ("view", view), area, [top, 4], |ui| {
         title_row_ui(ui, state, view, palette, commands);
-        let draw = view.kind().draw;
+        let draw = view_content(view).draw;
         region_ui(ui, Region::Plots, |ui| draw(ui, state, palette, commands));
     });
 }
@@ -309,18 +314,18 @@ fn title_row_ui(
 ) {
     /// Least width of a title \[pt\].
     const LEAST: f32 = 200.0;
-    let kind = view.kind();
+    let content = view_content(view);
     let width = ui.available_width();
-    let is_titled = !matches!(kind.title, ViewTitle::None);
-    if is_titled && width - kind.tools_width < LEAST && kind.tools_width > 0.0 {
-        row_ui(ui, width, |ui| title_ui(ui, state, kind.title, palette));
+    let is_titled = !matches!(content.title, ViewTitle::None);
+    if is_titled && width - content.tools_width < LEAST && content.tools_width > 0.0 {
+        row_ui(ui, width, |ui| title_ui(ui, state, content.title, palette));
         row_ui(ui, width, |ui| tools_ui(ui, state, view, palette, commands));
-    } else if is_titled || kind.tools_width > 0.0 {
+    } else if is_titled || content.tools_width > 0.0 {
         row_ui(ui, width, |ui| {
             tools_ui(ui, state, view, palette, commands);
             let rest = ui.available_rect_before_wrap();
             in_line_ui(ui, rest, false, |ui| {
-                title_ui(ui, state, kind.title, palette)
+                title_ui(ui, state, content.title, palette)
             });
         });
     }
@@ -345,11 +350,11 @@ fn tools_ui(
     commands: &mut Vec<Command>,
 ) {
     // The bar shows the tools of the view in front.
-    if view != state.display.arrangement.view() {
+    if view != state.display.layout.arrangement.view() {
         figure_button_ui(ui, state, view, commands);
     }
-    (view.kind().tools)(ui, state, palette, commands);
-    if view.kind().is_of_all_conditions && state.others_are_older() {
+    (view_content(view).tools)(ui, state, palette, commands);
+    if view.facts().is_of_all_conditions && state.others_are_older() {
         let text = palette.small_warning("of older settings");
         ui.label(text).on_hover_text(
             "The condition shown is computed anew already; the others are on their way",
@@ -368,10 +373,13 @@ fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
     let heading = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).font(medium(TITLE_SIZE)));
     match title {
         ViewTitle::Response => {
-            heading(ui, &state.dataset().pair_name(state.display.pair));
+            heading(ui, &state.dataset().pair_name(state.display.selection.pair));
             ui.add(egui::Label::new(palette.dim(of_condition)).truncate());
         }
-        ViewTitle::Focus => drop(heading(ui, &state.dataset().pair_name(state.display.pair))),
+        ViewTitle::Focus => drop(heading(
+            ui,
+            &state.dataset().pair_name(state.display.selection.pair),
+        )),
         ViewTitle::Condition => {
             heading(ui, &format!("Condition {}", condition.id()));
             ui.add(egui::Label::new(palette.dim(&condition.flight_state().name)).truncate());
@@ -394,6 +402,7 @@ fn dock_ui(
     let window = ui.ctx().content_rect().height();
     let is_open = state
         .display
+        .layout
         .arrangement
         .is_dock_open(window >= LEAST_WITH_DOCK);
     let frame = Frame::new().fill(palette.background);
@@ -412,7 +421,7 @@ fn dock_ui(
         clipped_ui(ui, "dock content", area, [0, 2], |ui| {
             dock_head_ui(ui, state, (view, is_open), palette, commands);
             if is_open {
-                let draw = view.kind().draw;
+                let draw = view_content(view).draw;
                 region_ui(ui, Region::Dock, |ui| draw(ui, state, palette, commands));
             }
         });
@@ -449,11 +458,11 @@ fn dock_head_ui(
                 };
                 response
                     .on_hover_text(hint)
-                    .asks(Command::OpenDock(!is_open), commands);
-                let others: Vec<View> = View::docked(state).collect();
+                    .asks(LayoutCommand::OpenDock(!is_open), commands);
+                let others: Vec<View> = View::docked(state.study.settings.phase).collect();
                 for docked in &others {
                     let is_front = *docked == view;
-                    let text = RichText::new(docked.kind().long_name.unwrap_or(docked.name()))
+                    let text = RichText::new(docked.facts().long_name.unwrap_or(docked.name()))
                         .font(medium(BODY_SIZE));
                     if others.len() == 1 {
                         ui.label(text);
@@ -465,11 +474,11 @@ fn dock_head_ui(
                             is_front,
                             format!("{} in the dock", docked.name()),
                         );
-                        button.asks(Command::ShowInDock(*docked), commands);
+                        button.asks(LayoutCommand::ShowInDock(*docked), commands);
                     }
                 }
                 ui.add_space(4.0);
-                title_ui(ui, state, view.kind().title, palette);
+                title_ui(ui, state, view_content(view).title, palette);
             });
         },
     );

@@ -14,18 +14,21 @@ use gdcm_plot::figure::decimals;
 use gdcm_plot::figure::gains::Classes;
 use gdcm_study::Edit;
 
-use super::cost_map::{CostColumn, MappedCost, columns, cost_of_column};
-use super::explanation::Sheet;
+use super::cost_map::{CostColumn, columns, cost_of_column};
+use super::table_menu::{table_heading_ui, table_menu_ui};
 use crate::gui::commands::command::Command;
-use crate::gui::state::focus::{Region, region_ui};
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::state::mapped_cost::MappedCost;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::tables::TableKind;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{
-    Asks, entries_ui, named, painted_text, row_of_height_ui, table_heading_ui, table_menu_ui,
-};
+use crate::gui::widgets::controls::{Asks, entries_ui, named, painted_text, row_of_height_ui};
+use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{
     BODY_SIZE, HEAT_COSTS, Palette, SMALL_SIZE, body, medium, small,
 };
-use crate::gui::widgets::tables::TableKind;
 
 /// Right edge of the number, centre of the mark, right edge of the airspeed \[pt from the row's
 /// left edge\].
@@ -121,7 +124,7 @@ fn pin_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     let response = named(response, Role::Button, "Show the left panel");
     response
         .on_hover_text("Conditions with their map and models beside the plots (Ctrl+B)")
-        .asks(Command::ShowLeft(true), commands);
+        .asks(LayoutCommand::ShowLeft(true), commands);
 }
 
 fn bundle_button_ui(
@@ -167,7 +170,7 @@ fn bundle_button_ui(
         .on_hover_text(format!("{name}: {kept} kept"))
         .clicked()
     {
-        commands.push(Command::ShowSheet(Some(sheet)));
+        commands.push(LayoutCommand::ShowSheet(Some(sheet)).into());
     }
 }
 
@@ -268,7 +271,7 @@ impl<'a> Map<'a> {
             );
         }
         for (place, column) in self.columns.iter().enumerate() {
-            let is_of_focus = column.pairs.contains(&self.state.display.pair);
+            let is_of_focus = column.pairs.contains(&self.state.display.selection.pair);
             let color = if is_of_focus {
                 palette.text
             } else {
@@ -288,7 +291,7 @@ impl<'a> Map<'a> {
             let entry = |mapped: MappedCost| {
                 (
                     format!("Map J of {}", mapped.name()),
-                    Command::MapCost(mapped),
+                    Command::Display(DisplayCommand::MapCost(mapped)),
                 )
             };
             entries_ui(ui, MappedCost::ALL.map(entry), commands);
@@ -312,11 +315,11 @@ impl<'a> Map<'a> {
             marks.after_name()
         );
         let is_shown = id == state.condition().id();
-        let is_pointed = state.display.hovered_condition == Some(id);
+        let is_pointed = state.display.selection.hovered_condition == Some(id);
         let height = ROWS[usize::from(self.is_rail)];
         let (row, response) = row_of_height_ui(ui, palette, (is_shown, is_pointed, height), &name);
         if response.contains_pointer() {
-            commands.push(Command::HoverCondition(id));
+            commands.push(SelectionCommand::HoverCondition(id).into());
         }
         let color = if marks.left_out {
             palette.quiet_text
@@ -355,7 +358,7 @@ impl<'a> Map<'a> {
         }
         self.cells_ui(ui, row, (id, &marks), palette, commands);
         marks.paint(ui, row, palette);
-        response.asks(Command::SelectCondition(id), commands);
+        response.asks(SelectionCommand::SelectCondition(id), commands);
         response.context_menu(|ui| menu_ui(ui, id, &marks, commands));
         response.on_hover_ui(|ui| tooltip_ui(ui, condition, &marks, palette));
     }
@@ -380,7 +383,7 @@ impl<'a> Map<'a> {
             let width = HALF_CELL[0].min(0.5 * self.pitch - 1.5);
             let cell = Rect::from_min_size(corner, vec2(2.0 * width + 1.0, HALF_CELL[1]));
             paint_cost(ui, cell, cost, palette);
-            let is_focus = column.pairs.contains(&self.state.display.pair)
+            let is_focus = column.pairs.contains(&self.state.display.selection.pair)
                 && id == self.state.condition().id();
             if is_focus && !self.is_rail {
                 ui.painter().rect_stroke(
@@ -395,7 +398,10 @@ impl<'a> Map<'a> {
             let response = named(response, Role::Button, words.clone());
             response.context_menu(|ui| menu_ui(ui, id, marks, commands));
             if response.on_hover_text(words).clicked() {
-                commands.extend([Command::SelectCondition(id), Command::FocusPair(pair)]);
+                commands.extend([
+                    Command::Selection(SelectionCommand::SelectCondition(id)),
+                    Command::Selection(SelectionCommand::FocusPair(pair)),
+                ]);
             }
         }
     }
@@ -407,7 +413,7 @@ impl<'a> Map<'a> {
             rect.with_max_y(rect.center().y),
             rect.with_min_y(rect.center().y),
         ];
-        let of = match self.state.display.mapped_cost {
+        let of = match self.state.display.judging.mapped_cost {
             MappedCost::Before => "J before, held responses",
             MappedCost::Own => "J of the held responses",
             MappedCost::Scheduled => "J under the schedule",

@@ -5,33 +5,8 @@ use gdcm_method::fidelity::Cost;
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_study::CouplingCorrection;
 
+use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::window_state::State;
-
-/// Correction whose costs the map shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum MappedCost {
-    /// The uncorrected physics representative.
-    Before,
-    /// Optimum of each condition.
-    #[default]
-    Own,
-    /// The schedule, applied to the nominal model.
-    Scheduled,
-}
-
-impl MappedCost {
-    /// Every choice, in the order of the menu.
-    pub const ALL: [Self; 3] = [Self::Before, Self::Own, Self::Scheduled];
-
-    /// Returns the text of the menu entry.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Before => "before any correction",
-            Self::Own => "each optimum",
-            Self::Scheduled => "the schedule",
-        }
-    }
-}
 
 /// More constrained responses than this are merged into the worst of each input.
 const MOST_COLUMNS: usize = 8;
@@ -100,14 +75,14 @@ fn held_columns(state: &State) -> Vec<CostColumn> {
 /// Returns J of magnitude and phase of a response in a condition; `None` without a result.
 pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost> {
     let analysis = state.analysis()?;
-    if state.display.mapped_cost == MappedCost::Scheduled {
+    if state.display.judging.mapped_cost == MappedCost::Scheduled {
         let Ok(costs) = analysis.assessment.get(&condition)? else {
             return None;
         };
         return costs[pair].map(|change| change.corrected);
     }
     let result = analysis.condition(condition)?;
-    match state.display.mapped_cost {
+    match state.display.judging.mapped_cost {
         MappedCost::Before => result.before_couplings().representative.cost[pair],
         _ => result.cost[pair].map(|change| change.corrected),
     }

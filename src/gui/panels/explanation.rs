@@ -21,45 +21,16 @@ use gdcm_study::stages::lead_compensation::lead_words;
 use gdcm_study::{ConditionAnalysis, Edit, ExplainTarget};
 
 use crate::gui::commands::command::Command;
-use crate::gui::state::focus::take_escape;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::views::{View, offered_couplings, used_couplings};
-use crate::gui::widgets::controls::{Asks, button_ui, entries_ui, named};
+use crate::gui::views::{offered_couplings, used_couplings};
+use crate::gui::widgets::controls::{Asks, QUESTION, button_ui, entries_ui, named};
+use crate::gui::widgets::focus::take_escape;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, medium};
-
-/// Content of a sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sheet {
-    /// Reasons for the result.
-    Reasons,
-    /// Physics models, beside the rail.
-    Models,
-    /// Identified models, beside the rail.
-    Identified,
-    /// Derivation of a value.
-    Derivation,
-}
-
-impl Sheet {
-    /// Returns the heading, which is also the accessible name.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Reasons => "Why the result is so",
-            Self::Models => "Physics models",
-            Self::Identified => "Identified models",
-            Self::Derivation => QUESTION,
-        }
-    }
-
-    /// Returns whether the sheet is at the right side, and its width \[pt\].
-    fn place(self) -> (bool, f32) {
-        match self {
-            Self::Reasons => (true, 380.0),
-            Self::Derivation => (true, 440.0),
-            Self::Models | Self::Identified => (false, 272.0),
-        }
-    }
-}
 
 /// Draws a sheet over `centre`; returns whether it is to be closed.
 pub fn sheet_ui(
@@ -122,9 +93,6 @@ pub fn sheet_ui(
     is_closed
 }
 
-/// Menu text that opens a derivation, used everywhere.
-pub use crate::gui::plot::questions::QUESTION;
-
 /// Draws the derivation of a value in a sheet; it follows the results while it is open.
 pub fn derivation_sheet_ui(
     ui: &mut Ui,
@@ -132,7 +100,7 @@ pub fn derivation_sheet_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let Some(asked) = &state.display.asked else {
+    let Some(asked) = &state.display.selection.asked else {
         return;
     };
     let found = state
@@ -177,7 +145,7 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
     }
     ui.horizontal(|ui| {
         if ui.button("Copy the derivation").clicked() {
-            commands.push(Command::CopyText(text_of(found)));
+            commands.push(OutputCommand::CopyText(text_of(found)).into());
         }
         ui.label(palette.small(found.section));
     });
@@ -229,7 +197,7 @@ pub fn value_label_ui(
     commands: &mut Vec<Command>,
 ) -> Response {
     let response = ui.add(Label::new(text).sense(Sense::click()).selectable(false));
-    response.asks(Command::Explain(Some(asked)), commands);
+    response.asks(SelectionCommand::Explain(Some(asked)), commands);
     response.on_hover_cursor(CursorIcon::Help)
 }
 
@@ -242,9 +210,12 @@ pub fn question_menu_ui(
     ui.menu_button(QUESTION, |ui| {
         entries_ui(
             ui,
-            values
-                .into_iter()
-                .map(|(name, asked)| (name, Command::Explain(Some(asked)))),
+            values.into_iter().map(|(name, asked)| {
+                (
+                    name,
+                    Command::Selection(SelectionCommand::Explain(Some(asked))),
+                )
+            }),
             commands,
         );
     });
@@ -380,7 +351,11 @@ fn causes_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     for (name, words, look, view) in CAUSES {
         ui.label(name);
         ui.label(palette.small(words));
-        entries_ui(ui, [(look, Command::ShowView(view))], commands);
+        entries_ui(
+            ui,
+            [(look, Command::Layout(LayoutCommand::ShowView(view)))],
+            commands,
+        );
         ui.add_space(4.0);
     }
 }
@@ -527,7 +502,10 @@ fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
     );
     entries_ui(
         ui,
-        [("Look at the couplings", Command::ShowView(View::Couplings))],
+        [(
+            "Look at the couplings",
+            Command::Layout(LayoutCommand::ShowView(View::Couplings)),
+        )],
         commands,
     );
 }

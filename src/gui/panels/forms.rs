@@ -17,10 +17,15 @@ use gdcm_study::decisions::differences::Difference;
 use gdcm_study::{Analysis, Edit};
 
 use super::help::keys_page_ui;
-use crate::gui::commands::command::{Command, FormKind, RequirementTable};
+use crate::gui::commands::command::Command;
 use crate::gui::commands::command_palette::command_palette_ui;
-use crate::gui::state::window_state::{Forms, State};
-use crate::gui::views::records::{RecordsCommand, WantedDataset};
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::state::forms::{FormKind, Forms, RequirementTable};
+use crate::gui::state::records::WantedDataset;
+use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{is_entered, name_text_field, named_switch, text_field_ui};
 use crate::gui::widgets::palette::Palette;
 
@@ -57,7 +62,7 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
         }
     });
     if modal.should_close() {
-        commands.push(Command::ShowForm(None));
+        commands.push(FormCommand::ShowForm(None).into());
     }
 }
 
@@ -248,15 +253,26 @@ fn contents_ui(
 /// Returns the command of a form with its path.
 fn path_command(kind: FormKind, forms: &Forms, path: PathBuf) -> Option<Command> {
     Some(match kind {
-        FormKind::Open => Command::Open(path),
-        FormKind::FindDataset => Command::OpenStudyOf(forms.lost_dataset.as_ref()?.0.clone(), path),
-        FormKind::Save => Command::SaveStudyAs(path),
-        FormKind::SaveTable => Command::SaveTable(forms.table.clone()?, path),
-        FormKind::SaveFigure => Command::SaveFigure(forms.figure?, forms.figure_width, path),
-        FormKind::Report => Command::WriteReport(path),
-        FormKind::ReadRequirementTable(table) => Command::ReadRequirementTable(table, path),
-        FormKind::WriteTolerances => Command::WriteTolerances(path),
-        FormKind::ExportAs => Command::ExportAs(forms.export_format, path),
+        FormKind::Open => Command::File(FileCommand::Open(path)),
+        FormKind::FindDataset => Command::File(FileCommand::OpenStudyOf(
+            forms.lost_dataset.as_ref()?.0.clone(),
+            path,
+        )),
+        FormKind::Save => Command::File(FileCommand::SaveStudyAs(path)),
+        FormKind::SaveTable => {
+            Command::Output(OutputCommand::SaveTable(forms.table.clone()?, path))
+        }
+        FormKind::SaveFigure => Command::Output(OutputCommand::SaveFigure(
+            forms.figure?,
+            forms.figure_width,
+            path,
+        )),
+        FormKind::Report => Command::Output(OutputCommand::WriteReport(path)),
+        FormKind::ReadRequirementTable(table) => {
+            Command::File(FileCommand::ReadRequirementTable(table, path))
+        }
+        FormKind::WriteTolerances => Command::File(FileCommand::WriteTolerances(path)),
+        FormKind::ExportAs => Command::Output(OutputCommand::ExportAs(forms.export_format, path)),
         _ => return None,
     })
 }
@@ -282,8 +298,13 @@ fn export_ui(form: &mut Form<'_, '_>, state: &mut State) {
     );
     let ready = is_any && !folder.trim().is_empty();
     form.line(|form| {
-        form.submit_ui("Export", ready, entered, Some(Command::Export));
-        form.button_ui("Choose folder…", false, Command::AskExportFolder);
+        form.submit_ui(
+            "Export",
+            ready,
+            entered,
+            Some(Command::Output(OutputCommand::Export)),
+        );
+        form.button_ui("Choose folder…", false, OutputCommand::AskExportFolder);
         form.cancel_ui(waits);
     });
 }
@@ -321,7 +342,7 @@ fn conditions_ui(
 fn shortcuts_ui(form: &mut Form<'_, '_>, state: &State) {
     form.title("Keys and gestures");
     keys_page_ui(form.ui, state, form.palette);
-    form.button_ui("Close", true, Command::ShowForm(None));
+    form.button_ui("Close", true, FormCommand::ShowForm(None));
 }
 
 fn about_ui(form: &mut Form<'_, '_>) {
@@ -332,7 +353,7 @@ fn about_ui(form: &mut Form<'_, '_>) {
     );
     form.explain("The embedded example is simulated; nothing in it comes from a real aircraft.");
     form.explain("MIT OR Apache-2.0");
-    form.button_ui("Close", true, Command::ShowForm(None));
+    form.button_ui("Close", true, FormCommand::ShowForm(None));
 }
 
 /// Asks whether to overwrite files; Cancel returns to the form.
@@ -347,9 +368,9 @@ fn overwrite_ui(form: &mut Form<'_, '_>, kind: FormKind, existing: &[String]) {
     }
     form.ui.add_space(4.0);
     form.line(|form| {
-        form.button_ui("Overwrite", false, Command::Overwrite);
+        form.button_ui("Overwrite", false, FormCommand::Overwrite);
         // Enter must not lose anything.
-        form.button_ui("Cancel", true, Command::ShowForm(Some(kind)));
+        form.button_ui("Cancel", true, FormCommand::ShowForm(Some(kind)));
     });
 }
 
@@ -358,8 +379,8 @@ fn unsaved_ui(form: &mut Form<'_, '_>) {
     form.ui.label("Going on loses the rejected models, the chosen representatives and the settings of this study.");
     form.ui.add_space(4.0);
     form.line(|form| {
-        form.button_ui("Save study first", true, Command::SaveAndGoOn);
-        form.button_ui("Don't save", false, Command::DiscardAndGoOn);
+        form.button_ui("Save study first", true, FormCommand::SaveAndGoOn);
+        form.button_ui("Don't save", false, FormCommand::DiscardAndGoOn);
         form.cancel_ui(false);
     });
 }
@@ -388,8 +409,12 @@ fn differences_ui(form: &mut Form<'_, '_>, state: &State) {
         .map(|difference| difference.to_string())
         .collect();
     form.line(|form| {
-        form.button_ui("Go on", true, Command::ShowForm(None));
-        form.button_ui("Copy the list", false, Command::CopyText(lines.join("\n")));
+        form.button_ui("Go on", true, FormCommand::ShowForm(None));
+        form.button_ui(
+            "Copy the list",
+            false,
+            OutputCommand::CopyText(lines.join("\n")),
+        );
     });
 }
 
@@ -423,7 +448,12 @@ fn reason_ui(form: &mut Form<'_, '_>, state: &mut State) {
             false if reason.is_empty() => Edit::Reject(model),
             false => Edit::RejectBecause { model, reason },
         };
-        form.submit_ui(button, true, entered, Some(Command::DecideInForm(edit)));
+        form.submit_ui(
+            button,
+            true,
+            entered,
+            Some(Command::Form(FormCommand::DecideInForm(edit))),
+        );
         form.cancel_ui(false);
     });
 }
@@ -557,7 +587,7 @@ impl Form<'_, '_> {
 
     /// Draws the button that closes the form; its action may have to wait for the newest results.
     fn cancel_ui(&mut self, waits: bool) {
-        self.button_ui("Cancel", false, Command::ShowForm(None));
+        self.button_ui("Cancel", false, FormCommand::ShowForm(None));
         if waits {
             self.explain("waits for the newest results");
         }
@@ -590,13 +620,13 @@ impl Form<'_, '_> {
     }
 
     /// Draws a button; the first button of a form without a text field has the focus when it opens.
-    fn button_ui(&mut self, text: &str, is_first: bool, command: Command) {
+    fn button_ui(&mut self, text: &str, is_first: bool, command: impl Into<Command>) {
         let response = self.ui.button(text);
         if is_first && self.opens {
             response.request_focus();
         }
         if response.clicked() {
-            self.commands.push(command);
+            self.commands.push(command.into());
         }
     }
 

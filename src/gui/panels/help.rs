@@ -6,10 +6,12 @@ use egui::{
 };
 
 use crate::gui::commands::command::Command;
-use crate::gui::commands::command_table::{Reach, command_table};
-use crate::gui::state::focus::{Region, region_place, take_escape};
+use crate::gui::commands::command_table::command_table;
+use crate::gui::commands::entry::Reach;
+use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::Asks;
+use crate::gui::widgets::focus::{Region, region_place, take_escape};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Width of the note \[pt\].
@@ -91,7 +93,7 @@ pub fn tour_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut V
             });
         });
     if take_escape(ctx) {
-        commands.push(Command::ShowTourStep(None));
+        commands.push(LayoutCommand::ShowTourStep(None).into());
     }
 }
 
@@ -119,15 +121,15 @@ fn note_ui(
             .button(if is_last { "End the tour" } else { "Next step" })
             .clicked()
         {
-            commands.push(Command::ShowTourStep((!is_last).then_some(number + 1)));
+            commands.push(LayoutCommand::ShowTourStep((!is_last).then_some(number + 1)).into());
         }
         ui.add_enabled(number > 0, Button::new("Previous step"))
             .asks(
-                Command::ShowTourStep(Some(number.saturating_sub(1))),
+                LayoutCommand::ShowTourStep(Some(number.saturating_sub(1))),
                 commands,
             );
         if !is_last && ui.button("Skip the tour").clicked() {
-            commands.push(Command::ShowTourStep(None));
+            commands.push(LayoutCommand::ShowTourStep(None).into());
         }
     });
 }

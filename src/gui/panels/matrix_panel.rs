@@ -16,14 +16,16 @@ use gdcm_study::results::caution::Undefined;
 use gdcm_study::{ConditionAnalysis, Edit, ExplainTarget};
 
 use super::explanation::{gain_conflict_marks, question_menu_ui, turn_entry};
+use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
-use crate::gui::state::focus::{Region, region_ui};
-use crate::gui::state::window_state::{State, Sureness};
-use crate::gui::widgets::controls::{
-    check_ui, entries_ui, named_switch, painted_text, table_menu_ui,
-};
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::state::results::Sureness;
+use crate::gui::state::tables::TableKind;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::check_ui;
+use crate::gui::widgets::controls::{entries_ui, named_switch, painted_text};
+use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
-use crate::gui::widgets::tables::TableKind;
 
 /// Least and greatest height of a cell \[pt\].
 const CELL_HEIGHTS: [f32; 2] = [34.0, 44.0];
@@ -107,7 +109,7 @@ fn cells_ui(
         HEADER_HEIGHT + pitch * outputs.len() as f32,
     );
     let (in_conflict, blamed) = state.shown().map(gain_conflict_marks).unwrap_or_default();
-    let focus = state.display.pair;
+    let focus = state.display.selection.pair;
     let name_look = |channel, is_of_focus| match (blamed.contains(&channel), is_of_focus) {
         (true, _) => (palette.warning, small()),
         (_, true) => (palette.text, medium(SMALL_SIZE)),
@@ -161,7 +163,7 @@ impl<'a> Cell<'a> {
         Self {
             pair,
             name: state.dataset().pair_name(pair),
-            focused: state.display.pair == pair,
+            focused: state.display.selection.pair == pair,
             constrained: state.study.settings.constrained[pair],
             fitted: !state.study.settings.ignored[pair],
             in_conflict,
@@ -200,7 +202,7 @@ impl<'a> Cell<'a> {
                 commands.push(Edit::Hold(self.pair, !self.constrained).into());
             }
         } else if response.clicked() {
-            commands.push(Command::FocusPair(self.pair));
+            commands.push(SelectionCommand::FocusPair(self.pair).into());
         }
         response.context_menu(|ui| self.menu_ui(ui, commands));
         response.on_hover_ui(|ui| self.tooltip_ui(ui, palette));
@@ -408,7 +410,7 @@ impl<'a> Cell<'a> {
     }
 
     /// Draws four aligned rows; the rest is available through
-    /// [`QUESTION`](super::explanation::QUESTION) in the menu.
+    /// [`QUESTION`](crate::gui::widgets::controls::QUESTION) in the menu.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         let held = if self.constrained { "held" } else { "free" };
         let ignored = if self.fitted {
@@ -549,7 +551,7 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
         StrokeKind::Inside,
     );
     let inner = rect.shrink2(vec2(11.0, 9.0));
-    let pair = state.display.pair;
+    let pair = state.display.selection.pair;
     let held = if state.study.settings.constrained[pair] {
         "held"
     } else {

@@ -13,4 +13,5 @@ pub mod models_panel;
 pub mod result_panel;
 pub mod settings_panel;
 pub mod start_page;
+pub mod table_menu;
 pub mod verdict;

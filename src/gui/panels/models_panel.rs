@@ -13,23 +13,27 @@ use gdcm_model::dataset::{BundleKind, Model, ModelId};
 use gdcm_plot::figure::axis::compact;
 use gdcm_study::{Edit, ExplainTarget};
 
-use super::answer_panel::chevron;
 use super::explanation::question_menu_ui;
+use super::table_menu::{table_heading_ui, table_menu_ui};
 use crate::gui::commands::command::Command;
-use crate::gui::state::focus::{Region, region_ui};
+use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::state::tables::TableKind;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{
-    Asks, ROW_HEIGHT, elided_among, entries_ui, named, named_switch, painted_text, row_text,
-    table_heading_ui, table_menu_ui,
+    Asks, ROW_HEIGHT, chevron, elided_among, entries_ui, named, named_switch, painted_text,
+    row_text,
 };
+use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
-use crate::gui::widgets::tables::TableKind;
 
 /// Draws the bundles of the displayed condition in the left panel: the physics models above, the
 /// identified models folded at its foot.
 pub fn models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     region_ui(ui, Region::Models, |ui| {
-        let is_open = state.display.identified_open;
+        let is_open = state.display.layout.identified_open;
         let room = ui.available_height();
         // A single line reports the absence of models.
         let models = state
@@ -184,7 +188,7 @@ fn fold_ui(
         commands,
     );
     let response = named_switch(response, Role::Button, is_open, "Identified models");
-    response.asks(Command::ShowIdentified(!is_open), commands);
+    response.asks(LayoutCommand::ShowIdentified(!is_open), commands);
 }
 
 fn rows_ui(
@@ -345,7 +349,7 @@ impl<'a> ModelRow<'a> {
                 .as_ref()
                 == Some(&id.name),
             represents: shown.is_some_and(|shown| shown.representative_name(kind) == id.name),
-            pointed: state.display.hovered.as_ref() == Some(&id),
+            pointed: state.display.selection.hovered.as_ref() == Some(&id),
             score: shown.and_then(|shown| shown.score(kind, &id.name)),
             ratio: shown
                 .filter(|_| kind == BundleKind::Physics)
@@ -390,7 +394,7 @@ impl<'a> ModelRow<'a> {
             }
         }
         if response.contains_pointer() {
-            commands.push(Command::Hover(self.id.clone()));
+            commands.push(SelectionCommand::Hover(self.id.clone()).into());
         }
         response.context_menu(|ui| self.menu_ui(ui, commands));
         response.on_hover_ui(|ui| self.tooltip_ui(ui, palette));
@@ -401,18 +405,27 @@ impl<'a> ModelRow<'a> {
         let decisions = if self.kept {
             [
                 ("Reject", Edit::Reject(id.clone()).into()),
-                ("Reject with a reason…", Command::AskReason(id.clone())),
+                (
+                    "Reject with a reason…",
+                    Command::Form(FormCommand::AskReason(id.clone())),
+                ),
             ]
         } else {
             [
                 ("Restore", Edit::Restore(id.clone()).into()),
-                ("Say why it is rejected…", Command::AskReason(id.clone())),
+                (
+                    "Say why it is rejected…",
+                    Command::Form(FormCommand::AskReason(id.clone())),
+                ),
             ]
         };
         entries_ui(ui, decisions, commands);
         entries_ui(
             ui,
-            [("Copy its name", Command::CopyText(self.model.name.clone()))],
+            [(
+                "Copy its name",
+                Command::Output(OutputCommand::CopyText(self.model.name.clone())),
+            )],
             commands,
         );
         let ratio = self.ratio.map(|_| {
@@ -606,7 +619,7 @@ impl<'a> ModelRow<'a> {
     }
 
     /// Draws the name above four aligned rows; the rest is available through
-    /// [`QUESTION`](super::explanation::QUESTION) in the menu.
+    /// [`QUESTION`](crate::gui::widgets::controls::QUESTION) in the menu.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         ui.label(RichText::new(&self.model.name).font(medium(BODY_SIZE)));
         Grid::new("model")

@@ -9,13 +9,16 @@ use gdcm_plot::figure::decimals;
 use gdcm_study::stages::lead_compensation::servo_words;
 use gdcm_study::{ConditionAnalysis, ExplainTarget};
 
-use super::explanation::{QUESTION, Sheet};
+use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::tables::TableKind;
 use crate::gui::state::window_state::State;
-use crate::gui::views::channels::bar_words;
-use crate::gui::widgets::controls::{Asks, named, painted_text, table_menu_ui};
+use crate::gui::views::gain_plots::bar_words;
+use crate::gui::widgets::controls::{Asks, QUESTION, named, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
-use crate::gui::widgets::tables::TableKind;
 
 /// Height of a row \[pt\].
 const ROW: f32 = 18.0;
@@ -98,7 +101,7 @@ fn proof_ui(
     response
         .on_hover_cursor(CursorIcon::PointingHand)
         .on_hover_text(outcome.words())
-        .asks(Command::ShowSheet(Some(Sheet::Reasons)), commands);
+        .asks(LayoutCommand::ShowSheet(Some(Sheet::Reasons)), commands);
 }
 
 /// Channels of a side.
@@ -270,7 +273,7 @@ impl Side<'_> {
         let response = response
             .on_hover_cursor(CursorIcon::Help)
             .on_hover_text(hint);
-        response.asks(Command::Explain(Some(value.asked)), commands);
+        response.asks(SelectionCommand::Explain(Some(value.asked)), commands);
     }
 }
 

@@ -5,47 +5,22 @@ use egui::{
     Align, Align2, Button, Color32, Frame, Layout, Margin, Pos2, Rect, RichText, Role, ScrollArea,
     Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
-use serde::{Deserialize, Serialize};
 
 use gdcm_plot::figure::axis::compact;
 
 use super::conditions_panel::cost_picture_ui;
+use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::records::RecordsCommand;
 use crate::gui::plot::{BodeCurve, Pane, Role as CurveRole};
 use crate::gui::state::window_state::State;
-use crate::gui::views::assembling::AssemblingCommand;
 use crate::gui::views::frequency::bode_curves;
-use crate::gui::views::records::RecordsCommand;
 use crate::gui::widgets::controls::{Asks, button_ui, elided, named, painted_text};
 use crate::gui::widgets::palette::{
     BODY_SIZE, DISPLAY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
 };
-
-/// Content of the window when the program is started without a file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum OpensWith {
-    /// The embedded example.
-    #[default]
-    Example,
-    /// The start page.
-    StartPage,
-    /// The study or dataset that was open last.
-    LastStudy,
-}
-
-impl OpensWith {
-    /// Every choice, in the order of the menu.
-    pub const ALL: [Self; 3] = [Self::Example, Self::StartPage, Self::LastStudy];
-
-    /// Returns the text of the menu entry.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Example => "Begin with the example",
-            Self::StartPage => "Begin with the start page",
-            Self::LastStudy => "Begin with the last study",
-        }
-    }
-}
 
 /// Widths of the ways in, of the open study, and of the gap between them \[pt\].
 const WIDTHS: [f32; 3] = [600.0, 460.0, 64.0];
@@ -69,7 +44,7 @@ fn ways() -> [Way; 3] {
             title: "I have a dataset or a study",
             words: "Written by this program or a script: .json, .json.gz",
             button: "Open dataset…",
-            command: Command::AskOpen,
+            command: Command::File(FileCommand::AskOpen),
             icon: sheet_icon,
         },
         Way {
@@ -301,7 +276,7 @@ fn recent_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
             format!("Open again: {} in {}", file.name, file.folder),
         );
         if response.clicked() && !file.missing {
-            commands.push(Command::Open(file.path.clone()));
+            commands.push(FileCommand::Open(file.path.clone()).into());
         }
     }
 }
@@ -338,11 +313,11 @@ fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec
         ));
         ui.add_space(12.0);
         ui.horizontal(|ui| {
-            ui.add(Button::new(back).min_size(vec2(0.0, 28.0))).asks(Command::ShowStart(false), commands);
+            ui.add(Button::new(back).min_size(vec2(0.0, 28.0))).asks(LayoutCommand::ShowStart(false), commands);
             if state.is_example {
                 let tour = Button::new(RichText::new("Guided tour, five notes").color(palette.accent)).frame(false);
                 if ui.add(tour).clicked() {
-                    commands.extend([Command::ShowStart(false), Command::StartTour]);
+                    commands.extend([Command::Layout(LayoutCommand::ShowStart(false)), Command::Layout(LayoutCommand::StartTour)]);
                 }
             }
         });
@@ -357,7 +332,7 @@ fn picture_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     );
     let map = area.with_max_x(area.left() + 0.44 * area.width());
     cost_picture_ui(ui, map, state, palette);
-    let pair = state.display.pair;
+    let pair = state.display.selection.pair;
     let curves = bode_curves(state, pair);
     let plot = area.with_min_x(area.left() + 0.52 * area.width());
     let title = format!(

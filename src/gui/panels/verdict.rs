@@ -14,10 +14,15 @@ use gdcm_study::results::couplings_assessment::CouplingCost;
 use gdcm_study::results::remark::RemarkKind;
 use gdcm_study::{ConditionAnalysis, CouplingCorrection, Edit, PhaseCorrection};
 
-use super::explanation::{Sheet, turn_entry};
-use crate::gui::commands::command::{Command, FormKind};
+use super::explanation::turn_entry;
+use crate::gui::commands::command::Command;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::views::{View, offered_couplings, used_couplings};
+use crate::gui::views::{offered_couplings, used_couplings};
 
 /// Verdict on gain and phase of the constrained responses, here and in every condition, with the
 /// next steps.
@@ -73,7 +78,10 @@ impl Step {
 
     /// Returns the step to the reasons for the result.
     fn reasons(label: &str) -> Self {
-        Self::new(label, Command::ShowSheet(Some(Sheet::Reasons)))
+        Self::new(
+            label,
+            Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons))),
+        )
     }
 }
 
@@ -122,7 +130,10 @@ impl Verdict {
         match state.outcome() {
             None => nothing(state.results.absence().to_owned(), Vec::new()),
             Some(Err(failure @ ConditionFailure::NoReference)) => {
-                let identify = Step::new("Identify from records", Command::ShowView(View::Records));
+                let identify = Step::new(
+                    "Identify from records",
+                    Command::Layout(LayoutCommand::ShowView(View::Records)),
+                );
                 Self {
                     caution: Some(failure.to_string()),
                     ..nothing("no reference yet".to_owned(), vec![identify])
@@ -371,7 +382,12 @@ fn couplings_steps(state: &State) -> Option<(Vec<Step>, String)> {
             format!("off-axis J {}→{}", telling(without, 0), telling(with, 0))
         })
     };
-    let look = || Step::new("Look first", Command::ShowView(View::Couplings));
+    let look = || {
+        Step::new(
+            "Look first",
+            Command::Layout(LayoutCommand::ShowView(View::Couplings)),
+        )
+    };
     if let Some((assessment, cost)) = offered_couplings(state) {
         let use_them = Step::new("Use couplings", setting::COUPLINGS.to(assessment.couplings));
         return Some((vec![use_them, look()], words(cost)));
@@ -393,7 +409,7 @@ fn unstable_in_band(state: &State) -> usize {
 
 /// Returns the command that opens the export form.
 pub(crate) fn export() -> Command {
-    Command::ShowForm(Some(FormKind::Export))
+    Command::Form(FormCommand::ShowForm(Some(FormKind::Export)))
 }
 
 fn free_step(state: &State, pair: Pair) -> Step {
@@ -507,6 +523,7 @@ mod tests {
     use gdcm_study::{Engine, Study};
 
     use super::*;
+    use crate::gui::commands::study::StudyCommand;
     use crate::gui::views::couplings_job;
 
     fn state_of(decide: &[Edit]) -> State {
@@ -519,7 +536,7 @@ mod tests {
             .iter()
             .for_each(|edit| study.apply(edit).expect("the example takes it"));
         let mut state = State::new(study.clone(), String::new(), Vec::new());
-        state.display.condition = ConditionId(10);
+        state.display.selection.condition = ConditionId(10);
         let analysis = Engine::default()
             .analyze(&study, &Unobserved)
             .expect("nothing stops it");
@@ -696,7 +713,7 @@ mod tests {
             "{verdict:?}"
         );
         assert_eq!(labels(&verdict)[0], "Widen the bound");
-        let Command::Edit(widen) = &verdict.steps[0].command else {
+        let Command::Study(StudyCommand::Edit(widen)) = &verdict.steps[0].command else {
             panic!("{verdict:?}")
         };
         let bounds = setting::GAIN_BOUNDS.to(Value::Range([0.99, 1.01]));

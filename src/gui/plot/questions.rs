@@ -4,8 +4,7 @@ use egui::{Id, Response};
 
 use gdcm_study::ExplainTarget;
 
-/// Request for a derivation.
-pub const QUESTION: &str = "How was this computed?";
+use crate::gui::widgets::controls::QUESTION;
 
 /// Value with a derivation, and its name.
 pub type NamedFigure = (String, ExplainTarget);

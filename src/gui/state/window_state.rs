@@ -1,57 +1,29 @@
 //! State of the window: the study, finished and running computations, messages and forms.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use gdcm_io::export::ExportFormat;
-use gdcm_method::correction::Problem;
-use gdcm_method::uncertainty::{Bar as ErrorBar, Scalar};
-use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
-use gdcm_model::simulation::Validation;
-use gdcm_plot::figure::ColumnWidth;
+use gdcm_model::dataset::{BundleKind, Condition, Dataset, ModelId};
 use gdcm_study::decisions::differences::Difference;
 use gdcm_study::decisions::study::History;
-use gdcm_study::jobs::job::{
-    AcrossCurves, AcrossJob, ConditionModes, CurvesJob, ModesJob, SimulationJob, Toggles,
-    TogglesJob, UncertaintyJob, VariantJob,
-};
+use gdcm_study::jobs::job::{AcrossCurves, ConditionModes, Toggles};
 use gdcm_study::results::analysis::ConditionFailure;
-use gdcm_study::results::assessment_table::AssessmentJob;
-use gdcm_study::results::condition_answers::{
-    RecordHistory, RecordHistoryJob, TestAnswers, TestAnswersJob,
-};
-use gdcm_study::results::couplings_assessment::{AssessedCouplings, CouplingsJob};
+use gdcm_study::results::assessment_table::AssessmentChoice;
+use gdcm_study::results::condition_answers::{RecordHistory, RecordHistoryJob, TestAnswers};
+use gdcm_study::results::couplings_assessment::AssessedCouplings;
 use gdcm_study::results::requirements::Requirements;
-use gdcm_study::results::requirements_tables::RequirementsJob;
-use gdcm_study::results::time_histories::{TimeHistories, TimeHistoriesJob};
+use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_study::stages::condition_responses::ConditionCurves;
 use gdcm_study::stages::uncertainty::Uncertainty;
-use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis, Study, Table};
+use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis, CouplingCorrection, Study};
 
+use super::assembling::AssemblyState;
+use super::assessed_figures::AssessedFigures;
 use super::display::Display;
-use crate::gui::commands::command::FormKind;
-use crate::gui::commands::command_palette::PaletteForm;
-use crate::gui::panels::bars::Bar;
-use crate::gui::views::assembling::AssemblyState;
-use crate::gui::views::records::{RecordsBefore, RecordsState};
-use crate::gui::views::{View, all_records, assessed_correction, assessment_choice};
-
-/// Kind of a message.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NoticeKind {
-    /// Success.
-    Done,
-    /// Failure.
-    Trouble,
-}
-
-/// Message to the engineer.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Notice {
-    pub kind: NoticeKind,
-    pub text: String,
-}
+use super::forms::Forms;
+use super::notices::{Bar, Notice};
+use super::records::{RecordsBefore, RecordsState};
+use super::results::{FirstResult, Results, Sureness};
 
 /// Recently opened or saved file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -64,42 +36,6 @@ pub struct RecentFile {
     pub folder: String,
     /// Whether the file was missing when last checked.
     pub missing: bool,
-}
-
-/// Contents of the forms.
-#[derive(Debug, Default)]
-pub struct Forms {
-    /// Form shown.
-    pub shown: Option<FormKind>,
-    /// Form drawn last, and whether it asked to overwrite files: a change of either counts as a
-    /// newly opened form.
-    pub drawn: Option<(FormKind, bool)>,
-    /// Path or text in the field of each form, as typed.
-    pub typed: BTreeMap<FormKind, String>,
-    /// Study whose dataset was not found, and the message of the attempt to open it.
-    pub lost_dataset: Option<(PathBuf, String)>,
-    /// Model whose rejection is given a reason.
-    pub rejected_model: Option<ModelId>,
-    /// Table to be saved.
-    pub table: Option<Arc<Table>>,
-    /// View whose figure is to be saved.
-    pub figure: Option<View>,
-    /// Printed width of the figure.
-    pub figure_width: ColumnWidth,
-    /// Conditions whose corrections are exported.
-    pub exported: BTreeSet<ConditionId>,
-    /// Format of an export for other tools.
-    pub export_format: ExportFormat,
-    pub palette: PaletteForm,
-    /// Files that the form's action would overwrite; if not empty, the form asks whether to.
-    pub existing: Vec<String>,
-}
-
-impl Forms {
-    /// Returns the editable text of a form's field.
-    pub fn typed_in(&mut self, form: FormKind) -> &mut String {
-        self.typed.entry(form).or_default()
-    }
 }
 
 /// State of the window.
@@ -152,12 +88,10 @@ impl State {
             .unwrap_or_default();
         let condition = study.dataset.conditions()[0].id();
         let once_held = study.settings.constrained.marked().collect();
-        let display = Display {
-            condition,
-            pair,
-            once_held,
-            ..Display::default()
-        };
+        let mut display = Display::default();
+        display.selection.condition = condition;
+        display.selection.pair = pair;
+        display.gains.once_held = once_held;
         Self {
             followed: Arc::clone(&study.dataset),
             study,
@@ -198,7 +132,10 @@ impl State {
 
     /// Returns the displayed condition; the first condition if the dataset no longer contains it.
     pub fn condition(&self) -> &Arc<Condition> {
-        let found = self.study.dataset.condition(self.display.condition);
+        let found = self
+            .study
+            .dataset
+            .condition(self.display.selection.condition);
         found.unwrap_or(&self.study.dataset.conditions()[0])
     }
 
@@ -265,7 +202,22 @@ impl State {
     pub fn assessment(&self) -> Option<&Arc<AssessmentTable>> {
         let (job, table) = self.results.assessment.as_ref()?;
         let of_this = Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset);
-        (of_this && job.choice == assessment_choice(self)).then_some(table)
+        (of_this && job.choice == self.assessment_choice()).then_some(table)
+    }
+
+    /// Returns the assessment to compute.
+    pub fn assessment_choice(&self) -> AssessmentChoice {
+        let AssessedFigures {
+            model,
+            correction,
+            average,
+            ..
+        } = self.display.judging.assessed;
+        AssessmentChoice {
+            model,
+            correction,
+            average: average.unwrap_or(self.study.settings.cost_average),
+        }
     }
 
     /// Returns the requirements; until they are ready, those of an older analysis of the same
@@ -280,7 +232,9 @@ impl State {
     pub fn test_answers(&self) -> Option<&Result<Arc<TestAnswers>, String>> {
         let (job, found) = self.results.test_answers.as_ref()?;
         let of_this = Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset);
-        (of_this && (job.condition, job.input) == (self.condition().id(), self.display.pair.input))
+        (of_this
+            && (job.condition, job.input)
+                == (self.condition().id(), self.display.selection.pair.input))
             .then_some(found)
     }
 
@@ -298,7 +252,16 @@ impl State {
     /// analysis of the same records.
     pub fn time_histories(&self) -> Option<&Arc<TimeHistories>> {
         let (job, found) = self.results.time_histories.as_ref()?;
-        (job.records == all_records(self)).then_some(found)
+        (job.records == self.records.history_records()).then_some(found)
+    }
+
+    /// Returns the couplings requested by the study; if there are none, mixing and feedback, which
+    /// are then assessed.
+    pub fn assessed_couplings(&self) -> CouplingCorrection {
+        match self.study.settings.couplings {
+            CouplingCorrection::None => CouplingCorrection::MixingAndFeedback,
+            asked => asked,
+        }
     }
 
     /// Returns the actual or potential effect of couplings on the study; until it is ready, the
@@ -306,7 +269,7 @@ impl State {
     pub fn couplings(&self) -> Option<&AssessedCouplings> {
         let (known, assessed) = self.results.couplings.as_ref()?;
         let of_this = Arc::ptr_eq(&known.study.dataset, &self.study.dataset);
-        (of_this && known.couplings == assessed_correction(self)).then_some(assessed)
+        (of_this && known.couplings == self.assessed_couplings()).then_some(assessed)
     }
 
     /// Returns the responses of a model of each condition; until they are ready, those of older
@@ -382,19 +345,19 @@ impl State {
             return;
         }
         self.followed = Arc::clone(dataset);
-        let pair = self.display.pair;
+        let pair = self.display.selection.pair;
         if pair.output >= dataset.outputs().len() || pair.input >= dataset.inputs().len() {
-            self.display.pair = dataset
+            self.display.selection.pair = dataset
                 .measuring_pairs()
                 .marked()
                 .next()
                 .unwrap_or_default();
         }
-        self.display.hovered = None;
-        self.display.isolated = None;
+        self.display.selection.hovered = None;
+        self.display.selection.isolated = None;
         self.display.curves.forget_models();
-        self.display.shapes.clear();
-        self.display.fit_frequency_plots();
+        self.display.frequency.shapes.clear();
+        self.display.frequency.fit();
     }
 
     /// Returns the number of kept models in a bundle of the displayed condition: "14 of 19".
@@ -412,207 +375,6 @@ impl State {
     /// Returns the id of a model of the displayed condition.
     pub fn model_id(&self, bundle: BundleKind, name: &str) -> ModelId {
         ModelId::new(self.condition().id(), bundle, name)
-    }
-}
-
-/// Uncertainty of the displayed condition's values.
-#[derive(Clone, Copy, Debug)]
-pub struct Sureness<'a> {
-    condition: ConditionId,
-    uncertainty: Option<&'a Uncertainty>,
-}
-
-impl<'a> Sureness<'a> {
-    /// Returns the error bar of a value, and its confidence level.
-    pub fn bar(&self, scalar: Scalar) -> Option<(&'a ErrorBar, f64)> {
-        let uncertainty = self.uncertainty?;
-        Some((uncertainty.bar(self.condition, scalar)?, uncertainty.level))
-    }
-
-    /// Returns the half-width of the error bar: relative, for delays in \[s\].
-    pub fn half(&self, scalar: Scalar) -> Option<f64> {
-        self.bar(scalar)
-            .and_then(|(bar, level)| bar.half_width(level))
-    }
-
-    /// Returns the confidence level of all error bars.
-    pub fn level(&self) -> Option<f64> {
-        self.uncertainty.map(|of| of.level)
-    }
-}
-
-/// Result of the displayed condition, available before the others.
-#[derive(Clone, Debug)]
-pub struct FirstResult {
-    /// Number of the answered request.
-    pub generation: u64,
-    /// Dataset of the result.
-    pub dataset: Arc<Dataset>,
-    pub condition: ConditionId,
-    pub outcome: Result<ConditionAnalysis, ConditionFailure>,
-}
-
-/// Work in progress besides the live answer.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Background {
-    /// Live answer in progress: steps done, total.
-    pub analysis: Option<(usize, usize)>,
-    /// Problems whose gains are being or will be proven.
-    pub proofs: Vec<Arc<Problem>>,
-    /// Whether the costs of constraining and releasing are being computed.
-    pub toggles: bool,
-    /// Curves in progress: models done, total.
-    pub curves: Option<(usize, usize)>,
-    /// Error bars in progress: steps done, total (for each model its response, and the analysis
-    /// with this model as the representative).
-    pub bars: Option<(usize, usize)>,
-    /// Responses to all records in progress: steps done, total.
-    pub time_histories: Option<(usize, usize)>,
-    /// Assessment of couplings in progress: steps done, total.
-    pub couplings: Option<(usize, usize)>,
-    /// Number of jobs that the visible views wait for.
-    pub views: usize,
-    /// Report in progress: conditions done, total.
-    pub report: Option<(usize, usize)>,
-    /// Identification in progress: parts done, total.
-    pub identification: Option<(usize, usize)>,
-    /// Whether some of it was stopped, by hand or by a fault.
-    pub stopped: bool,
-}
-
-impl Background {
-    /// Returns whether anything is in progress.
-    pub fn is_busy(&self) -> bool {
-        !self.proofs.is_empty()
-            || self.toggles
-            || self.curves.is_some()
-            || self.bars.is_some()
-            || self.time_histories.is_some()
-            || self.couplings.is_some()
-            || self.views > 0
-            || self.report.is_some()
-            || self.identification.is_some()
-    }
-}
-
-/// Computed results; never saved.
-#[derive(Debug, Default)]
-pub struct Results {
-    pub analysis: Option<Arc<Analysis>>,
-    /// Displayed condition, if it is ahead of that analysis.
-    pub first: Option<FirstResult>,
-    /// Costs of constraining or releasing each response of a condition, with their job; see
-    /// [`State::toggles`].
-    pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
-    /// Responses for drawing, with their job; see [`State::curves`].
-    pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
-    /// Modes of the models of a condition, with their job; see [`State::modes`].
-    pub modes: Option<(ModesJob, Arc<ConditionModes>)>,
-    /// Requested assessment, with its job; see [`State::assessment`].
-    pub assessment: Option<(AssessmentJob, Arc<AssessmentTable>)>,
-    /// Responses of a model of each condition, with their job; see [`State::across`].
-    pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
-    /// Uncertainty of an analysis, with its job; see [`State::uncertainty`].
-    pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
-    /// Actual or potential effect of couplings, with its job; see [`State::couplings`].
-    pub couplings: Option<(CouplingsJob, AssessedCouplings)>,
-    /// Requirements, with their job; see [`State::requirements`].
-    pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
-    /// Responses to the test input, with their job; see [`State::test_answers`].
-    pub test_answers: Option<(TestAnswersJob, Result<Arc<TestAnswers>, String>)>,
-    /// Comparison of a record with the tolerances; see [`State::record_history`].
-    pub record_history: Option<(RecordHistoryJob, Result<Arc<RecordHistory>, String>)>,
-    /// Models' responses to all records, with their job; see [`State::time_histories`].
-    pub time_histories: Option<(TimeHistoriesJob, Arc<TimeHistories>)>,
-    pub variants: Vec<(VariantJob, Arc<Analysis>)>,
-    /// Models compared with a record in time, or the reason why not.
-    pub simulations: Vec<(SimulationJob, Result<Arc<Validation>, String>)>,
-    pub background: Background,
-    /// Start of the background work \[s of the window's clock\].
-    pub background_since: Option<f64>,
-    /// Number of the newest request.
-    pub requested: u64,
-    /// Number of the request answered by the analysis.
-    pub received: u64,
-    /// Time of the oldest unanswered request \[s of the window's clock\].
-    pub waiting_since: Option<f64>,
-    /// Whether a frame with an analysis has been painted.
-    pub is_painted: bool,
-    /// Duration of the newest analysis \[ms\].
-    pub elapsed_ms: f64,
-    /// Whether the newest request was stopped, by hand or by a fault; the displayed results then
-    /// stay older than the settings.
-    pub stopped: bool,
-}
-
-/// Age \[s\] from which displayed results of older settings are marked as stale.
-const STALE_AFTER_S: f64 = 0.15;
-/// Duration \[s\] from which background work is reported: most of it ends before it could be read.
-const BACKGROUND_AFTER_S: f64 = 0.5;
-
-impl Results {
-    /// Returns whether an answer is pending.
-    pub fn is_waiting(&self) -> bool {
-        self.is_behind() && !self.stopped
-    }
-
-    /// Returns the message shown instead of a missing result.
-    pub fn absence(&self) -> &'static str {
-        if self.stopped {
-            "not computed"
-        } else {
-            "computing …"
-        }
-    }
-
-    /// Returns the message shown instead of missing error bars.
-    pub fn absence_of_bars(&self) -> String {
-        match self.background.bars {
-            Some(progress) if !self.is_behind() => bar_words(progress),
-            None if self.background.stopped => {
-                "Error bars: stopped; Compute, below, goes on with them".to_owned()
-            }
-            _ => self.absence().to_owned(),
-        }
-    }
-
-    /// Returns whether the displayed results are older than the settings.
-    pub fn is_behind(&self) -> bool {
-        self.requested > self.received
-    }
-
-    /// Returns whether the displayed condition's result has newer settings than the analysis of all
-    /// conditions.
-    pub fn first_is_ahead(&self) -> bool {
-        self.analysis.is_some()
-            && self
-                .first
-                .as_ref()
-                .is_some_and(|first| first.generation > self.received)
-    }
-
-    /// Returns whether background work has lasted long enough at `now` to be reported.
-    pub fn is_background_told(&self, now: f64) -> bool {
-        self.background_since
-            .is_some_and(|since| now - since > BACKGROUND_AFTER_S)
-    }
-
-    /// Returns whether the displayed results should be marked as stale at `now` \[s of the window's
-    /// clock\].
-    pub fn is_stale(&self, now: f64) -> bool {
-        self.stopped
-            || self
-                .waiting_since
-                .is_some_and(|since| now - since > STALE_AFTER_S)
-    }
-}
-
-/// Describes the progress of the error bars.
-pub(crate) fn bar_words((done, total): (usize, usize)) -> String {
-    if total == 0 {
-        "error bars …".to_owned()
-    } else {
-        format!("error bars, {done} of {total} steps …")
     }
 }
 

@@ -10,21 +10,24 @@ use gdcm_plot::figure::axis::Axis;
 use gdcm_plot::figure::drawing::{Hue, Stroke};
 use gdcm_plot::figure::figure::{Bars, Curve, Note, Place, Plot, Rule, Spans};
 use gdcm_plot::figure::{Color, Figure, MarkId, Panel, Range, decimals};
-use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice, held_out_verdict};
+use gdcm_study::results::assessment_table::{AssessedModel, held_out_verdict};
 use gdcm_study::{AssessedCorrection, AssessmentTable, ExplainTarget, Table};
 
-use super::View;
 use crate::gui::commands::command::Command;
-use crate::gui::panels::settings_panel::choice_ui;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::questions::NamedFigure;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
+use crate::gui::state::assessed_figures::{AssessedFigures, AssessedPairs, CostPart};
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
 
 /// Draws the selection of the assessed quantity and of its form, from right to left.
 pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let shown = state.display.assessed;
+    let shown = state.display.judging.assessed;
     let mut chosen = shown;
     let forms = [
         (false, "bars", "A bar for each condition"),
@@ -38,7 +41,7 @@ pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Comma
     }
     choices_ui(ui, &mut chosen);
     if chosen != shown {
-        commands.push(Command::Assess(chosen));
+        commands.push(DisplayCommand::Assess(chosen).into());
     }
 }
 
@@ -134,7 +137,7 @@ pub fn assessment_view_ui(
         .color(palette.text);
     ui.add(egui::Label::new(text).truncate())
         .on_hover_text(&sentences);
-    if state.display.assessed.as_table {
+    if state.display.judging.assessed.as_table {
         return text_table_ui(ui, state, &table, palette, commands);
     }
     key_ui(ui, palette);
@@ -168,11 +171,18 @@ pub fn assessment_view_ui(
     for event in figure_ui(ui, &scene, &mut view, palette) {
         match event {
             FigureEvent::Clicked(plot, MarkId::Condition(condition), _) => {
-                commands.push(Command::SelectCondition(condition));
-                commands.extend(plots.pairs.get(plot).map(|&pair| Command::FocusPair(pair)));
+                commands.push(SelectionCommand::SelectCondition(condition).into());
+                commands.extend(
+                    plots
+                        .pairs
+                        .get(plot)
+                        .map(|&pair| Command::Selection(SelectionCommand::FocusPair(pair))),
+                );
             }
-            FigureEvent::Asked(figure) => commands.push(Command::Explain(Some(figure))),
-            FigureEvent::Told(words) => commands.push(Command::Tell(words)),
+            FigureEvent::Asked(figure) => {
+                commands.push(SelectionCommand::Explain(Some(figure)).into())
+            }
+            FigureEvent::Told(words) => commands.push(SelectionCommand::Tell(words).into()),
             FigureEvent::Clicked(..) | FigureEvent::Pointed(_) => {}
         }
     }
@@ -434,102 +444,34 @@ fn text_table_ui(
     };
     let look = TableLook {
         color: &color,
-        selected: &|row| pairs.get(row) == Some(&state.display.pair),
+        selected: &|row| pairs.get(row) == Some(&state.display.selection.pair),
     };
-    let mut sorting = state.display.assessment_sorting;
+    let mut sorting = state.display.judging.assessment_sorting;
     let clicked = table_ui(ui, &text, &mut sorting, &look, palette, commands);
     if let Some(click) = clicked {
-        commands.extend(pairs.get(click.row).map(|&pair| Command::FocusPair(pair)));
+        commands.extend(
+            pairs
+                .get(click.row)
+                .map(|&pair| Command::Selection(SelectionCommand::FocusPair(pair))),
+        );
         let condition = click
             .column
             .checked_sub(1)
             .and_then(|column| state.dataset().conditions().get(column));
-        commands.extend(condition.map(|condition| Command::SelectCondition(condition.id())));
+        commands.extend(condition.map(|condition| {
+            Command::Selection(SelectionCommand::SelectCondition(condition.id()))
+        }));
     }
-    state.display.assessment_sorting = sorting;
-}
-
-/// Responses shown by an assessment.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum AssessedPairs {
-    /// On-axis responses (Figures 8 to 12).
-    #[default]
-    OnAxis,
-    /// All others (Figures 13 to 19).
-    OffAxis,
-    /// Response in focus.
-    Focused,
-    All,
-}
-
-/// Part of J shown by the table of an assessment.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum CostPart {
-    /// `Delta J`.
-    #[default]
-    Total,
-    /// `Delta J_mag`.
-    Magnitude,
-    /// `Delta J_phase`.
-    Phase,
-}
-
-impl CostPart {
-    /// Returns the symbol.
-    pub fn symbol(self) -> &'static str {
-        match self {
-            Self::Total => "ΔJ",
-            Self::Magnitude => "ΔJ mag",
-            Self::Phase => "ΔJ phase",
-        }
-    }
-
-    fn of(self) -> fn(CostChange) -> f64 {
-        match self {
-            Self::Total => CostChange::total,
-            Self::Magnitude => CostChange::magnitude,
-            Self::Phase => CostChange::phase,
-        }
-    }
-}
-
-/// Selection and form of the assessment.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct AssessedFigures {
-    pub model: AssessedModel,
-    /// Correction applied to the model.
-    pub correction: AssessedCorrection,
-    /// Average of squared errors; `None` follows the settings.
-    pub average: Option<CostAverage>,
-    pub pairs: AssessedPairs,
-    /// Whether a table is shown instead of bars.
-    pub as_table: bool,
-    /// Part of J in the table.
-    pub part: CostPart,
-}
-
-/// Returns the assessment to compute.
-pub fn assessment_choice(state: &State) -> AssessmentChoice {
-    let AssessedFigures {
-        model,
-        correction,
-        average,
-        ..
-    } = state.display.assessed;
-    AssessmentChoice {
-        model,
-        correction,
-        average: average.unwrap_or(state.study.settings.cost_average),
-    }
+    state.display.judging.assessment_sorting = sorting;
 }
 
 /// Returns the assessed responses, in the order of the matrix.
 pub fn assessed_pairs(state: &State) -> Vec<Pair> {
     let measuring = state.dataset().measuring_pairs();
-    let is_in = |pair: &Pair| match state.display.assessed.pairs {
+    let is_in = |pair: &Pair| match state.display.judging.assessed.pairs {
         AssessedPairs::OnAxis => measuring[*pair],
         AssessedPairs::OffAxis => !measuring[*pair],
-        AssessedPairs::Focused => *pair == state.display.pair,
+        AssessedPairs::Focused => *pair == state.display.selection.pair,
         AssessedPairs::All => true,
     };
     measuring.pairs().filter(is_in).collect()
@@ -560,7 +502,7 @@ fn why_not(table: &AssessmentTable, condition: ConditionId, pair: Pair) -> Strin
 /// Builds the table with the responses in rows, the conditions in columns, and the signed change of
 /// J in each cell.
 pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
-    let part = state.display.assessed.part;
+    let part = state.display.judging.assessed.part;
     let condition = |of: &std::sync::Arc<Condition>| (of.id(), of.id().to_string());
     let conditions: Vec<(ConditionId, String)> =
         state.dataset().conditions().iter().map(condition).collect();

@@ -13,21 +13,25 @@ use gdcm_study::jobs::job::AcrossJob;
 use gdcm_study::results::caution::Undefined;
 use gdcm_study::stages::condition_responses::display_band;
 
-use super::View;
 use super::frequency::{
     bode_curves, bode_options, condition_source, error_curves, error_reference, frequency_plot_ui,
     wished,
 };
 use crate::gui::commands::command::Command;
-use crate::gui::panels::settings_panel::choice_ui;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::bode_event::BodeEvent;
-use crate::gui::plot::bode_scene::{BodeBand, InvalidRegion, PaneNote};
+use crate::gui::plot::bode_scene::BodeBand;
+use crate::gui::plot::bode_scene::{InvalidRegion, PaneNote};
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::overview::{OverviewCell, OverviewEvent, OverviewScene, overview_ui};
 use crate::gui::plot::pointed_curve::pointed_words;
 use crate::gui::plot::quantity::{BodeQuantity, PhaseErrorUnit, ResponsePlace};
 use crate::gui::plot::{BodeCurve, BodeScene, CurveId, Pane, Role, bode_ui};
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Draws magnitude and phase of the response in focus, for every model of the displayed condition.
@@ -37,8 +41,8 @@ pub fn bode_view_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let pair = state.display.pair;
-    let mut view = std::mem::take(&mut state.display.bode);
+    let pair = state.display.selection.pair;
+    let mut view = std::mem::take(&mut state.display.frequency.bode);
     let curves = bode_curves(state, pair);
     let title = state.dataset().pair_name(pair);
     let ratio_unit = ConditionSource::ratio_unit(state.dataset(), pair);
@@ -84,9 +88,9 @@ pub fn bode_view_ui(
         ..BodeScene::new(&title, &curves, band)
     };
     frequency_plot_ui(ui, state, (scene, &mut view), palette, commands);
-    state.display.error.share_frequencies(&view);
-    state.display.bode = view;
-    state.display.drawn = curves;
+    state.display.frequency.error.share_frequencies(&view);
+    state.display.frequency.bode = view;
+    state.display.frequency.drawn = curves;
 }
 
 /// Returns the region where curves only illustrate the price of leads; `None` without leads
@@ -187,7 +191,7 @@ fn notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
 }
 
 fn unit_words(state: &State, omega: f64) -> String {
-    let unit = state.display.unit;
+    let unit = state.display.curves.unit;
     format!("{} {}", number(unit.of_omega(omega)), unit.symbol())
 }
 
@@ -199,8 +203,8 @@ pub fn error_view_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let pair = state.display.pair;
-    let mut view = std::mem::take(&mut state.display.error);
+    let pair = state.display.selection.pair;
+    let mut view = std::mem::take(&mut state.display.frequency.error);
     let options = bode_options(state);
     let curves = error_curves(state, pair, &options);
     let rules = condition_source(state)
@@ -225,9 +229,9 @@ pub fn error_view_ui(
         ..BodeScene::new(&title, &curves, (band.min(), band.max()))
     };
     frequency_plot_ui(ui, state, (scene, &mut view), palette, commands);
-    state.display.bode.share_frequencies(&view);
-    state.display.error = view;
-    state.display.drawn_errors = curves;
+    state.display.frequency.bode.share_frequencies(&view);
+    state.display.frequency.error = view;
+    state.display.frequency.drawn_errors = curves;
 }
 
 /// Draws the selection of the unit of phase differences.
@@ -281,7 +285,7 @@ pub fn across_header_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let mut role = state.display.across_role;
+    let mut role = state.display.frequency.across_role;
     let roles = AcrossRole::ALL.map(|role| {
         (
             role,
@@ -290,8 +294,8 @@ pub fn across_header_ui(
         )
     });
     choice_ui(ui, "Model of each condition", &mut role, &roles);
-    if role != state.display.across_role {
-        commands.push(Command::ShowAcross(role));
+    if role != state.display.frequency.across_role {
+        commands.push(DisplayCommand::ShowAcross(role).into());
     }
     let (least, most) = state.dataset().airspeed_range_kt();
     ui.label(palette.small(format!("{most:.0} kt")));
@@ -326,9 +330,9 @@ pub fn across_view_ui(
     let curves = across_curves(state);
     fit_across(state);
     let band = state.study.settings.band;
-    let title = state.dataset().pair_name(state.display.pair);
+    let title = state.dataset().pair_name(state.display.selection.pair);
     let quantity = BodeQuantity::RESPONSE_OF_EVERY_CONDITION;
-    let unit = state.display.unit;
+    let unit = state.display.curves.unit;
     let scene = BodeScene {
         quantity,
         unit,
@@ -336,15 +340,18 @@ pub fn across_view_ui(
         message: Some(state.results.absence()),
         ..BodeScene::new(&title, &curves, (band.min(), band.max()))
     };
-    for event in bode_ui(ui, &scene, &mut state.display.across, palette) {
+    for event in bode_ui(ui, &scene, &mut state.display.frequency.across, palette) {
         if let BodeEvent::Clicked(CurveId::Model(id)) = event {
-            commands.push(Command::SelectCondition(id.condition));
+            commands.push(SelectionCommand::SelectCondition(id.condition).into());
         }
     }
-    commands
-        .extend(pointed_words(&state.display.across, &curves, quantity, unit).map(Command::Tell));
+    commands.extend(
+        pointed_words(&state.display.frequency.across, &curves, quantity, unit)
+            .map(|value| Command::Selection(SelectionCommand::Tell(value))),
+    );
     if let Some(transform) = state
         .display
+        .frequency
         .across
         .transform(Pane::Magnitude)
         .filter(|_| !curves.is_empty())
@@ -362,11 +369,14 @@ pub fn across_view_ui(
 
 /// Fits the plot across conditions once the curves of another response or model are available.
 fn fit_across(state: &mut State) {
-    let asked = (state.display.pair, state.display.across_role);
-    if state.display.across_fitted == Some(asked) {
+    let asked = (
+        state.display.selection.pair,
+        state.display.frequency.across_role,
+    );
+    if state.display.frequency.across_fitted == Some(asked) {
         return;
     }
-    state.display.across.request_refit();
+    state.display.frequency.across.request_refit();
     // Until then the previous models' curves are drawn.
     let models = across_job(state).models;
     if state
@@ -375,7 +385,7 @@ fn fit_across(state: &mut State) {
         .as_ref()
         .is_some_and(|(job, _)| job.models == models)
     {
-        state.display.across_fitted = Some(asked);
+        state.display.frequency.across_fitted = Some(asked);
     }
 }
 
@@ -388,7 +398,7 @@ pub fn across_job(state: &State) -> AcrossJob {
     AcrossJob::of(
         &state.study.dataset,
         state.analysis(),
-        state.display.across_role,
+        state.display.frequency.across_role,
         grid,
     )
 }
@@ -399,17 +409,17 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     let Some(curves) = state.across().cloned() else {
         return Vec::new();
     };
-    let pair = state.display.pair;
-    let mut cached = std::mem::take(&mut state.display.across_shapes);
+    let pair = state.display.selection.pair;
+    let mut cached = std::mem::take(&mut state.display.frequency.across_shapes);
     let made_of = (state.dataset(), state.analysis());
-    let role = state.display.across_role;
+    let role = state.display.frequency.across_role;
     let mut drawn = airspeed_curves(made_of, role, pair, &curves, &mut cached);
     for curve in &mut drawn {
         curve.highlighted =
             matches!(&curve.id, CurveId::Model(id) if id.condition == state.condition().id());
         curve.detail.push_str(" · click to show the condition");
     }
-    state.display.across_shapes = cached;
+    state.display.frequency.across_shapes = cached;
     drawn
 }
 
@@ -437,7 +447,7 @@ pub fn overview_view_ui(
             pair,
             curves,
             constrained: state.study.settings.constrained[pair],
-            selected: pair == state.display.pair,
+            selected: pair == state.display.selection.pair,
             note: cost_note(state, pair),
         })
         .collect();
@@ -450,15 +460,19 @@ pub fn overview_view_ui(
         band: (band.min(), band.max()),
         message: Some(state.results.absence()),
     };
-    for event in overview_ui(ui, &scene, &mut state.display.overview, palette) {
+    for event in overview_ui(ui, &scene, &mut state.display.frequency.overview, palette) {
         match event {
             OverviewEvent::PairClicked(pair) => {
-                commands.push(Command::FocusPair(pair));
-                commands.push(Command::ShowView(View::Bode));
+                commands.push(SelectionCommand::FocusPair(pair).into());
+                commands.push(LayoutCommand::ShowView(View::Bode).into());
             }
-            OverviewEvent::Hovered(CurveId::Model(id)) => commands.push(Command::Hover(id)),
-            OverviewEvent::Told(words) => commands.push(Command::Tell(words)),
-            OverviewEvent::Isolated(CurveId::Model(id)) => commands.push(Command::Isolate(id)),
+            OverviewEvent::Hovered(CurveId::Model(id)) => {
+                commands.push(SelectionCommand::Hover(id).into())
+            }
+            OverviewEvent::Told(words) => commands.push(SelectionCommand::Tell(words).into()),
+            OverviewEvent::Isolated(CurveId::Model(id)) => {
+                commands.push(SelectionCommand::Isolate(id).into())
+            }
             OverviewEvent::Wished(id, wish) => commands.extend(wished(state, id, wish)),
             OverviewEvent::Hovered(_) | OverviewEvent::Isolated(_) => {}
         }

@@ -9,10 +9,12 @@ use gdcm_study::decisions::study::Variant;
 use gdcm_study::jobs::job::VariantJob;
 use gdcm_study::{Analysis, Edit, Table};
 
-use super::net_gain::net_gain_pairs;
+use super::gain_plots::net_gain_pairs;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{is_entered, named, text_field_ui, toggle_ui};
+use crate::gui::widgets::choices::toggle_ui;
+use crate::gui::widgets::controls::{is_entered, named, text_field_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
 
@@ -32,7 +34,7 @@ pub fn compare_view_ui(
         return;
     }
     for variant in state.study.variants.clone() {
-        let is_overlaid = state.display.overlaid.as_ref() == Some(&variant.name);
+        let is_overlaid = state.display.judging.overlaid.as_ref() == Some(&variant.name);
         variant_ui(ui, &variant, is_overlaid, commands);
     }
     ui.add_space(4.0);
@@ -46,7 +48,7 @@ pub fn compare_view_ui(
             ui.available_height()
         };
         ui.allocate_ui(egui::vec2(ui.available_width(), room), |ui| {
-            let mut sorting = state.display.compare_sorting[index];
+            let mut sorting = state.display.judging.compare_sorting[index];
             table_ui(
                 ui,
                 table,
@@ -55,7 +57,7 @@ pub fn compare_view_ui(
                 palette,
                 commands,
             );
-            state.display.compare_sorting[index] = sorting;
+            state.display.judging.compare_sorting[index] = sorting;
         });
     }
 }
@@ -63,7 +65,7 @@ pub fn compare_view_ui(
 /// Draws the name field and the button that stores the present decisions under that name.
 fn keep_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let name = &mut state.display.variant_name;
+        let name = &mut state.display.judging.variant_name;
         let field = text_field_ui(
             ui,
             "Name of the variant",
@@ -111,7 +113,7 @@ fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut 
             let hint =
                 "Its corrected model in Bode, and its net gains, dotted beside the present ones";
             if toggle_ui(ui, ("Overlay", &label), is_overlaid, hint) {
-                commands.push(Command::Overlay((!is_overlaid).then(name)));
+                commands.push(DisplayCommand::Overlay((!is_overlaid).then(name)).into());
             }
         });
     });
@@ -142,14 +144,18 @@ pub fn variant_analysis<'a>(state: &'a State, variant: &Variant) -> Option<&'a A
 
 /// Returns the overlaid variant and its analysis, if available.
 pub fn overlaid_analysis(state: &State) -> Option<(&str, &Analysis)> {
-    let variant = state.study.variant(state.display.overlaid.as_deref()?)?;
+    let variant = state
+        .study
+        .variant(state.display.judging.overlaid.as_deref()?)?;
     Some((&variant.name, variant_analysis(state, variant)?))
 }
 
 /// Returns the job of the overlaid analysis.
 pub fn overlay_job(state: &State) -> Option<VariantJob> {
     Some(VariantJob {
-        study: state.study.of_variant(state.display.overlaid.as_deref()?)?,
+        study: state
+            .study
+            .of_variant(state.display.judging.overlaid.as_deref()?)?,
     })
 }
 

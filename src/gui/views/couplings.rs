@@ -12,14 +12,14 @@ use gdcm_study::results::couplings_assessment::{CouplingCost, CouplingsAssessmen
 use gdcm_study::results::remark::RemarkKind;
 use gdcm_study::{CouplingCorrection, PhaseCorrection, Table};
 
-use super::View;
+use super::figures::request;
 use super::frequency::condition_source;
 use crate::gui::commands::command::Command;
-use crate::gui::panels::settings_panel::choice_ui;
 use crate::gui::plot::canvas::figure_legend_ui;
 use crate::gui::plot::{FigureScene, figure_ui};
-use crate::gui::state::figures::request;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
@@ -54,20 +54,11 @@ pub fn couplings_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Comman
     }
 }
 
-/// Returns the couplings requested by the study; if there are none, mixing and feedback, which are
-/// then assessed.
-pub fn assessed_correction(state: &State) -> CouplingCorrection {
-    match state.study.settings.couplings {
-        CouplingCorrection::None => CouplingCorrection::MixingAndFeedback,
-        asked => asked,
-    }
-}
-
 /// Returns the job that assesses the couplings.
 pub fn couplings_job(state: &State) -> CouplingsJob {
     CouplingsJob {
         study: state.study.clone(),
-        couplings: assessed_correction(state),
+        couplings: state.assessed_couplings(),
     }
 }
 
@@ -173,11 +164,6 @@ pub fn couplings_view_ui(
     figure_legend_ui(ui, &figure, palette);
     figure_ui(ui, &scene, &mut view, palette);
     state.display.figures.insert(View::Couplings, view);
-}
-
-/// Returns the assessment shown by the view.
-pub fn shown_couplings(state: &State) -> Option<Arc<CouplingsAssessment>> {
-    state.couplings()?.as_ref().ok().cloned()
 }
 
 /// Draws whether the couplings are used, and the link that uses them, or removes them if they are

@@ -11,13 +11,15 @@ use gdcm_method::schedule::{FormComparison, FormFit, LeadDegreeFit, LeadFit, Sch
 use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::{s_to_ms, signed};
+use gdcm_study::Table;
 use gdcm_study::decisions::setting;
 use gdcm_study::results::table::{difference_table, second_variable_table};
 use gdcm_study::stages::uncertainty::Uncertainty;
-use gdcm_study::{Analysis, Table};
 
-use super::net_gain::net_gain_pairs;
+use super::gain_plots::net_gain_pairs;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::state::evidence_cache::CachedEvidence;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
@@ -41,14 +43,14 @@ pub fn evidence_view_ui(
         ui.label(RichText::new(state.results.absence_of_bars()).color(palette.dim_text));
         return;
     };
-    let mut sorting = state.display.evidence_tables;
+    let mut sorting = state.display.gains.evidence_tables;
     ui.label(RichText::new(uncertainty.differences_in_words()).font(medium(BODY_SIZE)));
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         answer_ui(ui, state, &uncertainty, palette);
         scatter_ui(ui, state, &uncertainty, palette);
         tables_ui(ui, state, &uncertainty, (&mut sorting, palette), commands);
     });
-    state.display.evidence_tables = sorting;
+    state.display.gains.evidence_tables = sorting;
 }
 
 /// Draws the significant differences in aligned columns, and a note if no response needs a second
@@ -243,8 +245,8 @@ fn tables_ui(
     if let Some(click) = click
         && let Some(of) = differences.get(click.row)
     {
-        commands.push(Command::SelectCondition(of.conditions[0]));
-        commands.push(Command::FocusPair(of.pair));
+        commands.push(SelectionCommand::SelectCondition(of.conditions[0]).into());
+        commands.push(SelectionCommand::FocusPair(of.pair).into());
     }
     let table = second_variable_table(state.dataset(), uncertainty);
     heading(ui, &table.title);
@@ -258,7 +260,7 @@ fn tables_ui(
             commands,
         )
     });
-    let mut cached = std::mem::take(&mut state.display.evidence);
+    let mut cached = std::mem::take(&mut state.display.gains.evidence);
     cached.refresh(state);
     if let Some((_, evidence)) = cached.found() {
         heading(
@@ -270,7 +272,7 @@ fn tables_ui(
             forms_ui(ui, state, evidence, (&mut sorting[2], palette), commands)
         });
     }
-    state.display.evidence = cached;
+    state.display.gains.evidence = cached;
 }
 
 /// Draws the evidence for every form of the schedule; a click on a form selects it.
@@ -299,14 +301,6 @@ fn rows_high<R>(ui: &mut Ui, rows: usize, add: impl FnOnce(&mut Ui) -> R) -> R {
     let height = (row * (rows + 1) as f32 + bar + 4.0).min(MOST_TABLE);
     ui.allocate_ui(vec2(ui.available_width(), height), add)
         .inner
-}
-
-/// Evidence for every form of the schedule, cached as long as the analysis is the same.
-#[derive(Debug, Default)]
-pub struct CachedEvidence {
-    analysis: Option<Arc<Analysis>>,
-    found: Option<(Vec<ConditionId>, FormComparison)>,
-    leads: Vec<LeadDegreeFit>,
 }
 
 impl CachedEvidence {

@@ -17,7 +17,11 @@ use gdcm_study::decisions::setting;
 
 use super::compare::overlaid_analysis;
 use crate::gui::commands::command::Command;
-use crate::gui::plot::bode_event::{BodeEvent, CurveWish};
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::commands::study::StudyCommand;
+use crate::gui::plot::bode_event::BodeEvent;
+use crate::gui::plot::bode_event::CurveWish;
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::drawn_curves::PANES;
 use crate::gui::plot::legend::Chip;
@@ -41,7 +45,7 @@ pub(super) fn frequency_plot_ui(
     let display = &state.display.curves;
     let quantity = scene.quantity;
     let curves = scene.curves;
-    let unit = state.display.unit;
+    let unit = state.display.curves.unit;
     let at = (display.cursor, display.pinned.as_slice());
     let readout = display
         .lists_values
@@ -55,7 +59,7 @@ pub(super) fn frequency_plot_ui(
         readout: readout.as_ref(),
         hidden_roles: Some(&display.hidden_roles),
         raised: display.raised,
-        names_curves: state.display.is_wide && scene.quantity.is_of_condition(),
+        names_curves: state.display.layout.is_wide && scene.quantity.is_of_condition(),
         chips: &chips,
         unit,
         stale: state.results.is_stale(ui.input(|input| input.time)),
@@ -66,15 +70,18 @@ pub(super) fn frequency_plot_ui(
             BodeEvent::Wished(id, CurveWish::CopyValues) => curves
                 .iter()
                 .find(|curve| curve.id == id)
-                .map(|curve| Command::CopyText(values(quantity, curve))),
+                .map(|curve| Command::Output(OutputCommand::CopyText(values(quantity, curve)))),
             BodeEvent::ChipClicked(index) => of_chips.get(index).cloned(),
             event => command_of(state, event),
         });
     }
     if let Some(CurveId::Model(id)) = &view.hovered {
-        commands.push(Command::Hover(id.clone()));
+        commands.push(SelectionCommand::Hover(id.clone()).into());
     }
-    commands.extend(pointed_words(view, curves, quantity, unit).map(Command::Tell));
+    commands.extend(
+        pointed_words(view, curves, quantity, unit)
+            .map(|value| Command::Selection(SelectionCommand::Tell(value))),
+    );
     commands.extend(
         view.pointed_omega
             .map(|omega| CurveCommand::PointAt(omega).into()),
@@ -86,17 +93,19 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
         BodeEvent::Clicked(CurveId::Model(id)) => Some(reject_or_restore(state, id)),
         BodeEvent::TakenBack(CurveId::Model(id)) => {
             let rejected = state.study.is_rejected(&id);
-            Some(Command::Forget(if rejected {
+            Some(Command::Study(StudyCommand::Forget(if rejected {
                 Edit::Reject(id)
             } else {
                 Edit::Restore(id)
-            }))
+            })))
         }
-        BodeEvent::Isolated(CurveId::Model(id)) => Some(Command::Isolate(id)),
+        BodeEvent::Isolated(CurveId::Model(id)) => {
+            Some(Command::Selection(SelectionCommand::Isolate(id)))
+        }
         BodeEvent::BandDragged { min, max } => Band::new(min, max)
             .ok()
             .map(|band| setting::BAND.to(band).into()),
-        BodeEvent::BandReleased => Some(Command::EndEdit),
+        BodeEvent::BandReleased => Some(Command::Study(StudyCommand::EndEdit)),
         BodeEvent::Display(command) => Some(command.into()),
         BodeEvent::RejectedBecause(CurveId::Model(model), reason) => {
             Some(Edit::RejectBecause { model, reason }.into())
@@ -133,12 +142,14 @@ fn reject_or_restore(state: &State, id: ModelId) -> Command {
 /// Returns the command for a wish about a curve.
 pub(super) fn wished(state: &State, id: CurveId, wish: CurveWish) -> Option<Command> {
     match (wish, id) {
-        (CurveWish::Turn(by), id) => {
-            Some(CurveCommand::Turn(state.condition().id(), state.display.pair, id, by).into())
-        }
+        (CurveWish::Turn(by), id) => Some(
+            CurveCommand::Turn(state.condition().id(), state.display.selection.pair, id, by).into(),
+        ),
         (CurveWish::RejectOrRestore, CurveId::Model(id)) => Some(reject_or_restore(state, id)),
         (CurveWish::Pin, CurveId::Model(id)) => Some(Edit::Pin(id).into()),
-        (CurveWish::Isolate, CurveId::Model(id)) => Some(Command::Isolate(id)),
+        (CurveWish::Isolate, CurveId::Model(id)) => {
+            Some(Command::Selection(SelectionCommand::Isolate(id)))
+        }
         (CurveWish::Hide, CurveId::Model(id)) => Some(CurveCommand::HideModel(id).into()),
         _ => None,
     }
@@ -172,13 +183,13 @@ fn chips(state: &State) -> Vec<(Chip, Command)> {
         )
     };
     let mut chips = Vec::new();
-    if let Some(id) = &state.display.isolated {
+    if let Some(id) = &state.display.selection.isolated {
         let hint =
             "Only this model is shown beside the representatives. Click, or Escape: show all";
         chips.push(chip(
             format!("Only {} ×", id.name),
             hint,
-            Command::EndIsolation,
+            Command::Selection(SelectionCommand::EndIsolation),
         ));
     }
     let curves = &state.display.curves;
@@ -218,7 +229,7 @@ fn chips(state: &State) -> Vec<(Chip, Command)> {
         ));
     }
     if !curves.crossings.is_empty() {
-        let unit = state.display.unit;
+        let unit = state.display.curves.unit;
         let names = curves
             .crossings
             .iter()
@@ -274,17 +285,18 @@ pub(in crate::gui) fn bode_options(state: &State) -> BodeOptions {
     let display = &state.display;
     let curves = &state.display.curves;
     BodeOptions {
-        unit: display.unit,
+        unit: display.curves.unit,
         magnitude: curves.magnitude,
         phase: curves.phase,
         phase_error: curves.phase_error,
         turns: curves.turns.clone(),
         shows_muad: curves.shows_muad,
         crossings: curves.crossings.clone(),
-        zeros_of: display.show_zeros.then_some(display.pair),
+        zeros_of: display.poles.show_zeros.then_some(display.selection.pair),
         hidden: curves.hidden_roles.clone(),
         hidden_models: curves.hidden_models.clone(),
         isolated: display
+            .selection
             .isolated
             .clone()
             .filter(|model| model.condition == state.condition().id()),
@@ -295,25 +307,30 @@ pub(in crate::gui) fn bode_options(state: &State) -> BodeOptions {
 /// Returns every curve of a response in the displayed condition; empty until its responses are
 /// available.
 pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
-    let mut cache = state.display.shapes.remove(&pair).unwrap_or_default();
+    let mut cache = state
+        .display
+        .frequency
+        .shapes
+        .remove(&pair)
+        .unwrap_or_default();
     let options = bode_options(state);
     let curves =
         condition_source(state).map(|source| source.response_curves(pair, &options, &mut cache));
     let drawn = pointed_out(state, curves.unwrap_or_default(), None);
-    state.display.shapes.insert(pair, cache);
+    state.display.frequency.shapes.insert(pair, cache);
     drawn
 }
 
 /// Returns the errors of a response, as used by the fit, in the displayed condition; empty until
 /// its responses are available.
 pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {
-    let mut cache = std::mem::take(&mut state.display.errors);
+    let mut cache = std::mem::take(&mut state.display.frequency.errors);
     let curves =
         condition_source(state).map(|source| source.error_curves(pair, options, &mut cache));
     let curves = curves.unwrap_or_default();
     let reference = error_reference(&curves);
     let drawn = pointed_out(state, curves, reference.as_ref());
-    state.display.errors = cache;
+    state.display.frequency.errors = cache;
     drawn
 }
 
@@ -337,7 +354,7 @@ fn pointed_out(
     for curve in &mut curves {
         match &curve.id {
             CurveId::Model(id) if reference == Some(&curve.id) => {
-                curve.highlighted = state.display.hovered.as_ref() == Some(id);
+                curve.highlighted = state.display.selection.hovered.as_ref() == Some(id);
                 let separator = if curve.detail.is_empty() { "" } else { " · " };
                 curve
                     .detail
@@ -345,7 +362,8 @@ fn pointed_out(
             }
             CurveId::Model(id) => {
                 let is_selected = state.display.curves.selected.contains(id);
-                curve.highlighted = is_selected || state.display.hovered.as_ref() == Some(id);
+                curve.highlighted =
+                    is_selected || state.display.selection.hovered.as_ref() == Some(id);
                 let action = if curve.rejected {
                     "click to restore"
                 } else {

@@ -1,27 +1,26 @@
 //! Requirements over time: flight records with their corridors and the models' responses; without
 //! records, a step or a doublet (M17.2).
 
-use std::sync::Arc;
-
 use egui::{CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
 
 use gdcm_method::requirements::{TestInput, TestInputShape};
 use gdcm_model::units::number;
-use gdcm_plot::figure::{Figure, FigureKind, OverTime};
-use gdcm_study::Analysis;
-use gdcm_study::results::condition_answers::{RecordHistory, RecordHistoryJob, TestAnswersJob};
-use gdcm_study::results::time_histories::{HistoryRecord, Trend};
+use gdcm_plot::figure::{Figure, OverTime};
+use gdcm_study::results::condition_answers::RecordHistory;
+use gdcm_study::results::time_histories::Trend;
 
-use super::records::RecordsCommand;
-use super::requirement_limits::tolerances_ui;
-use super::requirements::{RequirementsPage, decided};
-use super::{Need, View};
+use super::figures::figure_of;
+use super::over_time::{over_time, record_job};
+use super::requirement_limits::{decided, tolerances_ui};
 use crate::gui::commands::command::Command;
-use crate::gui::panels::settings_panel::choice_ui;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::records::RecordsCommand;
 use crate::gui::plot::canvas::figure_legend_ui;
 use crate::gui::plot::{FigureScene, FigureWords, figure_ui};
-use crate::gui::state::figures::figure_of;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::controls::{number_entry_ui, restore_panel_size};
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{TableLook, table_grid_ui};
@@ -32,76 +31,6 @@ const LEAST_PLOT: Vec2 = vec2(220.0, 96.0);
 const LEAST_RECORD: Vec2 = vec2(260.0, 190.0);
 /// Initial share of the height taken by the table.
 const TABLE_PART: f32 = 0.32;
-
-/// Returns the job of the record shown over time; `None` without a record, or if a test is shown
-/// instead.
-fn record_job(state: &State) -> Option<RecordHistoryJob> {
-    let analysis = current(state)?;
-    let condition = state.condition().id();
-    let records = state
-        .records
-        .conditions
-        .get(&condition)
-        .filter(|_| !state.display.shows_test)?;
-    let row = records.rows.get(records.chosen)?;
-    let record = HistoryRecord {
-        flight: Arc::clone(row.used_flight()?).into(),
-        held_out: row.guess.held_out,
-    };
-    let tolerances = state.study.requirements.tolerances.clone();
-    Some(RecordHistoryJob {
-        analysis: analysis.into(),
-        condition,
-        record,
-        preparation: records.preparation(),
-        tolerances,
-    })
-}
-
-fn test_job(state: &State) -> Option<TestAnswersJob> {
-    let condition = state.condition().id();
-    let input = state.display.pair.input;
-    Some(TestAnswersJob {
-        analysis: current(state)?.into(),
-        condition,
-        input,
-        test: state.study.requirements.test,
-    })
-}
-
-/// Returns the analysis of the present settings, if available.
-pub(super) fn current(state: &State) -> Option<Arc<Analysis>> {
-    state
-        .results
-        .analysis
-        .clone()
-        .filter(|_| state.analysis().is_some())
-}
-
-/// Returns the computation needed over time.
-pub fn over_time_need(state: &State) -> Option<Need> {
-    record_job(state)
-        .map(Need::RecordHistory)
-        .or_else(|| test_job(state).map(Need::TestAnswers))
-}
-
-/// Returns the models' responses over time, or the reason for their absence; `None` until computed.
-pub fn over_time(state: &State) -> Option<Result<OverTime, String>> {
-    match record_job(state) {
-        Some(job) => {
-            let found = state.record_history(&job)?.clone();
-            Some(found.map(|history| OverTime::Record(history, state.display.pair.input)))
-        }
-        None => Some(state.test_answers()?.clone().map(OverTime::Test)),
-    }
-}
-
-/// Returns the same for a figure, if it is shown.
-pub fn shown_over_time(state: &State, kind: FigureKind) -> Option<OverTime> {
-    let is_shown = kind == FigureKind::Requirements
-        && state.display.requirements_page == RequirementsPage::Histories;
-    over_time(state).filter(|_| is_shown)?.ok()
-}
 
 /// Draws the flown record, or the test input, and the models' responses.
 pub fn histories_ui(
@@ -137,7 +66,7 @@ pub fn histories_ui(
         .unwrap_or_default();
     view.set_subject(&figure.title);
     let accented = match &found {
-        OverTime::Test(_) => Some(1 + state.display.pair.output),
+        OverTime::Test(_) => Some(1 + state.display.selection.pair.output),
         OverTime::Record(..) => None,
     };
     let least = if accented.is_some() {
@@ -189,11 +118,11 @@ fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
         ));
         let shown = records
             .map(|records| records.chosen)
-            .filter(|_| !state.display.shows_test);
+            .filter(|_| !state.display.judging.shows_test);
         let mut chosen = shown;
         choice_ui(ui, "What models answer to", &mut chosen, &choices);
         if chosen != shown {
-            commands.push(Command::ShowTest(chosen.is_none()));
+            commands.push(DisplayCommand::ShowTest(chosen.is_none()).into());
             commands.extend(chosen.map(|index| RecordsCommand::Choose(index).into()));
         }
     }
@@ -230,20 +159,20 @@ fn shares_ui(
         .auto_shrink(false)
         .show(ui, |ui| {
             ui.label(palette.small(&table.title));
-            let mut sorting = state.display.requirements_sorting;
+            let mut sorting = state.display.judging.requirements_sorting;
             table_grid_ui(ui, &table, &mut sorting[0], &look, palette, commands);
-            state.display.requirements_sorting = sorting;
+            state.display.judging.requirements_sorting = sorting;
         });
 }
 
 /// Draws shape, size and duration of the test input.
 fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let test = state.study.requirements.test;
-    let input = &state.dataset().inputs()[state.display.pair.input];
+    let input = &state.dataset().inputs()[state.display.selection.pair.input];
     let decide =
         |what: &'static str, test: TestInput, commands: &mut Vec<Command>| match test.checked() {
             Ok(test) => commands.push(decided(state, what, |settings| settings.test = test)),
-            Err(why) => commands.push(Command::Refuse(why.to_string())),
+            Err(why) => commands.push(FormCommand::Refuse(why.to_string()).into()),
         };
     ui.horizontal_wrapped(|ui| {
         let mut shape = test.shape;

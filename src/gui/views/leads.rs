@@ -7,10 +7,10 @@ use gdcm_model::units::{number, s_to_ms, signed, telling};
 use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
 use gdcm_study::{PhaseCorrection, Table};
 
-use super::View;
 use super::frequency::condition_source;
 use crate::gui::commands::command::Command;
 use crate::gui::plot::{FigureScene, figure_ui};
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
@@ -34,7 +34,7 @@ pub fn leads_view_ui(
             .default_size(TABLE_PART * width)
             .min_size(160.0);
         panel.show(ui, |ui| {
-            let pair = Channel::of(state.display.pair);
+            let pair = Channel::of(state.display.selection.pair);
             let channels = all_channels(state.dataset());
             let selected = |row: usize| {
                 channels
@@ -80,7 +80,7 @@ fn figure(state: &State) -> Figure {
         .shown()
         .is_some_and(|shown| shown.correction.leads.is_some());
     let source = condition_source(state).filter(|_| has_leads);
-    let pairs = vec![state.display.pair];
+    let pairs = vec![state.display.selection.pair];
     FigureRequest::new(FigureKind::Leads, pairs, Vec::new())
         .figure(None, source.as_ref())
         .unwrap_or_default()

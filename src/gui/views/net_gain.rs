@@ -2,23 +2,26 @@
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
-use serde::{Deserialize, Serialize};
 
-use gdcm_model::dataset::Pair;
 use gdcm_plot::figure::MarkId;
 use gdcm_plot::figure::condition_source::schedule_words;
 use gdcm_plot::figure::gains::{Across, GainQuantity, add_variant, net_gain_figure, quieten};
 use gdcm_study::decisions::setting;
 
-use super::View;
-use super::channels::{GainPlots, gain_command, shown_uncertainty};
 use super::compare::overlaid_analysis;
 use super::evidence::{coefficient_table, forms_ui, lead_evidence_table, residual_table};
+use super::gain_plots::{
+    GainPlots, bars_switch_ui, gain_command, net_gain_pairs, shown_uncertainty,
+};
+use super::setting_controls::setting_ui;
 use crate::gui::commands::command::Command;
-use crate::gui::panels::settings_panel::{choice_ui, setting_ui};
+use crate::gui::commands::display::DisplayCommand;
 use crate::gui::plot::{FigureScene, figure_ui};
+use crate::gui::state::pair_set::PairSet;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{named, restore_panel_size, toggle_ui};
+use crate::gui::widgets::choices::{choice_ui, toggle_ui};
+use crate::gui::widgets::controls::{named, restore_panel_size};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
@@ -28,14 +31,14 @@ pub const NET_GAIN_CONTROLS: f32 = 410.0;
 /// Describes the content of the plots.
 pub fn net_gain_words(state: &State) -> String {
     let level = 100.0 * state.study.settings.uncertainty.level;
-    let bars = if state.display.hide_bars {
+    let bars = if state.display.gains.hide_bars {
         String::new()
     } else {
         format!(", bars of {level:.0} %")
     };
     format!(
         "k of output times k of input, {} responses{bars}",
-        state.display.net_gain_pairs.name()
+        state.display.gains.net_gain_pairs.name()
     )
 }
 
@@ -46,11 +49,11 @@ pub fn net_gain_header_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let shown = state.display.show_evidence;
+    let shown = state.display.gains.show_evidence;
     let hint = "Which pairs at one airspeed differ significantly, and what each form of the schedule misses, so that a degree is \
                 chosen on evidence";
     if toggle_ui(ui, ("evidence", "evidence"), shown, hint) {
-        commands.push(Command::ShowEvidence(!shown));
+        commands.push(DisplayCommand::ShowEvidence(!shown).into());
     }
     bars_switch_ui(ui, state, ("bars", "error bars"), commands);
     if let Some((variant, _)) = overlaid_analysis(state) {
@@ -63,7 +66,7 @@ pub fn net_gain_header_ui(
             .on_hover_text(hint)
             .clicked()
         {
-            commands.push(Command::Overlay(None));
+            commands.push(DisplayCommand::Overlay(None).into());
         }
     }
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
@@ -79,29 +82,11 @@ pub fn net_gain_header_ui(
     pair_set_ui(ui, state, commands);
 }
 
-/// Draws the switch of error bars and bands.
-pub(super) fn bars_switch_ui(
-    ui: &mut Ui,
-    state: &State,
-    names: (&str, &str),
-    commands: &mut Vec<Command>,
-) {
-    let shown = !state.display.hide_bars;
-    let level = 100.0 * state.study.settings.uncertainty.level;
-    let hint = format!(
-        "Bars of {level:.0} %: thick for the physics model chosen (identification), thin with not knowing the trim flown. Bands of the \
-         schedule: where it may lie, and where another condition would fall"
-    );
-    if toggle_ui(ui, names, shown, &hint) {
-        commands.push(Command::ShowBars(!shown));
-    }
-}
-
 /// Draws the selection of the displayed responses, from right to left.
 fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let pair = state.display.pair;
-    if state.display.net_gain_pairs == PairSet::Picked {
-        let picked = state.display.picked_pairs.contains(&pair);
+    let pair = state.display.selection.pair;
+    if state.display.gains.net_gain_pairs == PairSet::Picked {
+        let picked = state.display.gains.picked_pairs.contains(&pair);
         let (text, verb) = if picked {
             ("−", "Let go")
         } else {
@@ -114,14 +99,14 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             .on_hover_text(format!("{name}, the response in focus"))
             .clicked()
         {
-            commands.push(Command::PickPair(pair));
+            commands.push(DisplayCommand::PickPair(pair).into());
         }
     }
-    let mut chosen = state.display.net_gain_pairs;
+    let mut chosen = state.display.gains.net_gain_pairs;
     let sets = PairSet::ALL.map(|set| (set, set.name(), set.purpose()));
     choice_ui(ui, "Responses of the net-gain plots", &mut chosen, &sets);
-    if chosen != state.display.net_gain_pairs {
-        commands.push(Command::ShowNetGains(chosen));
+    if chosen != state.display.gains.net_gain_pairs {
+        commands.push(DisplayCommand::ShowNetGains(chosen).into());
     }
 }
 
@@ -135,12 +120,12 @@ pub fn net_gain_view_ui(
     let message = if state.analysis().is_none() {
         state.results.absence()
     } else {
-        match state.display.net_gain_pairs {
+        match state.display.gains.net_gain_pairs {
             PairSet::Picked => "No response is picked: choose one in the matrix, then + above",
             _ => "No response is held: hold one in the matrix",
         }
     };
-    if state.display.show_evidence {
+    if state.display.gains.show_evidence {
         let width = ui.available_width();
         restore_panel_size(ui, "evidence");
         let panel = Panel::right("evidence")
@@ -156,10 +141,14 @@ pub fn net_gain_view_ui(
         .unwrap_or_default();
     let mut plots = net_gain_plots(state);
     let selected = MarkId::Condition(state.condition().id());
-    quieten(&mut plots.figure, &selected, state.display.show_evidence);
+    quieten(
+        &mut plots.figure,
+        &selected,
+        state.display.gains.show_evidence,
+    );
     let accented = net_gain_pairs(state)
         .iter()
-        .position(|pair| *pair == state.display.pair);
+        .position(|pair| *pair == state.display.selection.pair);
     let scene = FigureScene {
         is_compact: true,
         accented,
@@ -176,9 +165,9 @@ pub fn net_gain_view_ui(
 
 /// Draws the evidence for each form of the schedule; a click on a form selects it.
 fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let mut cached = std::mem::take(&mut state.display.evidence);
+    let mut cached = std::mem::take(&mut state.display.gains.evidence);
     cached.refresh(state);
-    let mut sorting = state.display.evidence_sorting;
+    let mut sorting = state.display.gains.evidence_sorting;
     ScrollArea::vertical().show(ui, |ui| match cached.found() {
         None => {
             ui.label(palette.dim(state.results.absence()));
@@ -196,8 +185,8 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
             }
         }
     });
-    state.display.evidence = cached;
-    state.display.evidence_sorting = sorting;
+    state.display.gains.evidence = cached;
+    state.display.gains.evidence_sorting = sorting;
 }
 
 /// Draws the parameters of the schedule's form, line by line.
@@ -223,69 +212,6 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
                 ui.end_row();
             }
         });
-}
-
-/// Set of responses in the net-gain plots.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum PairSet {
-    /// Responses constrained now or at any time since the window was opened: releasing a response
-    /// keeps its plot.
-    #[default]
-    Held,
-    /// Response in focus.
-    Focused,
-    /// On-axis responses of the dataset.
-    OnAxis,
-    All,
-    /// Responses picked by the engineer.
-    Picked,
-}
-
-impl PairSet {
-    /// Every set, in the order of the list.
-    pub const ALL: [Self; 5] = [
-        Self::Held,
-        Self::Focused,
-        Self::OnAxis,
-        Self::All,
-        Self::Picked,
-    ];
-
-    /// Returns the name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Held => "held",
-            Self::Focused => "in focus",
-            Self::OnAxis => "on-axis",
-            Self::All => "all",
-            Self::Picked => "picked",
-        }
-    }
-
-    /// Describes the content of the set in a sentence.
-    pub fn purpose(self) -> &'static str {
-        match self {
-            Self::Held => "The responses held, and those held before",
-            Self::Focused => "The response chosen in the matrix",
-            Self::OnAxis => "The on-axis responses of the dataset",
-            Self::All => "Every response that has a gain",
-            Self::Picked => "Those picked with the button beside this list",
-        }
-    }
-}
-
-/// Returns the responses of the net-gain plots, in the order of the matrix.
-pub fn net_gain_pairs(state: &State) -> Vec<Pair> {
-    let display = &state.display;
-    let constrained = &state.study.settings.constrained;
-    let is_in = |pair: &Pair| match display.net_gain_pairs {
-        PairSet::Held => constrained[*pair] || display.once_held.contains(pair),
-        PairSet::Focused => display.pair == *pair,
-        PairSet::OnAxis => state.dataset().measuring_pairs()[*pair],
-        PairSet::All => true,
-        PairSet::Picked => display.picked_pairs.contains(pair),
-    };
-    constrained.pairs().filter(is_in).collect()
 }
 
 /// Builds a plot for each response of the displayed set: the net gain of each condition's optimum,

@@ -3,9 +3,7 @@
 use std::sync::Arc;
 
 use egui::{Panel, Ui, Vec2, vec2};
-use nalgebra::Complex;
 
-use gdcm_method::couplings::PoleShift;
 use gdcm_method::requirements::{ModeName, NamedBy};
 use gdcm_model::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
 use gdcm_model::response::Mode;
@@ -15,14 +13,16 @@ use gdcm_plot::figure::figure::Along;
 use gdcm_plot::figure::poles::{damping_grid, poles_figure};
 use gdcm_plot::figure::{Figure, Mark, MarkId, Range, Role};
 use gdcm_study::jobs::job::ConditionModes;
-use gdcm_study::stages::fitted_couplings::FittedCouplings;
 use gdcm_study::{ConditionAnalysis, Edit, Table};
 
-use super::View;
 use super::frequency::{bode_options, condition_source};
 use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::canvas::figure_legend_ui;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_ui};
+use crate::gui::state::modes_cache::{CachedModes, MadeOf};
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
@@ -47,11 +47,14 @@ const TABLE_PART: f32 = 0.3;
 
 /// Draws the switch of the zeros, from right to left.
 pub fn poles_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let mut shown = state.display.show_zeros;
-    let name = format!("zeros of {}", state.dataset().pair_name(state.display.pair));
+    let mut shown = state.display.poles.show_zeros;
+    let name = format!(
+        "zeros of {}",
+        state.dataset().pair_name(state.display.selection.pair)
+    );
     let hint = "Transmission zeros of the response in focus, of the nominal model and of both representatives";
     if ui.checkbox(&mut shown, name).on_hover_text(hint).changed() {
-        commands.push(Command::ShowZeros(shown));
+        commands.push(DisplayCommand::ShowZeros(shown).into());
     }
 }
 
@@ -62,11 +65,11 @@ pub fn poles_view_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let mut modes = std::mem::take(&mut state.display.modes);
+    let mut modes = std::mem::take(&mut state.display.poles.modes);
     modes.refresh(state);
-    state.display.modes = modes;
+    state.display.poles.modes = modes;
     let height = ui.available_height();
-    if !state.display.modes.table().0.rows.is_empty() {
+    if !state.display.poles.modes.table().0.rows.is_empty() {
         restore_panel_size(ui, "modes");
         let panel = Panel::bottom("modes")
             .resizable(true)
@@ -95,15 +98,19 @@ pub fn poles_view_ui(
             .map_or(0, |plot| plot.panels[0].dots().count()),
     };
     let scene = FigureScene {
-        highlighted: state.display.hovered.clone().map(MarkId::Model),
+        highlighted: state.display.selection.hovered.clone().map(MarkId::Model),
         zooms: true,
         ..FigureScene::new("poles", &figure, LEAST_PLOT, message, &words)
     };
     for event in figure_ui(ui, &scene, &mut view, palette) {
         commands.push(match event {
-            FigureEvent::Pointed(MarkId::Model(id)) => Command::Hover(id),
-            FigureEvent::Told(words) => Command::Tell(words),
-            FigureEvent::Clicked(_, MarkId::Model(id), keys) if keys.alt => Command::Isolate(id),
+            FigureEvent::Pointed(MarkId::Model(id)) => {
+                Command::Selection(SelectionCommand::Hover(id))
+            }
+            FigureEvent::Told(words) => Command::Selection(SelectionCommand::Tell(words)),
+            FigureEvent::Clicked(_, MarkId::Model(id), keys) if keys.alt => {
+                Command::Selection(SelectionCommand::Isolate(id))
+            }
             FigureEvent::Clicked(_, MarkId::Model(id), _) if state.study.is_rejected(&id) => {
                 Edit::Restore(id).into()
             }
@@ -117,7 +124,7 @@ pub fn poles_view_ui(
 /// Builds the figure of the poles of every model of the displayed condition, optionally with the
 /// zeros of the response in focus; `None` until they are known.
 pub fn poles(state: &State) -> Option<Figure> {
-    let CachedModes { zeros, shifts, .. } = &state.display.modes;
+    let CachedModes { zeros, shifts, .. } = &state.display.poles.modes;
     let found = |id: &ModelId| {
         zeros
             .iter()
@@ -205,7 +212,9 @@ impl FigureWords for PoleWords<'_> {
             .collect(),
             None => vec![format!(
                 "transmission zero of {}",
-                self.state.dataset().pair_name(self.state.display.pair)
+                self.state
+                    .dataset()
+                    .pair_name(self.state.display.selection.pair)
             )],
         };
         let click = if self.state.study.is_rejected(id) {
@@ -219,7 +228,7 @@ impl FigureWords for PoleWords<'_> {
 
 /// Draws the table of modes; a click on a row highlights the model that jumps.
 fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let (table, jumping) = state.display.modes.table();
+    let (table, jumping) = state.display.poles.modes.table();
     let look = TableLook {
         color: &|row, _| {
             jumping
@@ -230,48 +239,26 @@ fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Ve
         selected: &|row| {
             jumping
                 .get(row)
-                .is_some_and(|id| id.is_some() && *id == state.display.hovered)
+                .is_some_and(|id| id.is_some() && *id == state.display.selection.hovered)
         },
     };
-    let mut sorting = state.display.modes_sorting;
+    let mut sorting = state.display.poles.modes_sorting;
     let clicked = table_ui(ui, table, &mut sorting, &look, palette, commands);
     let model = clicked.and_then(|click| jumping.get(click.row)?.clone());
-    commands.extend(model.map(Command::Isolate));
-    state.display.modes_sorting = sorting;
-}
-
-/// Modes of a condition followed from model to model, zeros of a response, and pole shifts by
-/// couplings; cached as long as their inputs are the same.
-#[derive(Debug, Default)]
-pub struct CachedModes {
-    made_of: Option<MadeOf>,
-    table: Table,
-    /// For each row, the first model that jumps.
-    jumping: Vec<Option<ModelId>>,
-    zeros: Vec<(ModelId, Vec<Complex<f64>>)>,
-    /// Shifts of the physics representative's poles by couplings.
-    shifts: Vec<PoleShift>,
-}
-
-/// Inputs of the modes, the zeros and the shifts.
-#[derive(Debug)]
-struct MadeOf {
-    modes: Arc<ConditionModes>,
-    /// Index of the physics model to whose modes the others' are matched.
-    reference: usize,
-    couplings: Option<Arc<FittedCouplings>>,
-    /// Response and models whose zeros are shown.
-    zeros_of: Option<(Pair, Vec<ModelId>)>,
+    commands.extend(model.map(|value| Command::Selection(SelectionCommand::Isolate(value))));
+    state.display.poles.modes_sorting = sorting;
 }
 
 impl MadeOf {
     fn of(state: &State, modes: &Arc<ConditionModes>) -> Self {
         let coupled = state.shown().and_then(|shown| shown.coupled.as_ref());
         let couplings = coupled.map(|coupled| Arc::clone(&coupled.fitted));
-        let zeros_of = state
-            .display
-            .show_zeros
-            .then(|| (state.display.pair, models_with_zeros(state, modes)));
+        let zeros_of = state.display.poles.show_zeros.then(|| {
+            (
+                state.display.selection.pair,
+                models_with_zeros(state, modes),
+            )
+        });
         Self {
             modes: Arc::clone(modes),
             reference: reference(state, modes),
@@ -345,7 +332,7 @@ fn models_with_zeros(state: &State, modes: &ConditionModes) -> Vec<ModelId> {
 
 /// Returns the index of the physics model to whose modes the others' are matched: the
 /// representative, or the nominal model until it is known.
-fn reference(state: &State, modes: &ConditionModes) -> usize {
+pub fn reference(state: &State, modes: &ConditionModes) -> usize {
     let name = state
         .shown()
         .map(|shown| shown.representative_name(BundleKind::Physics));

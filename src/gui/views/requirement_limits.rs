@@ -1,14 +1,19 @@
 //! Editable tables of the requirements: tolerances of time histories and of modes, limits of the
 //! overview (M17).
 
+use std::sync::Arc;
+
 use egui::{Button, Grid, Ui};
 
 use gdcm_method::requirements::{ModeToleranceTable, ToleranceTable};
 use gdcm_model::units::number;
-use gdcm_study::results::requirements::OverviewLimits;
+use gdcm_study::Edit;
+use gdcm_study::results::requirements::{OverviewLimits, RequirementSettings};
 
-use super::requirements::decided;
-use crate::gui::commands::command::{Command, RequirementTable};
+use crate::gui::commands::command::Command;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::state::forms::RequirementTable;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{button_ui, number_entry_ui};
 use crate::gui::widgets::palette::Palette;
@@ -73,7 +78,9 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
             commands.push(to(ToleranceTable::default()));
         }
         let hint = "Take the tolerances of a file into the study";
-        let ask = Command::AskRequirementTable(RequirementTable::Tolerances);
+        let ask = Command::File(FileCommand::AskRequirementTable(
+            RequirementTable::Tolerances,
+        ));
         button_ui(
             ui,
             Button::new("Open tolerances…").small(),
@@ -86,7 +93,7 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
             ui,
             Button::new("Save tolerances…").small(),
             hint,
-            Command::AskWriteTolerances,
+            FileCommand::AskWriteTolerances,
             commands,
         );
     });
@@ -118,7 +125,7 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     if rows != table.rows() {
         commands.push(match ToleranceTable::new("edited", rows) {
             Ok(table) => to(table),
-            Err(why) => Command::Refuse(why.to_string()),
+            Err(why) => Command::Form(FormCommand::Refuse(why.to_string())),
         });
     }
 }
@@ -181,7 +188,7 @@ pub fn mode_tolerances_ui(
     if rows != table.rows() {
         commands.push(match ModeToleranceTable::try_from(rows) {
             Ok(table) => to(table),
-            Err(why) => Command::Refuse(why.to_string()),
+            Err(why) => Command::Form(FormCommand::Refuse(why.to_string())),
         });
     }
 }
@@ -228,7 +235,7 @@ pub fn overview_limits_ui(
             Ok(limits) => decided(state, "limits of the overview", |settings| {
                 settings.overview = limits
             }),
-            Err(why) => Command::Refuse(why.to_string()),
+            Err(why) => Command::Form(FormCommand::Refuse(why.to_string())),
         });
     }
     if limits != OverviewLimits::default() && ui.small_button("Default limits").clicked() {
@@ -236,4 +243,15 @@ pub fn overview_limits_ui(
             settings.overview = OverviewLimits::default()
         }));
     }
+}
+
+/// Returns the command that changes the inputs of the requirements.
+pub fn decided(
+    state: &State,
+    what: &'static str,
+    change: impl FnOnce(&mut RequirementSettings),
+) -> Command {
+    let mut settings = RequirementSettings::clone(&state.study.requirements);
+    change(&mut settings);
+    Edit::SetRequirements(what, Arc::new(settings)).into()
 }

@@ -12,24 +12,31 @@ use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::{s_to_ms, telling};
 use gdcm_plot::figure::drawing::Hue;
 use gdcm_plot::figure::requirements::{bandwidth_pairs, bandwidth_place};
-use gdcm_plot::figure::{Color, Figure, FigureKind, MarkId};
-use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_plot::figure::{Color, Figure, MarkId};
+use gdcm_study::Table;
 use gdcm_study::results::requirements::{RequirementRole, RequirementSettings, Requirements};
 use gdcm_study::results::requirements_tables::{RequirementsJob, mode_verdict_words};
-use gdcm_study::results::time_histories::{HistoryRecords, TimeHistoriesJob};
-use gdcm_study::{Edit, Table};
+use gdcm_study::results::time_histories::TimeHistoriesJob;
 
-use super::histories::{current, histories_ui, over_time_need};
-use super::records::ConditionRecords;
-use super::requirement_limits::{mode_tolerances_ui, overview_limits_ui};
-use super::{Need, View};
-use crate::gui::commands::command::{Command, RequirementTable};
+use super::figures::figure_of;
+use super::histories::histories_ui;
+use super::need::Need;
+use super::over_time::{current, over_time_need};
+use super::requirement_limits::{decided, mode_tolerances_ui, overview_limits_ui};
+use crate::gui::commands::command::Command;
+use crate::gui::commands::display::DisplayCommand;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::plot::canvas::figure_legend_ui;
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
-use crate::gui::state::figures::figure_of;
+use crate::gui::state::forms::RequirementTable;
+use crate::gui::state::requirements_page::RequirementsPage;
+use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::widgets::controls::{button_ui, check_ui, page_tab_ui, restore_panel_size};
+use crate::gui::widgets::choices::{check_ui, page_tab_ui};
+use crate::gui::widgets::controls::{button_ui, restore_panel_size};
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{TableClick, TableLook, table_grid_ui};
 
@@ -40,24 +47,9 @@ const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
 /// Initial share of the height taken by the table.
 const TABLE_PART: f32 = 0.34;
 
-/// Page of requirements.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum RequirementsPage {
-    /// Bandwidth and phase delay of every response, condition and model.
-    #[default]
-    Bandwidth,
-    /// Responses of the displayed condition's models over time.
-    Histories,
-    /// Modes of the displayed condition.
-    Modes,
-    /// Corrected model of every condition compared with the identified model; mean J and shares of
-    /// the band of every condition and model.
-    Summary,
-}
-
 /// Draws the tabs of the pages, from right to left.
 pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let shown = state.display.requirements_page;
+    let shown = state.display.judging.requirements_page;
     let pages = [
         (
             RequirementsPage::Summary,
@@ -82,7 +74,8 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
     ];
     for (page, name, purpose) in pages {
         let (_, is_clicked) = page_tab_ui(ui, page == shown, name, (name, purpose));
-        commands.extend(is_clicked.then_some(Command::ShowRequirements(page)));
+        commands
+            .extend(is_clicked.then_some(Command::Display(DisplayCommand::ShowRequirements(page))));
     }
 }
 
@@ -93,21 +86,13 @@ pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
         analysis: analysis.into(),
         uncertainty: state.uncertainty().cloned().map(Into::into),
         settings: Arc::clone(&state.study.requirements),
-        known: known_poles(state),
+        known: state.records.known_poles(),
     })
-}
-
-/// Returns the poles identified in this session, condition by condition.
-pub fn known_poles(state: &State) -> KnownPoles {
-    let found = |(id, records): (&ConditionId, &ConditionRecords)| {
-        Some((*id, records.identification()?.poles.clone()))
-    };
-    state.records.conditions.iter().filter_map(found).collect()
 }
 
 /// Returns the computations needed by the selected page.
 pub fn requirements_needs(state: &State) -> Vec<Need> {
-    match state.display.requirements_page {
+    match state.display.judging.requirements_page {
         RequirementsPage::Histories => over_time_need(state).into_iter().collect(),
         page => {
             let of_records =
@@ -121,19 +106,10 @@ pub fn requirements_needs(state: &State) -> Vec<Need> {
     }
 }
 
-/// Returns the flight records in use of every condition.
-pub fn all_records(state: &State) -> Vec<HistoryRecords> {
-    let of_condition = |(id, records): (&ConditionId, &ConditionRecords)| {
-        HistoryRecords::of(*id, &records.rows, records.preparation())
-    };
-    let all = state.records.conditions.iter().map(of_condition);
-    all.filter(|of| !of.records.is_empty()).collect()
-}
-
 /// Returns the job of all models' responses to all records; `None` without records.
 fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
     let analysis = current(state)?;
-    let records = all_records(state);
+    let records = state.records.history_records();
     let tolerances = state.study.requirements.tolerances.clone();
     (!records.is_empty()).then_some(TimeHistoriesJob {
         analysis: analysis.into(),
@@ -149,14 +125,14 @@ pub fn requirements_view_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    if state.display.requirements_page == RequirementsPage::Histories {
+    if state.display.judging.requirements_page == RequirementsPage::Histories {
         return histories_ui(ui, state, palette, commands);
     }
     let Some(requirements) = state.requirements().cloned() else {
         return drop(ui.label(palette.dim(state.results.absence())));
     };
     known_ui(ui, &requirements, palette);
-    match state.display.requirements_page {
+    match state.display.judging.requirements_page {
         RequirementsPage::Bandwidth => asked_ui(ui, state, palette, commands),
         RequirementsPage::Modes => {
             let title =
@@ -201,17 +177,6 @@ fn known_ui(ui: &mut Ui, requirements: &Requirements, palette: &Palette) {
     }
 }
 
-/// Returns the command that changes the inputs of the requirements.
-pub(super) fn decided(
-    state: &State,
-    what: &'static str,
-    change: impl FnOnce(&mut RequirementSettings),
-) -> Command {
-    let mut settings = RequirementSettings::clone(&state.study.requirements);
-    change(&mut settings);
-    Edit::SetRequirements(what, Arc::new(settings)).into()
-}
-
 /// Draws the inputs of the bandwidths: the sticks that command an attitude, and the engineer's
 /// levels.
 fn asked_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
@@ -245,7 +210,7 @@ fn asked_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Co
             commands.push(decided("levels", &|settings| settings.levels = LevelBoundaries::default()));
         }
         let hint = "Take the levels of a file: none is built in, for they depend on the task and the category (docs/requirements.md)";
-        let ask = Command::AskRequirementTable(RequirementTable::Levels);
+        let ask = Command::File(FileCommand::AskRequirementTable(RequirementTable::Levels));
         button_ui(ui, Button::new("Levels…").small(), hint, ask, commands);
     });
 }
@@ -274,7 +239,9 @@ fn plots_ui(
     let scene = FigureScene {
         selected: Some(MarkId::Condition(state.condition().id())),
         zooms: true,
-        accented: pairs.iter().position(|pair| *pair == state.display.pair),
+        accented: pairs
+            .iter()
+            .position(|pair| *pair == state.display.selection.pair),
         ..FigureScene::new("requirements", &figure, LEAST_PLOT, message, &words)
     };
     for event in figure_ui(ui, &scene, &mut view, palette) {
@@ -318,8 +285,8 @@ fn marked_in_bode(
     role: RequirementRole,
 ) -> Vec<Command> {
     let mut commands = vec![
-        Command::SelectCondition(id),
-        Command::FocusPair(pair),
+        Command::Selection(SelectionCommand::SelectCondition(id)),
+        Command::Selection(SelectionCommand::FocusPair(pair)),
         CurveCommand::UnpinCursors.into(),
     ];
     if let Some(of) = requirements.bandwidth_of(id, pair, role) {
@@ -333,7 +300,7 @@ fn marked_in_bode(
             .filter_map(|(name, omega)| Some((name, omega?)));
         commands.push(CurveCommand::MarkCrossings(known.collect()).into());
     }
-    commands.push(Command::ShowView(View::Bode));
+    commands.push(LayoutCommand::ShowView(View::Bode).into());
     commands
 }
 
@@ -346,7 +313,7 @@ struct ShownTable<'a> {
 /// Returns the tables of the displayed page.
 fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> Vec<ShownTable<'a>> {
     let dataset = state.dataset();
-    match state.display.requirements_page {
+    match state.display.judging.requirements_page {
         RequirementsPage::Bandwidth => {
             let table = requirements.bandwidth_table(dataset);
             vec![ShownTable {
@@ -395,7 +362,7 @@ fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> Vec<ShownTa
 /// nothing is known yet.
 pub fn requirement_tables(state: &State) -> Option<Vec<Table>> {
     let is_table = matches!(
-        state.display.requirements_page,
+        state.display.judging.requirements_page,
         RequirementsPage::Modes | RequirementsPage::Summary
     );
     let requirements = state.requirements().filter(|_| is_table)?;
@@ -415,7 +382,7 @@ fn requirements_tables_ui(
     commands: &mut Vec<Command>,
 ) {
     let id = state.condition().id();
-    let mut sorting = state.display.requirements_sorting;
+    let mut sorting = state.display.judging.requirements_sorting;
     ScrollArea::both()
         .id_salt("requirement tables")
         .auto_shrink(false)
@@ -426,7 +393,7 @@ fn requirements_tables_ui(
             {
                 ui.add(Label::new(palette.small(&table.title)).extend());
                 if table.rows.is_empty() {
-                    let page = state.display.requirements_page;
+                    let page = state.display.judging.requirements_page;
                     let why = requirements
                         .no_modes(id)
                         .filter(|_| page == RequirementsPage::Modes);
@@ -449,7 +416,7 @@ fn requirements_tables_ui(
                 ui.add_space(8.0);
             }
         });
-    state.display.requirements_sorting = sorting;
+    state.display.judging.requirements_sorting = sorting;
 }
 
 /// Returns the command of a click on a row.
@@ -459,7 +426,7 @@ fn went_to(
     (table, click): (&Table, TableClick),
 ) -> Vec<Command> {
     let TableClick { row, column } = click;
-    match state.display.requirements_page {
+    match state.display.judging.requirements_page {
         RequirementsPage::Bandwidth => {
             let of = requirements.bandwidth.get(row);
             of.map(|of| marked_in_bode(requirements, (of.pair, of.condition), of.role))
@@ -469,11 +436,11 @@ fn went_to(
             // Conditions are columns of the overview and rows of the other table.
             let of_row = table.rows.get(row).and_then(|cells| cells[0].parse().ok());
             let id = of_row.or_else(|| table.columns[column].parse().ok());
-            id.map(|id| Command::SelectCondition(ConditionId(id)))
+            id.map(|id| Command::Selection(SelectionCommand::SelectCondition(ConditionId(id))))
                 .into_iter()
                 .collect()
         }
-        RequirementsPage::Modes => vec![Command::ShowView(View::Poles)],
+        RequirementsPage::Modes => vec![Command::Layout(LayoutCommand::ShowView(View::Poles))],
     }
 }
 
@@ -565,12 +532,4 @@ impl FigureWords for BandwidthWords<'_> {
             roles.join(" · ")
         ))
     }
-}
-
-/// Returns the requirements for a figure.
-pub fn shown_requirements(state: &State, kind: FigureKind) -> Option<Arc<Requirements>> {
-    state
-        .requirements()
-        .filter(|_| kind == FigureKind::Requirements)
-        .cloned()
 }

@@ -6,17 +6,15 @@ use std::ops::RangeInclusive;
 
 use egui::containers::panel::PanelState;
 use egui::{
-    Align, Align2, Button, Color32, ComboBox, Context, DragValue, FontId, Id, InnerResponse, Key,
-    Layout, Rect, Response, RichText, Role, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    Align, Align2, Button, Color32, Context, DragValue, FontId, Id, InnerResponse, Key, Layout,
+    Rect, Response, RichText, Role, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
 use gdcm_model::units::number;
 use gdcm_study::decisions::setting_row::Digits;
 
-use super::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
-use super::tables::TableKind;
-use crate::gui::commands::command::Command;
-use crate::gui::state::focus::begin_with;
+use super::focus::begin_with;
+use super::palette::{Palette, SMALL_SIZE};
 
 impl Palette {
     /// Returns small dim text, for notes beside a value.
@@ -57,7 +55,7 @@ pub fn named_switch(
 }
 
 /// Adds a hint if it is not empty: an empty hint would show an empty box.
-fn hint_ui(response: Response, hint: impl Into<String>) -> Response {
+pub fn hint_ui(response: Response, hint: impl Into<String>) -> Response {
     let hint = hint.into();
     if hint.is_empty() {
         response
@@ -66,28 +64,14 @@ fn hint_ui(response: Response, hint: impl Into<String>) -> Response {
     }
 }
 
-/// Draws a check box; returns its new state after a click.
-pub fn check_ui(
-    ui: &mut Ui,
-    is_on: bool,
-    text: impl Into<String>,
-    hint: impl Into<String>,
-) -> Option<bool> {
-    let mut value = is_on;
-    let response = ui.checkbox(&mut value, text.into());
-    let changed = response.changed();
-    hint_ui(response, hint);
-    changed.then_some(value)
-}
-
 /// Control that emits a command.
 pub trait Asks {
     /// Emits the command on a click.
-    fn asks(&self, command: impl Into<Command>, commands: &mut Vec<Command>);
+    fn asks<C>(&self, command: impl Into<C>, commands: &mut Vec<C>);
 }
 
 impl Asks for Response {
-    fn asks(&self, command: impl Into<Command>, commands: &mut Vec<Command>) {
+    fn asks<C>(&self, command: impl Into<C>, commands: &mut Vec<C>) {
         if self.clicked() {
             commands.push(command.into());
         }
@@ -95,21 +79,21 @@ impl Asks for Response {
 }
 
 /// Draws a button that emits a command.
-pub fn button_ui(
+pub fn button_ui<C>(
     ui: &mut Ui,
     button: Button<'_>,
     hint: &str,
-    command: impl Into<Command>,
-    commands: &mut Vec<Command>,
+    command: impl Into<C>,
+    commands: &mut Vec<C>,
 ) {
     hint_ui(ui.add(button), hint).asks(command, commands);
 }
 
 /// Draws menu entries, each with its command; a click closes the menu.
-pub fn entries_ui<N: Into<String>>(
+pub fn entries_ui<N: Into<String>, C>(
     ui: &mut Ui,
-    entries: impl IntoIterator<Item = (N, Command)>,
-    commands: &mut Vec<Command>,
+    entries: impl IntoIterator<Item = (N, C)>,
+    commands: &mut Vec<C>,
 ) {
     for (text, command) in entries {
         if ui.button(text.into()).clicked() {
@@ -304,28 +288,6 @@ pub fn in_line_ui<R>(
     ui.scope_builder(UiBuilder::new().max_rect(place).layout(layout), add)
 }
 
-/// Draws a drop-down list with an accessible name and `text` as its value; returns the choice.
-pub fn list_ui<T: Copy>(
-    ui: &mut Ui,
-    name: &str,
-    (width, text): (f32, &str),
-    choices: impl IntoIterator<Item = (T, bool, String)>,
-) -> Option<T> {
-    let shown = ComboBox::from_id_salt(name)
-        .width(width)
-        .selected_text(text)
-        .show_ui(ui, |ui| {
-            let clicked = |(choice, is_chosen, text): (T, bool, String)| {
-                ui.selectable_label(is_chosen, text)
-                    .clicked()
-                    .then_some(choice)
-            };
-            choices.into_iter().filter_map(clicked).last()
-        });
-    named(shown.response, Role::ComboBox, name);
-    shown.inner.flatten()
-}
-
 /// Paints text at `x` points from the row's left edge (from its right edge if negative), vertically
 /// centred.
 pub fn painted_text(ui: &Ui, row: Rect, x: f32, text: &str, font: FontId, color: Color32) -> Rect {
@@ -342,67 +304,6 @@ pub fn painted_text(ui: &Ui, row: Rect, x: f32, text: &str, font: FontId, color:
 /// centred.
 pub fn row_text(ui: &Ui, row: Rect, x: f32, text: &str, size: f32, color: Color32) -> Rect {
     painted_text(ui, row, x, text, FontId::proportional(size), color)
-}
-
-/// Draws an on/off button with a text and an accessible name; returns whether it was clicked.
-pub fn toggle_ui(ui: &mut Ui, (text, name): (&str, &str), is_on: bool, hint: &str) -> bool {
-    let button = Button::new(text).selected(is_on).corner_radius(6.0);
-    named_switch(ui.add(button), Role::CheckBox, is_on, name)
-        .on_hover_text(hint)
-        .clicked()
-}
-
-/// Draws a heading on the left and a value on the right over a table; a right-click copies or saves
-/// the table, as the palette does.
-pub fn table_heading_ui(
-    ui: &mut Ui,
-    palette: &Palette,
-    (title, value): (&str, &str),
-    kind: TableKind,
-    commands: &mut Vec<Command>,
-) {
-    ui.add_space(4.0);
-    let heading = ui.horizontal(|ui| {
-        ui.label(RichText::new(title).font(medium(BODY_SIZE)));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.label(palette.small(value))
-        });
-    });
-    table_menu_ui(ui, &heading.response, kind, commands);
-}
-
-/// Draws the context menu of a table's heading.
-pub fn table_menu_ui(
-    ui: &mut Ui,
-    heading: &egui::Response,
-    kind: TableKind,
-    commands: &mut Vec<Command>,
-) {
-    // Not focusable by Tab: it has no primary action.
-    let response = ui.interact(heading.rect, heading.id.with("table"), Sense::CLICK);
-    let response = named(response, Role::Label, format!("Heading of {}", kind.name()));
-    response.context_menu(|ui| {
-        let choices = [
-            ("Copy table", Command::CopyTable(kind)),
-            ("Save table as CSV…", Command::AskSaveTable(kind)),
-        ];
-        entries_ui(ui, choices, commands);
-    });
-}
-
-/// Draws a tab of a view's page; returns whether it was clicked. Its accessible name is "Page
-/// NAME".
-pub fn page_tab_ui(
-    ui: &mut Ui,
-    is_shown: bool,
-    short_name: &str,
-    (name, purpose): (&str, &str),
-) -> (Response, bool) {
-    let tab = ui.selectable_label(is_shown, short_name);
-    let tab = named_switch(tab, Role::Button, is_shown, format!("Page {name}"))
-        .on_hover_text(format!("{name}: {purpose}"));
-    let is_clicked = tab.clicked();
-    (tab, is_clicked)
 }
 
 /// Draws a text field with an accessible name and `value`; returns the typed text after Enter or
@@ -427,19 +328,23 @@ pub fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) ->
     None
 }
 
+/// Reason why an entry is refused.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RefusedEntry(pub String);
+
 /// As [`entry_ui`], for a number; refuses anything else with the reason. The inner `None` is an
 /// emptied field.
-pub fn number_entry_ui(
+pub fn number_entry_ui<C: From<RefusedEntry>>(
     ui: &mut Ui,
     name: &str,
     value: &str,
     hint: &str,
     width: f32,
-    commands: &mut Vec<Command>,
+    commands: &mut Vec<C>,
 ) -> Option<Option<f64>> {
     let typed = typed_number(&entry_ui(ui, name, value, hint, width)?);
     typed
-        .map_err(|why| commands.push(Command::Refuse(format!("{name}: {why}"))))
+        .map_err(|why| commands.push(RefusedEntry(format!("{name}: {why}")).into()))
         .ok()
 }
 
@@ -674,6 +579,23 @@ pub fn gain_text(gain: f64) -> String {
     let text = format!("{gain:.3}");
     text.strip_suffix('0').map(str::to_owned).unwrap_or(text)
 }
+
+/// Paints a small arrow: to the right if its section is folded, down if it is open.
+pub fn chevron(ui: &Ui, center: egui::Pos2, is_open: bool, palette: &Palette) {
+    let turn = |x: f32, y: f32| {
+        if is_open {
+            center + vec2(-y, x)
+        } else {
+            center + vec2(x, y)
+        }
+    };
+    let points = vec![turn(-2.0, -4.0), turn(2.0, 0.0), turn(-2.0, 4.0)];
+    ui.painter()
+        .line(points, egui::Stroke::new(1.3, palette.dim_text));
+}
+
+/// Menu text that opens a derivation, used everywhere.
+pub const QUESTION: &str = "How was this computed?";
 
 #[cfg(test)]
 mod tests {

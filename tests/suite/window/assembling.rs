@@ -1,6 +1,8 @@
 //! Putting models together in the window, by its controls.
 
-use gdcm::gui::views::assembling::{AssemblingCommand, AssemblyState, COLUMNS};
+use gdcm::gui::commands::assembling::AssemblingCommand;
+use gdcm::gui::state::assembling::AssemblyState;
+use gdcm::gui::state::assembly_columns::COLUMNS;
 
 use super::views::give;
 use super::*;

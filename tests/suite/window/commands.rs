@@ -1,9 +1,9 @@
 //! The table of commands: the palette, the page of keys, tables and the tour.
 
-use gdcm::gui::commands::command::FormKind;
+use gdcm::gui::commands::assembling::AssemblingCommand;
 use gdcm::gui::commands::command_table::{command_table, every_command};
-use gdcm::gui::views::assembling::AssemblingCommand;
-use gdcm::gui::widgets::tables::{TableKind, table_of};
+use gdcm::gui::state::forms::FormKind;
+use gdcm::gui::state::tables::{TableKind, table_of};
 use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::Scalar;
 use gdcm_study::Table;
@@ -72,7 +72,7 @@ fn the_palette_finds_commands_by_some_letters() {
     );
     ask(&mut window, "show ped ny");
     let target = pair(&window, "NY", "PED");
-    assert_eq!(state(&window).display.pair, target);
+    assert_eq!(state(&window).display.selection.pair, target);
     ask(&mut window, "release ped ny");
     assert!(!state(&window).study.settings.constrained[target]);
     ask(&mut window, "undo");

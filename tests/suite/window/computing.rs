@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, Once};
 
 use gdcm::gui::app::threads;
-use gdcm::gui::commands::command::Command;
-use gdcm::gui::views::View;
+use gdcm::gui::commands::output::OutputCommand;
+use gdcm::gui::state::view::View;
 use gdcm_method::correction::{Outcome, ProofBudget};
 use gdcm_model::dataset::Condition;
 use gdcm_model::executor::{Executor, Task};
@@ -319,7 +319,7 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     let copied = |window: &mut Window| {
         window
             .state_mut()
-            .dispatch(Command::CopyFigure(View::NetGain));
+            .dispatch(OutputCommand::CopyFigure(View::NetGain));
         state(window).notice.clone().unwrap().text
     };
     let done = "copied the numbers of Net gain";

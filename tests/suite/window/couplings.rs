@@ -1,9 +1,13 @@
 //! Couplings by hand: looked at before they are used, offered, used, seen and undone (M16).
 
-use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::panels::cost_map::{MappedCost, cost_of};
-use gdcm::gui::panels::explanation::Sheet;
-use gdcm::gui::views::{View, offered_couplings};
+use gdcm::gui::commands::display::DisplayCommand;
+use gdcm::gui::commands::layout::LayoutCommand;
+use gdcm::gui::commands::study::StudyCommand;
+use gdcm::gui::panels::cost_map::cost_of;
+use gdcm::gui::state::mapped_cost::MappedCost;
+use gdcm::gui::state::sheet::Sheet;
+use gdcm::gui::state::view::View;
+use gdcm::gui::views::offered_couplings;
 use gdcm_model::dataset::ConditionId;
 use gdcm_plot::figure::Mark;
 use gdcm_study::decisions::setting;
@@ -44,7 +48,7 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
         "{said}"
     );
     assert_eq!(state(&window).study, before, "looking decides nothing");
-    give(&mut window, Action::MapCost(MappedCost::Before));
+    give(&mut window, DisplayCommand::MapCost(MappedCost::Before));
     let as_it_is =
         |window: &Window| cost_of(state(window), ConditionId(3), pair(window, "P", "LON"));
     let uncoupled = as_it_is(&window);
@@ -75,6 +79,7 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
     let has_alone = |window: &Window| {
         let display = &state(window).display;
         let is_there = display
+            .frequency
             .drawn
             .iter()
             .any(|curve| curve.role == CurveRole::Coupled);
@@ -83,7 +88,7 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
     assert!(!has_alone(&window));
     click(&mut window, "Show couplings alone");
     assert!(has_alone(&window));
-    give(&mut window, Action::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert_eq!(state(&window).study.settings, before.settings);
 }
 
@@ -112,7 +117,7 @@ fn couplings_are_offered_once_leads_do_what_a_channel_can() {
     assert!(offered_couplings(state(&window)).is_none());
     // What they cost is among the reasons, whatever view is shown.
     assessed(&mut window);
-    give(&mut window, Action::ShowSheet(Some(Sheet::Reasons)));
+    give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
     let said = texts(&window);
     assert!(
         said.contains("Above the band, at 120 rad/s") && said.contains("newly unstable"),
@@ -148,7 +153,7 @@ fn couplings_that_cannot_be_found_are_told_beside_the_verdict() {
         "{}",
         texts(&window)
     );
-    give(&mut window, Action::ShowSheet(Some(Sheet::Reasons)));
+    give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
     assert!(
         texts(&window).contains("Everything here is without them."),
         "{}",

@@ -1,7 +1,7 @@
 //! Hands on every curve: the plot of errors, menus, boxes, cursors, units.
 
 use gdcm::gui::plot::picking::PICK_RADIUS;
-use gdcm::gui::views::View;
+use gdcm::gui::state::view::View;
 use gdcm_plot::figure::ConditionSource;
 use gdcm_plot::figure::bode::BodeOptions;
 
@@ -11,7 +11,7 @@ use super::*;
 
 /// The curve of a role in the plot of errors.
 fn error(window: &Window, role: CurveRole) -> BodeCurve {
-    let mut curves = state(window).display.drawn_errors.iter();
+    let mut curves = state(window).display.frequency.drawn_errors.iter();
     curves
         .find(|curve| curve.role == role)
         .expect("an error of this role is drawn")
@@ -60,7 +60,7 @@ fn the_plot_of_errors_shows_what_the_fit_sees() {
             .chain(&zero.phase_deg[..])
             .all(|value| *value == 0.0)
     );
-    let drawn = &state(&window).display.drawn_errors;
+    let drawn = &state(&window).display.frequency.drawn_errors;
     assert!(
         drawn.iter().all(|curve| !curve.rejected),
         "of models that are kept"
@@ -80,7 +80,7 @@ fn phase_errors_can_be_read_as_delays() {
         let expected = 1e3 * degrees.phase_deg[k].to_radians() / degrees.omega[k];
         assert!((delays.phase_deg[k] - expected).abs() < 1e-9);
     }
-    let view = &state(&window).display.error;
+    let view = &state(&window).display.frequency.error;
     assert!(
         view.value_range(Pane::Phase)
             .contains(delays.phase_deg[100]),
@@ -103,7 +103,7 @@ fn a_click_in_the_plot_of_errors_rejects_a_model_and_its_zoom_is_that_of_the_bod
     let nominal = error(&window, CurveRole::Nominal);
     // Where the step of the physics model takes it farthest from the others.
     let at = nominal.omega.iter().position(|&omega| omega > 2.0).unwrap();
-    let view = &state(&window).display.error;
+    let view = &state(&window).display.frequency.error;
     let place = view
         .screen_position(Pane::Magnitude, nominal.omega[at], nominal.magnitude_db[at])
         .unwrap();
@@ -111,6 +111,7 @@ fn a_click_in_the_plot_of_errors_rejects_a_model_and_its_zoom_is_that_of_the_bod
     window.run_steps(2);
     let id = state(&window)
         .display
+        .selection
         .hovered
         .clone()
         .expect("a model is pointed at");
@@ -132,10 +133,10 @@ fn a_click_in_the_plot_of_errors_rejects_a_model_and_its_zoom_is_that_of_the_bod
         source: egui::MouseWheelSource::Wheel,
     });
     window.run_steps(24);
-    let zoomed = state(&window).display.error.omega_range();
+    let zoomed = state(&window).display.frequency.error.omega_range();
     assert!(zoomed.0 > 0.5 && zoomed.1 < 12.0, "{zoomed:?}");
     click(&mut window, "Bode");
-    assert_eq!(state(&window).display.bode.omega_range(), zoomed);
+    assert_eq!(state(&window).display.frequency.bode.omega_range(), zoomed);
 }
 
 /// Clicks a place once, far enough in time from the click before not to make a double click of it.
@@ -164,6 +165,7 @@ fn a_click_on_a_reference_line_of_the_errors_rejects_nothing() {
     {
         let place = state(&window)
             .display
+            .frequency
             .error
             .screen_position(pane, omega, 0.0)
             .unwrap();
@@ -177,7 +179,7 @@ fn a_click_on_a_reference_line_of_the_errors_rejects_nothing() {
     let zero = error(&window, CurveRole::IdentifiedRepresentative);
     assert!(!zero.detail.contains("click"), "{}", zero.detail);
     // G, D, quantiles and bounds.
-    let pair = state(&window).display.pair;
+    let pair = state(&window).display.selection.pair;
     let source = ConditionSource {
         study: &state(&window).study,
         analysis: state(&window).shown(),
@@ -188,12 +190,12 @@ fn a_click_on_a_reference_line_of_the_errors_rejects_nothing() {
     let rules = source.error_references(
         pair,
         &BodeOptions::default(),
-        &state(&window).display.drawn_errors,
+        &state(&window).display.frequency.drawn_errors,
     );
     let mut near_curves = 0;
     for rule in &rules {
         for omega in omegas {
-            let view = &state(&window).display.error;
+            let view = &state(&window).display.frequency.error;
             let place = view
                 .screen_position(rule.pane, omega, rule.level.at(omega))
                 .unwrap();
@@ -211,7 +213,14 @@ fn a_click_on_a_reference_line_of_the_errors_rejects_nothing() {
                 let at = value.and_then(|value| view.screen_position(rule.pane, omega, value));
                 at.is_some_and(|at| at.distance(place) < PICK_RADIUS)
             };
-            near_curves += usize::from(state(&window).display.drawn_errors.iter().any(is_near));
+            near_curves += usize::from(
+                state(&window)
+                    .display
+                    .frequency
+                    .drawn_errors
+                    .iter()
+                    .any(is_near),
+            );
             click_once(&mut window, place);
             assert_eq!(
                 state(&window).study,
@@ -243,7 +252,7 @@ fn phases_are_wrapped_and_a_curve_is_moved_by_a_turn_on_wish() {
         "it changes no decision"
     );
     choose_of_curves(&mut window, "Phases wrapped");
-    for curve in &state(&window).display.drawn {
+    for curve in &state(&window).display.frequency.drawn {
         assert!(
             curve
                 .phase_deg
@@ -285,14 +294,21 @@ fn a_curve_can_be_hidden_isolated_and_taken_away_from_its_menu() {
     click(&mut window, "1 model hidden ×");
     assert!(!drawn(&window, CurveRole::Nominal).hidden);
     choose_from_menu_of_nominal(&mut window, "Isolate model");
-    assert_eq!(state(&window).display.isolated.as_ref(), Some(&id));
+    assert_eq!(
+        state(&window).display.selection.isolated.as_ref(),
+        Some(&id)
+    );
     window.key_press(Key::Escape);
     settle(&mut window);
-    assert_eq!(state(&window).display.isolated, None, "Escape ends it");
+    assert_eq!(
+        state(&window).display.selection.isolated,
+        None,
+        "Escape ends it"
+    );
     choose_from_menu_of_nominal(&mut window, "Isolate model");
     click(&mut window, "Only nominal ×");
     assert_eq!(
-        state(&window).display.isolated,
+        state(&window).display.selection.isolated,
         None,
         "and so does the chip that says so"
     );
@@ -351,6 +367,7 @@ fn the_values_of_every_role_at_the_cursor_are_listed_and_two_marks_show_what_cha
     choose_condition_10(&mut window);
     let frame = *state(&window)
         .display
+        .frequency
         .bode
         .transform(Pane::Phase)
         .unwrap()

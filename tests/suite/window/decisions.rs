@@ -1,6 +1,6 @@
 //! Decisions, by hand, and what they give.
 
-use gdcm::gui::commands::command::Command as Action;
+use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm_study::results::derivation::derivation;
 
 use super::views::give;
@@ -125,7 +125,7 @@ fn at_least_one_model_stays_in_each_bundle() {
         .iter()
         .map(|model| model.name.clone())
         .collect();
-    give(&mut window, Action::ShowIdentified(true));
+    give(&mut window, LayoutCommand::ShowIdentified(true));
     for model in &models {
         click(&mut window, &format!("Keep identified model {model}"));
     }
@@ -289,6 +289,7 @@ fn how_a_figure_of_a_cell_was_computed_is_told_with_its_numbers() {
         state(&window).shown().unwrap().comparison.delta.gain[pair(&window, "Q", "LON")].unwrap();
     let asked = state(&window)
         .display
+        .selection
         .asked
         .clone()
         .expect("the figure is explained");

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::panels::explanation::Sheet;
+use gdcm::gui::commands::layout::LayoutCommand;
+use gdcm::gui::state::sheet::Sheet;
 use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 
 use super::views::give;
@@ -28,7 +28,7 @@ fn the_window_offers_to_ignore_an_unusual_gain() {
         window_on(&two_lags([[1.0, 0.01], [0.0, 1.0]], [[1.2, 0.2], [0.0, 0.9]]).to_string());
     let pair = Pair::new(0, 1);
     assert!(!window.state().state().study.settings.ignored[pair]);
-    give(&mut window, Action::ShowSheet(Some(Sheet::Reasons)));
+    give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
     window.get_by_label("Ignore I1 → O0").click();
     settle(&mut window);
     assert!(window.state().state().study.settings.ignored[pair]);
@@ -41,7 +41,7 @@ fn the_window_offers_to_ignore_an_unusual_gain() {
 #[test]
 fn a_model_set_aside_cannot_be_pinned_in_the_window() {
     let mut window = window_on(SHORT);
-    give(&mut window, Action::ShowIdentified(true));
+    give(&mut window, LayoutCommand::ShowIdentified(true));
     for model in ["i3", "i4"] {
         window
             .get_by_label(&format!("Use identified model {model} as representative"))

@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use gdcm::gui::state::figures::{figure_of, views_with_figure};
-use gdcm::gui::views::View;
+use gdcm::gui::state::view::{View, views_with_figure};
+use gdcm::gui::views::figures::figure_of;
 use gdcm_io::export::figure_file::{csv_text, write_as};
 use gdcm_plot::figure::{ColumnWidth, FigureFormat};
 
@@ -59,7 +59,7 @@ fn coherence_of_measured_responses_stands_below_their_bode_plot() {
     show(&mut window, View::Bode);
     let title = state(&window)
         .dataset()
-        .pair_name(state(&window).display.pair);
+        .pair_name(state(&window).display.selection.pair);
     window.get_by_label_contains(&format!("Coherence of {title}"));
     let figure = figure_of(state(&window), View::Bode).unwrap();
     let strip = figure.plots[0]

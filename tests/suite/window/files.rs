@@ -1,6 +1,7 @@
 //! Opening and saving.
 
-use gdcm::gui::commands::command::{Command, FormKind};
+use gdcm::gui::commands::form::FormCommand;
+use gdcm::gui::state::forms::FormKind;
 
 use super::*;
 
@@ -248,7 +249,7 @@ fn corrections_are_exported_for_other_tools_and_an_existing_file_is_asked_about(
     let mut window = window();
     window
         .state_mut()
-        .dispatch(Command::ShowForm(Some(FormKind::ExportAs)));
+        .dispatch(FormCommand::ShowForm(Some(FormKind::ExportAs)));
     window.run_steps(2);
     assert_eq!(
         state(&window).forms.typed[&FormKind::ExportAs],
@@ -288,7 +289,7 @@ fn corrections_are_exported_for_other_tools_and_an_existing_file_is_asked_about(
     std::fs::write(&path, "mine").unwrap();
     window
         .state_mut()
-        .dispatch(Command::ShowForm(Some(FormKind::ExportAs)));
+        .dispatch(FormCommand::ShowForm(Some(FormKind::ExportAs)));
     window.run_steps(10);
     click(&mut window, "Export file");
     assert!(window.query_by_label("This file exists already").is_some());

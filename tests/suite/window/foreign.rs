@@ -1,7 +1,11 @@
 //! What a new user does with files of other programs, by the controls alone: what is silent, or turned, is found by the program.
 
-use gdcm::gui::views::assembling::AssemblingCommand;
-use gdcm::gui::views::records::{RecordsCommand, RecordsPage};
+use gdcm::gui::commands::assembling::AssemblingCommand;
+use gdcm::gui::commands::file::FileCommand;
+use gdcm::gui::commands::form::FormCommand;
+use gdcm::gui::commands::layout::LayoutCommand;
+use gdcm::gui::commands::records::RecordsCommand;
+use gdcm::gui::state::records::RecordsPage;
 
 use super::assembling::{bench, type_into};
 use super::views::{give, show};
@@ -82,11 +86,9 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
 
     // Corrected models for the other program.
     let path = folder.path().join("corrected.mat");
-    window
-        .state_mut()
-        .dispatch(gdcm::gui::commands::command::Command::ShowForm(Some(
-            gdcm::gui::commands::command::FormKind::ExportAs,
-        )));
+    window.state_mut().dispatch(FormCommand::ShowForm(Some(
+        gdcm::gui::state::forms::FormKind::ExportAs,
+    )));
     window.run_steps(2);
     let notice = exported(&mut window, &path);
     assert_eq!(notice.kind, NoticeKind::Done, "{}", notice.text);
@@ -158,9 +160,7 @@ fn a_unit_that_neither_a_record_nor_its_samples_say_is_chosen_in_the_page_of_col
 }
 
 fn show_records(window: &mut Window) {
-    window
-        .state_mut()
-        .dispatch(gdcm::gui::commands::command::Command::ShowStart(false));
+    window.state_mut().dispatch(LayoutCommand::ShowStart(false));
     show(window, View::Records);
 }
 
@@ -186,9 +186,7 @@ fn reading_is_told_beside_stop_which_ends_it_and_leaves_what_was_open() {
             .sum()
     };
     let before = rows(&window);
-    window
-        .state_mut()
-        .dispatch(RecordsCommand::Add(vec![path]).into());
+    window.state_mut().dispatch(RecordsCommand::Add(vec![path]));
     window.step();
     window.get_by_label_contains("long.csv …");
     window.get_by_label("Stop").click();
@@ -201,9 +199,7 @@ fn reading_is_told_beside_stop_which_ends_it_and_leaves_what_was_open() {
     let large = folder.path().join("large.json");
     let blanks = " ".repeat(60 << 20);
     std::fs::write(&large, format!("{blanks}{}", crate::commands::SMALL)).unwrap();
-    window
-        .state_mut()
-        .dispatch(gdcm::gui::commands::command::Command::Open(large));
+    window.state_mut().dispatch(FileCommand::Open(large));
     window.step();
     assert!(state(&window).opening.is_some());
     window.get_by_label("Stop").click();

@@ -2,7 +2,11 @@
 
 use gdcm::gui::commands::command::Command as Action;
 use gdcm::gui::commands::command_table::every_command;
-use gdcm::gui::views::View;
+use gdcm::gui::commands::form::FormCommand;
+use gdcm::gui::commands::output::OutputCommand;
+use gdcm::gui::commands::selection::SelectionCommand;
+use gdcm::gui::commands::study::StudyCommand;
+use gdcm::gui::state::view::View;
 use gdcm_study::ExplainTarget;
 use gdcm_study::results::derivation::derivation;
 
@@ -31,6 +35,7 @@ fn ask(window: &mut Window, entry: &str, expected: f64) {
     window.run_steps(3);
     let asked = state(window)
         .display
+        .selection
         .asked
         .clone()
         .expect("a figure is explained");
@@ -44,7 +49,11 @@ fn ask(window: &mut Window, entry: &str, expected: f64) {
     window.get_by_label_contains("It rests on");
     window.key_press(Key::Escape);
     window.run_steps(3);
-    assert_eq!(state(window).display.asked, None, "Escape closes the sheet");
+    assert_eq!(
+        state(window).display.selection.asked,
+        None,
+        "Escape closes the sheet"
+    );
 }
 
 #[test]
@@ -55,7 +64,7 @@ fn a_dot_of_net_gain_says_how_it_was_computed() {
         .screen_position(0, &MarkId::Condition(fifth))
         .unwrap();
     secondary_click(&mut window, at);
-    let pair = gdcm::gui::views::net_gain::net_gain_pairs(state(&window))[0];
+    let pair = gdcm::gui::views::gain_plots::net_gain_pairs(state(&window))[0];
     let result = state(&window).analysis().unwrap().condition(fifth).unwrap();
     let expected = result.correction.net_gain(pair);
     ask(&mut window, "Net gain, condition 5", expected);
@@ -68,6 +77,7 @@ fn a_dot_of_a_channel_says_how_gain_and_schedule_were_computed() {
     let seventh = ConditionId(7);
     let at = state(&window)
         .display
+        .gains
         .channels
         .outputs
         .screen_position(2, &MarkId::Condition(seventh))
@@ -120,7 +130,7 @@ fn a_bar_of_the_assessment_says_how_it_was_computed() {
         .total();
     window.get_by_label("Change of J").click();
     window.run_steps(3);
-    let asked = state(&window).display.asked.clone();
+    let asked = state(&window).display.selection.asked.clone();
     assert!(
         matches!(&asked, Some(ExplainTarget::CostChange(id, at, _)) if (*id, *at) == (second, pair)),
         "{asked:?}"
@@ -155,6 +165,7 @@ fn a_curve_of_the_overview_is_pointed_at_isolated_and_rejected() {
         let db = 20.0 * curves.physics[model].curve(pair)[middle].norm().log10();
         state
             .display
+            .frequency
             .overview
             .position_in(pair, curves.grid.omega()[middle].log10(), db)
             .unwrap()
@@ -163,6 +174,7 @@ fn a_curve_of_the_overview_is_pointed_at_isolated_and_rejected() {
     window.run_steps(2);
     let meant = state(&window)
         .display
+        .selection
         .hovered
         .clone()
         .expect("a curve is under the pointer");
@@ -170,17 +182,18 @@ fn a_curve_of_the_overview_is_pointed_at_isolated_and_rejected() {
     click(&mut window, "Isolate model");
     let isolated = state(&window)
         .display
+        .selection
         .isolated
         .clone()
         .expect("one model is alone");
-    give(&mut window, Action::EndIsolation);
+    give(&mut window, SelectionCommand::EndIsolation);
     secondary_click(&mut window, at);
     click(&mut window, "Reject model");
     assert!(
         state(&window).study.is_rejected(&isolated),
         "{isolated:?}, {meant:?}"
     );
-    give(&mut window, Action::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert!(!state(&window).study.is_rejected(&isolated));
 }
 
@@ -204,7 +217,7 @@ fn every_table_of_a_view_is_saved_as_csv() {
         .expect("the form holds the table");
     window
         .state_mut()
-        .dispatch(Action::SaveTable(table.clone(), path.clone()));
+        .dispatch(OutputCommand::SaveTable(table.clone(), path.clone()));
     settle(&mut window);
     let text = std::fs::read_to_string(path).unwrap();
     let rows = text.lines().filter(|line| !line.starts_with('#')).count();
@@ -219,23 +232,26 @@ fn undo_after_each_command_restores_the_study_exactly() {
     for entry in every_command(state(&window)) {
         if !entry.enabled
             || !stays_within(&entry.command)
-            || matches!(entry.command, Action::Undo | Action::Redo)
+            || matches!(
+                entry.command,
+                Action::Study(StudyCommand::Undo) | Action::Study(StudyCommand::Redo)
+            )
         {
             continue;
         }
         let before = state(&window).study.clone();
         window.state_mut().dispatch(entry.command.clone());
-        window.state_mut().dispatch(Action::ShowForm(None));
+        window.state_mut().dispatch(FormCommand::ShowForm(None));
         if state(&window).study == before {
             continue;
         }
         decisions += 1;
         let after = state(&window).study.clone();
-        window.state_mut().dispatch(Action::Undo);
+        window.state_mut().dispatch(StudyCommand::Undo);
         assert_eq!(state(&window).study, before, "undo of {}", entry.name);
-        window.state_mut().dispatch(Action::Redo);
+        window.state_mut().dispatch(StudyCommand::Redo);
         assert_eq!(state(&window).study, after, "redo of {}", entry.name);
-        window.state_mut().dispatch(Action::Undo);
+        window.state_mut().dispatch(StudyCommand::Undo);
     }
     assert!(decisions > 60, "{decisions} commands decide something");
 }

@@ -2,7 +2,8 @@
 
 use egui::{Color32, Shape};
 
-use gdcm::gui::commands::command::{Command as Action, FormKind};
+use gdcm::gui::commands::selection::SelectionCommand;
+use gdcm::gui::state::forms::FormKind;
 use gdcm::gui::widgets::palette::Palette;
 use gdcm_method::correction::GainBounds;
 
@@ -52,9 +53,15 @@ fn the_space_bar_holds_and_frees_the_chosen_response() {
 fn alt_and_an_arrow_go_through_the_views_of_the_group_and_leave_the_response() {
     let mut window = window();
     let response = pair(&window, "Q", "PED");
-    give(&mut window, Action::FocusPair(response));
-    let views: Vec<View> = state(&window).display.arrangement.group().views().collect();
-    let view = |window: &Window| state(window).display.arrangement.view();
+    give(&mut window, SelectionCommand::FocusPair(response));
+    let views: Vec<View> = state(&window)
+        .display
+        .layout
+        .arrangement
+        .group()
+        .views()
+        .collect();
+    let view = |window: &Window| state(window).display.layout.arrangement.view();
     assert_eq!(view(&window), views[0]);
     for (key, expected) in [
         (Key::ArrowRight, views[1]),
@@ -65,14 +72,14 @@ fn alt_and_an_arrow_go_through_the_views_of_the_group_and_leave_the_response() {
     ] {
         press(&mut window, Modifiers::ALT, key);
         assert_eq!(
-            (view(&window), state(&window).display.pair),
+            (view(&window), state(&window).display.selection.pair),
             (expected, response),
             "{key:?}"
         );
     }
     press(&mut window, Modifiers::NONE, Key::ArrowRight);
     assert_ne!(
-        state(&window).display.pair,
+        state(&window).display.selection.pair,
         response,
         "without Alt it is the next response"
     );

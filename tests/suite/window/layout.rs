@@ -2,8 +2,9 @@
 
 use egui::{LayerId, Order};
 
-use gdcm::gui::commands::command::FormKind;
-use gdcm::gui::panels::explanation::Sheet;
+use gdcm::gui::commands::layout::LayoutCommand;
+use gdcm::gui::state::forms::FormKind;
+use gdcm::gui::state::sheet::Sheet;
 
 use super::views::{give, show};
 use super::*;
@@ -63,10 +64,7 @@ fn the_answer_is_on_a_small_screen_in_every_view() {
     for pixels_per_point in [1.0, 1.5] {
         let mut window = window_of(SMALL, pixels_per_point);
         for view in View::ALL {
-            give(
-                &mut window,
-                gdcm::gui::commands::command::Command::ShowView(view),
-            );
+            give(&mut window, LayoutCommand::ShowView(view));
             window.run_steps(2);
             assert_answered(&window, view);
         }
@@ -81,7 +79,10 @@ fn a_click_on_a_cell_of_the_map_of_costs_goes_to_its_condition_and_response() {
     window.get_by_label_contains(cell).click();
     settle(&mut window);
     assert_eq!(state(&window).condition().id(), ConditionId(3));
-    assert_eq!(state(&window).display.pair, pair(&window, "R", "PED"));
+    assert_eq!(
+        state(&window).display.selection.pair,
+        pair(&window, "R", "PED")
+    );
 }
 
 #[test]
@@ -93,11 +94,15 @@ fn a_narrow_window_has_a_rail_with_sheets_and_a_key_shows_the_panel() {
         "the list has no room"
     );
     click(&mut window, "Open the list: Models");
-    assert_eq!(state(&window).display.sheet, Some(Sheet::Models));
+    assert_eq!(state(&window).display.layout.sheet, Some(Sheet::Models));
     window.get_by_label(keep);
     window.key_press(Key::Escape);
     window.run_steps(3);
-    assert_eq!(state(&window).display.sheet, None, "Escape closes it");
+    assert_eq!(
+        state(&window).display.layout.sheet,
+        None,
+        "Escape closes it"
+    );
     click(&mut window, "Open the list: Identified");
     assert!(
         window
@@ -111,7 +116,7 @@ fn a_narrow_window_has_a_rail_with_sheets_and_a_key_shows_the_panel() {
     window.drop_at(pos2(900.0, 300.0));
     window.run_steps(3);
     assert_eq!(
-        state(&window).display.sheet,
+        state(&window).display.layout.sheet,
         None,
         "and so does a click beside it"
     );

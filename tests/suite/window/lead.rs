@@ -1,8 +1,9 @@
 //! Leads by hand: taken, seen, and undone (M15).
 
-use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::panels::explanation::Sheet;
-use gdcm::gui::views::View;
+use gdcm::gui::commands::display::DisplayCommand;
+use gdcm::gui::commands::layout::LayoutCommand;
+use gdcm::gui::state::sheet::Sheet;
+use gdcm::gui::state::view::View;
 use gdcm_model::units::signed;
 use gdcm_study::decisions::setting;
 use gdcm_study::{AssessedCorrection, PhaseCorrection};
@@ -32,14 +33,14 @@ fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_i
     };
     // A little beyond the band of 0.5 to 12 rad/s.
     assert!((last(&window, CurveRole::Corrected) - 20.4).abs() < 1e-6);
-    let before = state(&window).display.bode.omega_range().1;
+    let before = state(&window).display.frequency.bode.omega_range().1;
     give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));
     assert!((last(&window, CurveRole::Corrected) - 120.0).abs() < 1e-6);
     let flight = last(&window, CurveRole::IdentifiedRepresentative);
     assert!(flight <= 20.4 * (1.0 + 1e-9) && flight > 20.0, "{flight}");
     assert!(
         (before - 20.4).abs() < 1e-6
-            && (state(&window).display.bode.omega_range().1 - 120.0).abs() < 1e-6
+            && (state(&window).display.frequency.bode.omega_range().1 - 120.0).abs() < 1e-6
     );
     let texts: Vec<String> = texts_in(&window, egui::Rect::EVERYTHING)
         .into_iter()
@@ -88,7 +89,7 @@ fn one_click_takes_the_lead_that_the_result_offers_and_undo_gives_it_back() {
     let mut window = window();
     let before = state(&window).shown().unwrap().correction.clone();
     assert!(before.leads.is_none());
-    give(&mut window, Action::ShowSheet(Some(Sheet::Reasons)));
+    give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
     window
         .get_by_label("Correct the phase by delay or lead")
         .click_accesskit();
@@ -166,7 +167,7 @@ fn the_phase_without_leads_lies_beside_the_corrected_one_and_the_result_tells_se
     // The gains differ a little, the phase is that of gains alone: the example's delays are none. Between two frequencies of
     // either grid a phase is interpolated, and is 0.01 degrees off.
     assert!((phase(&without) - phase(&gains_alone)).abs() < 0.05);
-    give(&mut window, Action::ShowSheet(Some(Sheet::Reasons)));
+    give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
     let told = window
         .query_all_by_label_contains("as if a servo of")
         .count();
@@ -185,7 +186,7 @@ fn channels_show_signed_delays_within_their_bounds() {
     choose(&mut window, "Phase correction", "delay or lead");
     give(
         &mut window,
-        Action::ShowChannels(Measure::Delay, Across::Conditions),
+        DisplayCommand::ShowChannels(Measure::Delay, Across::Conditions),
     );
     let figure = channel_plots(state(&window)).figure;
     let taus: Vec<f64> = figure

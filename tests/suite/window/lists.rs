@@ -1,7 +1,8 @@
 //! What the lists say, and that it can be read.
 
-use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::panels::explanation::Sheet;
+use gdcm::gui::commands::layout::LayoutCommand;
+use gdcm::gui::commands::selection::SelectionCommand;
+use gdcm::gui::state::sheet::Sheet;
 use gdcm_study::Edit;
 
 use super::views::give;
@@ -73,7 +74,7 @@ fn at_the_least_size_no_text_of_a_list_lies_over_another() {
     for row in rows {
         assert_apart(&window, row, "a condition");
     }
-    give(&mut window, Action::ShowSheet(Some(Sheet::Models)));
+    give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Models)));
     let models: Vec<egui::Rect> = window
         .query_all_by_label_contains("Keep physics model")
         .map(|row| row.rect())
@@ -82,7 +83,7 @@ fn at_the_least_size_no_text_of_a_list_lies_over_another() {
         let row = egui::Rect::from_min_max(model.min, pos2(model.min.x + 180.0, model.max.y));
         assert_apart(&window, row, "a model");
     }
-    give(&mut window, Action::ShowSheet(None));
+    give(&mut window, LayoutCommand::ShowSheet(None));
     let tab = window.get_by_label("Bode").rect();
     assert_apart(
         &window,
@@ -212,9 +213,9 @@ fn no_two_labels_of_the_plots_lie_over_one_another_on_any_response_of_any_condit
         pos2(size.right() - 352.0, size.bottom() - 26.0),
     );
     for condition in conditions {
-        give(&mut window, Action::SelectCondition(condition));
+        give(&mut window, SelectionCommand::SelectCondition(condition));
         for pair in &pairs {
-            give(&mut window, Action::FocusPair(*pair));
+            give(&mut window, SelectionCommand::FocusPair(*pair));
             window.run_steps(2);
             assert_apart(
                 &window,

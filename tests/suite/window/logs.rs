@@ -1,6 +1,7 @@
 //! Logs as they come off aircraft, opened in the window: channels are proposed, and a dataset is made of them without a word typed.
 
-use gdcm::gui::views::records::{RecordsCommand, WantedDataset};
+use gdcm::gui::commands::records::RecordsCommand;
+use gdcm::gui::state::records::WantedDataset;
 
 use super::records::rows_shown;
 use super::views::{give, show};

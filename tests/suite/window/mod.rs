@@ -44,8 +44,9 @@ use gdcm::executor::Pool;
 use gdcm::gui::app::{GdcmApp, Setup};
 use gdcm::gui::panels::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
 use gdcm::gui::plot::{BodeCurve, Pane, Role as CurveRole};
-use gdcm::gui::state::window_state::{Notice, NoticeKind, State};
-use gdcm::gui::views::View;
+use gdcm::gui::state::notices::{Notice, NoticeKind};
+use gdcm::gui::state::view::View;
+use gdcm::gui::state::window_state::State;
 use gdcm::gui::views::channels::channel_plots;
 use gdcm_io::files::study_file::{OpenedStudy, open_study};
 use gdcm_io::{Opened, load_any};
@@ -129,8 +130,8 @@ pub(crate) fn settle(window: &mut Window) {
     window.run_steps(2);
     wait_until(window, "the results", |window| {
         let state = state(window);
-        let drawn =
-            !state.display.drawn.is_empty() || !state.display.arrangement.is_shown(View::Bode);
+        let drawn = !state.display.frequency.drawn.is_empty()
+            || !state.display.layout.arrangement.is_shown(View::Bode);
         let shown = state.curves().is_some() && drawn;
         !state.results.is_waiting() && shown && state.opening.is_none()
     });
@@ -170,7 +171,7 @@ fn net_gain(window: &Window, output: &str, input: &str) -> f64 {
 }
 
 fn drawn(window: &Window, role: CurveRole) -> BodeCurve {
-    let mut curves = state(window).display.drawn.iter();
+    let mut curves = state(window).display.frequency.drawn.iter();
     curves
         .find(|curve| curve.role == role)
         .expect("a curve of this role is drawn")
@@ -184,7 +185,7 @@ fn choose_condition_10(window: &mut Window) {
 
 /// Unfolds the settings, those that are seldom changed too, or folds them.
 pub(crate) fn unfold_settings(window: &mut Window, is_open: bool) {
-    use gdcm::gui::commands::command::Command::{ShowAdvanced, ShowSettings};
+    use gdcm::gui::commands::layout::LayoutCommand::{ShowAdvanced, ShowSettings};
     for command in [ShowSettings(is_open), ShowAdvanced(is_open)] {
         window.state_mut().dispatch(command);
     }

@@ -13,9 +13,9 @@ use egui::epaint::{ColorImage, ImageData, ImageDelta, Primitive};
 use egui::{TexturesDelta, ThemePreference};
 use egui_kittest::TestRenderer;
 
-use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::views::View;
-use gdcm::gui::views::assembling::AssemblingCommand;
+use gdcm::gui::commands::assembling::AssemblingCommand;
+use gdcm::gui::commands::layout::LayoutCommand;
+use gdcm::gui::state::view::View;
 use gdcm::gui::widgets::palette::Palette;
 use gdcm_study::Edit;
 
@@ -153,7 +153,7 @@ fn picture(window: &Window, textures: &Textures, format: Format) -> Vec<u8> {
         if let Err(error) = frame.mesh(mesh, clip) {
             let shown = View::ALL
                 .into_iter()
-                .filter(|view| state(window).display.arrangement.is_shown(*view));
+                .filter(|view| state(window).display.layout.arrangement.is_shown(*view));
             panic!("a mesh of {:?}: {error:?}", shown.collect::<Vec<View>>());
         }
     }
@@ -234,7 +234,7 @@ fn pictured_window(textures: &Textures, format: Format) -> Window {
 fn every_view_looks_as_it_did_in_both_themes() {
     let textures = Textures::default();
     let mut window = pictured_window(&textures, COMPARED);
-    give(&mut window, Action::OpenDock(false));
+    give(&mut window, LayoutCommand::OpenDock(false));
     give(
         &mut window,
         Edit::KeepVariant {
@@ -248,7 +248,7 @@ fn every_view_looks_as_it_did_in_both_themes() {
         ("dark", ThemePreference::Dark),
         ("light", ThemePreference::Light),
     ] {
-        give(&mut window, Action::SetTheme(preference));
+        give(&mut window, LayoutCommand::SetTheme(preference));
         for view in View::ALL {
             show(&mut window, view);
             wait_until(&mut window, "what the view shows", |window| match view {
@@ -289,7 +289,7 @@ fn the_pictures_of_the_pages_are_those_of_the_window() {
             ("dark", ThemePreference::Dark),
             ("light", ThemePreference::Light),
         ] {
-            give(window, Action::SetTheme(preference));
+            give(window, LayoutCommand::SetTheme(preference));
             wait_for_background(window);
             window.run_steps(8);
             misses.extend(miss(&format!("{name}-{theme}"), window, &textures, SHOWN));

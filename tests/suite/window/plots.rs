@@ -1,7 +1,7 @@
 //! The plots, worked with the pointer.
 
-use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::views::View;
+use gdcm::gui::commands::display::DisplayCommand;
+use gdcm::gui::state::view::View;
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::responses::{AirspeedCache, airspeed_curves, fitted_values};
 use gdcm_study::AcrossRole;
@@ -15,7 +15,7 @@ pub(super) fn place_on_nominal(window: &Window) -> Pos2 {
     let nominal = drawn(window, CurveRole::Nominal);
     // At 2 rad/s the nominal model stands 3 dB above the bundle: nothing else is near.
     let at = nominal.omega.iter().position(|&omega| omega > 2.0).unwrap();
-    let view = &state(window).display.bode;
+    let view = &state(window).display.frequency.bode;
     view.screen_position(Pane::Magnitude, nominal.omega[at], nominal.magnitude_db[at])
         .unwrap()
 }
@@ -30,7 +30,7 @@ fn a_click_on_a_curve_rejects_it_and_another_click_restores_it() {
         window.hover_at(place);
         window.run_steps(2);
         assert_eq!(
-            state(&window).display.hovered.as_ref(),
+            state(&window).display.selection.hovered.as_ref(),
             Some(&id),
             "hovering points at the model"
         );
@@ -93,7 +93,7 @@ pub(super) fn drag_along(window: &mut Window, from: Pos2, to: Pos2) {
 
 /// Where a frequency stands in the magnitude plot, near its lower edge.
 fn place_of(window: &Window, omega: f64) -> Pos2 {
-    let view = &state(window).display.bode;
+    let view = &state(window).display.frequency.bode;
     let frame = *view.transform(Pane::Magnitude).unwrap().frame();
     let place = view.screen_position(Pane::Magnitude, omega, 0.0).unwrap();
     pos2(place.x, frame.bottom() - 12.0)
@@ -103,6 +103,7 @@ fn place_of(window: &Window, omega: f64) -> Pos2 {
 fn omega_at(window: &Window, place: Pos2) -> f64 {
     let transform = *state(window)
         .display
+        .frequency
         .bode
         .transform(Pane::Magnitude)
         .unwrap();
@@ -122,10 +123,10 @@ fn a_dragged_end_of_the_band_stays_under_the_pointer_and_the_view_follows_when_i
         let from = place_of(&window, end);
         let to = from + vec2(by, 0.0);
         let expected = omega_at(&window, to);
-        let view = state(&window).display.bode.omega_range();
+        let view = state(&window).display.frequency.bode.omega_range();
         drag_along(&mut window, from, to);
         assert_eq!(
-            state(&window).display.bode.omega_range(),
+            state(&window).display.frequency.bode.omega_range(),
             view,
             "nothing moves under the pointer"
         );
@@ -142,7 +143,7 @@ fn a_dragged_end_of_the_band_stays_under_the_pointer_and_the_view_follows_when_i
             "{end} dragged to {expected}: {found}"
         );
         // As far as curves are drawn: 1.7 times the band on either side.
-        let (first, last) = state(&window).display.bode.omega_range();
+        let (first, last) = state(&window).display.frequency.bode.omega_range();
         let (min, max) = band(&window);
         assert!(
             (first * 1.7 / min - 1.0).abs() < 1e-6 && (last / 1.7 / max - 1.0).abs() < 1e-6,
@@ -160,6 +161,7 @@ fn a_zoom_outlives_whatever_is_computed_and_whatever_is_shown() {
     choose_condition_10(&mut window);
     let area = *state(&window)
         .display
+        .frequency
         .bode
         .transform(Pane::Magnitude)
         .unwrap()
@@ -187,7 +189,7 @@ fn a_zoom_outlives_whatever_is_computed_and_whatever_is_shown() {
     window.event(button(false));
     settle(&mut window);
     let ranges = |window: &Window| {
-        let view = &state(window).display.bode;
+        let view = &state(window).display.frequency.bode;
         (
             view.omega_range(),
             view.value_range(Pane::Magnitude),
@@ -254,7 +256,7 @@ fn an_idle_window_draws_no_frames() {
     show(&mut window, View::Bode);
     // A pointer that rests on a curve: its name is shown, and stays.
     let nominal = drawn(&window, CurveRole::Nominal);
-    let view = &state(&window).display.bode;
+    let view = &state(&window).display.frequency.bode;
     let place = view
         .screen_position(
             Pane::Magnitude,
@@ -264,7 +266,7 @@ fn an_idle_window_draws_no_frames() {
         .unwrap();
     window.hover_at(place);
     window.run();
-    assert!(state(&window).display.hovered.is_some());
+    assert!(state(&window).display.selection.hovered.is_some());
     assert_asks_for_no_frame(&mut window, "Bode with the pointer on a curve");
 }
 
@@ -295,7 +297,7 @@ fn what_is_out_of_sight_is_not_tessellated() {
         assert_little_is_hidden(&window, view.name());
     }
     let nominal = drawn(&window, CurveRole::Nominal);
-    let view = &state(&window).display.bode;
+    let view = &state(&window).display.frequency.bode;
     let place = view
         .screen_position(
             Pane::Magnitude,
@@ -314,7 +316,7 @@ fn what_is_out_of_sight_is_not_tessellated() {
         });
         window.run_steps(4);
     }
-    let (min, max) = state(&window).display.bode.omega_range();
+    let (min, max) = state(&window).display.frequency.bode.omega_range();
     assert!(max / min < 1.2, "the wheel zoomed in: {min} to {max} rad/s");
     assert_little_is_hidden(&window, "Bode zoomed in");
 }
@@ -380,8 +382,8 @@ fn across_values(window: &Window) -> [Range; 2] {
     let curves = state.across().expect("the responses are there");
     let drawn = airspeed_curves(
         made_of,
-        display.across_role,
-        display.pair,
+        display.frequency.across_role,
+        display.selection.pair,
         curves,
         &mut AirspeedCache::default(),
     );
@@ -392,7 +394,7 @@ fn across_values(window: &Window) -> [Range; 2] {
 
 /// Whether Airspeeds shows just that, but for a margin.
 fn across_is_fitted(window: &Window) -> bool {
-    let view = &state(window).display.across;
+    let view = &state(window).display.frequency.across;
     let values = across_values(window);
     [Pane::Magnitude, Pane::Phase]
         .into_iter()
@@ -409,6 +411,7 @@ fn across_is_fitted(window: &Window) -> bool {
 fn zoom_across(window: &mut Window) {
     let frame = *state(window)
         .display
+        .frequency
         .across
         .transform(Pane::Magnitude)
         .expect("it is drawn")
@@ -434,18 +437,29 @@ fn airspeeds_is_fitted_to_another_response_and_by_f_and_by_fit() {
     });
     window.run_steps(2);
     assert!(across_is_fitted(&window));
-    let before = state(&window).display.across.value_range(Pane::Magnitude);
+    let before = state(&window)
+        .display
+        .frequency
+        .across
+        .value_range(Pane::Magnitude);
     for (output, input) in [("NX", "PED"), ("NZ", "LAT"), ("P", "LAT")] {
         click(&mut window, &format!("Response {input} → {output}"));
         assert!(across_is_fitted(&window), "{input} → {output}");
     }
     click(&mut window, "Response PED → NX");
     assert_ne!(
-        state(&window).display.across.value_range(Pane::Magnitude),
+        state(&window)
+            .display
+            .frequency
+            .across
+            .value_range(Pane::Magnitude),
         before,
         "they are far apart"
     );
-    give(&mut window, Action::ShowAcross(AcrossRole::Identified));
+    give(
+        &mut window,
+        DisplayCommand::ShowAcross(AcrossRole::Identified),
+    );
     settle(&mut window);
     wait_for_background(&mut window);
     window.run_steps(2);
@@ -473,6 +487,7 @@ fn the_label_of_airspeeds_lies_inside_its_plot() {
     window.run_steps(2);
     let frame = *state(&window)
         .display
+        .frequency
         .across
         .transform(Pane::Magnitude)
         .unwrap()

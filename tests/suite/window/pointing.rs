@@ -33,7 +33,7 @@ fn tooltips(window: &Window) -> Vec<egui::Rect> {
 /// Asserts that nothing opens where something of a plot is pointed at, and that the status line says what it is.
 fn assert_told(window: &mut Window, what: &str, at: Pos2) {
     rest_at(window, at);
-    let told = state(window).display.told.clone();
+    let told = state(window).display.selection.told.clone();
     let told = told.unwrap_or_else(|| panic!("{what}: nothing is said at {at}"));
     assert_eq!(tooltips(window), [], "{what}: {told}");
     let line = window.get_by_label(&told).rect();
@@ -49,7 +49,7 @@ fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
     choose_condition_10(&mut window);
     let nominal = super::plots::place_on_nominal(&window);
     assert_told(&mut window, "Bode", nominal);
-    let told = state(&window).display.told.clone().unwrap();
+    let told = state(&window).display.selection.told.clone().unwrap();
     assert!(
         told.contains("nominal · ") && told.ends_with("click to reject"),
         "{told}"
@@ -66,6 +66,7 @@ fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
     assert!(
         state(&window)
             .display
+            .selection
             .told
             .as_ref()
             .unwrap()
@@ -74,7 +75,8 @@ fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
 
     show(&mut window, View::Overview);
     let pair = pair(&window, "Q", "LON");
-    let cell = OverviewView::screen_position(&state(&window).display.overview, pair).unwrap();
+    let cell =
+        OverviewView::screen_position(&state(&window).display.frequency.overview, pair).unwrap();
     assert_told(&mut window, "Overview", cell);
 
     show(&mut window, View::Poles);
@@ -105,6 +107,7 @@ fn marked_frequencies_are_named_over_the_plot_and_not_over_its_curves() {
     let chip = window.get_by_label_contains("ω180 4.0").rect();
     let frame = *state(&window)
         .display
+        .frequency
         .bode
         .transform(Pane::Magnitude)
         .unwrap()

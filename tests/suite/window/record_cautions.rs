@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::{Value, json};
 
-use gdcm::gui::views::records::ConditionRecords;
+use gdcm::gui::state::records::ConditionRecords;
 
 use super::records::late_dataset;
 use super::views::show;

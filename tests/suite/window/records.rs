@@ -6,8 +6,13 @@ use nalgebra::DMatrix;
 use serde_json::{Value, json};
 
 use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::views::View;
-use gdcm::gui::views::records::{RecordsCommand, RecordsPage, condition_table};
+use gdcm::gui::commands::layout::LayoutCommand;
+use gdcm::gui::commands::records::RecordsCommand;
+use gdcm::gui::commands::selection::SelectionCommand;
+use gdcm::gui::commands::study::StudyCommand;
+use gdcm::gui::state::records::RecordsPage;
+use gdcm::gui::state::view::View;
+use gdcm::gui::views::records::condition_table;
 use gdcm_model::dataset::Band;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::RecordKind;
@@ -136,7 +141,7 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
     );
     click(&mut window, "Restore the file's models");
     assert_eq!(identified_models(&window), before);
-    give(&mut window, gdcm::gui::commands::command::Command::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert_eq!(identified_models(&window), taken);
 }
 
@@ -145,10 +150,7 @@ fn all_conditions_are_identified_one_after_the_other_and_stand_in_a_table() {
     let mut window = records_window();
     let ids = [ConditionId(3), CONDITION_10_ID];
     for id in ids {
-        give(
-            &mut window,
-            gdcm::gui::commands::command::Command::SelectCondition(id),
-        );
+        give(&mut window, SelectionCommand::SelectCondition(id));
         wait_until(&mut window, "the records", |window| {
             state(window)
                 .records
@@ -489,7 +491,7 @@ fn edits_of_records_are_undone_and_redone_in_order_with_decisions_about_the_stud
     let count = edits.len();
     for edit in edits {
         give(&mut window, edit);
-        give(&mut window, Action::EndEdit);
+        give(&mut window, StudyCommand::EndEdit);
         let now = decided(&window);
         assert_ne!(states.last(), Some(&now), "each of them changes something");
         states.push(now);
@@ -650,7 +652,7 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
         .filter(|_| is_quick)
         .collect::<Vec<_>>()
     {
-        give(&mut window, Action::SelectCondition(id));
+        give(&mut window, SelectionCommand::SelectCondition(id));
         give(&mut window, RecordsCommand::SetSearch(search.clone()));
     }
     window.get_by_label("Identify all 11 conditions").click();
@@ -861,17 +863,23 @@ fn a_condition_without_identified_models_offers_to_identify_them_from_records_in
         failure(window) == Some("no-reference")
     });
     for view in View::ALL {
-        give(&mut window, Action::ShowView(view));
+        give(&mut window, LayoutCommand::ShowView(view));
         window.run_steps(2);
     }
-    give(&mut window, Action::ShowIdentified(true));
+    give(&mut window, LayoutCommand::ShowIdentified(true));
     show(&mut window, View::Bode);
     assert!(
         drawn(&window, CurveRole::Nominal).label.contains("nominal"),
         "physics models are drawn all the same"
     );
     click(&mut window, "Identify from records");
-    assert!(state(&window).display.arrangement.is_shown(View::Records));
+    assert!(
+        state(&window)
+            .display
+            .layout
+            .arrangement
+            .is_shown(View::Records)
+    );
     wait_until(&mut window, "its records", |window| rows_shown(window) == 4);
     window.get_by_label("Identify").click();
     let found = |window: &Window| {

@@ -2,8 +2,13 @@
 
 use std::sync::Arc;
 
-use gdcm::gui::commands::command::{Command as Action, RequirementTable};
-use gdcm::gui::views::{RequirementsPage, View};
+use gdcm::gui::commands::display::DisplayCommand;
+use gdcm::gui::commands::file::FileCommand;
+use gdcm::gui::commands::output::OutputCommand;
+use gdcm::gui::commands::study::StudyCommand;
+use gdcm::gui::state::forms::RequirementTable;
+use gdcm::gui::state::requirements_page::RequirementsPage;
+use gdcm::gui::state::view::View;
 use gdcm_method::requirements::{ModeVerdict, RecordCheck, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Edit;
@@ -61,13 +66,13 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
         (RequirementsPage::Modes, "physics ζ"),
         (RequirementsPage::Summary, "in MUAD on-axis [%]"),
     ] {
-        give(&mut window, Action::ShowRequirements(chosen));
+        give(&mut window, DisplayCommand::ShowRequirements(chosen));
         assert!(texts(&window).contains(heading), "{heading}");
     }
     // A click on a mark goes to Bode, where the frequencies are marked that its numbers are read at.
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Bandwidth),
+        DisplayCommand::ShowRequirements(RequirementsPage::Bandwidth),
     );
     window.get_by_label_contains("Phase delay over bandwidth of LAT → P");
     let first = requirements.bandwidth.first().unwrap();
@@ -81,10 +86,14 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
     window.drop_at(rests);
     window.run_steps(4);
     assert!(
-        state(&window).display.arrangement.is_shown(View::Bode),
+        state(&window)
+            .display
+            .layout
+            .arrangement
+            .is_shown(View::Bode),
         "the row leads to Bode"
     );
-    assert_eq!(state(&window).display.pair, first.pair);
+    assert_eq!(state(&window).display.selection.pair, first.pair);
     let marked: Vec<Option<f64>> = state(&window)
         .display
         .curves
@@ -102,7 +111,7 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
         ],
         "of the row's model"
     );
-    let figure = gdcm::gui::state::figures::figure_of(state(&window), View::Bode).unwrap();
+    let figure = gdcm::gui::views::figures::figure_of(state(&window), View::Bode).unwrap();
     let words = format!("{figure:?}");
     assert!(
         words.contains("ω_phase") && words.contains("ω180"),
@@ -201,7 +210,7 @@ fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
         of.omega_bw_rad_s, of.omega_phase_rad_s,
         "the bandwidth is that of the phase margin alone"
     );
-    give(&mut window, Action::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert!(shown_requirements(&mut window).attitude_command.is_empty());
 
     let folder = tempfile::tempdir().unwrap();
@@ -213,14 +222,14 @@ fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
     .unwrap();
     give(
         &mut window,
-        Action::ReadRequirementTable(RequirementTable::Levels, path.clone()),
+        FileCommand::ReadRequirementTable(RequirementTable::Levels, path.clone()),
     );
     assert_eq!(state(&window).study.requirements.levels.all().len(), 1);
     assert!(texts(&window).contains("levels: 1"));
     std::fs::write(&path, "[]]").unwrap();
     give(
         &mut window,
-        Action::ReadRequirementTable(RequirementTable::Levels, path),
+        FileCommand::ReadRequirementTable(RequirementTable::Levels, path),
     );
     assert_eq!(
         state(&window).study.requirements.levels.all().len(),
@@ -237,9 +246,9 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
     show(&mut window, View::Requirements);
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Histories),
+        DisplayCommand::ShowRequirements(RequirementsPage::Histories),
     );
-    give(&mut window, Action::ShowTest(true));
+    give(&mut window, DisplayCommand::ShowTest(true));
     let answers = |window: &mut Window| {
         wait_until(window, "the answers", |window| {
             let decided = state(window).study.requirements.test;
@@ -248,7 +257,7 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
         state(window).test_answers().unwrap().clone().unwrap()
     };
     let step = answers(&mut window);
-    assert_eq!(step.input, state(&window).display.pair.input);
+    assert_eq!(step.input, state(&window).display.selection.pair.input);
     assert!(
         step.models.iter().all(|(_, answer)| answer.is_ok()),
         "{:?}",
@@ -262,7 +271,7 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
         doublet.signal.iter().any(|value| *value < 0.0)
             && step.signal.iter().all(|value| *value >= 0.0)
     );
-    give(&mut window, Action::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert_eq!(answers(&mut window).test, step.test);
 }
 
@@ -273,7 +282,7 @@ fn a_record_stands_within_tolerances_that_are_edited_and_kept_in_a_file() {
     show(&mut window, View::Requirements);
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Histories),
+        DisplayCommand::ShowRequirements(RequirementsPage::Histories),
     );
     let shown = |window: &mut Window| {
         wait_until(window, "the record", |window| {
@@ -330,18 +339,18 @@ fn a_record_stands_within_tolerances_that_are_edited_and_kept_in_a_file() {
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mine.json");
-    give(&mut window, Action::WriteTolerances(path.clone()));
-    give(&mut window, Action::Undo);
+    give(&mut window, FileCommand::WriteTolerances(path.clone()));
+    give(&mut window, StudyCommand::Undo);
     assert_eq!(shares(&shown(&mut window)), first);
     give(
         &mut window,
-        Action::ReadRequirementTable(RequirementTable::Tolerances, path.clone()),
+        FileCommand::ReadRequirementTable(RequirementTable::Tolerances, path.clone()),
     );
     assert_eq!(shares(&shown(&mut window)), wide);
     std::fs::write(&path, "{}").unwrap();
     give(
         &mut window,
-        Action::ReadRequirementTable(RequirementTable::Tolerances, path),
+        FileCommand::ReadRequirementTable(RequirementTable::Tolerances, path),
     );
     assert_eq!(
         shares(&shown(&mut window)),
@@ -359,14 +368,14 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     show(&mut window, View::Requirements);
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Histories),
+        DisplayCommand::ShowRequirements(RequirementsPage::Histories),
     );
     wait_until(&mut window, "the records", |window| {
         !state(window).records.conditions.is_empty()
     });
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Summary),
+        DisplayCommand::ShowRequirements(RequirementsPage::Summary),
     );
     wait_until(&mut window, "the answers", |window| {
         state(window).time_histories().is_some() && state(window).requirements().is_some()
@@ -434,7 +443,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
         refused.contains("expected bandwidth above zero"),
         "{refused}"
     );
-    give(&mut window, Action::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert_eq!(overview(&window), usual);
 
     // What is saved is what is shown: both tables, and as numbers.
@@ -443,7 +452,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     let path = folder.path().join("summary.csv");
     give(
         &mut window,
-        Action::SaveFigure(View::Requirements, width, path.clone()),
+        OutputCommand::SaveFigure(View::Requirements, width, path.clone()),
     );
     let saved = std::fs::read_to_string(path).unwrap();
     assert!(
@@ -454,7 +463,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     let picture = folder.path().join("summary.svg");
     give(
         &mut window,
-        Action::SaveFigure(View::Requirements, width, picture.clone()),
+        OutputCommand::SaveFigure(View::Requirements, width, picture.clone()),
     );
     let refused = state(&window)
         .notice
@@ -473,16 +482,16 @@ fn tolerances_are_reached_without_a_record_and_those_of_modes_are_edited() {
     show(&mut window, View::Requirements);
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Histories),
+        DisplayCommand::ShowRequirements(RequirementsPage::Histories),
     );
-    give(&mut window, Action::ShowTest(true));
+    give(&mut window, DisplayCommand::ShowTest(true));
     click(&mut window, "Tolerances");
     type_into(&mut window, "Absolute tolerance 1", "4.5");
     assert!((state(&window).study.requirements.tolerances.rows()[0].absolute - 4.5).abs() < 1e-12);
 
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Modes),
+        DisplayCommand::ShowRequirements(RequirementsPage::Modes),
     );
     let verdicts = |window: &Window| -> Vec<_> {
         state(window)
@@ -535,7 +544,7 @@ fn the_report_of_the_window_has_the_records_that_are_open_and_what_was_decided_l
     show(&mut window, View::Requirements);
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Histories),
+        DisplayCommand::ShowRequirements(RequirementsPage::Histories),
     );
     wait_until(&mut window, "the records", |window| {
         !state(window).records.conditions.is_empty()
@@ -554,7 +563,7 @@ fn the_report_of_the_window_has_the_records_that_are_open_and_what_was_decided_l
     );
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("report.html");
-    give(&mut window, Action::WriteReport(path.clone()));
+    give(&mut window, OutputCommand::WriteReport(path.clone()));
     wait_until(&mut window, "the report", |_| path.exists());
     let written = std::fs::read_to_string(&path).unwrap();
     for words in [
@@ -592,7 +601,7 @@ fn a_condition_without_rates_and_records_says_so_in_words() {
     );
     give(
         &mut window,
-        Action::ShowRequirements(RequirementsPage::Histories),
+        DisplayCommand::ShowRequirements(RequirementsPage::Histories),
     );
     let said = texts(&window);
     assert!(

@@ -1,8 +1,8 @@
 //! Ways in: the line over the example, the start page, and what opens first.
 
-use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::panels::start_page::OpensWith;
-use gdcm::gui::state::display::Preferences;
+use gdcm::gui::commands::layout::LayoutCommand;
+use gdcm::gui::state::opens_with::OpensWith;
+use gdcm::gui::state::preferences::Preferences;
 
 use super::*;
 
@@ -101,7 +101,7 @@ fn what_opens_first_is_a_preference() {
     window.get_by_label("Explore the example");
     window
         .state_mut()
-        .dispatch(Action::BeginWith(OpensWith::LastStudy));
+        .dispatch(LayoutCommand::BeginWith(OpensWith::LastStudy));
     assert_eq!(
         Preferences::of(&state(&window).display).opens_with,
         OpensWith::LastStudy,

@@ -1,11 +1,18 @@
 //! The views: what each shows, by its controls.
 
 use gdcm::gui::commands::command::Command as Action;
-use gdcm::gui::state::display::{Arrangement, Preferences, ViewGroup};
-use gdcm::gui::views::assessment::{AssessedPairs, assessment_sentences, assessment_text_table};
-use gdcm::gui::views::net_gain::net_gain_pairs;
+use gdcm::gui::commands::display::DisplayCommand;
+use gdcm::gui::commands::layout::LayoutCommand;
+use gdcm::gui::commands::selection::SelectionCommand;
+use gdcm::gui::commands::study::StudyCommand;
+use gdcm::gui::state::arrangement::Arrangement;
+use gdcm::gui::state::assessed_figures::AssessedPairs;
+use gdcm::gui::state::pair_set::PairSet;
+use gdcm::gui::state::preferences::Preferences;
+use gdcm::gui::state::view::{View, ViewGroup};
+use gdcm::gui::views::assessment::{assessment_sentences, assessment_text_table};
+use gdcm::gui::views::gain_plots::net_gain_pairs;
 use gdcm::gui::views::poles::poles;
-use gdcm::gui::views::{PairSet, View};
 use gdcm_method::correction::Channel;
 use gdcm_plot::figure::figure::DotShape;
 use gdcm_plot::figure::{Mark, Panel};
@@ -16,13 +23,16 @@ use gdcm_study::{AcrossRole, Analysis, AssessedCorrection, Edit, ExplainTarget};
 use super::*;
 
 pub(super) fn give(window: &mut Window, command: impl Into<Action>) {
-    window.state_mut().dispatch(command.into());
+    window.state_mut().dispatch(command);
     settle(window);
 }
 
 pub(super) fn show(window: &mut Window, view: View) {
-    give(window, Action::ShowView(view));
-    assert!(state(window).display.arrangement.is_shown(view), "{view:?}");
+    give(window, LayoutCommand::ShowView(view));
+    assert!(
+        state(window).display.layout.arrangement.is_shown(view),
+        "{view:?}"
+    );
 }
 
 #[test]
@@ -32,7 +42,7 @@ fn every_view_has_a_tab_and_a_click_brings_it_to_the_front() {
         click(&mut window, &format!("Views: {}", group.name()));
         for view in group.views() {
             click(&mut window, view.name());
-            assert_eq!(state(&window).display.arrangement.view(), view);
+            assert_eq!(state(&window).display.layout.arrangement.view(), view);
         }
     }
 }
@@ -41,7 +51,7 @@ fn every_view_has_a_tab_and_a_click_brings_it_to_the_front() {
 fn controls_of_plots_side_by_side_have_names_of_their_own() {
     let mut window = window();
     for beside in [View::Error, View::Across] {
-        give(&mut window, Action::ShowBeside(Some(beside)));
+        give(&mut window, LayoutCommand::ShowBeside(Some(beside)));
         wait_until(&mut window, "the responses", |window| {
             beside == View::Error || state(window).across().is_some()
         });
@@ -65,7 +75,7 @@ fn controls_of_plots_side_by_side_have_names_of_their_own() {
 #[test]
 fn an_arrangement_is_remembered_and_one_command_resets_it() {
     let mut window = window();
-    give(&mut window, Action::ShowBeside(Some(View::Poles)));
+    give(&mut window, LayoutCommand::ShowBeside(Some(View::Poles)));
     let kept = Preferences::of(&state(&window).display);
     let mut other = window_with(
         example(),
@@ -75,11 +85,14 @@ fn an_arrangement_is_remembered_and_one_command_resets_it() {
         },
     );
     assert_eq!(
-        state(&other).display.arrangement,
-        state(&window).display.arrangement
+        state(&other).display.layout.arrangement,
+        state(&window).display.layout.arrangement
     );
-    give(&mut other, Action::ResetLayout);
-    assert_eq!(state(&other).display.arrangement, Arrangement::default());
+    give(&mut other, LayoutCommand::ResetLayout);
+    assert_eq!(
+        state(&other).display.layout.arrangement,
+        Arrangement::default()
+    );
 }
 
 #[test]
@@ -101,7 +114,7 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
         .filter_map(|model| model.order())
         .sum();
     assert_eq!(marks.len(), order, "a mark for each state of each model");
-    let (table, _) = state(&window).display.modes.table();
+    let (table, _) = state(&window).display.poles.modes.table();
     // One row a real pole and one a pair of the reference model.
     let reference = condition.model(
         BundleKind::Physics,
@@ -129,6 +142,7 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
     window.run_steps(2);
     let meant = state(&window)
         .display
+        .selection
         .hovered
         .clone()
         .expect("the pole is pointed at");
@@ -136,7 +150,7 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
     window.drop_at(at);
     settle(&mut window);
     assert!(state(&window).study.is_rejected(&meant), "{meant:?}");
-    give(&mut window, Action::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert!(!state(&window).study.is_rejected(&meant));
 }
 
@@ -167,7 +181,7 @@ fn zeros_of_the_response_in_focus_are_shown_on_wish() {
         "zeros of {}",
         state(&window)
             .dataset()
-            .pair_name(state(&window).display.pair)
+            .pair_name(state(&window).display.selection.pair)
     );
     click(&mut window, &name);
     assert!(zeros(&window) > 0);
@@ -178,7 +192,7 @@ fn one_response_of_every_condition_is_laid_over_the_others_whichever_model_it_is
     let mut window = window();
     show(&mut window, View::Across);
     for role in AcrossRole::ALL {
-        give(&mut window, Action::ShowAcross(role));
+        give(&mut window, DisplayCommand::ShowAcross(role));
         wait_until(&mut window, "the responses", |window| {
             let state = state(window);
             state
@@ -197,9 +211,9 @@ fn freeing_a_response_does_not_take_its_net_gains_away() {
     assert_eq!(net_gain_pairs(state(&window)), before);
     let lon_q = pair(&window, "Q", "LON");
     assert!(before.contains(&lon_q) && !state(&window).study.settings.constrained[lon_q]);
-    give(&mut window, Action::ShowNetGains(PairSet::All));
+    give(&mut window, DisplayCommand::ShowNetGains(PairSet::All));
     assert_eq!(net_gain_pairs(state(&window)).len(), 24);
-    give(&mut window, Action::PickPair(lon_q));
+    give(&mut window, DisplayCommand::PickPair(lon_q));
     assert_eq!(net_gain_pairs(state(&window)), [lon_q]);
 }
 
@@ -234,6 +248,7 @@ fn a_degree_is_chosen_on_evidence() {
     let evidence = state(&window).analysis().unwrap().compare_forms().unwrap();
     let (conditions, shown) = state(&window)
         .display
+        .gains
         .evidence
         .found()
         .expect("the evidence is there");
@@ -329,7 +344,7 @@ fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
         condition: held_out,
         held_out: true,
     };
-    window.state_mut().dispatch(edit.into());
+    window.state_mut().dispatch(edit);
     settle(&mut window);
     let analysis = state(&window).analysis().unwrap();
     assert_eq!(
@@ -337,7 +352,7 @@ fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
         (10, 11)
     );
     show(&mut window, View::Assessment);
-    let choice = gdcm::gui::views::assessment_choice(state(&window));
+    let choice = state(&window).assessment_choice();
     let words = gdcm_study::results::assessment_table::held_out_verdict(
         state(&window).analysis().unwrap(),
         choice,
@@ -361,12 +376,12 @@ fn an_assessment_can_be_had_for_every_model_correction_and_response() {
     wait(&mut window);
     let table = state(&window).assessment().unwrap();
     assert!(assessment_sentences(state(&window), table)[0].starts_with("better in "));
-    let mut figures = state(&window).display.assessed;
+    let mut figures = state(&window).display.judging.assessed;
     figures.model = AssessedModel::Representative;
     figures.correction = AssessedCorrection::Own;
     figures.pairs = AssessedPairs::All;
     figures.as_table = true;
-    give(&mut window, Action::Assess(figures));
+    give(&mut window, DisplayCommand::Assess(figures));
     wait(&mut window);
     let shown = state(&window);
     let table = shown.assessment().unwrap();
@@ -405,15 +420,15 @@ fn variants_are_kept_compared_taken_and_removed_and_undo_brings_each_back() {
     assert_eq!(analysis.study.settings, before.settings);
     click(&mut window, "Take variant as it was");
     assert_eq!(state(&window).study.settings, before.settings);
-    give(&mut window, Action::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert_ne!(state(&window).study.settings, before.settings);
-    give(&mut window, Action::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert_eq!(state(&window).study, kept);
     click(&mut window, "Remove variant as it was");
     assert!(state(&window).study.variants.is_empty());
-    give(&mut window, Action::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert_eq!(state(&window).study, kept);
-    give(&mut window, Action::Undo);
+    give(&mut window, StudyCommand::Undo);
     assert_eq!(state(&window).study, before);
 }
 
@@ -431,9 +446,9 @@ fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
     click(&mut window, "Overlay variant as it was");
     show(&mut window, View::Bode);
     let lon_q = pair(&window, "Q", "LON");
-    give(&mut window, Action::FocusPair(lon_q));
+    give(&mut window, SelectionCommand::FocusPair(lon_q));
     let of = |window: &Window, role: CurveRole| {
-        let drawn = &state(window).display.drawn;
+        let drawn = &state(window).display.frequency.drawn;
         drawn
             .iter()
             .find(|curve| curve.role == role)
@@ -468,7 +483,7 @@ fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
     assert!(has_key(&window));
     show(&mut window, View::Compare);
     click(&mut window, "Overlay variant as it was");
-    assert!(!has_key(&window) && state(&window).display.overlaid.is_none());
+    assert!(!has_key(&window) && state(&window).display.judging.overlaid.is_none());
 }
 
 #[test]
@@ -478,12 +493,12 @@ fn a_condition_pointed_at_in_the_list_is_lit_among_the_dots() {
     window.hover_at(row.left_center() + vec2(30.0, 0.0));
     window.run_steps(3);
     assert_eq!(
-        state(&window).display.hovered_condition,
+        state(&window).display.selection.hovered_condition,
         Some(ConditionId(3))
     );
     window.hover_at(pos2(800.0, 5.0));
     window.run_steps(3);
-    assert_eq!(state(&window).display.hovered_condition, None);
+    assert_eq!(state(&window).display.selection.hovered_condition, None);
 }
 
 #[test]
@@ -526,13 +541,13 @@ fn a_figure_says_how_it_was_computed_and_follows_the_results() {
     let mut window = window();
     let condition = state(&window).condition().id();
     let asked = ExplainTarget::Gain(condition, Channel::Input(0));
-    give(&mut window, Action::Explain(Some(asked.clone())));
+    give(&mut window, SelectionCommand::Explain(Some(asked.clone())));
     let title = derivation(state(&window).analysis().unwrap(), &asked)
         .unwrap()
         .title;
     assert!(window.query_by_label(&title).is_some(), "{title}");
     click(&mut window, "Copy the derivation");
     give(&mut window, Edit::ConstrainOnAxis);
-    give(&mut window, Action::Explain(None));
+    give(&mut window, SelectionCommand::Explain(None));
     assert!(window.query_by_label("Copy the derivation").is_none());
 }

@@ -2,7 +2,13 @@
 
 use gdcm::gui::commands::command::Command as Action;
 use gdcm::gui::commands::command_table::every_command;
-use gdcm::gui::views::View;
+use gdcm::gui::commands::computing::ComputingCommand;
+use gdcm::gui::commands::file::FileCommand;
+use gdcm::gui::commands::form::FormCommand;
+use gdcm::gui::commands::layout::LayoutCommand;
+use gdcm::gui::commands::output::OutputCommand;
+use gdcm::gui::commands::study::StudyCommand;
+use gdcm::gui::state::view::View;
 use gdcm_model::progress::Unobserved;
 use gdcm_study::Engine;
 use gdcm_study::decisions::setting;
@@ -31,20 +37,20 @@ impl Dice {
 pub(super) fn stays_within(command: &Action) -> bool {
     !matches!(
         command,
-        Action::Quit
-            | Action::Open(_)
-            | Action::OpenExample
-            | Action::OpenStudyOf(..)
-            | Action::SaveStudy
-            | Action::AskOpen
+        Action::File(FileCommand::Quit)
+            | Action::File(FileCommand::Open(_))
+            | Action::File(FileCommand::OpenExample)
+            | Action::File(FileCommand::OpenStudyOf(..))
+            | Action::File(FileCommand::SaveStudy)
+            | Action::File(FileCommand::AskOpen)
             | Action::Assembling(_)
             | Action::Records(_)
-            | Action::AskSaveStudy
-            | Action::AskSaveTable(_)
-            | Action::AskSaveShownTable(_)
-            | Action::AskExportFolder
-            | Action::StopComputing
-            | Action::SetTheme(_)
+            | Action::File(FileCommand::AskSaveStudy)
+            | Action::Output(OutputCommand::AskSaveTable(_))
+            | Action::Output(OutputCommand::AskSaveShownTable(_))
+            | Action::Output(OutputCommand::AskExportFolder)
+            | Action::Computing(ComputingCommand::StopComputing)
+            | Action::Layout(LayoutCommand::SetTheme(_))
     )
 }
 
@@ -56,8 +62,8 @@ fn random_command(window: &Window, dice: &mut Dice) -> Option<Action> {
                 .into(),
         ),
         1 => Some(setting::POINTS.to(20 + dice.below(60)).into()),
-        2 => Some(Action::Undo),
-        3 => Some(Action::Redo),
+        2 => Some(Action::Study(StudyCommand::Undo)),
+        3 => Some(Action::Study(StudyCommand::Redo)),
         _ => {
             let mut entries = every_command(state(window));
             entries.retain(|entry| entry.enabled && stays_within(&entry.command));
@@ -105,13 +111,15 @@ fn random_commands_never_panic_and_leave_what_a_fresh_computation_gives() {
             window.state_mut().dispatch(command);
         }
         // A form in front would keep the rest from being seen.
-        window.state_mut().dispatch(Action::ShowForm(None));
+        window.state_mut().dispatch(FormCommand::ShowForm(None));
         if step % STEPS_OF_A_FRAME == 0 {
             window.run_steps(1);
         }
         if step % STEPS_OF_A_COMPARISON == 0 {
             // The curves of the plots are made where they can be seen.
-            window.state_mut().dispatch(Action::ShowView(View::Bode));
+            window
+                .state_mut()
+                .dispatch(LayoutCommand::ShowView(View::Bode));
             settle(&mut window);
             assert_fresh(&window, step);
         }

@@ -17,12 +17,14 @@ use gdcm_model::response::{FrequencyGrid, PreparedModel};
 use gdcm_model::units::number;
 use gdcm_plot::figure::axis::FrequencyUnit;
 
-use super::{AssemblingCommand, AssemblyState};
+use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
-use crate::gui::panels::settings_panel::choice_ui;
+use crate::gui::commands::form::FormCommand;
 use crate::gui::plot::quantity::BodeQuantity;
-use crate::gui::plot::{BodeCurve, BodeScene, BodeView, CurveId, Role as CurveRole, bode_ui};
-use crate::gui::widgets::controls::{check_ui, entry_ui, named, typed_number};
+use crate::gui::plot::{BodeCurve, BodeScene, CurveId, Role as CurveRole, bode_ui};
+use crate::gui::state::assembling::AssemblyState;
+use crate::gui::widgets::choices::{check_ui, choice_ui};
+use crate::gui::widgets::controls::{entry_ui, named, typed_number};
 use crate::gui::widgets::palette::Palette;
 
 const FIELD_WIDTH: f32 = 200.0;
@@ -147,7 +149,7 @@ fn field_ui(ui: &mut Ui, assembly: &AssemblyState, field: &Field, commands: &mut
             refusal = field.say(&text, row).err()
         });
         commands.push(refusal.map_or(command, |why| {
-            Command::Refuse(format!("{}: {why}", field.name))
+            Command::Form(FormCommand::Refuse(format!("{}: {why}", field.name)))
         }));
     }
     if fill_ui(ui, field.name) {
@@ -495,15 +497,6 @@ fn units_ui(
 const POINTS: usize = 300;
 /// Factor by which the curve extends beyond the comparison band on either side.
 const BEYOND: f64 = 3.0;
-
-/// Displayed response, cached while the model and the selection stay the same.
-#[derive(Debug, Default)]
-pub struct Preview {
-    /// Index of the response: `output * inputs + input`, in the file's own order.
-    pub response: usize,
-    view: BodeView,
-    drawn: Option<(String, usize, Vec<BodeCurve>)>,
-}
 
 /// Shows the response of the displayed model, and a choice of responses.
 pub(super) fn preview_ui(

@@ -1,8 +1,8 @@
 //! Importing models from several files: sources above, a table with one line per model and the list
 //! of problems on the left, the selected model and the channels on the right.
 
-mod assembly_state;
 mod details;
+mod rule_changes;
 mod table;
 
 use egui::{
@@ -16,16 +16,17 @@ use gdcm_model::assembly::{ChannelRule, FileScope, Rules, UnitRule};
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::units::number;
 
+use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::controls::{
     Asks, button_ui, entry_ui, is_entered, named, number_entry_ui, text_field_ui,
 };
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+
 use details::{details_ui, factors_of, preview_ui, signs_of, trim_words, unit_words, units_of};
 use table::{problems_ui, table_ui};
-
-pub use assembly_state::{AssemblingCommand, AssemblyState, Reading};
-pub use table::{COLUMNS, Column};
 
 /// Draws the view, which covers everything below the menu.
 pub fn assembling_ui(
@@ -355,7 +356,7 @@ fn signs_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands: 
                 {
                     commands.push(match signs_of(&text) {
                         Ok(signs) => assembly.changed(|rules| *place(rules) = signs),
-                        Err(why) => Command::Refuse(format!("{name}: {why}")),
+                        Err(why) => Command::Form(FormCommand::Refuse(format!("{name}: {why}"))),
                     });
                 }
                 ui.end_row();
@@ -397,7 +398,7 @@ fn declarations_ui(
                                 .retain(|channel, _| !units.contains_key(channel));
                             declared.units = units;
                         }),
-                        Err(why) => Command::Refuse(format!("{name}: {why}")),
+                        Err(why) => Command::Form(FormCommand::Refuse(format!("{name}: {why}"))),
                     });
                 }
                 ui.end_row();
@@ -414,7 +415,7 @@ fn declarations_ui(
                                 .retain(|channel, _| !factors.contains_key(channel));
                             declared.factors = factors;
                         }),
-                        Err(why) => Command::Refuse(format!("{name}: {why}")),
+                        Err(why) => Command::Form(FormCommand::Refuse(format!("{name}: {why}"))),
                     });
                 }
                 ui.end_row();

@@ -5,106 +5,19 @@ use egui::{
 };
 
 use gdcm_model::assembly::assembly::Part;
-use gdcm_model::units::number;
 
 use super::details::columns_ui;
-use super::{AssemblingCommand, AssemblyState};
+use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
+use crate::gui::state::assembling::AssemblyState;
+use crate::gui::state::assembly_columns::COLUMNS;
 use crate::gui::widgets::controls::{
     Asks, ROW_HEIGHT, elided_among, named, named_switch, painted_text,
 };
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};
 
-/// A column of the table.
-pub struct Column {
-    heading: &'static str,
-    /// Share of the table's width.
-    share: f32,
-    /// Text of a model's cell; `None` if it must be completed.
-    cell: fn(&Part) -> Option<String>,
-}
-
-impl Column {
-    /// Returns the text of a model's cell; "?" if it must be completed.
-    pub fn text(&self, part: &Part) -> String {
-        (self.cell)(part).unwrap_or_else(|| "?".to_owned())
-    }
-}
-
-/// The columns: condition, properties and source file of each model.
-pub const COLUMNS: [Column; 9] = [
-    Column {
-        heading: "condition",
-        share: 0.07,
-        cell: |part| Some(part.row.condition?.to_string()),
-    },
-    Column {
-        heading: "role",
-        share: 0.08,
-        cell: |part| {
-            Some(
-                if part.row.left_out {
-                    "not included"
-                } else {
-                    part.row.role?.word()
-                }
-                .to_owned(),
-            )
-        },
-    },
-    Column {
-        heading: "name",
-        share: 0.16,
-        cell: |part| Some(part.row.name.clone()),
-    },
-    Column {
-        heading: "airspeed",
-        share: 0.08,
-        cell: |part| part.row.airspeed_words(),
-    },
-    Column {
-        heading: "altitude",
-        share: 0.07,
-        cell: |part| Some(part.row.altitude_words()),
-    },
-    Column {
-        heading: "weight",
-        share: 0.07,
-        cell: |part| Some(part.row.weight_words()),
-    },
-    Column {
-        heading: "trim",
-        share: 0.16,
-        cell: |part| Some(trim_text(part)),
-    },
-    Column {
-        heading: "model",
-        share: 0.13,
-        cell: |part| Some(part.found.words()),
-    },
-    Column {
-        heading: "file",
-        share: 0.18,
-        cell: |part| Some(part.found.key()),
-    },
-];
-
 /// Index of the column that marks incomplete models.
 const FILE: usize = COLUMNS.len() - 1;
-
-/// "roll_deg +5, airspeed_kt -10".
-fn trim_text(part: &Part) -> String {
-    let offset = |(coordinate, by): (&String, &f64)| {
-        let sign = if *by > 0.0 { "+" } else { "" };
-        format!("{coordinate} {sign}{}", number(*by))
-    };
-    part.row
-        .perturbation
-        .iter()
-        .map(offset)
-        .collect::<Vec<_>>()
-        .join(", ")
-}
 
 /// Draws the table; only visible lines are laid out.
 pub(super) fn table_ui(

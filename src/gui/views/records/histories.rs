@@ -1,7 +1,5 @@
 //! Every channel of a record over time, and the excitation of the inputs over frequency.
 
-use std::any::Any;
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 use egui::{
@@ -18,15 +16,19 @@ use gdcm_sysid::identification::{CautionNote, spectra};
 use gdcm_sysid::records::spectrogram::Spectrogram;
 use gdcm_sysid::records::{LaidOutRecord, ModeSpan};
 
-use super::records_state::Page;
+use super::frame_cache::{Source, kept};
+use super::numbers;
+use super::page::Page;
 use super::simulation::{simulated, time_models_ui};
-use super::{ConditionRecords, RecordsCommand, numbers};
 use crate::gui::commands::command::Command;
-use crate::gui::panels::settings_panel::choice_ui;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::records::RecordsCommand;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartImage, ChartLine, ChartSpan};
 use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::plot::stretch::chosen_stretch;
-use crate::gui::widgets::controls::{check_ui, entry_ui};
+use crate::gui::state::records::ConditionRecords;
+use crate::gui::widgets::choices::{check_ui, choice_ui};
+use crate::gui::widgets::controls::entry_ui;
 use crate::gui::widgets::palette::Palette;
 
 /// Minimum height of a chart \[pt\]; further charts scroll.
@@ -195,10 +197,10 @@ fn part_ui(
     if let Some(text) = text.filter(|text| !text.trim().is_empty()) {
         commands.push(match part_of(&text, span_s) {
             Some(part_s) => RecordsCommand::AddPart(records.chosen, part_s).into(),
-            None => Command::Refuse(format!(
+            None => Command::Form(FormCommand::Refuse(format!(
                 "a part: expected two times in s, the earlier first, as in \"12 40\", or \"+5 +34\" from the start of the record, \
                  found \"{text}\""
-            )),
+            ))),
         });
     }
     let hint = "Dragging in a chart makes that stretch a record of its own, to be fitted or held out, in place of the whole";
@@ -305,7 +307,7 @@ fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>) {
         return;
     };
     let title = format!("{}: power over time, dB below the greatest", channel.name);
-    let unit = state.display.unit;
+    let unit = state.display.curves.unit;
     let label = unit.axis_label();
     let mut chart = Chart::new(&title, ChartAxis::Linear, "", &label);
     chart.group = Some(charts());
@@ -441,7 +443,7 @@ pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
         palette,
     } = page;
     let dataset = state.dataset();
-    let unit = state.display.unit;
+    let unit = state.display.curves.unit;
     let band = records.band.map_or(state.study.settings.band, |band| {
         Band::new(band[0], band[1]).unwrap_or(state.study.settings.band)
     });
@@ -572,49 +574,6 @@ fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {
         .collect()
 }
 
-/// Source data of a cached value: kept alive with the value, so that its address cannot be reused.
-pub(super) type Source = Arc<dyn Any + Send + Sync>;
-
-struct Kept<T> {
-    sources: Vec<Source>,
-    key: u64,
-    value: Arc<T>,
-}
-
-/// Returns the cached result of `compute` for these sources (compared by address) and `key`;
-/// recomputes it when either changes.
-pub(super) fn kept<T: Send + Sync + 'static>(
-    ui: &Ui,
-    name: &str,
-    sources: &[Source],
-    key: impl Hash,
-    compute: impl FnOnce() -> T,
-) -> Arc<T> {
-    let mut hasher = DefaultHasher::new();
-    key.hash(&mut hasher);
-    let place = Id::unique(("records page", name));
-    let key = hasher.finish();
-    let are_same = |known: &[Source]| {
-        known.len() == sources.len()
-            && known
-                .iter()
-                .zip(sources)
-                .all(|(known, source)| Arc::ptr_eq(known, source))
-    };
-    let known = ui.data(|data| data.get_temp::<Arc<Kept<T>>>(place));
-    if let Some(known) = known.filter(|known| known.key == key && are_same(&known.sources)) {
-        return Arc::clone(&known.value);
-    }
-    let value = Arc::new(compute());
-    let kept = Arc::new(Kept {
-        sources: sources.to_vec(),
-        key,
-        value: Arc::clone(&value),
-    });
-    ui.data_mut(|data| data.insert_temp(place, kept));
-    value
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -650,22 +609,5 @@ mod tests {
             (integral / variance - 1.0).abs() < 1e-9,
             "{integral} {variance}"
         );
-    }
-
-    #[test]
-    fn it_is_computed_once_for_its_sources_and_key() {
-        let mut computed = 0;
-        egui::__run_test_ui(|ui| {
-            computed = 0;
-            let sources: [Source; 2] = [Arc::new(1_i64), Arc::new(1_i64)];
-            for (source, key) in [(0, 1), (0, 1), (0, 2), (1, 2), (0, 2)] {
-                let value = kept(ui, "test", &[Arc::clone(&sources[source])], key, || {
-                    computed += 1;
-                    (source, key)
-                });
-                assert_eq!(*value, (source, key));
-            }
-        });
-        assert_eq!(computed, 4, "once for each change");
     }
 }

@@ -1,10 +1,11 @@
 //! Flight records of the displayed condition and the models identified from them: records and
 //! search settings on the left, a page about them on the right.
 
+pub mod frame_cache;
 mod histories;
 mod outcome;
+pub mod page;
 mod record_list;
-mod records_state;
 mod response;
 mod simulation;
 
@@ -25,25 +26,27 @@ use gdcm_sysid::identification::identification_error::{HIGHEST_ORDER, LONGEST_PA
 use gdcm_sysid::records::LayoutProblem;
 
 use crate::gui::commands::command::Command;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::state::records::{ConditionRecords, RecordsPage};
 use crate::gui::state::window_state::State;
+use crate::gui::widgets::choices::page_tab_ui;
 use crate::gui::widgets::controls::{
-    Asks, button_ui, entry_ui, is_entered, named, page_tab_ui, restore_panel_size, text_field_ui,
-    typed_number,
+    Asks, button_ui, entry_ui, is_entered, named, restore_panel_size, text_field_ui, typed_number,
 };
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
-use histories::{histories_ui, inputs_ui, kept};
+
+use frame_cache::kept;
+use histories::{histories_ui, inputs_ui};
 use outcome::{offered_menu_ui, outcome_ui};
+use page::Page;
 use record_list::{columns_ui, record_list_ui};
-use records_state::Page;
 use response::{identified_poles_ui, response_ui, stabilisation_ui};
 use simulation::fit_ui;
 
-pub use records_state::{
-    AddedRecord, ConditionRecords, RecordsBefore, RecordsCommand, RecordsPage, RecordsState,
-    WantedDataset,
-};
-pub use simulation::{TimeModel, simulation_jobs};
+pub use simulation::simulation_jobs;
 
 /// Width of the list \[pt\].
 const LIST_WIDTH: f32 = 340.0;
@@ -296,7 +299,7 @@ fn condition_table_ui(
     if let Some(click) = table_ui(ui, &table, sorting, &look, page.palette, commands)
         && let Some(id) = ids.get(click.row)
     {
-        commands.push(Command::SelectCondition(*id));
+        commands.push(SelectionCommand::SelectCondition(*id).into());
     }
 }
 
@@ -425,7 +428,7 @@ fn advanced_ui(
                 if let Some(text) = field_ui(ui, "band [rad/s]", &said, &of_study, palette) {
                     commands.push(match numbers(&text).and_then(|list| band_of(&list)) {
                         Ok(band) => RecordsCommand::SetBand(band).into(),
-                        Err(why) => Command::Refuse(why),
+                        Err(why) => Command::Form(FormCommand::Refuse(why)),
                     });
                 }
                 let is_wanted = *field == Some(REFERENCES);
@@ -436,7 +439,9 @@ fn advanced_ui(
                         commands.push(
                             match numbers(&text).and_then(|list| sets(&mut wanted, &list)) {
                                 Ok(()) => RecordsCommand::SetSearch(wanted).into(),
-                                Err(why) => Command::Refuse(format!("{name}: {why}")),
+                                Err(why) => {
+                                    Command::Form(FormCommand::Refuse(format!("{name}: {why}")))
+                                }
                             },
                         );
                     }

@@ -19,13 +19,14 @@ use gdcm_sysid::identification::{
 };
 use gdcm_sysid::records::LaidOutRecord;
 
-use super::histories::{Source, kept};
+use super::frame_cache::{Source, kept};
+use super::page::Page;
 use super::record_list::{BAD, CHI_SQUARED};
-use super::records_state::Page;
-use super::{
-    ConditionRecords, ORDERS, REFERENCES, RecordsCommand, RecordsPage, possible_references,
-};
+use super::{ORDERS, REFERENCES, possible_references};
 use crate::gui::commands::command::Command;
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::state::records::{ConditionRecords, RecordsPage};
 use crate::gui::widgets::controls::Asks;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
@@ -328,7 +329,10 @@ fn actions(ui: &Ui, records: &ConditionRecords, caution: &IdentificationCaution)
                 input: input.index,
             };
             vec![
-                (format!("Show {output}/{input}"), Command::FocusPair(pair)),
+                (
+                    format!("Show {output}/{input}"),
+                    Command::Selection(SelectionCommand::FocusPair(pair)),
+                ),
                 order(),
             ]
         }

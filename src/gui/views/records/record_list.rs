@@ -11,12 +11,12 @@ use gdcm_model::units::{ms_to_s, number, s_to_ms};
 use gdcm_sysid::records::record_table::TimeBase;
 use gdcm_sysid::records::{ColumnUse, LaidOutRecord, LayoutProblem, RecordLayout};
 
-use super::records_state::Page;
-use super::{ConditionRecords, RecordsCommand};
+use super::page::Page;
 use crate::gui::commands::command::Command;
-use crate::gui::widgets::controls::{
-    Asks, elided_among, list_ui, named, named_switch, number_entry_ui,
-};
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::state::records::ConditionRecords;
+use crate::gui::widgets::choices::list_ui;
+use crate::gui::widgets::controls::{Asks, elided_among, named, named_switch, number_entry_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
 /// Width of all columns except the names \[pt\].

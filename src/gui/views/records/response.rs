@@ -19,8 +19,8 @@ use gdcm_sysid::identification::{
     CautionNote, Identification, IdentificationCaution, TRUSTED_COHERENCE,
 };
 
-use super::histories::kept;
-use super::records_state::Page;
+use super::frame_cache::kept;
+use super::page::Page;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan};
 use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::state::window_state::State;
@@ -66,7 +66,7 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
         records,
         palette,
     } = page;
-    let pair = state.display.pair;
+    let pair = state.display.selection.pair;
     let running = state.records.running(state.condition().id());
     let first = running.and_then(|job| job.told().first_model);
     let drawn = match (records.identification(), first) {
@@ -104,7 +104,7 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
     {
         let title = format!("{name}: {}", if row == 0 { "magnitude" } else { "phase" });
         let across = if row == 1 {
-            state.display.unit.axis_label()
+            state.display.curves.unit.axis_label()
         } else {
             String::new()
         };
@@ -129,7 +129,7 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
 /// responses.
 fn marks(Page { state, records, .. }: Page<'_>) -> impl Iterator<Item = &'static str> {
     let dataset = state.dataset();
-    let pair = state.display.pair;
+    let pair = state.display.selection.pair;
     let names = [
         &dataset.outputs()[pair.output].name,
         &dataset.inputs()[pair.input].name,
@@ -269,7 +269,7 @@ fn chart_of<'a>(
 ) -> Chart<'a> {
     let mut chart = Chart::new(
         title,
-        ChartAxis::Frequency(state.display.unit),
+        ChartAxis::Frequency(state.display.curves.unit),
         across,
         label,
     );
@@ -466,7 +466,7 @@ pub(super) fn stabilisation_ui(ui: &mut Ui, page: Page<'_>) {
     let text =
         "Crosses: within 5 % of a pole of the order two below. Circles: not. Dotted: the band.";
     ui.label(palette.small(text));
-    let unit = state.display.unit;
+    let unit = state.display.curves.unit;
     let across = unit.axis_label();
     let title = "Stabilisation diagram: |λ| of the models of every order, at the best Laguerre pole and past window";
     let mut chart = Chart::new(title, ChartAxis::Frequency(unit), &across, "order");

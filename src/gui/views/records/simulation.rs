@@ -9,47 +9,15 @@ use gdcm_model::dataset::{BundleKind, StateSpace};
 use gdcm_model::simulation::Validation;
 use gdcm_study::jobs::job::SimulationJob;
 
-use super::histories::kept;
+use super::frame_cache::kept;
+use super::page::Page;
 use super::record_list::cost_text;
-use super::records_state::Page;
-use super::{ConditionRecords, RecordsCommand};
 use crate::gui::commands::command::Command;
+use crate::gui::commands::records::RecordsCommand;
 use crate::gui::plot::chart::ChartLine;
+use crate::gui::state::records::{ConditionRecords, TimeModel};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
-
-/// A model that can be compared with a record in time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum TimeModel {
-    /// The recommended identified model.
-    Identified,
-    /// The physics representative.
-    Physics,
-    /// The corrected physics representative.
-    Corrected,
-}
-
-impl TimeModel {
-    /// All models, in display order.
-    pub const ALL: [Self; 3] = [Self::Identified, Self::Physics, Self::Corrected];
-
-    /// Returns the name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Identified => "identified",
-            Self::Physics => "physics",
-            Self::Corrected => "corrected",
-        }
-    }
-
-    fn color(self, palette: &Palette) -> Color32 {
-        match self {
-            Self::Identified => palette.accent,
-            Self::Physics => palette.nominal,
-            Self::Corrected => palette.corrected,
-        }
-    }
-}
 
 /// A model compared with the displayed record.
 pub(super) struct Simulated<'a> {

@@ -1,32 +1,30 @@
-//! State of the Records view: records by condition, and the models identified from them.
+//! Flight records by condition, and the models identified from them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use egui::Ui;
+use egui::Color32;
 
 use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::channel::ChannelSide;
-use gdcm_model::dataset::condition::{ChannelRemedy, RecordKind};
 use gdcm_model::dataset::{Band, ConditionId, Dataset};
 use gdcm_model::simulation::Signal;
 use gdcm_model::units::{number, telling};
 use gdcm_study::decisions::changed_models::{AdoptedModels, OfferedModels};
 use gdcm_study::jobs::job::{IdentificationRequest, IdentifyJob};
+use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::time_histories::HistoryRecords;
 use gdcm_sysid::identification::{
-    CautionNote, ChannelPreparation, Hold, Identification, IdentificationError, Preparation,
-    SearchSpace,
+    CautionNote, ChannelPreparation, Identification, IdentificationError, Preparation, SearchSpace,
 };
 use gdcm_sysid::records::record_channels::{ChannelList, SaidChannel};
 use gdcm_sysid::records::resampling::ResamplingWish;
 use gdcm_sysid::records::{
-    ColumnUse, LaidOutRecord, LayoutProblem, RecordChannels, RecordColumn, RecordLayout,
-    RecordSource, RecordTable,
+    ColumnUse, LaidOutRecord, LayoutProblem, RecordChannels, RecordColumn, RecordSource,
+    RecordTable,
 };
 
-use super::TimeModel;
-use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::typed_number;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::Sorting;
@@ -111,71 +109,6 @@ impl RecordsPage {
             ),
         }
     }
-}
-
-/// A command of the Records view.
-#[derive(Clone, Debug, PartialEq)]
-pub enum RecordsCommand {
-    /// Read files, and folders with all their files.
-    Add(Vec<PathBuf>),
-    /// Choose files with the desktop's dialog.
-    AskFiles,
-    /// Ask for the channels of a dataset to be made from the displayed records.
-    AskDataset,
-    /// Make a dataset with the requested channels, and open it.
-    MakeDataset,
-    Choose(usize),
-    /// Use a record, or leave it out.
-    SetUsed(usize, bool),
-    /// Hold a record out from the fit for validation, or include it.
-    SetHeldOut(usize, bool),
-    /// Set the manoeuvre of a record.
-    SetKind(usize, RecordKind),
-    /// Assign columns to channels, for this record and all with the same column names.
-    SetLayout(usize, RecordLayout),
-    /// Set the delay of a channel's log \[s\].
-    SetDelay(Signal, f64),
-    /// Set remedies for channels in a single record (M14.16).
-    SetRemedies(usize, Vec<(Signal, ChannelRemedy)>),
-    /// Set the meaning of the steps in a staircase signal.
-    SetHold(Signal, Hold),
-    /// Set the identification band \[rad/s\]; `None` takes the study's.
-    SetBand(Option<[f64; 2]>),
-    /// Identify with these columns as recorded references that excited the loop externally
-    /// (M14.15); an empty list selects the direct method.
-    SetReferences(Vec<String>),
-    /// Set the orders, past windows and poles to try.
-    SetSearch(SearchSpace),
-    /// Expand the search settings and focus the field with this name.
-    ShowAdvanced(&'static str),
-    /// Draw the response of a model to the same inputs, or hide it.
-    ShowTimeModel(TimeModel, bool),
-    /// Assume the dataset channel's unit wherever a file states none, in the records of all
-    /// conditions.
-    TakeDatasetUnits,
-    /// Show a record with unclear columns, from any condition, on the Columns page.
-    ShowUnclear,
-    /// Make the part of a record between two times \[s\] a record that replaces the whole.
-    AddPart(usize, [f64; 2]),
-    /// Remove a part of a record.
-    RemovePart(usize),
-    /// Set whether dragging in the time charts selects parts.
-    ChooseParts(bool),
-    /// Show the spectrogram of an input beside the records over time, or hide it.
-    ShowSpectrogram(Option<usize>),
-    Show(RecordsPage),
-    /// Identify models of the displayed condition.
-    Identify,
-    /// Identify models of every condition with records.
-    IdentifyAll,
-    /// Stop the identification.
-    Stop,
-    /// Put the identified models into the displayed condition.
-    Take(OfferedModels),
-    /// Put the identified models into every condition that has some.
-    TakeAll(OfferedModels),
-    /// Restore the models of the dataset's file in the displayed condition.
-    Return,
 }
 
 /// Outcome of adding a record.
@@ -403,7 +336,7 @@ impl ConditionRecords {
     }
 
     /// Returns short marks, with a caution sign, for the cautions with a code.
-    pub(super) fn marks(&self, code: &'static str) -> impl Iterator<Item = String> {
+    pub fn marks(&self, code: &'static str) -> impl Iterator<Item = String> {
         self.cautions()
             .filter(move |(_, note)| note.code == code)
             .map(|(_, note)| format!("⚠ {}", note.mark()))
@@ -543,30 +476,6 @@ impl ConditionRecords {
     }
 }
 
-/// Context for drawing a page: the records of the displayed condition.
-#[derive(Clone, Copy)]
-pub(super) struct Page<'a> {
-    pub(super) state: &'a State,
-    /// Records of the displayed condition.
-    pub(super) records: &'a ConditionRecords,
-    /// Colours of the theme.
-    pub(super) palette: &'a Palette,
-}
-
-impl Page<'_> {
-    /// Returns the identification; shows a message if there is none.
-    pub(super) fn identification_ui(&self, ui: &mut Ui) -> Option<&Identification> {
-        let found = self.records.identification();
-        if found.is_none() {
-            ui.label(
-                self.palette
-                    .dim("Nothing was identified yet: choose Identify above."),
-            );
-        }
-        found.map(AsRef::as_ref)
-    }
-}
-
 /// State of the Records view. Not saved: records stay in their files.
 #[derive(Clone, Debug, Default)]
 pub struct RecordsState {
@@ -659,6 +568,23 @@ impl RecordsState {
             }
         }
         (open.records > 0).then_some(open)
+    }
+
+    /// Returns the poles identified in this session, condition by condition.
+    pub fn known_poles(&self) -> KnownPoles {
+        let found = |(id, records): (&ConditionId, &ConditionRecords)| {
+            Some((*id, records.identification()?.poles.clone()))
+        };
+        self.conditions.iter().filter_map(found).collect()
+    }
+
+    /// Returns the flight records in use of every condition.
+    pub fn history_records(&self) -> Vec<HistoryRecords> {
+        let of_condition = |(id, records): (&ConditionId, &ConditionRecords)| {
+            HistoryRecords::of(*id, &records.rows, records.preparation())
+        };
+        let all = self.conditions.iter().map(of_condition);
+        all.filter(|of| !of.records.is_empty()).collect()
     }
 
     /// Returns the running or waiting job of a condition.
@@ -784,5 +710,39 @@ impl WantedDataset {
             },
             band,
         ))
+    }
+}
+
+/// A model that can be compared with a record in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum TimeModel {
+    /// The recommended identified model.
+    Identified,
+    /// The physics representative.
+    Physics,
+    /// The corrected physics representative.
+    Corrected,
+}
+
+impl TimeModel {
+    /// All models, in display order.
+    pub const ALL: [Self; 3] = [Self::Identified, Self::Physics, Self::Corrected];
+
+    /// Returns the name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Identified => "identified",
+            Self::Physics => "physics",
+            Self::Corrected => "corrected",
+        }
+    }
+
+    /// Returns the colour of the model's lines.
+    pub fn color(self, palette: &Palette) -> Color32 {
+        match self {
+            Self::Identified => palette.accent,
+            Self::Physics => palette.nominal,
+            Self::Corrected => palette.corrected,
+        }
     }
 }

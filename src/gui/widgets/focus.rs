@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use egui::{Context, Id, Key, Modifiers, Rect, Stroke, StrokeKind, Ui, pos2};
 
-use crate::gui::widgets::palette::Palette;
+use super::palette::Palette;
 
 /// Region of the window, in the order of the F6 key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -4,45 +4,14 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use gdcm_io::formats::text::UnsaidUnit;
-use gdcm_model::assembly::{Assembly, FoundModel, Headings, RowRule, Rules, proposed_rules};
+use gdcm_model::assembly::{Assembly, FoundModel, Headings, Rules, proposed_rules};
 
-use super::COLUMNS;
-use super::details::Preview;
-use crate::gui::commands::command::Command;
+use super::assembly_columns::COLUMNS;
+use crate::gui::plot::{BodeCurve, BodeView};
 use crate::gui::widgets::tables::Sorting;
 
 /// Maximum number of undo steps.
 const MOST_STEPS: usize = 200;
-
-/// A command of the import view.
-#[derive(Clone, Debug, PartialEq)]
-pub enum AssemblingCommand {
-    /// Start, or continue.
-    Open,
-    /// Choose a folder with the desktop's dialog.
-    AskFolder,
-    /// Read files, and folders with all their files.
-    Add(Vec<PathBuf>),
-    /// Stop reading.
-    StopReading,
-    /// Change the rules.
-    Change(Box<Rules>),
-    /// Undo the last change.
-    Undo,
-    /// Redo the last undone change.
-    Redo,
-    Select(usize),
-    /// Sort the table by the column with this index; the same column again reverses the order.
-    Sort(usize),
-    /// Show the response with this index in the preview.
-    ShowResponse(usize),
-    LoadRules(PathBuf),
-    SaveRules(PathBuf),
-    /// Write the dataset and its rules, and open the dataset.
-    MakeDataset(PathBuf),
-    /// Leave the import and discard it.
-    Close,
-}
 
 /// Progress of reading files.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -168,55 +137,6 @@ impl AssemblyState {
         self.assembly = self.assembly.with_rules(rules);
     }
 
-    /// Returns the command that changes the rules with `change`.
-    pub fn changed(&self, change: impl FnOnce(&mut Rules)) -> Command {
-        let mut rules = self.assembly.rules().clone();
-        change(&mut rules);
-        AssemblingCommand::Change(Box::new(rules)).into()
-    }
-
-    /// Returns the command that changes the rule of one model.
-    pub fn said_of(&self, part: usize, say: impl FnOnce(&mut RowRule)) -> Command {
-        self.changed(|rules| {
-            if let Some(part) = self.assembly.parts().get(part) {
-                say(rules.rows.entry(part.found.key()).or_default());
-            }
-        })
-    }
-
-    /// Returns the command that changes the heading of a table's column; the file's own headings
-    /// apply where none are given.
-    pub fn with_heading(&self, file: &str, column: usize, heading: &str) -> Command {
-        self.changed(|rules| {
-            let Some(headings) = self.tables.get(file) else {
-                return;
-            };
-            let said = rules
-                .headings
-                .entry(file.to_owned())
-                .or_insert_with(|| headings.clone());
-            if let Some(place) = said.get_mut(column) {
-                heading.trim().clone_into(place);
-            }
-        })
-    }
-
-    /// Returns the command that sets the unit of a column in a table, and in all tables with the
-    /// same headings.
-    pub fn with_unit(&self, file: &str, column: usize, unit: &str) -> Command {
-        self.changed(|rules| {
-            for file in self.tables_alike(file) {
-                let said = rules
-                    .headings
-                    .entry(file.clone())
-                    .or_insert_with(|| self.tables[file].clone());
-                if let Some(heading) = said.get_mut(column) {
-                    *heading = format!("{heading} [{unit}]");
-                }
-            }
-        })
-    }
-
     /// Returns the tables, including this one, that need the same units under the same headings.
     pub fn tables_alike(&self, file: &str) -> Vec<&String> {
         let of = |file: &str| (self.tables.get(file), self.unsaid.get(file));
@@ -226,31 +146,19 @@ impl AssemblyState {
             .collect()
     }
 
-    /// Returns the command that copies a setting to every model below `part`, in table order, in
-    /// the same folder.
-    pub fn filled_down(&self, part: usize, say: impl Fn(&mut RowRule)) -> Command {
-        let parts = self.assembly.parts();
-        let folder = |part: usize| {
-            parts.get(part).map(|part| {
-                part.found
-                    .file()
-                    .rsplit_once('/')
-                    .map_or("", |(folder, _)| folder)
-            })
-        };
-        let order = self.order();
-        let below = order.iter().skip_while(|index| **index != part);
-        self.changed(|rules| {
-            for index in below.filter(|index| folder(**index) == folder(part)) {
-                say(rules.rows.entry(parts[*index].found.key()).or_default());
-            }
-        })
-    }
-
     /// Returns the indices of the models in table order.
     pub fn order(&self) -> Vec<usize> {
         let parts = self.assembly.parts();
         self.sorting
             .order_of(parts.len(), |row, column| COLUMNS[column].text(&parts[row]))
     }
+}
+
+/// Displayed response, cached while the model and the selection stay the same.
+#[derive(Debug, Default)]
+pub struct Preview {
+    /// Index of the response: `output * inputs + input`, in the file's own order.
+    pub response: usize,
+    pub view: BodeView,
+    pub drawn: Option<(String, usize, Vec<BodeCurve>)>,
 }

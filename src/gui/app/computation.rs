@@ -1,0 +1,184 @@
+//! Requests for results, and the answers of the threads.
+
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+
+use gdcm_method::correction::Solution;
+use gdcm_method::correction::problem::ProblemError;
+use gdcm_model::dataset::ConditionId;
+use gdcm_study::jobs::job::{CurvesJob, ProofJob};
+use gdcm_study::stages::condition_responses::ConditionCurves;
+use gdcm_study::{Analysis, Study};
+
+use super::GdcmApp;
+use super::background_jobs::{AnalysisJob, BackgroundJobs, Proof};
+use super::outputs::ReportJob;
+use super::threads::{Fault, Reply, ReplySender};
+use crate::gui::state::notices::Bar;
+use crate::gui::views::need::Need;
+
+/// Requested and received results.
+pub(super) struct Computation {
+    /// Last requested live answer.
+    pub(super) asked: Option<AnalysisJob>,
+    pub(super) jobs: BackgroundJobs,
+    /// Proofs that the results do not contain yet.
+    pub(super) proven: Vec<Proof>,
+    /// Jobs needed by the visible views, beside the live answer.
+    pub(super) needs: Vec<Need>,
+    /// Study and condition of the newest request.
+    pub(super) requested: Option<(Study, ConditionId)>,
+    /// Report being written.
+    pub(super) reporting: Option<ReportJob>,
+    pub(super) replies: ReplySender,
+    /// Replies from threads.
+    pub(super) received: Receiver<Reply>,
+}
+
+impl GdcmApp {
+    /// Returns the time \[s\] on the window's clock.
+    pub(super) fn now(&self) -> f64 {
+        self.ctx.input(|input| input.time)
+    }
+
+    /// Requests the results for the current study and condition, unless already requested.
+    pub(super) fn request(&mut self) {
+        let now = self.now();
+        let study = &self.state.study;
+        let condition = self.state.condition().id();
+        if self
+            .work
+            .requested
+            .as_ref()
+            .is_some_and(|(of, at)| *at == condition && asks_the_same(of, study))
+        {
+            return;
+        }
+        self.work.requested = Some((study.clone(), condition));
+        let results = &mut self.state.results;
+        results.requested += 1;
+        results.stopped = false;
+        results.waiting_since.get_or_insert(now);
+        self.ask();
+    }
+
+    /// Sends the newest request with all available proofs.
+    pub(super) fn ask(&mut self) {
+        let Some((study, condition)) = self.work.requested.clone() else {
+            return;
+        };
+        let number = self.work.asked.as_ref().map_or(0, |job| job.number + 1);
+        let generation = self.state.results.requested;
+        let proofs = self.work.proven.clone();
+        let replies = self.work.replies.clone();
+        self.work.asked = Some(AnalysisJob {
+            number,
+            generation,
+            study,
+            condition,
+            proofs,
+            replies,
+        });
+    }
+
+    /// Records that the live answer was stopped, by hand or by a fault; the displayed results stay.
+    pub(super) fn answer_stopped(&mut self) {
+        self.work.proven.clear();
+        let results = &mut self.state.results;
+        results.stopped = results.is_behind();
+        results.waiting_since = None;
+    }
+
+    /// Requests the stopped computation again.
+    pub(super) fn compute_again(&mut self) {
+        self.work.requested = None;
+        self.state
+            .bars
+            .retain(|bar| !matches!(bar, Bar::Fault { .. }));
+        self.work.jobs.resume();
+    }
+
+    /// Applies the replies of the threads.
+    pub(super) fn receive(&mut self) {
+        while let Ok(reply) = self.work.received.try_recv() {
+            reply(self);
+        }
+        let now = self.now();
+        let results = &mut self.state.results;
+        results.background = self.work.jobs.told();
+        results.background.proofs.extend(
+            self.work
+                .proven
+                .iter()
+                .map(|(problem, _)| Arc::clone(problem)),
+        );
+        results.background_since = results
+            .background
+            .is_busy()
+            .then(|| results.background_since.unwrap_or(now));
+    }
+
+    /// Shows an analysis and requests the jobs that it leaves open.
+    pub(super) fn answered(
+        &mut self,
+        job: AnalysisJob,
+        (analysis, elapsed_ms): (Arc<Analysis>, f64),
+    ) {
+        let now = self.now();
+        let results = &mut self.state.results;
+        // A job repeated with a proof has the request number of the original job and took no time.
+        if results.received != job.generation {
+            results.elapsed_ms = elapsed_ms;
+        }
+        results.received = job.generation;
+        results.analysis = Some(analysis);
+        results.first = None;
+        results.stopped &= results.is_behind();
+        results.waiting_since = results.is_waiting().then_some(now);
+        self.work
+            .proven
+            .retain(|(of, _)| !job.proofs.iter().any(|(proven, _)| Arc::ptr_eq(of, proven)));
+        self.want_jobs();
+    }
+
+    /// Repeats the newest request with a proof. The live answer has already reported a problem
+    /// without a solution.
+    pub(super) fn take_proof(&mut self, job: ProofJob, proof: Result<Arc<Solution>, ProblemError>) {
+        if let Ok(solution) = proof {
+            self.work.proven.push((job.problem, solution));
+            self.ask();
+        }
+    }
+
+    /// Stores the curves of a condition if they belong to the displayed condition and dataset.
+    pub(super) fn take_curves(&mut self, job: CurvesJob, curves: Option<Arc<ConditionCurves>>) {
+        let Some(curves) = curves else { return };
+        let study = &self.state.study;
+        if Arc::ptr_eq(&job.dataset, &study.dataset) && job.condition == self.state.condition().id()
+        {
+            self.state.results.curves = Some((job, curves));
+        }
+    }
+
+    /// Reports a panic: its effect, the decisions kept, and the details to send.
+    pub(super) fn tell_fault(&mut self, ended: &str, fault: &Fault) {
+        let sentence = format!(
+            "A fault in the program ended {ended}; your decisions are kept and can be saved: please send this message, the \
+             saved study and the dataset {} to the program's authors (gdcm {}: {}).",
+            self.files.loaded.origin,
+            env!("CARGO_PKG_VERSION"),
+            fault.words(),
+        );
+        self.state
+            .bars
+            .retain(|bar| !matches!(bar, Bar::Fault { .. }));
+        self.state.bars.push(Bar::Fault { sentence });
+    }
+}
+
+/// Returns whether two studies need the same results for the identical dataset. Datasets are
+/// compared by pointer: comparing values would take time in every frame, and results belong to one
+/// dataset even if another is equal.
+fn asks_the_same(a: &Study, b: &Study) -> bool {
+    Arc::ptr_eq(&a.dataset, &b.dataset) && a.settings == b.settings && a.choices == b.choices
+}

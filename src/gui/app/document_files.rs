@@ -1,0 +1,92 @@
+//! Files of the open study and dataset.
+
+use std::path::{Path, PathBuf};
+
+use gdcm_io::LoadedDataset;
+use gdcm_io::files::study_file::STUDY_EXTENSION;
+use gdcm_io::source::at_home;
+use gdcm_study::Study;
+use gdcm_sysid::records::RecordChannels;
+
+use super::disk_watch::DiskWatch;
+
+/// The study as last saved.
+#[derive(Clone, Debug)]
+pub(super) struct SavedStudy {
+    /// Path of the file; `None` for a new study.
+    pub(super) path: Option<PathBuf>,
+    /// The saved study, or the initial state of a new one; `None` for restored decisions.
+    pub(super) study: Option<Study>,
+}
+
+/// Purpose of reading a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ReadFor {
+    /// Shown instead of the open study.
+    Opening,
+    /// Replaces the open dataset, which was read from the same file earlier.
+    Reloading,
+    /// Continues unsaved decisions; holds the number of the offer.
+    Restoring(usize),
+}
+
+/// Files of the open study and dataset.
+pub(super) struct DocumentFiles {
+    pub(super) loaded: LoadedDataset,
+    pub(super) saved: SavedStudy,
+    /// Datasets open before a reload, or after a reload that was undone.
+    pub(super) earlier: Vec<LoadedDataset>,
+    /// Dataset most recently made from records.
+    pub(super) made_of_records: Option<DatasetOfRecords>,
+    pub(super) disk: DiskWatch,
+    /// Directory of the list of recent files; without it the list is not kept.
+    pub(super) directory: Option<PathBuf>,
+    /// Expansion of `~` in typed paths.
+    pub(super) home: Option<PathBuf>,
+}
+
+impl DocumentFiles {
+    /// Expands `~` in a typed path to the home directory.
+    pub(super) fn at_home(&self, typed: PathBuf) -> PathBuf {
+        at_home(&typed, self.home.as_deref())
+    }
+
+    /// Returns a proposed file name for the study.
+    pub(super) fn proposed_name(&self) -> String {
+        if let Some(path) = &self.saved.path {
+            return path.display().to_string();
+        }
+        format!("{}.{STUDY_EXTENSION}", self.stem())
+    }
+
+    /// Returns the stem of the names of files about the dataset.
+    pub(super) fn stem(&self) -> String {
+        let stem = self
+            .loaded
+            .path()
+            .and_then(Path::file_stem)
+            .map(|stem| stem.to_string_lossy().into_owned());
+        stem.unwrap_or_else(|| "example".to_owned())
+            .trim_end_matches(".json")
+            .to_owned()
+    }
+
+    /// Returns the input files, which results never overwrite.
+    pub(super) fn inputs(&self) -> Vec<PathBuf> {
+        self.saved
+            .path
+            .iter()
+            .cloned()
+            .chain(self.loaded.origin.file())
+            .collect()
+    }
+}
+
+/// A dataset made from records.
+pub(super) struct DatasetOfRecords {
+    pub(super) path: PathBuf,
+    /// Location of its channels in the records, and their units.
+    pub(super) channels: RecordChannels,
+    /// Omitted records, with reasons.
+    pub(super) left_out: Vec<String>,
+}

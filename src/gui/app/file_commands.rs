@@ -1,0 +1,56 @@
+//! Carries out opening, saving and closing files.
+
+use egui::ViewportCommand;
+
+use gdcm_io::Existing;
+
+use super::GdcmApp;
+use super::dialogs::{DialogPurpose, PendingAction};
+use crate::gui::commands::file::FileCommand;
+
+impl GdcmApp {
+    pub(super) fn carry_out_file(&mut self, command: FileCommand) {
+        match command {
+            FileCommand::ReadRequirementTable(table, path) => {
+                self.read_requirement_table(table, path)
+            }
+            FileCommand::AskRequirementTable(table) => {
+                self.ask_path(DialogPurpose::RequirementTable(table), String::new());
+            }
+            FileCommand::AskWriteTolerances => self.ask_write_tolerances(),
+            FileCommand::WriteTolerances(path) => self.write_tolerances(path),
+            FileCommand::AskOpen => self.ask_path(DialogPurpose::Open, String::new()),
+            FileCommand::AskSaveStudy => {
+                self.ask_path(DialogPurpose::SaveStudy, self.files.proposed_name())
+            }
+            FileCommand::Open(path) => self.open(path, None),
+            FileCommand::OpenStudyOf(study, dataset) => self.open(study, Some(dataset)),
+            FileCommand::OpenExample => self.open_example(),
+            FileCommand::CloseStudy if self.state.unsaved => self.ask_to_lose(PendingAction::Close),
+            FileCommand::CloseStudy => self.close_study(),
+            FileCommand::RestoreRecovery(offer) => self.restore(offer),
+            FileCommand::DiscardRecovery(offer) => self.discard(offer),
+            FileCommand::Reload => self.reload(),
+            FileCommand::KeepOpen => self.keep_open(),
+            FileCommand::LookForRecent => self.read_recent(None),
+            FileCommand::Quit if self.state.unsaved && !self.dialogs.closing => {
+                self.ask_to_lose(PendingAction::Quit)
+            }
+            FileCommand::Quit => self.quit(),
+            FileCommand::SaveStudy => self.save(),
+            FileCommand::SaveStudyAs(path) => self.save_as(path, self.dialogs.existing),
+        }
+    }
+
+    /// Saves the study to a file, like the form once a path is typed.
+    pub fn save_study_as(&mut self, path: std::path::PathBuf) {
+        self.save_as(path, Existing::Keep);
+    }
+
+    pub(super) fn quit(&mut self) {
+        self.dialogs.closing = true;
+        // The decisions are saved, or the engineer has agreed to lose them.
+        self.recovery.autosave.clear();
+        self.ctx.send_viewport_cmd(ViewportCommand::Close);
+    }
+}

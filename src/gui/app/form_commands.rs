@@ -1,0 +1,74 @@
+//! Carries out forms and messages.
+
+use gdcm_io::Existing;
+
+use super::GdcmApp;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::state::forms::FormKind;
+
+impl GdcmApp {
+    pub(super) fn carry_out_form(&mut self, command: FormCommand) {
+        match command {
+            FormCommand::ShowForm(form) => self.show_form(form),
+            FormCommand::AskReason(model) => {
+                let reason = self
+                    .state
+                    .study
+                    .reason(&model)
+                    .unwrap_or_default()
+                    .to_owned();
+                self.state.forms.typed.insert(FormKind::Reason, reason);
+                self.state.forms.rejected_model = Some(model);
+                self.state.forms.shown = Some(FormKind::Reason);
+            }
+            FormCommand::DecideInForm(edit) => {
+                self.state.forms.shown = None;
+                self.decide(&edit);
+            }
+            FormCommand::Refuse(why) => self.notify_error(why),
+            FormCommand::DismissNotice => self.state.notice = None,
+            FormCommand::CloseBar(bar) => self.state.bars.retain(|shown| *shown != bar),
+            FormCommand::Overwrite => self.overwrite(),
+            FormCommand::SaveAndGoOn => self.save_and_go_on(),
+            FormCommand::DiscardAndGoOn => {
+                self.state.forms.shown = None;
+                self.go_on();
+            }
+        }
+    }
+
+    fn show_form(&mut self, form: Option<FormKind>) {
+        match form {
+            Some(FormKind::Export) => {
+                let all = self
+                    .state
+                    .study
+                    .dataset
+                    .conditions()
+                    .iter()
+                    .map(|condition| condition.id());
+                self.state.forms.exported = all.collect();
+            }
+            Some(FormKind::ExportAs) => self.propose_export_name(),
+            _ => {}
+        }
+        // A form that asks for a save path continues with the action that waits for it.
+        if !(self.dialogs.goes_on_once_saved && form == Some(FormKind::Save)) {
+            self.dialogs.postponed = None;
+            self.dialogs.goes_on_once_saved = false;
+        }
+        self.dialogs.overwriting = None;
+        self.state.forms.existing.clear();
+        self.state.forms.shown = form;
+    }
+
+    /// Carries out the command whose overwriting was confirmed.
+    fn overwrite(&mut self) {
+        self.state.forms.existing.clear();
+        if let Some(command) = self.dialogs.overwriting.take() {
+            self.dialogs.existing = Existing::Replace;
+            self.carry_out_one(command);
+            self.dialogs.existing = Existing::Keep;
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Carries out changes to the places of views, panels and the focus.
+
+use super::GdcmApp;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::state::arrangement::Arrangement;
+use crate::gui::widgets::controls::focus_field;
+use crate::gui::widgets::focus::leave_region;
+
+/// Target of the focus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NextFocus {
+    /// The field with this name.
+    Field(&'static str),
+    /// The next or the previous region of the window.
+    Region { forward: bool },
+}
+
+impl GdcmApp {
+    pub(super) fn carry_out_layout(&mut self, command: LayoutCommand) {
+        let display = &mut self.state.display;
+        match command {
+            LayoutCommand::ShowView(view) => {
+                self.state.on_start_page = false;
+                self.state.display.layout.arrangement.show(view);
+            }
+            LayoutCommand::ShowGroup(group) => display.layout.arrangement.show_group(group),
+            LayoutCommand::ShowBeside(view) => display.layout.arrangement.show_beside(view),
+            LayoutCommand::ShowInDock(view) => display.layout.arrangement.dock_view(view),
+            LayoutCommand::OpenDock(is_open) => display.layout.arrangement.open_dock(is_open),
+            LayoutCommand::ResetLayout => {
+                display.layout.arrangement = Arrangement::default();
+                display.layout.left_open = None;
+                self.ctx.memory_mut(|memory| memory.reset_areas());
+            }
+            LayoutCommand::ShowLeft(is_open) => display.layout.left_open = Some(is_open),
+            LayoutCommand::ShowSheet(sheet) => display.layout.sheet = sheet,
+            LayoutCommand::ShowSettings(is_open) => display.layout.settings_open = is_open,
+            LayoutCommand::ShowAdvanced(is_open) => display.layout.advanced_open = is_open,
+            LayoutCommand::ShowIdentified(is_open) => display.layout.identified_open = is_open,
+            LayoutCommand::SetTheme(theme) => self.ctx.set_theme(theme),
+            LayoutCommand::FocusField(name) => {
+                // A collapsed field must be open before it can receive the focus.
+                (display.layout.settings_open, display.layout.advanced_open) = (true, true);
+                self.focus_next(NextFocus::Field(name));
+            }
+            LayoutCommand::LeaveRegion { forward } => {
+                self.focus_next(NextFocus::Region { forward })
+            }
+            LayoutCommand::StartTour => self.state.tour = Some(0),
+            LayoutCommand::ShowTourStep(step) => self.state.tour = step,
+            LayoutCommand::ShowStart(is_shown) => self.state.on_start_page = is_shown,
+            LayoutCommand::BeginWith(what) => display.layout.opens_with = what,
+        }
+    }
+
+    /// Moves the focus before the next frame is drawn, so that the widget knows it is newly
+    /// focused.
+    fn focus_next(&mut self, next: NextFocus) {
+        self.next_focus = Some(next);
+        self.ctx.request_repaint();
+    }
+
+    /// Gives the focus to the requested target once no form is open in front of it.
+    pub(super) fn move_focus(&mut self) {
+        if self.state.forms.shown.is_some()
+            || self.ctx.memory(|memory| memory.top_modal_layer().is_some())
+        {
+            return;
+        }
+        match self.next_focus.take() {
+            Some(NextFocus::Field(name)) => focus_field(&self.ctx, name),
+            Some(NextFocus::Region { forward }) => leave_region(&self.ctx, forward),
+            None => {}
+        }
+    }
+}

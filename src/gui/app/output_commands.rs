@@ -1,0 +1,35 @@
+//! Carries out copying and writing results.
+
+use super::GdcmApp;
+use super::dialogs::DialogPurpose;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::state::tables::table_of;
+
+impl GdcmApp {
+    pub(super) fn carry_out_output(&mut self, command: OutputCommand) {
+        match command {
+            OutputCommand::CopyTable(kind) => {
+                self.ctx.copy_text(table_of(&self.state, kind).text());
+                self.done(format!("copied the table of {}", kind.name()));
+            }
+            OutputCommand::AskSaveTable(kind) => {
+                self.ask_save_table(kind.name(), table_of(&self.state, kind).into())
+            }
+            OutputCommand::AskSaveShownTable(table) => {
+                self.ask_save_table(&table.title, table.clone())
+            }
+            OutputCommand::SaveTable(table, path) => self.save_table(table, path),
+            OutputCommand::CopyFigure(view) => self.copy_figure(view),
+            OutputCommand::AskSaveFigure(view, format) => self.ask_save_figure(view, format),
+            OutputCommand::SaveFigure(view, width, path) => self.save_figure(view, width, path),
+            OutputCommand::AskReport => self.ask_report(),
+            OutputCommand::WriteReport(path) => self.write_report(path),
+            OutputCommand::AskExportFolder => {
+                self.ask_path(DialogPurpose::ExportFolder, String::new())
+            }
+            OutputCommand::CopyText(text) => self.ctx.copy_text(text),
+            OutputCommand::Export => self.export(),
+            OutputCommand::ExportAs(format, path) => self.export_as(format, path),
+        }
+    }
+}

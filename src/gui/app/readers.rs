@@ -1,0 +1,79 @@
+//! Threads that read files, each replaceable by a newer one.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use gdcm_io::FolderProgress;
+
+/// The newest reading thread for one purpose, or several in parallel.
+#[derive(Default)]
+pub(super) struct Reader {
+    newest: u64,
+    stop: Arc<AtomicBool>,
+}
+
+impl Reader {
+    /// Starts a reading that replaces the current one; returns its number and its stop flag.
+    pub(super) fn begin(&mut self) -> (u64, Arc<AtomicBool>) {
+        self.give_up();
+        self.stop = Arc::default();
+        (self.newest, Arc::clone(&self.stop))
+    }
+
+    /// Starts a reading beside the current one; returns the common number and stop flag.
+    pub(super) fn join(&mut self) -> (u64, Arc<AtomicBool>) {
+        if self.is_stopped() {
+            return self.begin();
+        }
+        (self.newest, Arc::clone(&self.stop))
+    }
+
+    /// Returns whether the answer of this thread still counts.
+    pub(super) fn is_newest(&self, number: u64) -> bool {
+        self.newest == number
+    }
+
+    /// Stops the reading; the content read so far counts.
+    pub(super) fn stop(&self) {
+        self.stop.store(true, Ordering::Release);
+    }
+
+    /// Returns whether the reading was stopped.
+    pub(super) fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Acquire)
+    }
+
+    /// Stops the reading and discards its answer, however long a drive blocks the thread.
+    pub(super) fn give_up(&mut self) {
+        self.stop();
+        self.newest += 1;
+    }
+}
+
+impl Drop for Reader {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+/// Progress of a reading that can be stopped but reports nothing.
+pub(super) struct Untold(pub(super) Arc<AtomicBool>);
+
+impl FolderProgress for Untold {
+    fn reading(&self, _: usize, _: usize, _: &str) {}
+
+    fn stop(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.0)
+    }
+}
+
+/// Readers of the window, one for each kind of file.
+#[derive(Default)]
+pub(super) struct Readers {
+    /// Reads imported models.
+    pub(super) models: Reader,
+    /// Reads opened files.
+    pub(super) opener: Reader,
+    /// Reads flight records.
+    pub(super) record_reader: Reader,
+}

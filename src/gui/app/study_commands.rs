@@ -1,0 +1,68 @@
+//! Carries out decisions about the study.
+
+use gdcm_study::decisions::study::History;
+use gdcm_study::{Edit, Study};
+
+use super::GdcmApp;
+use crate::gui::commands::study::StudyCommand;
+use crate::gui::state::records::{RecordsBefore, RecordsState};
+use crate::gui::state::window_state::State;
+
+impl GdcmApp {
+    pub(super) fn carry_out_study(&mut self, command: StudyCommand) {
+        match command {
+            StudyCommand::Edit(edit) => self.decide(&edit),
+            StudyCommand::EndEdit => self.state.history.seal(),
+            StudyCommand::Undo => self.take_study(|history, study, records| {
+                history.undo(study, |of| records.exchange(of))
+            }),
+            StudyCommand::Forget(edit) => self.take_study(|history, _, _| history.forget(&edit)),
+            StudyCommand::Redo => self.take_study(|history, study, records| {
+                history.redo(study, |of| records.exchange(of))
+            }),
+        }
+    }
+
+    pub(super) fn decide(&mut self, edit: &Edit) {
+        let before = self.state.study.clone();
+        match self.state.study.apply(edit) {
+            Ok(()) if self.state.study == before => {}
+            Ok(()) => {
+                self.state.history.record(before, edit);
+                self.study_changed();
+            }
+            Err(refusal) => self.notify_error(refusal.to_string()),
+        }
+    }
+
+    /// Restores another state of the study, and of the records beside it, from its history, if
+    /// there is one.
+    fn take_study(
+        &mut self,
+        find: impl FnOnce(&mut History<RecordsBefore>, &Study, &mut RecordsState) -> Option<Study>,
+    ) {
+        let State {
+            history,
+            study,
+            records,
+            ..
+        } = &mut self.state;
+        if let Some(study) = find(history, study, records) {
+            self.state.study = study;
+            self.study_changed();
+        }
+    }
+
+    /// Updates whether the study is saved.
+    pub(super) fn study_changed(&mut self) {
+        self.state.notice = None;
+        self.state
+            .display
+            .gains
+            .once_held
+            .extend(self.state.study.settings.constrained.marked());
+        self.state.unsaved = self.files.saved.study.as_ref() != Some(&self.state.study);
+        self.follow_dataset();
+        self.keep_unsaved();
+    }
+}

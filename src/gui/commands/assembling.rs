@@ -1,0 +1,35 @@
+//! Commands about the import of models.
+
+use std::path::PathBuf;
+
+use gdcm_model::assembly::Rules;
+
+/// A command of the import view.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AssemblingCommand {
+    /// Start, or continue.
+    Open,
+    /// Choose a folder with the desktop's dialog.
+    AskFolder,
+    /// Read files, and folders with all their files.
+    Add(Vec<PathBuf>),
+    /// Stop reading.
+    StopReading,
+    /// Change the rules.
+    Change(Box<Rules>),
+    /// Undo the last change.
+    Undo,
+    /// Redo the last undone change.
+    Redo,
+    Select(usize),
+    /// Sort the table by the column with this index; the same column again reverses the order.
+    Sort(usize),
+    /// Show the response with this index in the preview.
+    ShowResponse(usize),
+    LoadRules(PathBuf),
+    SaveRules(PathBuf),
+    /// Write the dataset and its rules, and open the dataset.
+    MakeDataset(PathBuf),
+    /// Leave the import and discard it.
+    Close,
+}

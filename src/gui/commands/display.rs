@@ -1,0 +1,47 @@
+//! Commands about the content of the views.
+
+use gdcm_model::dataset::Pair;
+use gdcm_plot::figure::axis::FrequencyUnit;
+use gdcm_plot::figure::gains::{Across, Measure};
+use gdcm_study::AcrossRole;
+
+use crate::gui::state::assessed_figures::AssessedFigures;
+use crate::gui::state::mapped_cost::MappedCost;
+use crate::gui::state::pair_set::PairSet;
+use crate::gui::state::requirements_page::RequirementsPage;
+use crate::gui::widgets::palette::PlotStyle;
+
+/// Changes what a view shows; no result depends on it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DisplayCommand {
+    /// Selects the correction whose costs are mapped.
+    MapCost(MappedCost),
+    /// Selects the responses in the net-gain plots.
+    ShowNetGains(PairSet),
+    /// Adds a response to the net-gain plots, or removes it.
+    PickPair(Pair),
+    /// Selects gains or delays of the channels, over airspeed or over conditions.
+    ShowChannels(Measure, Across),
+    /// Shows or hides zeros among the poles.
+    ShowZeros(bool),
+    /// Shows or hides error bars and bands in the plots of gains.
+    ShowBars(bool),
+    /// Overlays a variant on the present decisions in Bode and Net gain, or removes the overlay.
+    Overlay(Option<String>),
+    /// Shows or hides the evidence for the schedule beside the net gains.
+    ShowEvidence(bool),
+    /// Selects the models that are overlaid across conditions.
+    ShowAcross(AcrossRole),
+    /// Changes the assessed quantity or its form.
+    Assess(AssessedFigures),
+    /// Shows another page of requirements.
+    ShowRequirements(RequirementsPage),
+    /// Selects responses over time to a test input (`true`) or to the records.
+    ShowTest(bool),
+    /// Changes the unit of frequencies.
+    SetFrequencyUnit(FrequencyUnit),
+    /// Changes the style of curves.
+    SetLooks(PlotStyle),
+    /// Fits the plots to their curves.
+    FitPlots,
+}

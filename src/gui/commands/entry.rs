@@ -1,0 +1,86 @@
+//! Entry of the table of commands: name, keys, place in a menu.
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+
+use super::command::Command;
+
+/// Menu of the bar at the top.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Menu {
+    /// Opening, saving, exporting.
+    File,
+    Edit,
+    /// Displayed content and its form.
+    View,
+    /// Style of curves: a submenu of `View`.
+    Curves,
+    Help,
+}
+
+/// Where a shortcut works.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// Everywhere, also while text is being typed.
+    Everywhere,
+    /// Only without a focused control and without an open form: lists, fields and texts use these
+    /// keys too.
+    WithoutFocus,
+}
+
+/// Entry of a menu or of the palette.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Name in menus and in the palette.
+    pub name: String,
+    /// Explanation, if the name is not sufficient.
+    pub meaning: &'static str,
+    /// Shortcuts; the first is displayed.
+    pub shortcuts: Vec<KeyboardShortcut>,
+    pub reach: Reach,
+    /// Menu and group within it; groups are separated by lines.
+    pub menu: Option<(Menu, u8)>,
+    pub enabled: bool,
+    pub command: Command,
+}
+
+impl Entry {
+    /// Creates an entry for the palette alone, without shortcut.
+    pub fn new(
+        name: impl Into<String>,
+        meaning: &'static str,
+        command: impl Into<Command>,
+    ) -> Self {
+        let shortcuts = Vec::new();
+        let reach = Reach::Everywhere;
+        Self {
+            name: name.into(),
+            meaning,
+            shortcuts,
+            reach,
+            menu: None,
+            enabled: true,
+            command: command.into(),
+        }
+    }
+
+    pub fn keys(mut self, modifiers: Modifiers, key: Key) -> Self {
+        self.shortcuts.push(KeyboardShortcut::new(modifiers, key));
+        self
+    }
+
+    /// Adds a key without modifiers that works only while nothing has the focus.
+    pub fn free_key(mut self, key: Key) -> Self {
+        self.reach = Reach::WithoutFocus;
+        self.keys(Modifiers::NONE, key)
+    }
+
+    pub fn within(mut self, menu: Menu, group: u8) -> Self {
+        self.menu = Some((menu, group));
+        self
+    }
+
+    pub fn enabled(mut self, enabled: bool) -> Self {
+        self.enabled = enabled;
+        self
+    }
+}

@@ -1,0 +1,44 @@
+//! Commands about studies, datasets and tables of requirements as files.
+
+use std::path::PathBuf;
+
+use crate::gui::state::forms::RequirementTable;
+
+/// Opens, saves, reloads or closes a file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FileCommand {
+    /// Opens the desktop's dialog for a file of levels or tolerances.
+    AskRequirementTable(RequirementTable),
+    /// Asks for the path of the tolerances.
+    AskWriteTolerances,
+    /// Reads levels or tolerances from a file.
+    ReadRequirementTable(RequirementTable, PathBuf),
+    /// Writes the tolerances of the study to a file.
+    WriteTolerances(PathBuf),
+    /// Opens the desktop's dialog for a file.
+    AskOpen,
+    /// Opens a dataset or a study.
+    Open(PathBuf),
+    /// Opens a study whose dataset has moved: path of the study, path of the dataset.
+    OpenStudyOf(PathBuf, PathBuf),
+    OpenExample,
+    /// Closes the study and shows the start page.
+    CloseStudy,
+    /// Saves the study to its file.
+    SaveStudy,
+    /// Opens the desktop's dialog for the study's file.
+    AskSaveStudy,
+    /// Saves the study to another file.
+    SaveStudyAs(PathBuf),
+    /// Reads the dataset's changed file again.
+    Reload,
+    /// Keeps the open dataset although its file has changed.
+    KeepOpen,
+    /// Opens the decisions of a recovery file; the argument is the offer's number.
+    RestoreRecovery(usize),
+    /// Removes a recovery file; the argument is the offer's number.
+    DiscardRecovery(usize),
+    /// Checks which recent files exist.
+    LookForRecent,
+    Quit,
+}

@@ -1,0 +1,30 @@
+//! Commands about forms and messages.
+
+use gdcm_model::dataset::ModelId;
+use gdcm_study::Edit;
+
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::notices::Bar;
+
+/// Shows, answers or closes a form or a message.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FormCommand {
+    /// Shows a form, or closes the open form.
+    ShowForm(Option<FormKind>),
+    /// Overwrites the files listed in the form.
+    Overwrite,
+    /// Saves the study, then continues with the action that would lose unsaved decisions.
+    SaveAndGoOn,
+    /// Continues with the action that loses unsaved decisions.
+    DiscardAndGoOn,
+    /// Closes a bar.
+    CloseBar(Bar),
+    /// Takes the decision requested by a form, and closes the form.
+    DecideInForm(Edit),
+    /// Asks for the reason, in words, why a model is or will be rejected.
+    AskReason(ModelId),
+    /// Reports why an entry is refused.
+    Refuse(String),
+    /// Closes the message.
+    DismissNotice,
+}

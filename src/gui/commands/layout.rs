@@ -1,0 +1,49 @@
+//! Commands about the places of views, panels and sheets.
+
+use egui::ThemePreference;
+
+use crate::gui::state::opens_with::OpensWith;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::view::{View, ViewGroup};
+
+/// Shows, hides or moves a part of the window, or moves the focus.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LayoutCommand {
+    /// Brings a plot to the front.
+    ShowView(View),
+    /// Brings a group to the front, with the view it showed last.
+    ShowGroup(ViewGroup),
+    /// Shows a view beside the view in front; with `None` the view in front alone.
+    ShowBeside(Option<View>),
+    ShowInDock(View),
+    /// Unfolds (`true`) or folds the dock.
+    OpenDock(bool),
+    /// Restores the default layout of panels and plots.
+    ResetLayout,
+    /// Shows the left panel in full (`true`) or as a rail.
+    ShowLeft(bool),
+    /// Shows a sheet over the middle of the window, or closes it.
+    ShowSheet(Option<Sheet>),
+    /// Unfolds or folds the settings.
+    ShowSettings(bool),
+    /// Unfolds or folds the rarely changed settings.
+    ShowAdvanced(bool),
+    /// Unfolds or folds the identified models.
+    ShowIdentified(bool),
+    /// Selects a theme, or follows the desktop's.
+    SetTheme(ThemePreference),
+    /// Shows the start page, or the study behind it.
+    ShowStart(bool),
+    /// Selects what the program opens with at the next start.
+    BeginWith(OpensWith),
+    /// Focuses the field with this accessible name.
+    FocusField(&'static str),
+    /// Moves the focus to the next or to the previous region of the window.
+    LeaveRegion {
+        forward: bool,
+    },
+    /// Shows the first step of the guided tour.
+    StartTour,
+    /// Shows another step of the guided tour, or ends it.
+    ShowTourStep(Option<usize>),
+}

@@ -1,0 +1,25 @@
+//! Commands about the selected and highlighted parts of the study.
+
+use gdcm_model::dataset::{ConditionId, ModelId, Pair};
+use gdcm_study::ExplainTarget;
+
+/// Selects or highlights a condition, a response, a model or a value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SelectionCommand {
+    SelectCondition(ConditionId),
+    /// Shows a response in the large plot.
+    FocusPair(Pair),
+    /// Highlights a model in every view; repeated in each frame.
+    Hover(ModelId),
+    /// Highlights a condition for this frame.
+    HoverCondition(ConditionId),
+    /// Describes the plot element under the pointer in the status bar, for this frame.
+    Tell(String),
+    /// Shows only this model beside the representatives; repeated for the same model, shows all
+    /// again.
+    Isolate(ModelId),
+    /// Shows the derivation of a value, or closes it.
+    Explain(Option<ExplainTarget>),
+    /// Shows all models again and clears the selection.
+    EndIsolation,
+}

@@ -1,0 +1,18 @@
+//! Commands about the decisions of the study.
+
+use gdcm_study::Edit;
+
+/// Decision about the study, or a step through their history.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StudyCommand {
+    /// Takes a decision about the study.
+    Edit(Edit),
+    /// Completes the current decision, for example when a slider is released.
+    EndEdit,
+    /// Undoes the last decision.
+    Undo,
+    /// Removes a decision from the history if it was the last.
+    Forget(Edit),
+    /// Redoes the last undone decision.
+    Redo,
+}

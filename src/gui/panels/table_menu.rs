@@ -1,0 +1,53 @@
+//! Headings of the tables in the panels, with a menu that copies or saves the table.
+
+use egui::{Align, Layout, RichText, Role, Sense, Ui};
+
+use crate::gui::commands::command::Command;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::state::tables::TableKind;
+use crate::gui::widgets::controls::{entries_ui, named};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
+
+/// Draws a heading on the left and a value on the right over a table; a right-click copies or saves
+/// the table, as the palette does.
+pub fn table_heading_ui(
+    ui: &mut Ui,
+    palette: &Palette,
+    (title, value): (&str, &str),
+    kind: TableKind,
+    commands: &mut Vec<Command>,
+) {
+    ui.add_space(4.0);
+    let heading = ui.horizontal(|ui| {
+        ui.label(RichText::new(title).font(medium(BODY_SIZE)));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.label(palette.small(value))
+        });
+    });
+    table_menu_ui(ui, &heading.response, kind, commands);
+}
+
+/// Draws the context menu of a table's heading.
+pub fn table_menu_ui(
+    ui: &mut Ui,
+    heading: &egui::Response,
+    kind: TableKind,
+    commands: &mut Vec<Command>,
+) {
+    // Not focusable by Tab: it has no primary action.
+    let response = ui.interact(heading.rect, heading.id.with("table"), Sense::CLICK);
+    let response = named(response, Role::Label, format!("Heading of {}", kind.name()));
+    response.context_menu(|ui| {
+        let choices = [
+            (
+                "Copy table",
+                Command::Output(OutputCommand::CopyTable(kind)),
+            ),
+            (
+                "Save table as CSV…",
+                Command::Output(OutputCommand::AskSaveTable(kind)),
+            ),
+        ];
+        entries_ui(ui, choices, commands);
+    });
+}

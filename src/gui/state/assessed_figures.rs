@@ -1,0 +1,66 @@
+//! Selection and form of the assessment.
+
+use gdcm_method::fidelity::CostAverage;
+use gdcm_method::schedule::CostChange;
+use gdcm_study::AssessedCorrection;
+use gdcm_study::results::assessment_table::AssessedModel;
+
+/// Responses shown by an assessment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AssessedPairs {
+    /// On-axis responses (Figures 8 to 12).
+    #[default]
+    OnAxis,
+    /// All others (Figures 13 to 19).
+    OffAxis,
+    /// Response in focus.
+    Focused,
+    All,
+}
+
+/// Part of J shown by the table of an assessment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CostPart {
+    /// `Delta J`.
+    #[default]
+    Total,
+    /// `Delta J_mag`.
+    Magnitude,
+    /// `Delta J_phase`.
+    Phase,
+}
+
+impl CostPart {
+    /// Returns the symbol.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Total => "ΔJ",
+            Self::Magnitude => "ΔJ mag",
+            Self::Phase => "ΔJ phase",
+        }
+    }
+
+    /// Returns the function that takes this part of a change of J.
+    pub fn of(self) -> fn(CostChange) -> f64 {
+        match self {
+            Self::Total => CostChange::total,
+            Self::Magnitude => CostChange::magnitude,
+            Self::Phase => CostChange::phase,
+        }
+    }
+}
+
+/// Selection and form of the assessment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AssessedFigures {
+    pub model: AssessedModel,
+    /// Correction applied to the model.
+    pub correction: AssessedCorrection,
+    /// Average of squared errors; `None` follows the settings.
+    pub average: Option<CostAverage>,
+    pub pairs: AssessedPairs,
+    /// Whether a table is shown instead of bars.
+    pub as_table: bool,
+    /// Part of J in the table.
+    pub part: CostPart,
+}

@@ -1,0 +1,15 @@
+//! Evidence for every form of the schedule, cached between frames.
+
+use std::sync::Arc;
+
+use gdcm_method::schedule::{FormComparison, LeadDegreeFit};
+use gdcm_model::dataset::ConditionId;
+use gdcm_study::Analysis;
+
+/// Evidence for every form of the schedule, cached as long as the analysis is the same.
+#[derive(Debug, Default)]
+pub struct CachedEvidence {
+    pub analysis: Option<Arc<Analysis>>,
+    pub found: Option<(Vec<ConditionId>, FormComparison)>,
+    pub leads: Vec<LeadDegreeFit>,
+}

@@ -1,0 +1,103 @@
+//! Forms in front of the window, and their contents.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use gdcm_io::export::ExportFormat;
+use gdcm_model::dataset::{ConditionId, ModelId};
+use gdcm_plot::figure::ColumnWidth;
+use gdcm_study::Table;
+
+use super::view::View;
+
+/// Table of requirements that the engineer supplies as a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum RequirementTable {
+    Levels,
+    Tolerances,
+}
+
+/// Form in front of the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum FormKind {
+    /// Path of a file to open.
+    Open,
+    /// New path of a study's dataset.
+    FindDataset,
+    /// Path for the study.
+    Save,
+    /// Corrections to export, and the folder.
+    Export,
+    /// Format of an export for other tools, and the path.
+    ExportAs,
+    /// Reason of a rejection, in words.
+    Reason,
+    /// Path for a table.
+    SaveTable,
+    /// What to make of imported models.
+    Models,
+    /// Channels of the records that a dataset consists of, and the path.
+    RecordDataset,
+    /// Path and width of a figure.
+    SaveFigure,
+    /// Path for the report.
+    Report,
+    /// Path of a table to read.
+    ReadRequirementTable(RequirementTable),
+    /// Path for the tolerances.
+    WriteTolerances,
+    /// Palette of all commands, searched by name.
+    Palette,
+    /// Confirmation before unsaved decisions are lost.
+    Unsaved,
+    /// Differences between the dataset and the dataset of the saved study.
+    Differences,
+    Shortcuts,
+    About,
+}
+
+/// State of the open palette.
+#[derive(Clone, Debug, Default)]
+pub struct PaletteForm {
+    /// Search text as typed.
+    pub query: String,
+    /// Row carried out by Enter.
+    pub chosen: usize,
+}
+
+/// Contents of the forms.
+#[derive(Debug, Default)]
+pub struct Forms {
+    /// Form shown.
+    pub shown: Option<FormKind>,
+    /// Form drawn last, and whether it asked to overwrite files: a change of either counts as a
+    /// newly opened form.
+    pub drawn: Option<(FormKind, bool)>,
+    /// Path or text in the field of each form, as typed.
+    pub typed: BTreeMap<FormKind, String>,
+    /// Study whose dataset was not found, and the message of the attempt to open it.
+    pub lost_dataset: Option<(PathBuf, String)>,
+    /// Model whose rejection is given a reason.
+    pub rejected_model: Option<ModelId>,
+    /// Table to be saved.
+    pub table: Option<Arc<Table>>,
+    /// View whose figure is to be saved.
+    pub figure: Option<View>,
+    /// Printed width of the figure.
+    pub figure_width: ColumnWidth,
+    /// Conditions whose corrections are exported.
+    pub exported: BTreeSet<ConditionId>,
+    /// Format of an export for other tools.
+    pub export_format: ExportFormat,
+    pub palette: PaletteForm,
+    /// Files that the form's action would overwrite; if not empty, the form asks whether to.
+    pub existing: Vec<String>,
+}
+
+impl Forms {
+    /// Returns the editable text of a form's field.
+    pub fn typed_in(&mut self, form: FormKind) -> &mut String {
+        self.typed.entry(form).or_default()
+    }
+}

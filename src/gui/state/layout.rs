@@ -1,0 +1,24 @@
+//! Places of the views, panels and sheets.
+
+use super::arrangement::Arrangement;
+use super::opens_with::OpensWith;
+use super::sheet::Sheet;
+
+/// Visible views, panels and sheets.
+#[derive(Debug, Default)]
+pub struct Layout {
+    pub arrangement: Arrangement,
+    /// Whether the window is wide enough for full names and words.
+    pub is_wide: bool,
+    /// What the program opens with.
+    pub opens_with: OpensWith,
+    /// Whether the left panel is shown in full; `None` follows the width of the window.
+    pub left_open: Option<bool>,
+    /// Sheet over the middle of the window.
+    pub sheet: Option<Sheet>,
+    /// Whether the settings are unfolded, over matrix and card.
+    pub settings_open: bool,
+    /// Whether the rarely changed settings are unfolded.
+    pub advanced_open: bool,
+    pub identified_open: bool,
+}

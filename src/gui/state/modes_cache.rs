@@ -1,0 +1,35 @@
+//! Modes and zeros of the displayed condition, cached between frames.
+
+use std::sync::Arc;
+
+use nalgebra::Complex;
+
+use gdcm_method::couplings::PoleShift;
+use gdcm_model::dataset::{ModelId, Pair};
+use gdcm_study::Table;
+use gdcm_study::jobs::job::ConditionModes;
+use gdcm_study::stages::fitted_couplings::FittedCouplings;
+
+/// Modes of a condition followed from model to model, zeros of a response, and pole shifts by
+/// couplings; cached as long as their inputs are the same.
+#[derive(Debug, Default)]
+pub struct CachedModes {
+    pub made_of: Option<MadeOf>,
+    pub table: Table,
+    /// For each row, the first model that jumps.
+    pub jumping: Vec<Option<ModelId>>,
+    pub zeros: Vec<(ModelId, Vec<Complex<f64>>)>,
+    /// Shifts of the physics representative's poles by couplings.
+    pub shifts: Vec<PoleShift>,
+}
+
+/// Inputs of the modes, the zeros and the shifts.
+#[derive(Debug)]
+pub struct MadeOf {
+    pub modes: Arc<ConditionModes>,
+    /// Index of the physics model to whose modes the others' are matched.
+    pub reference: usize,
+    pub couplings: Option<Arc<FittedCouplings>>,
+    /// Response and models whose zeros are shown.
+    pub zeros_of: Option<(Pair, Vec<ModelId>)>,
+}

@@ -1,0 +1,41 @@
+//! Messages to the engineer: notices that come and go, and bars that stay.
+
+/// Event that concerns the program or its files.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Bar {
+    /// A computation panicked.
+    Fault {
+        /// What happened, what was preserved, and what to send to whom.
+        sentence: String,
+    },
+    /// Decisions of an earlier window that ended without saving them.
+    Recovery {
+        offer: usize,
+        /// Study and date.
+        sentence: String,
+    },
+    /// The dataset's file has changed since it was opened.
+    Changed { name: String },
+    /// The dataset was read again and has changed.
+    Differences {
+        name: String,
+        /// Changes, and decisions that no longer apply.
+        sentences: Vec<String>,
+    },
+}
+
+/// Kind of a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoticeKind {
+    /// Success.
+    Done,
+    /// Failure.
+    Trouble,
+}
+
+/// Message to the engineer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    pub kind: NoticeKind,
+    pub text: String,
+}

@@ -1,0 +1,52 @@
+//! Set of responses in the net-gain plots.
+
+use serde::{Deserialize, Serialize};
+
+/// Set of responses in the net-gain plots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PairSet {
+    /// Responses constrained now or at any time since the window was opened: releasing a response
+    /// keeps its plot.
+    #[default]
+    Held,
+    /// Response in focus.
+    Focused,
+    /// On-axis responses of the dataset.
+    OnAxis,
+    All,
+    /// Responses picked by the engineer.
+    Picked,
+}
+
+impl PairSet {
+    /// Every set, in the order of the list.
+    pub const ALL: [Self; 5] = [
+        Self::Held,
+        Self::Focused,
+        Self::OnAxis,
+        Self::All,
+        Self::Picked,
+    ];
+
+    /// Returns the name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Held => "held",
+            Self::Focused => "in focus",
+            Self::OnAxis => "on-axis",
+            Self::All => "all",
+            Self::Picked => "picked",
+        }
+    }
+
+    /// Describes the content of the set in a sentence.
+    pub fn purpose(self) -> &'static str {
+        match self {
+            Self::Held => "The responses held, and those held before",
+            Self::Focused => "The response chosen in the matrix",
+            Self::OnAxis => "The on-axis responses of the dataset",
+            Self::All => "Every response that has a gain",
+            Self::Picked => "Those picked with the button beside this list",
+        }
+    }
+}

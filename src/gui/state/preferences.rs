@@ -1,0 +1,80 @@
+//! Preferences of the engineer that persist between sessions.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_plot::figure::axis::FrequencyUnit;
+
+use super::arrangement::Arrangement;
+use super::curve_display::CurveDisplay;
+use super::display::Display;
+use super::opens_with::OpensWith;
+use crate::gui::plot::Role;
+use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
+use crate::gui::widgets::palette::PlotStyle;
+
+/// Preferences of the engineer for the window. Fields missing from the text of an earlier version
+/// get their defaults.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Preferences {
+    pub arrangement: Option<Arrangement>,
+    /// What the program opens with.
+    pub opens_with: OpensWith,
+    /// Whether the left panel is shown in full, if chosen.
+    pub left_open: Option<bool>,
+    pub frequency_unit: FrequencyUnit,
+    pub magnitude: MagnitudeUnit,
+    pub phase: PhaseUnit,
+    pub phase_error: PhaseErrorUnit,
+    /// Roles whose visibility differs from the default, which later versions may change.
+    pub hidden_roles: BTreeSet<Role>,
+    /// Whether Bode and the plot of errors show the envelopes of maximum unnoticeable added
+    /// dynamics.
+    pub shows_muad: bool,
+    pub shows_bands: bool,
+    /// Whether the values at the cursor are not listed.
+    pub lists_no_values: bool,
+    pub looks: PlotStyle,
+}
+
+impl Preferences {
+    /// Returns the current preferences of a window.
+    pub fn of(display: &Display) -> Self {
+        Self {
+            arrangement: Some(display.layout.arrangement.clone()),
+            opens_with: display.layout.opens_with,
+            left_open: display.layout.left_open,
+            frequency_unit: display.curves.unit,
+            magnitude: display.curves.magnitude,
+            phase: display.curves.phase,
+            phase_error: display.curves.phase_error,
+            hidden_roles: &display.curves.hidden_roles ^ &CurveDisplay::hidden_at_first(),
+            shows_muad: display.curves.shows_muad,
+            shows_bands: display.curves.shows_bands,
+            lists_no_values: !display.curves.lists_values,
+            looks: display.curves.looks,
+        }
+    }
+
+    /// Applies these preferences to a window.
+    pub fn apply(&self, display: &mut Display) {
+        display.layout.arrangement = self
+            .arrangement
+            .clone()
+            .and_then(Arrangement::if_whole)
+            .unwrap_or_default();
+        display.layout.opens_with = self.opens_with;
+        display.layout.left_open = self.left_open;
+        display.curves.unit = self.frequency_unit;
+        display.curves.magnitude = self.magnitude;
+        display.curves.phase = self.phase;
+        display.curves.phase_error = self.phase_error;
+        display.curves.hidden_roles = &self.hidden_roles ^ &CurveDisplay::hidden_at_first();
+        display.curves.shows_muad = self.shows_muad;
+        display.curves.shows_bands = self.shows_bands;
+        display.curves.lists_values = !self.lists_no_values;
+        display.curves.looks = self.looks.within_limits();
+    }
+}

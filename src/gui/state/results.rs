@@ -1,0 +1,224 @@
+//! Computed results, and the work in progress on them.
+
+use std::sync::Arc;
+
+use gdcm_method::correction::Problem;
+use gdcm_method::uncertainty::{Bar as ErrorBar, Scalar};
+use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::simulation::Validation;
+use gdcm_study::jobs::job::{
+    AcrossCurves, AcrossJob, ConditionModes, CurvesJob, ModesJob, SimulationJob, Toggles,
+    TogglesJob, UncertaintyJob, VariantJob,
+};
+use gdcm_study::results::analysis::ConditionFailure;
+use gdcm_study::results::assessment_table::AssessmentJob;
+use gdcm_study::results::condition_answers::{
+    RecordHistory, RecordHistoryJob, TestAnswers, TestAnswersJob,
+};
+use gdcm_study::results::couplings_assessment::{AssessedCouplings, CouplingsJob};
+use gdcm_study::results::requirements::Requirements;
+use gdcm_study::results::requirements_tables::RequirementsJob;
+use gdcm_study::results::time_histories::{TimeHistories, TimeHistoriesJob};
+use gdcm_study::stages::condition_responses::ConditionCurves;
+use gdcm_study::stages::uncertainty::Uncertainty;
+use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis};
+
+/// Uncertainty of the displayed condition's values.
+#[derive(Clone, Copy, Debug)]
+pub struct Sureness<'a> {
+    pub condition: ConditionId,
+    pub uncertainty: Option<&'a Uncertainty>,
+}
+
+impl<'a> Sureness<'a> {
+    /// Returns the error bar of a value, and its confidence level.
+    pub fn bar(&self, scalar: Scalar) -> Option<(&'a ErrorBar, f64)> {
+        let uncertainty = self.uncertainty?;
+        Some((uncertainty.bar(self.condition, scalar)?, uncertainty.level))
+    }
+
+    /// Returns the half-width of the error bar: relative, for delays in \[s\].
+    pub fn half(&self, scalar: Scalar) -> Option<f64> {
+        self.bar(scalar)
+            .and_then(|(bar, level)| bar.half_width(level))
+    }
+
+    /// Returns the confidence level of all error bars.
+    pub fn level(&self) -> Option<f64> {
+        self.uncertainty.map(|of| of.level)
+    }
+}
+
+/// Result of the displayed condition, available before the others.
+#[derive(Clone, Debug)]
+pub struct FirstResult {
+    /// Number of the answered request.
+    pub generation: u64,
+    /// Dataset of the result.
+    pub dataset: Arc<Dataset>,
+    pub condition: ConditionId,
+    pub outcome: Result<ConditionAnalysis, ConditionFailure>,
+}
+
+/// Work in progress besides the live answer.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Background {
+    /// Live answer in progress: steps done, total.
+    pub analysis: Option<(usize, usize)>,
+    /// Problems whose gains are being or will be proven.
+    pub proofs: Vec<Arc<Problem>>,
+    /// Whether the costs of constraining and releasing are being computed.
+    pub toggles: bool,
+    /// Curves in progress: models done, total.
+    pub curves: Option<(usize, usize)>,
+    /// Error bars in progress: steps done, total (for each model its response, and the analysis
+    /// with this model as the representative).
+    pub bars: Option<(usize, usize)>,
+    /// Responses to all records in progress: steps done, total.
+    pub time_histories: Option<(usize, usize)>,
+    /// Assessment of couplings in progress: steps done, total.
+    pub couplings: Option<(usize, usize)>,
+    /// Number of jobs that the visible views wait for.
+    pub views: usize,
+    /// Report in progress: conditions done, total.
+    pub report: Option<(usize, usize)>,
+    /// Identification in progress: parts done, total.
+    pub identification: Option<(usize, usize)>,
+    /// Whether some of it was stopped, by hand or by a fault.
+    pub stopped: bool,
+}
+
+impl Background {
+    /// Returns whether anything is in progress.
+    pub fn is_busy(&self) -> bool {
+        !self.proofs.is_empty()
+            || self.toggles
+            || self.curves.is_some()
+            || self.bars.is_some()
+            || self.time_histories.is_some()
+            || self.couplings.is_some()
+            || self.views > 0
+            || self.report.is_some()
+            || self.identification.is_some()
+    }
+}
+
+/// Computed results; never saved.
+#[derive(Debug, Default)]
+pub struct Results {
+    pub analysis: Option<Arc<Analysis>>,
+    /// Displayed condition, if it is ahead of that analysis.
+    pub first: Option<FirstResult>,
+    /// Costs of constraining or releasing each response of a condition, with their job; see `State::toggles`.
+    pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
+    /// Responses for drawing, with their job; see `State::curves`.
+    pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
+    /// Modes of the models of a condition, with their job; see `State::modes`.
+    pub modes: Option<(ModesJob, Arc<ConditionModes>)>,
+    /// Requested assessment, with its job; see `State::assessment`.
+    pub assessment: Option<(AssessmentJob, Arc<AssessmentTable>)>,
+    /// Responses of a model of each condition, with their job; see `State::across`.
+    pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
+    /// Uncertainty of an analysis, with its job; see `State::uncertainty`.
+    pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
+    /// Actual or potential effect of couplings, with its job; see `State::couplings`.
+    pub couplings: Option<(CouplingsJob, AssessedCouplings)>,
+    /// Requirements, with their job; see `State::requirements`.
+    pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
+    /// Responses to the test input, with their job; see `State::test_answers`.
+    pub test_answers: Option<(TestAnswersJob, Result<Arc<TestAnswers>, String>)>,
+    /// Comparison of a record with the tolerances; see `State::record_history`.
+    pub record_history: Option<(RecordHistoryJob, Result<Arc<RecordHistory>, String>)>,
+    /// Models' responses to all records, with their job; see `State::time_histories`.
+    pub time_histories: Option<(TimeHistoriesJob, Arc<TimeHistories>)>,
+    pub variants: Vec<(VariantJob, Arc<Analysis>)>,
+    /// Models compared with a record in time, or the reason why not.
+    pub simulations: Vec<(SimulationJob, Result<Arc<Validation>, String>)>,
+    pub background: Background,
+    /// Start of the background work \[s of the window's clock\].
+    pub background_since: Option<f64>,
+    /// Number of the newest request.
+    pub requested: u64,
+    /// Number of the request answered by the analysis.
+    pub received: u64,
+    /// Time of the oldest unanswered request \[s of the window's clock\].
+    pub waiting_since: Option<f64>,
+    /// Whether a frame with an analysis has been painted.
+    pub is_painted: bool,
+    /// Duration of the newest analysis \[ms\].
+    pub elapsed_ms: f64,
+    /// Whether the newest request was stopped, by hand or by a fault; the displayed results then
+    /// stay older than the settings.
+    pub stopped: bool,
+}
+
+/// Age \[s\] from which displayed results of older settings are marked as stale.
+const STALE_AFTER_S: f64 = 0.15;
+/// Duration \[s\] from which background work is reported: most of it ends before it could be read.
+const BACKGROUND_AFTER_S: f64 = 0.5;
+
+impl Results {
+    /// Returns whether an answer is pending.
+    pub fn is_waiting(&self) -> bool {
+        self.is_behind() && !self.stopped
+    }
+
+    /// Returns the message shown instead of a missing result.
+    pub fn absence(&self) -> &'static str {
+        if self.stopped {
+            "not computed"
+        } else {
+            "computing …"
+        }
+    }
+
+    /// Returns the message shown instead of missing error bars.
+    pub fn absence_of_bars(&self) -> String {
+        match self.background.bars {
+            Some(progress) if !self.is_behind() => bar_words(progress),
+            None if self.background.stopped => {
+                "Error bars: stopped; Compute, below, goes on with them".to_owned()
+            }
+            _ => self.absence().to_owned(),
+        }
+    }
+
+    /// Returns whether the displayed results are older than the settings.
+    pub fn is_behind(&self) -> bool {
+        self.requested > self.received
+    }
+
+    /// Returns whether the displayed condition's result has newer settings than the analysis of all
+    /// conditions.
+    pub fn first_is_ahead(&self) -> bool {
+        self.analysis.is_some()
+            && self
+                .first
+                .as_ref()
+                .is_some_and(|first| first.generation > self.received)
+    }
+
+    /// Returns whether background work has lasted long enough at `now` to be reported.
+    pub fn is_background_told(&self, now: f64) -> bool {
+        self.background_since
+            .is_some_and(|since| now - since > BACKGROUND_AFTER_S)
+    }
+
+    /// Returns whether the displayed results should be marked as stale at `now` \[s of the window's
+    /// clock\].
+    pub fn is_stale(&self, now: f64) -> bool {
+        self.stopped
+            || self
+                .waiting_since
+                .is_some_and(|since| now - since > STALE_AFTER_S)
+    }
+}
+
+/// Describes the progress of the error bars.
+pub fn bar_words((done, total): (usize, usize)) -> String {
+    if total == 0 {
+        "error bars …".to_owned()
+    } else {
+        format!("error bars, {done} of {total} steps …")
+    }
+}

@@ -1,0 +1,37 @@
+//! Sheets over the middle of the window.
+
+use crate::gui::widgets::controls::QUESTION;
+
+/// Content of a sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sheet {
+    /// Reasons for the result.
+    Reasons,
+    /// Physics models, beside the rail.
+    Models,
+    /// Identified models, beside the rail.
+    Identified,
+    /// Derivation of a value.
+    Derivation,
+}
+
+impl Sheet {
+    /// Returns the heading, which is also the accessible name.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Reasons => "Why the result is so",
+            Self::Models => "Physics models",
+            Self::Identified => "Identified models",
+            Self::Derivation => QUESTION,
+        }
+    }
+
+    /// Returns whether the sheet is at the right side, and its width \[pt\].
+    pub fn place(self) -> (bool, f32) {
+        match self {
+            Self::Reasons => (true, 380.0),
+            Self::Derivation => (true, 440.0),
+            Self::Models | Self::Identified => (false, 272.0),
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! Views between the side panels: names, groups and places.
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_plot::figure::FigureKind;
+use gdcm_study::PhaseCorrection;
+
+/// Group of views by subject.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum ViewGroup {
+    /// Responses over frequency.
+    #[default]
+    Response,
+    /// Models and the data behind them.
+    Models,
+    /// Quantities over airspeed.
+    Schedule,
+    /// Value of the correction.
+    Judge,
+}
+
+impl ViewGroup {
+    /// Every group, from left to right.
+    pub const ALL: [Self; 4] = [Self::Response, Self::Models, Self::Schedule, Self::Judge];
+
+    /// Returns the text of the group's button.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Response => "Response",
+            Self::Models => "Models",
+            Self::Schedule => "Schedule",
+            Self::Judge => "Judge",
+        }
+    }
+
+    /// Returns the views of the group, from left to right.
+    pub fn views(self) -> impl Iterator<Item = View> {
+        View::ALL
+            .into_iter()
+            .filter(move |view| view.facts().group == self)
+    }
+}
+
+/// Plot between the side panels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum View {
+    /// Response in focus: magnitude and phase.
+    Bode,
+    /// Its errors as used by the fit.
+    Error,
+    /// Every response, small.
+    Overview,
+    /// A response in every condition.
+    Across,
+    /// Poles and modes of every model of the condition.
+    Poles,
+    /// Input mixing and output feedback (M16).
+    Couplings,
+    /// Channel gains over airspeed (Figures 3 and 4).
+    Channels,
+    /// Benefit of the correction (Figures 8 to 19).
+    Assessment,
+    /// Sources of the scatter of the gains, and the evidence for the schedule.
+    Evidence,
+    /// Variants, compared with the present decisions.
+    Compare,
+    /// Questions of a qualification: bandwidth, modes, summary (M17).
+    Requirements,
+    /// Net gains over airspeed (Figures 6 and 7).
+    NetGain,
+    /// Effect of delay or lead in each channel, up to ten times the band, and its price.
+    Leads,
+    /// Flight records of the condition, and models identified from them.
+    Records,
+}
+
+impl View {
+    /// Every view, in the order of the menu.
+    pub const ALL: [Self; 14] = [
+        Self::Bode,
+        Self::Error,
+        Self::Overview,
+        Self::Across,
+        Self::Poles,
+        Self::Couplings,
+        Self::Records,
+        Self::NetGain,
+        Self::Channels,
+        Self::Leads,
+        Self::Evidence,
+        Self::Assessment,
+        Self::Compare,
+        Self::Requirements,
+    ];
+
+    /// Returns the views that the dock can show, with the leads only if these are requested.
+    pub fn docked(phase: PhaseCorrection) -> impl Iterator<Item = Self> {
+        let has_leads = phase == PhaseCorrection::Lead;
+        Self::ALL
+            .into_iter()
+            .filter(move |view| view.facts().is_docked && (*view != Self::Leads || has_leads))
+    }
+
+    /// Returns the text of the tab.
+    pub fn name(self) -> &'static str {
+        self.facts().name
+    }
+
+    /// Returns the kind of the figure on paper, if there is one.
+    pub fn figure(self) -> Option<FigureKind> {
+        self.facts().figure
+    }
+
+    /// Returns the properties of the view: the source of tabs, menus and the palette.
+    pub fn facts(self) -> ViewFacts {
+        match self {
+            Self::Bode => ViewFacts {
+                name: "Bode",
+                purpose: "Magnitude and phase of the response in focus",
+                figure: Some(FigureKind::Bode),
+                ..ViewFacts::PLAIN
+            },
+            Self::Error => ViewFacts {
+                name: "Error",
+                purpose: "What the fit sees: the ratio and the phase difference of the response in focus, and G, D and bounds",
+                figure: Some(FigureKind::Error),
+                ..ViewFacts::PLAIN
+            },
+            Self::Overview => ViewFacts {
+                name: "Overview",
+                purpose: "Every response of the condition, small",
+                figure: Some(FigureKind::Overview),
+                ..ViewFacts::PLAIN
+            },
+            Self::Across => ViewFacts {
+                name: "Airspeeds",
+                purpose: "The response in focus in every condition, coloured by airspeed",
+                figure: Some(FigureKind::Airspeeds),
+                ..ViewFacts::PLAIN
+            },
+            Self::Poles => ViewFacts {
+                name: "Poles",
+                purpose: "Poles of every model of the condition in the s-plane, and the modes in a table",
+                group: ViewGroup::Models,
+                figure: Some(FigureKind::Poles),
+                ..ViewFacts::PLAIN
+            },
+            Self::Couplings => ViewFacts {
+                name: "Couplings",
+                purpose: "What mixes the inputs and feeds outputs back, what that is worth, and what it does to the loop",
+                group: ViewGroup::Models,
+                takes_dock: true,
+                is_of_all_conditions: true,
+                figure: Some(FigureKind::Couplings),
+                ..ViewFacts::PLAIN
+            },
+            Self::Records => ViewFacts {
+                name: "Records",
+                purpose: "Flight records of the condition, and models identified from them",
+                group: ViewGroup::Models,
+                takes_dock: true,
+                ..ViewFacts::PLAIN
+            },
+            Self::Channels => ViewFacts {
+                name: "Channels",
+                purpose: "Gain of every channel against airspeed",
+                group: ViewGroup::Schedule,
+                is_of_all_conditions: true,
+                figure: Some(FigureKind::Channels),
+                ..ViewFacts::PLAIN
+            },
+            Self::Assessment => ViewFacts {
+                name: "Assessment",
+                purpose: "What the correction is worth, condition by condition",
+                group: ViewGroup::Judge,
+                is_of_all_conditions: true,
+                figure: Some(FigureKind::Assessment),
+                ..ViewFacts::PLAIN
+            },
+            Self::Evidence => ViewFacts {
+                name: "Evidence",
+                purpose: "What the scatter of the net gains is made of, which differences are significant, and what the schedule needs",
+                group: ViewGroup::Schedule,
+                takes_dock: true,
+                is_of_all_conditions: true,
+                figure: Some(FigureKind::Evidence),
+                ..ViewFacts::PLAIN
+            },
+            Self::Compare => ViewFacts {
+                name: "Compare",
+                purpose: "Variants: decisions kept under names, beside the present ones",
+                group: ViewGroup::Judge,
+                ..ViewFacts::PLAIN
+            },
+            Self::Requirements => ViewFacts {
+                name: "Requirements",
+                purpose: "What a qualification asks of the models: bandwidth and phase delay, modes, summary costs",
+                group: ViewGroup::Judge,
+                takes_dock: true,
+                is_of_all_conditions: true,
+                figure: Some(FigureKind::Requirements),
+                ..ViewFacts::PLAIN
+            },
+            Self::Leads => ViewFacts {
+                name: "Leads",
+                purpose: "What leads do in each channel, and their price above the band",
+                group: ViewGroup::Schedule,
+                is_docked: true,
+                figure: Some(FigureKind::Leads),
+                ..ViewFacts::PLAIN
+            },
+            Self::NetGain => ViewFacts {
+                name: "Net gain",
+                purpose: "Net gain of the held responses against airspeed, with the schedule",
+                group: ViewGroup::Schedule,
+                is_docked: true,
+                long_name: Some("Net gain over airspeed"),
+                is_of_all_conditions: true,
+                figure: Some(FigureKind::NetGain),
+                ..ViewFacts::PLAIN
+            },
+        }
+    }
+}
+
+/// Properties of a view that do not depend on the study.
+#[derive(Clone, Copy, Debug)]
+pub struct ViewFacts {
+    /// Text of the tab.
+    pub name: &'static str,
+    /// Purpose, in a sentence.
+    pub purpose: &'static str,
+    /// Whether the view shows results of every condition; it then reports results of older
+    /// settings.
+    pub is_of_all_conditions: bool,
+    pub group: ViewGroup,
+    pub is_docked: bool,
+    /// Whether it takes the room of the dock.
+    pub takes_dock: bool,
+    /// Heading in the dock, if longer than the text of the tab.
+    pub long_name: Option<&'static str>,
+    /// Figure on paper. Variants are tables and are saved as such; for records, the identified
+    /// models are saved.
+    pub figure: Option<FigureKind>,
+}
+
+impl ViewFacts {
+    /// View of the first group without name and figure.
+    const PLAIN: Self = Self {
+        name: "",
+        purpose: "",
+        is_of_all_conditions: false,
+        group: ViewGroup::Response,
+        is_docked: false,
+        takes_dock: false,
+        long_name: None,
+        figure: None,
+    };
+}
+
+/// Returns the views that have a figure.
+pub fn views_with_figure() -> impl Iterator<Item = View> {
+    View::ALL.into_iter().filter(|view| view.figure().is_some())
+}

@@ -1,0 +1,55 @@
+//! Button that copies or saves the content of a view.
+
+use egui::containers::menu::MenuButton;
+use egui::{Button, Role, Ui};
+
+use gdcm_plot::figure::FigureFormat;
+use gdcm_study::Table;
+
+use super::requirements::requirement_tables;
+use crate::gui::commands::command::Command;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::state::view::View;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::controls::named;
+
+/// Returns the tables that a view shows instead of a figure; `None` if it shows a figure.
+pub fn tables_in_place(state: &State, view: View) -> Option<Vec<Table>> {
+    (view == View::Requirements)
+        .then(|| requirement_tables(state))
+        .flatten()
+}
+
+/// Draws the button that copies or saves the content of a view.
+pub fn figure_button_ui(ui: &mut Ui, state: &State, view: View, commands: &mut Vec<Command>) {
+    if view.figure().is_none() {
+        return;
+    }
+    let has_figure = tables_in_place(state, view).is_none();
+    let (button, _) = MenuButton::from_button(Button::new("Save").frame(false)).ui(ui, |ui| {
+        if ui
+            .button("Copy the numbers")
+            .on_hover_text("As CSV, to the clipboard")
+            .clicked()
+        {
+            commands.push(OutputCommand::CopyFigure(view).into());
+            ui.close();
+        }
+        for format in FigureFormat::ALL
+            .into_iter()
+            .filter(|format| has_figure || *format == FigureFormat::Csv)
+        {
+            let text = format!("Save as {}…", format.extension().to_uppercase());
+            if ui.button(text).on_hover_text(format.words()).clicked() {
+                commands.push(OutputCommand::AskSaveFigure(view, format).into());
+                ui.close();
+            }
+        }
+    });
+    let button = named(
+        button,
+        Role::Button,
+        format!("Save or copy {}", view.name()),
+    );
+    button.on_hover_text("This plot on paper, or its numbers: copy, CSV, SVG, PNG, PDF");
+}

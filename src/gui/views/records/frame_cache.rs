@@ -1,0 +1,72 @@
+//! Values of the Records view cached between frames.
+
+use std::any::Any;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::Arc;
+
+use egui::{Id, Ui};
+
+/// Source data of a cached value: kept alive with the value, so that its address cannot be reused.
+pub type Source = Arc<dyn Any + Send + Sync>;
+
+struct Kept<T> {
+    sources: Vec<Source>,
+    key: u64,
+    value: Arc<T>,
+}
+
+/// Returns the cached result of `compute` for these sources (compared by address) and `key`;
+/// recomputes it when either changes.
+pub fn kept<T: Send + Sync + 'static>(
+    ui: &Ui,
+    name: &str,
+    sources: &[Source],
+    key: impl Hash,
+    compute: impl FnOnce() -> T,
+) -> Arc<T> {
+    let mut hasher = DefaultHasher::new();
+    key.hash(&mut hasher);
+    let place = Id::unique(("records page", name));
+    let key = hasher.finish();
+    let are_same = |known: &[Source]| {
+        known.len() == sources.len()
+            && known
+                .iter()
+                .zip(sources)
+                .all(|(known, source)| Arc::ptr_eq(known, source))
+    };
+    let known = ui.data(|data| data.get_temp::<Arc<Kept<T>>>(place));
+    if let Some(known) = known.filter(|known| known.key == key && are_same(&known.sources)) {
+        return Arc::clone(&known.value);
+    }
+    let value = Arc::new(compute());
+    let kept = Arc::new(Kept {
+        sources: sources.to_vec(),
+        key,
+        value: Arc::clone(&value),
+    });
+    ui.data_mut(|data| data.insert_temp(place, kept));
+    value
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_computed_once_for_its_sources_and_key() {
+        let mut computed = 0;
+        egui::__run_test_ui(|ui| {
+            computed = 0;
+            let sources: [Source; 2] = [Arc::new(1_i64), Arc::new(1_i64)];
+            for (source, key) in [(0, 1), (0, 1), (0, 2), (1, 2), (0, 2)] {
+                let value = kept(ui, "test", &[Arc::clone(&sources[source])], key, || {
+                    computed += 1;
+                    (source, key)
+                });
+                assert_eq!(*value, (source, key));
+            }
+        });
+        assert_eq!(computed, 4, "once for each change");
+    }
+}

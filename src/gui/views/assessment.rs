@@ -16,7 +16,7 @@ use gdcm_study::{AssessedCorrection, AssessmentTable, ExplainTarget, Table};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::plot::curve_menu::NamedFigure;
+use crate::gui::plot::questions::NamedFigure;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
 use crate::gui::state::assessed_figures::{AssessedFigures, AssessedPairs, CostPart};
 use crate::gui::state::view::View;

@@ -21,12 +21,13 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::plot::bode::{BodeEvent, InvalidRegion, PaneNote};
-use crate::gui::plot::bode_pane::BodeBand;
+use crate::gui::plot::bode_event::BodeEvent;
+use crate::gui::plot::bode_scene::BodeBand;
+use crate::gui::plot::bode_scene::{InvalidRegion, PaneNote};
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::overview::{OverviewCell, OverviewEvent, OverviewScene, overview_ui};
+use crate::gui::plot::pointed_curve::pointed_words;
 use crate::gui::plot::quantity::{BodeQuantity, PhaseErrorUnit, ResponsePlace};
-use crate::gui::plot::readout::pointed_words;
 use crate::gui::plot::{BodeCurve, BodeScene, CurveId, Pane, Role, bode_ui};
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
@@ -84,7 +85,7 @@ pub fn bode_view_ui(
         invalid: invalid.as_ref(),
         notes,
         message,
-        ..BodeScene::of(&title, &curves, band)
+        ..BodeScene::new(&title, &curves, band)
     };
     frequency_plot_ui(ui, state, (scene, &mut view), palette, commands);
     state.display.frequency.error.share_frequencies(&view);
@@ -225,7 +226,7 @@ pub fn error_view_ui(
         strips: &strips,
         omega_range: grid.and_then(|omega| Some((*omega.first()?, *omega.last()?))),
         message: Some(&message),
-        ..BodeScene::of(&title, &curves, (band.min(), band.max()))
+        ..BodeScene::new(&title, &curves, (band.min(), band.max()))
     };
     frequency_plot_ui(ui, state, (scene, &mut view), palette, commands);
     state.display.frequency.bode.share_frequencies(&view);
@@ -337,7 +338,7 @@ pub fn across_view_ui(
         unit,
         stale: state.results.is_stale(ui.input(|input| input.time)),
         message: Some(state.results.absence()),
-        ..BodeScene::of(&title, &curves, (band.min(), band.max()))
+        ..BodeScene::new(&title, &curves, (band.min(), band.max()))
     };
     for event in bode_ui(ui, &scene, &mut state.display.frequency.across, palette) {
         if let BodeEvent::Clicked(CurveId::Model(id)) = event {
@@ -345,7 +346,7 @@ pub fn across_view_ui(
         }
     }
     commands.extend(
-        pointed_words(&state.display.frequency.across, &curves, (quantity, unit))
+        pointed_words(&state.display.frequency.across, &curves, quantity, unit)
             .map(|value| Command::Selection(SelectionCommand::Tell(value))),
     );
     if let Some(transform) = state

@@ -108,7 +108,8 @@ pub fn channels_view_ui(
         let scene = plots.scene(name, figure, state.results.absence());
         let scene = FigureScene {
             is_compact,
-            words: (&plots, first),
+            words: &plots,
+            first_plot: first,
             ..scene
         };
         let events = figure_within_ui(ui, inner, &scene, view, palette);

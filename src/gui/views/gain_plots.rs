@@ -13,7 +13,7 @@ use gdcm_study::{Edit, ExplainTarget};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::plot::curve_menu::NamedFigure;
+use crate::gui::plot::questions::NamedFigure;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords};
 use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::window_state::State;

@@ -64,7 +64,7 @@ pub fn histories_ui(
         .figures
         .remove(&View::Requirements)
         .unwrap_or_default();
-    view.is_of(&figure.title);
+    view.set_subject(&figure.title);
     let accented = match &found {
         OverTime::Test(_) => Some(1 + state.display.selection.pair.output),
         OverTime::Record(..) => None,

@@ -558,7 +558,7 @@ pub(super) fn preview_ui(
         quantity: BodeQuantity::RESPONSE_OF_FOUND_MODEL,
         unit: FrequencyUnit::default(),
         message: Some("This response cannot be computed"),
-        ..BodeScene::of(&names[place], curves, band)
+        ..BodeScene::new(&names[place], curves, band)
     };
     bode_ui(ui, &scene, &mut assembly.preview.view, palette);
 }

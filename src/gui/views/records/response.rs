@@ -21,9 +21,8 @@ use gdcm_sysid::subspace::stabilisation::StabilisationPoint;
 
 use super::frame_cache::kept;
 use super::page::Page;
-use crate::gui::plot::chart::{
-    Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan, chart_ui,
-};
+use crate::gui::plot::chart::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan};
+use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{named, painted_text, text_width};
 use crate::gui::widgets::palette::{Palette, small};

@@ -1,125 +1,46 @@
-//! Common parts of all plots: frame, appearance of the axes, and disabled interaction.
+//! Ticks and grid lines: places, and the numbers written there.
 
-use std::ops::RangeInclusive;
-
-use egui::{Align2, Color32, FontId, Id, Rangef, Rect, RichText, Sense, Ui, WidgetInfo};
-use egui_plot::{Axis, AxisHints, GridInput, GridMark, Plot};
+use egui::Rangef;
+use egui_plot::{GridInput, GridMark};
 
 use gdcm_model::units::{db_to_ratio, ratio_to_db};
 use gdcm_plot::figure::Range;
-pub use gdcm_plot::figure::axis::FrequencyUnit;
-use gdcm_plot::figure::axis::{Scale, Tick, TickGaps, compact, ticks_of};
+use gdcm_plot::figure::axis::{FrequencyUnit, Scale, Tick, TickGaps, compact, ticks_of};
 
-use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+/// Least distance between ticks on a vertical axis \[pt\].
+pub(super) const VERTICAL_TICK_GAP: f64 = 27.0;
 
-/// Font size of tick labels \[pt\].
-pub const TICK_SIZE: f32 = 11.0;
-/// Least distance between the ticks of a vertical axis \[pt\].
-pub const VERTICAL_TICK_GAP: f64 = 27.0;
-/// Height of an axis with tick labels only \[pt\].
-pub const TICKS_HEIGHT: f32 = 15.0;
-/// Height of an axis with tick labels and a label \[pt\].
-pub const LABELLED_HEIGHT: f32 = 33.0;
-
-/// Returns the font of tick labels.
-pub fn tick_font() -> FontId {
-    FontId::proportional(TICK_SIZE)
-}
-
-/// Returns the font of captions in plots: titles, axis labels, legends, labels of dots.
-pub fn caption_font() -> FontId {
-    FontId::proportional(SMALL_SIZE)
-}
-
-/// Creates a plot without interaction: callers manage ranges, hovering and clicks.
-pub fn quiet_plot<'a>(id: Id, palette: &Palette) -> Plot<'a> {
-    Plot::new(id)
-        .id(id)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .allow_double_click_reset(false)
-        .show_x(false)
-        .show_y(false)
-        .grid_spacing(GRID_SPACING)
-        .grid_color(palette.grid)
-        .auto_bounds(false)
-}
-
-/// Makes the plots in `ui` transparent: their ground already has the same colour, and without a
-/// graphics processor every pixel filled twice costs time.
-pub(super) fn keep_ground(ui: &mut Ui) {
-    ui.visuals_mut().extreme_bg_color = Color32::TRANSPARENT;
-}
-
-/// Returns the appearance of an axis with `ticks`, a `label` beside it (none if empty), and a total
-/// thickness of `thickness` points.
-pub fn axis_hints<'a>(
-    axis: Axis,
-    label: &str,
-    thickness: f32,
-    palette: &Palette,
-    ticks: Ticks,
-) -> AxisHints<'a> {
-    let hints = AxisHints::new(axis)
-        .formatter(move |mark, _: &RangeInclusive<f64>| ticks.text(mark))
-        .min_thickness(thickness)
-        .label_spacing(LABEL_SPACING)
-        .tick_label_color(palette.text)
-        .tick_label_font(tick_font());
-    if label.is_empty() {
-        hints
-    } else {
-        hints.label(
-            RichText::new(label)
-                .size(SMALL_SIZE)
-                .color(palette.dim_text),
-        )
-    }
-}
-
-/// Sets the frame colours of the plots in `ui` from the palette, whatever the surrounding style.
-pub fn use_frame_colors(ui: &mut Ui, palette: &Palette) {
-    let visuals = ui.visuals_mut();
-    visuals.extreme_bg_color = palette.background;
-    visuals.widgets.noninteractive.bg_stroke.color = palette.line;
-}
-
-/// Nominal distance of a labelled mark from the next \[pt\].
+/// Nominal distance between labelled marks \[pt\].
 const LABELLED: f64 = 100.0;
-/// Nominal distance of a minor mark from the next \[pt\].
+/// Nominal distance between minor marks \[pt\].
 const MINOR: f64 = 25.0;
 
 /// `grid_spacing` for which the nominal distances mean full and half strength.
-pub const GRID_SPACING: Rangef = Rangef {
+pub(super) const GRID_SPACING: Rangef = Rangef {
     min: 1.0,
     max: 100.0,
 };
 /// `label_spacing` for which labelled marks have labels in full strength, and minor marks none.
-pub const LABEL_SPACING: Rangef = Rangef {
+pub(super) const LABEL_SPACING: Rangef = Rangef {
     min: 50.0,
     max: 51.0,
 };
 
-/// Returns a labelled mark at `value`, on an axis of `units_per_point`.
-pub fn labelled_mark(value: f64, units_per_point: f64) -> GridMark {
-    GridMark {
-        value,
-        step_size: LABELLED * units_per_point,
-    }
-}
-
-/// Least distance between two labels of a decade, and between two of its lines \[pt\].
-const DECADE_GAPS: [f64; 2] = [34.0, 5.0];
+/// Least distance between two labels within a decade \[pt\].
+const DECADE_LABEL_GAP: f64 = 34.0;
+/// Least distance between two grid lines within a decade \[pt\].
+const DECADE_LINE_GAP: f64 = 5.0;
+/// Least distance between labelled ticks \[pt\]; letters are 11 high.
+const CLOSEST: f64 = 13.0;
+/// Least gap between two names along an axis \[pt\].
+const NAME_GAP: f64 = 6.0;
 
 /// Kind of tick labels along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ticks {
+pub(super) enum Ticks {
     /// Plain values with labels at this distance in points: decibels, knots, gains.
     Decimal(f64),
-    /// Plain values at fractions of a turn.
+    /// Plain values with labels at fractions of a turn.
     Degrees,
     /// Values of `log10(omega)`, labelled as frequencies in a unit.
     Frequency(FrequencyUnit),
@@ -129,7 +50,7 @@ pub enum Ticks {
 
 impl Ticks {
     /// Converts a place on the axis to its number.
-    pub fn number(self, place: f64) -> f64 {
+    pub(super) fn number(self, place: f64) -> f64 {
         match self {
             Self::Decimal(_) | Self::Degrees => place,
             Self::Frequency(unit) => unit.of_omega(10f64.powf(place)),
@@ -138,7 +59,7 @@ impl Ticks {
     }
 
     /// Converts a number to its place on the axis; not finite if it has none.
-    pub fn place(self, number: f64) -> f64 {
+    pub(super) fn place(self, number: f64) -> f64 {
         match self {
             Self::Decimal(_) | Self::Degrees => number,
             Self::Frequency(unit) => (number / unit.of_omega(1.0)).log10(),
@@ -146,54 +67,65 @@ impl Ticks {
         }
     }
 
-    /// Returns the ticks and grid lines between two places on an axis of `units_per_point`.
-    pub fn marks(self, bounds: (f64, f64), units_per_point: f64) -> Vec<GridMark> {
+    /// Returns the ticks and grid lines between two places on an axis.
+    pub(super) fn marks(self, bounds: (f64, f64), units_per_point: f64) -> Vec<GridMark> {
         let is_finite = [bounds.0, bounds.1, units_per_point]
             .into_iter()
             .all(f64::is_finite);
         if !(is_finite && units_per_point > 0.0 && bounds.0 < bounds.1) {
             return Vec::new();
         }
-        let (scale, labels) = match self {
-            Self::Decimal(gap) => (Scale::Linear, gap),
-            Self::Degrees => (Scale::Degrees, VERTICAL_TICK_GAP),
-            Self::Frequency(_) | Self::Ratio => (Scale::Logarithmic, DECADE_GAPS[0]),
-        };
-        let range = Range::new(self.number(bounds.0), self.number(bounds.1));
-        let length = (bounds.1 - bounds.0) / units_per_point;
-        let ticks = |labels: f64| {
-            ticks_of(
-                scale,
-                range,
-                length,
-                TickGaps {
-                    labels,
-                    equal_steps: 1.5 * labels,
-                    lines: DECADE_GAPS[1],
-                },
-            )
-        };
+        let mut gap = self.label_gap();
+        let mut found = self.ticks_between(bounds, units_per_point, gap);
         // A single number does not show the scale: in a low plot the numbers are closer together.
-        let mut gap = labels;
-        let mut found = ticks(labels);
-        while found.iter().filter(|tick| tick.label.is_some()).count() < 2 && gap > CLOSEST {
+        while count_labels(&found) < 2 && gap > CLOSEST {
             gap = (0.8 * gap).max(CLOSEST);
-            found = ticks(gap);
+            found = self.ticks_between(bounds, units_per_point, gap);
         }
-        let mark = |tick: Tick| GridMark {
-            value: self.place(tick.value),
-            step_size: if tick.label.is_some() {
+        let mut marks = Vec::with_capacity(found.len());
+        for tick in found {
+            let distance = if tick.label.is_some() {
                 LABELLED
             } else {
                 MINOR
-            } * units_per_point,
-        };
-        found.into_iter().map(mark).collect()
+            };
+            marks.push(GridMark {
+                value: self.place(tick.value),
+                step_size: distance * units_per_point,
+            });
+        }
+        marks
     }
 
-    /// As [`Self::marks`], with horizontal labels of `digit` points a letter, far enough apart for
-    /// the widest.
-    pub fn marks_beside(
+    /// Returns the usual least distance between two labels \[pt\].
+    fn label_gap(self) -> f64 {
+        match self {
+            Self::Decimal(gap) => gap,
+            Self::Degrees => VERTICAL_TICK_GAP,
+            Self::Frequency(_) | Self::Ratio => DECADE_LABEL_GAP,
+        }
+    }
+
+    /// Returns the ticks between two places, with labels at least `gap` points apart.
+    fn ticks_between(self, bounds: (f64, f64), units_per_point: f64, gap: f64) -> Vec<Tick> {
+        let scale = match self {
+            Self::Decimal(_) => Scale::Linear,
+            Self::Degrees => Scale::Degrees,
+            Self::Frequency(_) | Self::Ratio => Scale::Logarithmic,
+        };
+        let range = Range::new(self.number(bounds.0), self.number(bounds.1));
+        let length = (bounds.1 - bounds.0) / units_per_point;
+        let gaps = TickGaps {
+            labels: gap,
+            equal_steps: 1.5 * gap,
+            lines: DECADE_LINE_GAP,
+        };
+        ticks_of(scale, range, length, gaps)
+    }
+
+    /// Returns [`Self::marks`] for a horizontal axis, far enough apart for the widest label where a
+    /// letter is `digit` points wide.
+    pub(super) fn marks_beside(
         self,
         bounds: (f64, f64),
         units_per_point: f64,
@@ -214,33 +146,29 @@ impl Ticks {
         }
     }
 
-    /// Wraps [`Self::marks`] for egui_plot, where the base step is one point.
-    pub fn spacer(self) -> impl Fn(GridInput) -> Vec<GridMark> {
-        move |input| self.marks(input.bounds, input.base_step_size)
-    }
-
-    /// Returns the text of a tick.
-    pub fn text(self, mark: GridMark) -> String {
+    pub(super) fn text(self, mark: GridMark) -> String {
         compact(self.number(mark.value))
     }
 }
 
-/// Least distance between labelled ticks \[pt\]; letters are 11 high.
-const CLOSEST: f64 = 13.0;
+fn count_labels(ticks: &[Tick]) -> usize {
+    ticks.iter().filter(|tick| tick.label.is_some()).count()
+}
 
-/// Shows `message` in the middle of `rect`, which is allocated from `ui`.
-pub(super) fn message_ui(ui: &mut Ui, rect: Rect, message: &str, palette: &Palette) {
-    let response = ui.allocate_rect(rect, Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, message));
-    let font = egui::FontId::proportional(BODY_SIZE);
-    let galley = ui.painter().layout(
-        message.to_owned(),
-        font,
-        palette.dim_text,
-        (rect.width() - 32.0).max(40.0),
-    );
-    let place = Align2::CENTER_CENTER.align_size_within_rect(galley.size(), rect);
-    ui.painter().galley(place.min, galley, palette.dim_text);
+/// Returns marks for `count` names at 0, 1, 2 …: only for every second, third … name if the widest
+/// does not fit otherwise.
+pub(super) fn named_marks(input: &GridInput, count: usize, widest_pt: f64) -> Vec<GridMark> {
+    let every = ((widest_pt + NAME_GAP) * input.base_step_size)
+        .ceil()
+        .max(1.0);
+    let mut marks = Vec::new();
+    for index in (0..count).step_by(every as usize) {
+        marks.push(GridMark {
+            value: index as f64,
+            step_size: LABELLED * input.base_step_size,
+        });
+    }
+    marks
 }
 
 #[cfg(test)]
@@ -306,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_that_are_no_range_give_no_ticks() {
+    fn invalid_bounds_give_no_ticks() {
         assert!(Ticks::Decimal(28.0).marks((1.0, 1.0), 0.0).is_empty());
         // Chart of a record, 58 points high.
         assert_eq!(
@@ -382,7 +310,7 @@ mod tests {
                 assert!(labelled.len() < 80, "{width} {points}: {}", labelled.len());
                 for pair in labelled.windows(2) {
                     let gap = (pair[1].value - pair[0].value) / per_point;
-                    assert!(gap > 0.99 * DECADE_GAPS[0], "{width} {points}: {gap}");
+                    assert!(gap > 0.99 * DECADE_LABEL_GAP, "{width} {points}: {gap}");
                 }
             }
         }
@@ -396,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn bounds_that_are_no_range_give_no_marks() {
+    fn invalid_frequencies_give_no_marks() {
         assert!(
             Ticks::Frequency(FrequencyUnit::RadPerSecond)
                 .marks((1.0, 1.0), 0.1)

@@ -15,13 +15,27 @@
 
 pub mod attitude_response;
 pub mod bandwidth;
+mod bandwidth_metric;
+#[cfg(test)]
+mod bandwidth_tests;
+mod crossing;
 pub mod level_boundary;
 pub mod mode_comparison;
+#[cfg(test)]
+mod mode_comparison_tests;
 pub mod mode_name;
 pub mod mode_pairing;
+mod mode_tolerance;
+mod mode_values;
+mod phase_delay;
+mod positive_number;
+mod response_deviation;
 pub mod summary;
 pub mod test_input;
 pub mod tolerance;
+mod tolerance_table;
+#[cfg(test)]
+mod tolerance_tests;
 
 pub use attitude_response::AttitudeOutput;
 pub use bandwidth::BandwidthRule;
@@ -30,16 +44,6 @@ pub use mode_comparison::{ModeToleranceTable, ModeVerdict};
 pub use mode_name::{ModeName, NamedBy};
 pub use test_input::{TestInput, TestInputShape};
 pub use tolerance::{RecordCheck, Tolerance, ToleranceTable};
-
-/// Returns the first named number that is not finite, or not above zero.
-fn not_positive<const N: usize>(
-    values: [(&'static str, Option<f64>); N],
-) -> Option<(&'static str, f64)> {
-    let is_wrong = |value: &f64| !value.is_finite() || *value <= 0.0;
-    values
-        .into_iter()
-        .find_map(|(name, value)| Some((name, value.filter(is_wrong)?)))
-}
 
 /// Known answers of M17, from independent code.
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Names of the modes of a helicopter (M17.3).
 //!
 //! ```text
-//! where states are named: sum the participations of states of a kind
+//! if states are named: sum the participations of the states of each kind
 //!    cyclic flap >= 0.4, an oscillation below 25 rad/s             regressing flap
 //!    u, w, q, theta  more than  v, p, r, phi, psi, and over 0.3:   u, theta more than w, q: phugoid; else oscillation: short period
 //!                                                                  real: q more than w: pitch subsidence, else heave
@@ -103,6 +103,29 @@ fn state_kind(name: &str) -> Option<&'static str> {
     })
 }
 
+/// The participations of named states in a mode.
+struct KindShares<'a> {
+    /// Index of each state that takes part, and its participation.
+    shares: &'a [(usize, f64)],
+    /// Names of all states.
+    states: &'a [String],
+}
+
+impl KindShares<'_> {
+    /// Returns the summed participation of states of these kinds.
+    fn sum(&self, kinds: &[&str]) -> f64 {
+        self.shares
+            .iter()
+            .filter(|(state, _)| {
+                let name = self.states.get(*state);
+                let kind = name.and_then(|name| state_kind(name));
+                kind.is_some_and(|kind| kinds.contains(&kind))
+            })
+            .map(|(_, share)| share)
+            .sum()
+    }
+}
+
 impl ModeName {
     /// Names a mode of a model: by the participation of states if `states` names them, otherwise by
     /// frequency and damping. `None` if this is inconclusive, or if a pole of named states cannot
@@ -115,40 +138,32 @@ impl ModeName {
         (Self::by_states(mode, shares, states), NamedBy::States)
     }
 
+    /// Names a mode by the kinds of states that take part in it; `shares` holds the index and the
+    /// participation of each such state.
     fn by_states(mode: &Mode, shares: &[(usize, f64)], states: &[String]) -> Option<Self> {
-        let kinds: Vec<Option<&str>> = states.iter().map(|name| state_kind(name)).collect();
-        let share = |of: &[&str]| -> f64 {
-            let is_of = |state: usize| {
-                kinds
-                    .get(state)
-                    .copied()
-                    .flatten()
-                    .is_some_and(|kind| of.contains(&kind))
-            };
-            shares
-                .iter()
-                .filter(|(state, _)| is_of(*state))
-                .map(|(_, share)| share)
-                .sum()
-        };
+        let shares = KindShares { shares, states };
+        let cyclic_flap = shares.sum(&["flap"]);
         let is_slow_enough = mode.frequency_rad_s < FASTEST_REGRESSING_RAD_S;
-        if share(&["flap"]) >= FLAP_SHARE && mode.oscillates() && is_slow_enough {
+        if cyclic_flap >= FLAP_SHARE && mode.oscillates() && is_slow_enough {
             return Some(Self::RegressingFlap);
         }
-        let longitudinal = share(&["u", "w", "q", "theta"]);
-        let lateral = share(&["v", "p", "r", "phi", "psi"]);
+        let longitudinal = shares.sum(&["u", "w", "q", "theta"]);
+        let lateral = shares.sum(&["v", "p", "r", "phi", "psi"]);
         if longitudinal.max(lateral) < FUSELAGE_SHARE {
             return None;
         }
         match (longitudinal > lateral, mode.oscillates()) {
             // Also for two real poles, into which the oscillation can split.
-            (true, _) if share(&["u", "theta"]) > share(&["w", "q"]) => Some(Self::Phugoid),
+            (true, _) if shares.sum(&["u", "theta"]) > shares.sum(&["w", "q"]) => {
+                Some(Self::Phugoid)
+            }
             (true, true) => Some(Self::ShortPeriod),
-            (true, false) if share(&["q"]) > share(&["w"]) => Some(Self::PitchSubsidence),
+            (true, false) if shares.sum(&["q"]) > shares.sum(&["w"]) => Some(Self::PitchSubsidence),
             (true, false) => Some(Self::Heave),
             (false, true) => Some(Self::DutchRoll),
-            (false, false) if share(&["p"]) >= 0.5 * lateral => Some(Self::RollSubsidence),
-            (false, false) => (mode.frequency_rad_s < FASTEST_SPIRAL_RAD_S).then_some(Self::Spiral),
+            (false, false) if shares.sum(&["p"]) >= 0.5 * lateral => Some(Self::RollSubsidence),
+            (false, false) if mode.frequency_rad_s < FASTEST_SPIRAL_RAD_S => Some(Self::Spiral),
+            (false, false) => None,
         }
     }
 
@@ -176,7 +191,8 @@ mod tests {
 
     use super::*;
 
-    fn modes_of(a: DMatrix<f64>) -> Vec<Mode> {
+    /// Modes of `dx/dt = a x`, without inputs and outputs.
+    fn uncontrolled_modes(a: DMatrix<f64>) -> Vec<Mode> {
         let n = a.nrows();
         modes(
             &StateSpace::new(
@@ -192,7 +208,7 @@ mod tests {
 
     fn named(a: DMatrix<f64>, states: &[&str]) -> Vec<(Option<ModeName>, NamedBy)> {
         let states: Vec<String> = states.iter().map(|name| (*name).to_owned()).collect();
-        modes_of(a)
+        uncontrolled_modes(a)
             .iter()
             .map(|mode| ModeName::of(mode, &states))
             .collect()
@@ -224,37 +240,42 @@ mod tests {
 
     #[test]
     fn states_of_actuators_leave_a_mode_without_a_name() {
-        let pair = || dmatrix![-16.0, 14.0; -14.0, -16.0];
+        let pair = dmatrix![-16.0, 14.0; -14.0, -16.0];
         assert_eq!(
-            named(pair(), &["act_lon", "act_lon_dot"])[0],
+            named(pair.clone(), &["act_lon", "act_lon_dot"])[0],
             (None, NamedBy::States)
         );
-        // Two identical actuators cannot be told apart; frequency is not used when the states are
-        // known.
+        // Two identical actuators cannot be separated; frequency is not used if states are known.
         let twice = dmatrix![-6.0, 5.0, 1.0, 0.0; -5.0, -6.0, 0.0, 1.0; 0.0, 0.0, -6.0, 5.0; 0.0, 0.0, -5.0, -6.0];
         assert_eq!(
             named(twice, &["act_lon", "act_lon_dot", "act_lat", "act_lat_dot"])[0],
             (None, NamedBy::States)
         );
         assert_eq!(
-            named(pair() * 0.4, &["b1s", "p"])[0].0,
+            named(pair.clone() * 0.4, &["b1s", "p"])[0].0,
             Some(ModeName::RegressingFlap)
         );
         assert_eq!(
-            named(pair() * 0.1, &["v", "r"])[0].0,
+            named(pair.clone() * 0.1, &["v", "r"])[0].0,
             Some(ModeName::DutchRoll)
         );
         assert_eq!(
-            named(pair() * 0.4, &["a (lon flap)", "beta_1s_dot"])[0].0,
+            named(pair.clone() * 0.4, &["a (lon flap)", "beta_1s_dot"])[0].0,
             Some(ModeName::RegressingFlap)
         );
+    }
+
+    fn lag(rate: f64) -> DMatrix<f64> {
+        dmatrix![-rate]
+    }
+
+    fn pair(re: f64, im: f64) -> DMatrix<f64> {
+        dmatrix![re, im; -im, re]
     }
 
     #[test]
     fn without_names_of_states_frequency_and_damping_guess() {
         use ModeName::*;
-        let lag = |rate: f64| dmatrix![-rate];
-        let pair = |re: f64, im: f64| dmatrix![re, im; -im, re];
         for (a, name) in [
             (lag(0.05), Some(Spiral)),
             (lag(3.0), Some(RollSubsidence)),

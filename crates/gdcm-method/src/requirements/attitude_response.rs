@@ -1,5 +1,5 @@
 //! The attitude response to an input, `Theta(j omega)`, from which bandwidth and phase delay are
-//! read (M17.1), and a model's response sampled once on the frequencies of the crossing search.
+//! read (M17.1), and a model response sampled once on the search frequencies.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::ops::Range;
@@ -14,13 +14,13 @@ use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::response::{FrequencyResponse, GainDelay, PreparedModel, wrap};
 use gdcm_model::units::{number, ratio_to_db};
 
-/// Frequency count of the search for sign changes.
+/// Frequency count in the search for sign changes.
 const SEARCH_POINTS: usize = 400;
 /// The search for a model extends from the lower band end divided by this factor to the upper band
 /// end times this factor.
 const SEARCH_BEYOND_BAND: f64 = 4.0;
 
-/// Relation of an output to an attitude.
+/// Meaning of an output: an attitude or its rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AttitudeOutput {
     /// Angular rate: deg/s, rad/s.
@@ -39,7 +39,7 @@ pub enum AttitudeResponseError {
         quoted(unit)
     )]
     NotAnAttitude {
-        /// Name of the output.
+        /// Output name.
         output: String,
         unit: String,
     },
@@ -81,7 +81,7 @@ impl AttitudeOutput {
 /// A response evaluated at any frequencies \[rad/s\]; NaN where it is unknown.
 pub type ResponseAt<'a> = dyn Fn(&[f64]) -> Vec<Complex<f64>> + 'a;
 
-/// Returns the frequencies \[rad/s\] of the crossing search for a model: 400, logarithmic, from
+/// Returns the frequencies \[rad/s\] searched for crossings of a model: 400, logarithmic, from
 /// `band / 4` to `4 band`.
 pub fn search_frequencies(band: Band) -> Vec<f64> {
     log_spaced(
@@ -98,7 +98,7 @@ pub fn search_frequencies(band: Band) -> Vec<f64> {
 /// unstable modes turn a physics model's phase by whole turns.
 pub struct AttitudeResponse<'a> {
     response: &'a ResponseAt<'a>,
-    /// Source for sequences of many points.
+    /// Faster source for long frequency sequences.
     samples: &'a ResponseAt<'a>,
     output: AttitudeOutput,
     /// Grid frequencies \[rad/s\] with a known response, ascending; at least two.
@@ -107,15 +107,15 @@ pub struct AttitudeResponse<'a> {
     pub(super) magnitude_db: Vec<f64>,
     /// Continuous phase \[rad\] on the grid.
     pub(super) phase: Vec<f64>,
-    /// Grid index of the lowest frequency of the band, which fixes the branch of the phase.
+    /// Grid index of the lowest band frequency, which fixes the phase branch.
     pub(super) lowest_of_band: usize,
 }
 
 impl<'a> AttitudeResponse<'a> {
-    /// Creates the attitude response of an output from `response`, searched on the ascending
-    /// frequencies `omega` \[rad/s\]: [`search_frequencies`] for a model, its own frequencies for a
-    /// measured response. It ends at the first missing value. The branch of the phase is chosen at
-    /// the first frequency in `band`.
+    /// Creates an output's attitude response from `response`, searched on the ascending frequencies
+    /// `omega` \[rad/s\]: [`search_frequencies`] for a model, its own frequencies for a measured
+    /// response. It ends at the first missing value. The phase branch is chosen at the first
+    /// frequency in `band`.
     ///
     /// # Errors
     /// [`AttitudeResponseError::NoResponse`] if no two neighbouring frequencies have a value.
@@ -165,15 +165,15 @@ impl<'a> AttitudeResponse<'a> {
         })
     }
 
-    /// Uses `samples` of the response to read sequences of many points.
+    /// Reads long frequency sequences from `samples` of the response.
     #[must_use]
     pub fn sampled_by(self, samples: &'a ResponseAt<'a>) -> Self {
         Self { samples, ..self }
     }
 
     /// Returns the phase \[deg\] at the lowest frequency of the band if it indicates an input or an
-    /// output with reversed sign: within 45 deg of +90 deg, where an attitude that follows its
-    /// input has 0 to -90 deg. The bandwidths are then wrong.
+    /// output with reversed sign: +90 deg within 45 deg, where an attitude that follows its input
+    /// has 0 to -90 deg. The bandwidths are then wrong.
     pub fn reversed_phase_deg(&self) -> Option<f64> {
         let phase_deg = self.phase[self.lowest_of_band].to_degrees();
         if (-225.0..=45.0).contains(&phase_deg) {
@@ -197,7 +197,7 @@ impl<'a> AttitudeResponse<'a> {
     }
 
     /// Returns the phases \[rad\] at the ascending frequencies `omega` \[rad/s\], unwrapped from
-    /// `first`, the phase at the first of them; `None` if a response is missing. The frequencies
+    /// `first`, the phase at the first frequency; `None` if a response is missing. The frequencies
     /// may extend beyond the grid. The last phase is read from the response itself, the others from
     /// its samples, if any.
     pub fn phases_from(&self, first: f64, omega: &[f64]) -> Option<Vec<f64>> {
@@ -217,7 +217,7 @@ impl<'a> AttitudeResponse<'a> {
     }
 }
 
-/// Magnitude \[dB\] and principal phase \[rad\] of the attitude at one frequency.
+/// Attitude magnitude \[dB\] and principal phase \[rad\] at a frequency.
 #[derive(Clone, Copy)]
 struct Polar {
     magnitude_db: f64,
@@ -337,7 +337,7 @@ fn corrected(values: &[Complex<f64>], omega: &[f64], correction: GainDelay) -> V
 /// A response sampled at equal steps of ln omega.
 struct CubicInterpolation<'a> {
     curve: &'a [Complex<f64>],
-    /// ln omega of the first sample.
+    /// ln omega at the first sample.
     start: f64,
     /// Step of ln omega.
     step: f64,

@@ -1,14 +1,14 @@
 //! Bandwidth and phase delay of an attitude response (M17.1).
 //!
 //! ```text
-//! 1  Theta = H/(j omega) of a rate, H of an attitude; phase continuous, in (-270, 90] deg at the lowest frequency of the band
+//! 1  Theta = H/(j omega) for a rate, H for an attitude; phase continuous, in (-270, 90] deg at the lowest frequency of the band
 //! 2  omega_180, omega_phase: the lowest omega from the band's lower end on at which it falls through -180, -135 deg;
 //!    where it is below that at the band's lowest frequency: the next crossing below the band, or without it the first within
 //! 3  omega_gain: the greatest omega < omega_180 at which |Theta| = 10^(6/20) |Theta(omega_180)|
-//! 4  omega_BW = min(omega_phase, omega_gain) of a rate response; omega_phase of attitude command
-//! 5  Phi at 400 logarithmic points of omega_180 ... 2 omega_180; its largest departure from the line between its ends
+//! 4  omega_BW = min(omega_phase, omega_gain) for a rate response; omega_phase for attitude command
+//! 5  Phi at 400 logarithmic points in omega_180 ... 2 omega_180; its largest departure from the line between its ends
 //! 6  up to 10 deg: tau_p = -(Phi(2 omega_180) + pi) / (2 omega_180)
-//! 7  above: least-squares line of Phi over omega; tau_p = its phase loss from omega_180 to 2 omega_180, over 2 omega_180
+//! 7  above: least-squares line through Phi over omega; tau_p = its phase loss from omega_180 to 2 omega_180, over 2 omega_180
 //! ```
 //!
 //! ADS-33E-PRF, "Handling qualities requirements for military rotorcraft", 2000, 3.3.2.1 and figure
@@ -26,14 +26,14 @@ pub use super::response_deviation::{PairBand, substitution_bar};
 use super::attitude_response::AttitudeResponse;
 use super::crossing::root_between;
 
-/// Margin of `omega_gain` \[dB\].
+/// Gain margin at `omega_gain` \[dB\].
 const GAIN_MARGIN_DB: f64 = 6.0;
 /// Phase at `omega_180` \[deg\].
 const NEUTRAL_DEG: f64 = -180.0;
-/// Phase at `omega_phase` \[deg\]: a margin of 45 deg.
+/// Phase at `omega_phase` \[deg\]: a 45 deg margin.
 const PHASE_MARGIN_DEG: f64 = -135.0;
 
-/// Response type of an axis to its inceptor.
+/// Response type to the inceptor of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CommandType {
@@ -44,11 +44,10 @@ pub enum CommandType {
     Attitude,
 }
 
-/// Settings of the bandwidth evaluation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandwidthSettings {
     pub command: CommandType,
-    /// The identified band, or the band of the measured response \[rad/s\].
+    /// The identified or measured band \[rad/s\].
     pub band: Band,
     /// Treatment of values above it.
     pub above_band: AboveBand,
@@ -58,15 +57,15 @@ pub struct BandwidthSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BandwidthRule {
-    /// The phase margin of 45 deg.
+    /// The 45 deg phase margin.
     Phase,
-    /// The gain margin of 6 dB, which occurs first.
+    /// The 6 dB gain margin, which occurs first.
     Gain,
     /// The phase margin, with an unknown gain margin: an upper bound of the bandwidth.
     PhaseGainUnknown,
 }
 
-/// Bandwidth and phase delay of one response (M17.1; ADS-33E-PRF 3.3.2.1).
+/// Bandwidth and phase delay of a response (M17.1; ADS-33E-PRF 3.3.2.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bandwidth {
     /// Frequency at -180 deg \[rad/s\].
@@ -124,7 +123,7 @@ impl Bandwidth {
     }
 }
 
-/// A response with the settings of its evaluation.
+/// A response with its evaluation settings.
 struct Reading<'a> {
     attitude: &'a AttitudeResponse<'a>,
     settings: &'a BandwidthSettings,
@@ -204,7 +203,7 @@ impl Reading<'_> {
         (first..last).find(|&k| falls_at(phase, k, level))
     }
 
-    /// Returns the reason why the phase has no crossing of a level.
+    /// Returns the reason why the phase never crosses a level.
     fn missing_crossing(&self, level_deg: f64) -> NoMetric {
         let omega = &self.attitude.omega;
         let first = self.attitude.lowest_of_band;
@@ -275,8 +274,8 @@ impl Reading<'_> {
         }
     }
 
-    /// Returns the lower of both margins; it also rests on the frequencies of the other, which it
-    /// was compared with.
+    /// Returns the lower of both margins; it also rests on the other's frequencies, which it was
+    /// compared with.
     fn lower_margin(&self, phase: Metric, gain: Metric) -> Result<LimitingMargin, NoMetric> {
         let rule = if gain.value < phase.value {
             BandwidthRule::Gain

@@ -2,7 +2,7 @@
 
 use gdcm_model::units::number;
 
-/// Treatment of values that rest on a response above the identified band.
+/// Treatment of values read above the identified band.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum AboveBand {
     /// Returned, and marked as resting on the model.
@@ -17,8 +17,8 @@ pub enum AboveBand {
 pub struct Metric {
     /// The value: \[rad/s\] or \[s\].
     pub value: f64,
-    /// Standard deviation to first order, from the band of the response (M14); `None` without a
-    /// band there.
+    /// Standard deviation to first order, from the response's uncertainty band (M14); `None` where
+    /// the response has none.
     pub deviation: Option<f64>,
     /// Lowest and highest frequency \[rad/s\] that the value was read from.
     pub read_at: [f64; 2],
@@ -39,13 +39,13 @@ pub enum NoMetric {
         /// Highest frequency searched \[rad/s\].
         up_to: f64,
     },
-    /// The phase is below the level at the lowest frequency of the band, and never falls through it
-    /// below the band.
+    /// The phase is below the level at the lowest band frequency, and never falls through it below
+    /// the band.
     #[error("no crossing of {} deg: the phase is below it from {from:.3} rad/s on", number(*level_deg))]
     BelowFromStart {
         /// The requested phase \[deg\].
         level_deg: f64,
-        /// Lowest frequency of the band \[rad/s\].
+        /// Lowest band frequency \[rad/s\].
         from: f64,
     },
     /// The magnitude nowhere below `omega_180` exceeds that at `omega_180` by 6 dB.
@@ -67,7 +67,7 @@ pub enum NoMetric {
     AboveBand {
         /// Highest frequency that the value needs \[rad/s\].
         needed: f64,
-        /// Upper end of the band, `omega_B` \[rad/s\].
+        /// Upper band end, `omega_B` \[rad/s\].
         top: f64,
     },
 }

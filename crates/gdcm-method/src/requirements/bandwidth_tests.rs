@@ -209,8 +209,8 @@ fn a_phase_that_never_falls_through_has_no_crossing_and_says_up_to_where() {
 
 #[test]
 fn slow_modes_below_the_band_move_neither_branch_nor_crossings() {
-    // An unstable phugoid of 0.2 rad/s turns the phase by a turn below the band, and a nearby
-    // pair of zeros turns it back.
+    // An unstable phugoid at 0.2 rad/s turns the phase by a turn below the band, and nearby zeros
+    // turn it back.
     let [.., short] = attitudes();
     let turned = |s: Complex<f64>| short(s) * (s * s + 0.1 * s + 0.03) / (s * s - 0.04 * s + 0.04);
     let rate = settings(CommandType::Rate);
@@ -226,8 +226,8 @@ fn slow_modes_below_the_band_move_neither_branch_nor_crossings() {
     let slow = of_attitude(|s| 1.0 / (s * (s + 0.2)), &settings(CommandType::Rate));
     let omega_phase = slow.omega_phase.unwrap();
     assert!((omega_phase.value - 0.2).abs() < 1e-10 && omega_phase.rests_below_band);
-    // The same if a lightly damped pair of zeros and poles near 1.5 rad/s lifts the phase for a
-    // while, so that it falls through once more.
+    // The same if lightly damped zeros and poles near 1.5 rad/s lifts the phase for a while, so
+    // that it falls through once more.
     let lifted =
         |s: Complex<f64>| (s * s + 0.002 * s + 1.96) / (s * s + 0.002 * s + 2.56) / (s * (s + 0.2));
     let again = value(of_attitude(lifted, &settings(CommandType::Rate)).omega_phase);
@@ -276,7 +276,7 @@ fn a_magnitude_that_is_nowhere_6_db_higher_has_no_gain_margin_and_no_bandwidth()
             .ends_with("down to 0.125 rad/s")
     );
     let commanded = of_attitude(delay, &settings(CommandType::Attitude));
-    // -135 deg with a delay of 0.2 s.
+    // -135 deg with a 0.2 s delay.
     assert!((value(commanded.omega_bw) - 0.75 * PI / 0.2).abs() < 1e-9);
 }
 
@@ -389,8 +389,8 @@ fn a_response_that_is_nowhere_is_refused() {
 
 #[test]
 fn a_model_and_its_correction_are_taken_exactly() {
-    // 5 / (s + 3) is the rate of the third known answer without its servo; the 60 ms of delay
-    // come from the correction and the model.
+    // 5 / (s + 3) is the rate of the third known answer without its servo; the 60 ms delay comes
+    // from the correction and the model.
     let lag = StateSpace::new(dmatrix![-3.0], dmatrix![5.0], dmatrix![1.0], dmatrix![0.0]).unwrap();
     let timing = Timing {
         input_delays_s: Some(vec![0.02]),
@@ -428,7 +428,7 @@ fn a_model_and_its_correction_are_taken_exactly() {
         (near.omega_gain, found.omega_gain),
         (near.phase_delay_s, found.phase_delay_s),
     ] {
-        // Four points 1.5 % apart: the fourth power of that, times the phase of the delay.
+        // Four points 1.5 % apart: the fourth power of the spacing times the delay's phase.
         let apart = (value(near) / value(exact) - 1.0).abs();
         assert!(apart > 0.0 && apart < 1e-7, "{apart}");
     }
@@ -484,7 +484,7 @@ fn deviations_are_those_of_moving_the_response() {
     ] as [fn(&Bandwidth) -> _; 3]
     {
         let deviation = metric(&middle).unwrap().deviation.unwrap();
-        // First order: the remainder is the curvature of the phase over 0.3 deg.
+        // First order: the remainder is the phase curvature over 0.3 deg.
         assert!(
             (deviation / half(metric) - 1.0).abs() < 1e-2,
             "{deviation} {}",
@@ -496,8 +496,8 @@ fn deviations_are_those_of_moving_the_response() {
     assert!((middle.phase_delay_s.unwrap().deviation.unwrap() / expected - 1.0).abs() < 1e-12);
     let magnitude_only = of(0.0, &bands(sd_db, 0.0));
     assert_eq!(magnitude_only.omega_180.unwrap().deviation, Some(0.0));
-    // At 2.4 rad/s |Theta| falls by about 20 dB a decade and more: 0.05 sqrt(2) dB are below a
-    // hundredth of the frequency.
+    // At 2.4 rad/s |Theta| falls by about 20 dB a decade and more: 0.05 sqrt(2) dB move the
+    // frequency by less than 1 %.
     let deviation = magnitude_only.omega_gain.unwrap().deviation.unwrap();
     assert!(
         deviation > 0.0 && deviation < 0.01 * value(magnitude_only.omega_gain),

@@ -1,6 +1,6 @@
 //! Roots between two frequencies by Chandrupatla's method.
 
-/// Relative width of the bracket at which the search ends.
+/// Relative bracket width at which the search ends.
 const ROOT_TOLERANCE: f64 = 1e-12;
 
 /// A frequency and the function value there.
@@ -37,7 +37,7 @@ impl Sample {
 pub(super) fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> f64 {
     let mut a = Sample::new(high, &value);
     let mut b = Sample::new(low, &value);
-    // The next point, as a fraction of the bracket from a.
+    // Place of the next point: 0 at a, 1 at b.
     let mut fraction = 0.5;
     loop {
         let new = Sample::new(a.omega + fraction * (b.omega - a.omega), &value);
@@ -68,8 +68,8 @@ fn is_monotonic(a: Sample, b: Sample, c: Sample) -> bool {
     phi.powi(2) < xi && (1.0 - phi).powi(2) < 1.0 - xi
 }
 
-/// Returns the root of the inverse quadratic through three points, as a fraction of the way from
-/// `a` to `b`.
+/// Returns the root of the inverse quadratic through three points, as its place between `a` (0) and
+/// `b` (1).
 fn quadratic_fraction(a: Sample, b: Sample, c: Sample) -> f64 {
     a.value / (b.value - a.value) * c.value / (b.value - c.value)
         + (c.omega - a.omega) / (b.omega - a.omega) * a.value / (c.value - a.value) * b.value

@@ -16,11 +16,11 @@ pub struct LevelBoundary {
     pub name: String,
     /// The output that it applies to ("P").
     pub axis: String,
-    /// Bandwidth \[rad/s\] and phase delay \[s\] of each point, in drawing order; at least two.
+    /// Points \[rad/s, s\]: bandwidth and phase delay, in drawing order; at least two.
     pub points: Vec<[f64; 2]>,
 }
 
-/// The boundaries of a file, `[{"name": "Level 1", "axis": "P", "points": [[omega, tau], ...]}]`;
+/// The boundaries in a file, `[{"name": "Level 1", "axis": "P", "points": [[omega, tau], ...]}]`;
 /// each is checked on reading.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<LevelBoundary>")]
@@ -69,7 +69,7 @@ pub enum LevelBoundaryError {
 }
 
 impl LevelBoundary {
-    /// Checks the boundary of a file; `entry` counts from 1.
+    /// Checks a boundary; `entry` counts from 1.
     fn check(&self, entry: usize) -> Result<(), LevelBoundaryError> {
         let name = self.name.clone();
         if name.trim().is_empty() {
@@ -116,12 +116,12 @@ impl LevelBoundaries {
         &self.0
     }
 
-    /// Returns the boundaries of one axis, named as the dataset names its output.
+    /// Returns the boundaries for one axis, named as the dataset names its output.
     pub fn of_axis<'a>(&'a self, axis: &'a str) -> impl Iterator<Item = &'a LevelBoundary> {
         self.0.iter().filter(move |boundary| boundary.axis == axis)
     }
 
-    /// Returns the axes of the file that are not outputs of the dataset, without duplicates.
+    /// Returns the axes that are not outputs of the dataset, without duplicates.
     pub fn unknown_axes(&self, outputs: &[String]) -> Vec<&str> {
         let mut unknown: Vec<&str> = Vec::new();
         for LevelBoundary { axis, .. } in &self.0 {
@@ -141,7 +141,7 @@ mod tests {
         serde_json::from_str(text).map_err(|error| error.to_string())
     }
 
-    /// The error of a file with a single boundary.
+    /// The error for a file with a single boundary.
     fn read_error(name: &str, axis: &str, points: &str) -> String {
         let boundary = format!(r#"[{{"name":"{name}","axis":"{axis}","points":{points}}}]"#);
         read(&boundary).unwrap_err()

@@ -1,7 +1,7 @@
 //! Qualification criteria for a model (M17): bandwidth and phase delay, time histories within
 //! tolerances, modes, summary costs.
 //!
-//! J measures the distance of two models; acceptance of a simulator or a flight control law needs
+//! J measures the distance between two models; accepting a simulator or a flight control law needs
 //! other criteria. Each is evaluated here for one model and never changes a correction. Times in s,
 //! frequencies in rad/s, internal angles in rad. A response is evaluated exactly (models) or
 //! interpolated inside its frequencies (measured), never extrapolated.
@@ -45,7 +45,7 @@ pub use mode_name::{ModeName, NamedBy};
 pub use test_input::{TestInput, TestInputShape};
 pub use tolerance::{RecordCheck, Tolerance, ToleranceTable};
 
-/// Known answers of M17, from independent code.
+/// Known answers for M17, from independent code.
 #[cfg(test)]
 mod known_answers {
     use nalgebra::Complex;
@@ -59,12 +59,12 @@ mod known_answers {
         .unwrap()
     }
 
-    /// Returns a number of a case.
+    /// Returns a named number.
     pub(super) fn number(case: &Value, name: &str) -> f64 {
         case[name].as_f64().unwrap()
     }
 
-    /// The attitude response of each case, as its description defines it.
+    /// The attitude responses, as the cases describe them.
     pub(super) fn attitudes() -> [fn(Complex<f64>) -> Complex<f64>; 4] {
         fn second_order(
             gain: f64,

@@ -1,8 +1,8 @@
 //! Modes of models against those identified from flight, with user-defined tolerances (M17.3).
 //!
 //! ```text
-//! 1  pair the modes of every model with those of the identified one by distance and shape (mode_pairing)
-//! 2  period, time to half or double amplitude, damping ratio of each mode (mode_values)
+//! 1  pair every model's modes with the identified ones by distance and shape (mode_pairing)
+//! 2  each mode's period, time to half or double amplitude, and damping ratio (mode_values)
 //! 3  within: period, and time to half or double amplitude or damping ratio, each within its tolerance (mode_tolerance)
 //! 4  not determined: below the band, by M14.5, or a standard deviation beyond the tolerance
 //! ```
@@ -25,15 +25,15 @@ use super::mode_pairing::{ModePair, mode_pairs, single_modes};
 /// Relative distance within which an estimate matches a pole: the same model in another notation.
 const SAME_POLE: f64 = 1e-3;
 
-/// The modes of a model, with the names of its states if available.
+/// A model's modes, with its state names if available.
 #[derive(Clone, Copy, Debug)]
 pub struct ModelModes<'a> {
     pub modes: &'a [Mode],
-    /// Name of each state; empty without names.
+    /// Empty without names.
     pub states: &'a [String],
 }
 
-/// Verdict on a mode of a model.
+/// Verdict on a model's mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ModeVerdict {
@@ -45,7 +45,7 @@ pub enum ModeVerdict {
     NotDetermined,
     /// The table has no tolerance for the mode.
     NoTolerance,
-    /// Unpaired: the model has no mode within the distance and likeness limits of a pair.
+    /// Unpaired: no mode of the model is near and similar enough.
     NotPaired,
 }
 
@@ -75,9 +75,9 @@ pub struct ModeRow {
     /// Its name; `None` if neither states nor frequency determine it.
     pub name: Option<ModeName>,
     pub named_by: NamedBy,
-    /// The mode of the identified model.
+    /// The identified mode.
     pub flown: ComparedMode,
-    /// Standard deviations of the flown values; `None` if the identification result is unavailable.
+    /// Standard deviations of `flown`; `None` if the identification result is unavailable.
     pub deviation: Option<ModeValues>,
     /// Whether flight determines the mode: not below the band, and its standard deviations within
     /// the tolerance if both are known.
@@ -90,9 +90,9 @@ pub struct ModeRow {
     pub verdicts: Vec<ModeVerdict>,
 }
 
-/// Compares the modes of `models` with those of the identified model `flown`, in ascending
-/// frequency; a conjugate pair makes one row. `estimates` are the flown poles with the uncertainty
-/// of the identification; empty if unavailable. Returns no rows if the flown model has no modes (a
+/// Compares the modes of `models` with the identified modes `flown`, in ascending frequency; a
+/// conjugate pair makes a single row. `estimates` are the flown poles with their uncertainty from
+/// identification; empty if unavailable. Returns no rows if the flown model has no modes (a
 /// measured response).
 ///
 /// A row takes its name from the first model with named states and a counterpart. No two rows have
@@ -146,10 +146,10 @@ pub fn compare_modes(
     rows
 }
 
-/// A model with the partner among its modes of every flown mode.
+/// A model with its partners for the flown modes.
 struct PairedModel<'a> {
     model: ModelModes<'a>,
-    /// One entry a row; `None` for an unpaired flown mode.
+    /// By row; `None` for an unpaired flown mode.
     pairs: Vec<Option<ModePair>>,
 }
 
@@ -164,7 +164,7 @@ impl PairedModel<'_> {
 /// The identified model, as far as its uncertainty is concerned.
 struct FlownModel<'a> {
     modes: &'a [Mode],
-    /// The flown poles with the uncertainty of the identification; empty if unavailable.
+    /// The flown poles with their uncertainty; empty if unavailable.
     estimates: &'a [PoleEstimate],
     band: Band,
 }
@@ -198,18 +198,18 @@ impl FlownModel<'_> {
     }
 }
 
-/// The name of a row, and its doubt.
+/// A row's name, and the doubt about it.
 #[derive(Clone, Copy, Debug)]
 struct Naming {
     name: Option<ModeName>,
     named_by: NamedBy,
-    /// Cost of the pair whose states give the name; infinite for a name by frequency.
+    /// Pairing cost of the mode whose states give the name; infinite for a name by frequency.
     doubt: f64,
 }
 
 impl Naming {
-    /// Returns the name by the states of the first model with named states and a counterpart, the
-    /// flown model first; otherwise a guess from the flown mode's frequency.
+    /// Returns the name from states: those of the first model that names them and has a
+    /// counterpart, the flown model first; otherwise a guess from the flown mode's frequency.
     fn from_states_or_frequency(
         flown: ModelModes<'_>,
         mode: usize,
@@ -234,7 +234,7 @@ impl Naming {
         }
     }
 
-    /// Returns the name by the states of `model`; `None` if its states have no names.
+    /// Returns the name from the states of `model`; `None` if they are unnamed.
     fn from_states(model: ModelModes<'_>, pair: ModePair) -> Option<Self> {
         match ModeName::of(&model.modes[pair.mode], model.states) {
             (name, NamedBy::States) => Some(Self {
@@ -247,8 +247,8 @@ impl Naming {
     }
 }
 
-/// Removes a duplicate name from all rows except the surest; of equally sure rows the slowest keeps
-/// it.
+/// Removes a duplicate name from all rows except the surest; among equally sure rows the slowest
+/// keeps it.
 fn keep_surest_names(namings: &mut [Naming]) {
     let mut by_doubt: Vec<usize> = (0..namings.len()).collect();
     by_doubt.sort_by(|&a, &b| namings[a].doubt.total_cmp(&namings[b].doubt));
@@ -286,7 +286,7 @@ fn verdict(
     }
 }
 
-/// Returns the estimate of a mode's pole: the nearest, if it is the same pole.
+/// Returns the nearest estimate, if it is the mode's pole.
 fn matching_estimate<'a>(mode: &Mode, estimates: &'a [PoleEstimate]) -> Option<&'a PoleEstimate> {
     let nearest = estimates
         .iter()
@@ -298,7 +298,7 @@ fn matching_estimate<'a>(mode: &Mode, estimates: &'a [PoleEstimate]) -> Option<&
     }
 }
 
-/// Returns the distance of an estimate from a mode's pole \[rad/s\].
+/// Returns the distance between an estimate and a mode's pole \[rad/s\].
 fn pole_distance(estimate: &PoleEstimate, mode: &Mode) -> f64 {
     (estimate.pole - mode.pole).norm()
 }

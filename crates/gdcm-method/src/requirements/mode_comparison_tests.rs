@@ -101,8 +101,8 @@ fn a_mode_less_certain_than_the_tolerance_is_not_determined() {
         verdict(-0.4, 2.0, &[estimate(0.01, 0.01)]),
         ModeVerdict::Within
     );
-    // A standard deviation of the period of 0.31 s is within 0.5 s; time to half to 25 %,
-    // damping to 0.045.
+    // The period's standard deviation, 0.31 s, is within 0.5 s; time to half to 25 %, damping to
+    // 0.045.
     assert_eq!(
         verdict(-0.4, 2.0, &[estimate(0.1, 0.2)]),
         ModeVerdict::NotDetermined
@@ -130,7 +130,7 @@ fn all_values(values: ModeValues) -> [f64; 3] {
     [values.period_s, values.time_to_half_s, values.damping_ratio].map(Option::unwrap)
 }
 
-/// Half the changes of the values between poles moved by plus and minus `re`, `im`.
+/// Half the value changes between poles moved by plus and minus `re`, `im`.
 fn half_changes(re: f64, im: f64) -> [f64; 3] {
     let high = all_values(ModeValues::new(&pair(-0.4 + re, 2.0 + im)[0]));
     let low = all_values(ModeValues::new(&pair(-0.4 - re, 2.0 - im)[0]));

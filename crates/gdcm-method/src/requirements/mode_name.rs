@@ -1,7 +1,7 @@
-//! Names of the modes of a helicopter (M17.3).
+//! Names of helicopter modes (M17.3).
 //!
 //! ```text
-//! if states are named: sum the participations of the states of each kind
+//! if states are named: sum the participations by kind of state
 //!    cyclic flap >= 0.4, an oscillation below 25 rad/s             regressing flap
 //!    u, w, q, theta  more than  v, p, r, phi, psi, and over 0.3:   u, theta more than w, q: phugoid; else oscillation: short period
 //!                                                                  real: q more than w: pitch subsidence, else heave
@@ -18,34 +18,33 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::response::Mode;
 
-/// Participation of the cyclic flap above which a mode belongs to the rotor.
+/// Cyclic flap participation from which on a mode belongs to the rotor.
 const FLAP_SHARE: f64 = 0.4;
-/// Participation of the fuselage below which a mode belongs to actuators, sensors or inflow.
+/// Fuselage participation below which a mode belongs to actuators, sensors or inflow.
 const FUSELAGE_SHARE: f64 = 0.3;
-/// Frequency \[rad/s\] below which a flapping mode is the regressing one.
+/// Frequency \[rad/s\] below which a flapping mode is regressing.
 const FASTEST_REGRESSING_RAD_S: f64 = 25.0;
 /// Frequency \[rad/s\] below which a real lateral mode without roll rate is the spiral.
 const FASTEST_SPIRAL_RAD_S: f64 = 1.0;
 
-/// The name of a mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ModeName {
-    /// Slow oscillation of speed and pitch attitude: the long-term response.
+    /// Long-term response: slow oscillation in speed and pitch attitude.
     Phugoid,
-    /// Fast oscillation of pitch rate and incidence.
+    /// Fast oscillation in pitch rate and incidence.
     ShortPeriod,
-    /// Subsidence of pitch rate.
+    /// Real pitch rate mode.
     PitchSubsidence,
-    /// Subsidence of vertical speed.
+    /// Real vertical speed mode.
     Heave,
     /// Lateral-directional oscillation.
     DutchRoll,
-    /// Subsidence of roll rate.
+    /// Real roll rate mode.
     RollSubsidence,
-    /// Slow real mode of bank and heading.
+    /// Slow real mode in bank and heading.
     Spiral,
-    /// Regressing flap of the main rotor.
+    /// Main rotor, cyclic flap.
     RegressingFlap,
 }
 
@@ -68,14 +67,14 @@ impl fmt::Display for ModeName {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NamedBy {
-    /// The participation of states.
+    /// State participation.
     States,
     /// Frequency and damping only.
     Frequency,
 }
 
-/// Returns the kind of a state by its name ("q \[rad/s\]", "theta", "b1c_dot", "a (lon flap)"): the
-/// usual letter of a body axis, an attitude, or "flap" for the cyclic flap; `None` for any other.
+/// Returns a state's kind by its name ("q \[rad/s\]", "theta", "b1c_dot", "a (lon flap)"): the
+/// usual letter for a body axis, an attitude, or "flap" for the cyclic flap; `None` for any other.
 fn state_kind(name: &str) -> Option<&'static str> {
     let lower = name.to_lowercase();
     if lower.contains("flap") {
@@ -103,16 +102,16 @@ fn state_kind(name: &str) -> Option<&'static str> {
     })
 }
 
-/// The participations of named states in a mode.
+/// How much named states participate in a mode.
 struct KindShares<'a> {
-    /// Index of each state that takes part, and its participation.
+    /// Index and participation of each participating state.
     shares: &'a [(usize, f64)],
-    /// Names of all states.
+    /// State names.
     states: &'a [String],
 }
 
 impl KindShares<'_> {
-    /// Returns the summed participation of states of these kinds.
+    /// Returns the summed participation of these kinds.
     fn sum(&self, kinds: &[&str]) -> f64 {
         self.shares
             .iter()
@@ -127,9 +126,9 @@ impl KindShares<'_> {
 }
 
 impl ModeName {
-    /// Names a mode of a model: by the participation of states if `states` names them, otherwise by
-    /// frequency and damping. `None` if this is inconclusive, or if a pole of named states cannot
-    /// be separated from another, as for identical actuators.
+    /// Names a mode: by state participation if `states` is not empty, otherwise by frequency and
+    /// damping. `None` if this is inconclusive, or if a pole cannot be separated from another, as
+    /// for identical actuators.
     pub fn of(mode: &Mode, states: &[String]) -> (Option<Self>, NamedBy) {
         if states.is_empty() {
             return (Self::by_frequency(mode), NamedBy::Frequency);
@@ -138,8 +137,8 @@ impl ModeName {
         (Self::by_states(mode, shares, states), NamedBy::States)
     }
 
-    /// Names a mode by the kinds of states that take part in it; `shares` holds the index and the
-    /// participation of each such state.
+    /// Names a mode by the kinds of states that participate; `shares` holds their indices and
+    /// participations.
     fn by_states(mode: &Mode, shares: &[(usize, f64)], states: &[String]) -> Option<Self> {
         let shares = KindShares { shares, states };
         let cyclic_flap = shares.sum(&["flap"]);
@@ -217,8 +216,7 @@ mod tests {
     #[test]
     fn modes_are_named_by_the_states_that_take_part() {
         use ModeName::*;
-        // Decoupled blocks: a slow pair of u and theta, a pair of w and q, a lag of p, a lag of
-        // phi.
+        // Decoupled blocks: a slow pair u and theta, a pair w and q, lags p and phi.
         let a = dmatrix![
             0.0, -0.1, 0.0, 0.0, 0.0, 0.0;
             0.1, 0.0, 0.0, 0.0, 0.0, 0.0;

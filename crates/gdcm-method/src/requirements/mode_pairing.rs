@@ -1,15 +1,15 @@
-//! Pairing of the modes of a model with flown modes: close in the s-plane and similar in shape over
-//! the outputs (M17.3).
+//! Pairs a model's modes with flown modes: close in the s-plane and similar in shape over the
+//! outputs (M17.3).
 //!
 //! ```text
-//! 1  mode: a real pole, or the pole above the real axis of a conjugate pair
-//! 2  scale of output i:  s_i^2 = sum_k |r_ki|^2 / max(|lambda_k|, omega_min)^2 over the flown modes,  r_k = (C v_k) |w_k B|
+//! 1  mode: a real pole, or the upper pole of a conjugate pair
+//! 2  output scale:  s_i^2 = sum_k |r_ki|^2 / max(|lambda_k|, omega_min)^2 over the flown modes,  r_k = (C v_k) |w_k B|
 //! 3  distance  d = |lambda - lambda'| / max(|lambda|, |lambda'|, omega_min)
 //!    likeness  c = |sum_i r_i* r'_i / s_i^2|^2 / (sum_i |r_i|^2 / s_i^2  sum_i |r'_i|^2 / s_i^2)
-//! 4  a pair has d <= 1/2 and c >= 1/2; the sum of d + 1 - c is least, an unpaired flown mode counting 1
+//! 4  a pair has d <= 1/2 and c >= 1/2; least sum over d + 1 - c, where an unpaired flown mode counts 1
 //! ```
 //!
-//! `omega_min` is the lower end of the band: below it flight resolves poles only by their absolute
+//! `omega_min` is the lower band end: below it flight resolves poles only by their absolute
 //! difference. `c` is the modal assurance criterion, 1 for equal shapes and 0 for orthogonal
 //! shapes: Allemang & Brown, "A correlation coefficient for modal vector analysis", Proc. 1st
 //! International Modal Analysis Conference, 1982. Assignment: see `fidelity/mode_tracks.rs`.
@@ -20,13 +20,13 @@ use gdcm_model::response::Mode;
 
 use crate::fidelity::mode_tracks::least_total;
 
-/// Largest distance of a pair in the s-plane, relative to the larger modulus.
+/// Largest s-plane distance within a pair, relative to the larger modulus.
 pub const LARGEST_PAIR_DISTANCE: f64 = 0.5;
-/// Smallest likeness of a pair: that between its residues over the outputs.
+/// Smallest likeness within a pair.
 pub const LEAST_PAIR_LIKENESS: f64 = 0.5;
 /// Cost of a flown mode without a partner: the same as the worst pair.
 const UNPAIRED_COST: f64 = LARGEST_PAIR_DISTANCE + 1.0 - LEAST_PAIR_LIKENESS;
-/// Cost of two modes that cannot be a pair: more than any number of unpaired modes.
+/// Cost of an impossible pair: more than all modes unpaired.
 const BARRED_COST: f64 = 1e9;
 
 /// A model's counterpart of a flown mode.
@@ -38,15 +38,15 @@ pub(super) struct ModePair {
     pub(super) cost: f64,
 }
 
-/// Returns the indices of real poles, and of poles above the real axis.
+/// Returns the indices of modes, each conjugate pair once.
 pub(super) fn single_modes(modes: &[Mode]) -> Vec<usize> {
     (0..modes.len())
         .filter(|&index| modes[index].pole.im >= 0.0)
         .collect()
 }
 
-/// Returns the partner among `model` of each of [`single_modes`] of `flown`; `None` if unpaired. No
-/// mode is a partner twice.
+/// Returns the partner in `model` for each of the [`single_modes`] in `flown`; `None` if unpaired.
+/// No mode is a partner twice.
 pub(super) fn mode_pairs(
     flown: &[Mode],
     model: &[Mode],
@@ -93,7 +93,7 @@ fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Op
     }
 }
 
-/// Returns `s_i` of each output; zero if no flown mode reaches it.
+/// Returns `s_i` by output; zero if no flown mode reaches it.
 fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
     let mut squares: Vec<f64> = Vec::new();
     for mode in flown {
@@ -132,7 +132,7 @@ fn likeness(flown: &Mode, model: &Mode, scales: &[f64]) -> Option<f64> {
     Some(if likeness.is_finite() { likeness } else { 0.0 })
 }
 
-/// Returns the residue of a mode in each output, `r_i`.
+/// Returns a mode's residues by output, `r_i`.
 fn mode_shape(mode: &Mode) -> Option<&[Complex<f64>]> {
     mode.residues.as_deref()
 }
@@ -146,7 +146,7 @@ mod tests {
 
     use super::*;
 
-    /// The modes of lags `-rate`, with their output shapes by row.
+    /// Modes with poles `-rate`, with their output shapes by row.
     fn lags(rates: &[f64], shapes: &[[f64; 2]]) -> Vec<Mode> {
         let n = rates.len();
         let a = DMatrix::from_diagonal(&nalgebra::DVector::from_iterator(
@@ -160,7 +160,7 @@ mod tests {
         .unwrap()
     }
 
-    /// A conjugate pair of modes, observed by two outputs.
+    /// A conjugate mode pair, observed by two outputs.
     fn oscillation(re: f64, im: f64) -> Vec<Mode> {
         let model = StateSpace::new(
             dmatrix![re, im; -im, re],

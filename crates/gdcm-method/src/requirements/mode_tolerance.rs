@@ -11,8 +11,7 @@ use super::mode_name::ModeName;
 use super::mode_values::ModeValues;
 use super::positive_number::{NamedNumber, first_not_positive};
 
-/// One row of the table: a tolerance of the period, and alternative tolerances of amplitude and
-/// damping.
+/// A row: a tolerance for the period, and alternative tolerances for amplitude and damping.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModeTolerance {
     /// Name in the source ("long term").
@@ -21,20 +20,20 @@ pub struct ModeTolerance {
     pub modes: Vec<ModeName>,
     /// Relative to the flown period.
     pub period: f64,
-    /// Tolerance of the period \[s\], used if it is the wider of the two; `None` if only the
-    /// relative one applies.
+    /// Absolute tolerance for the period \[s\], used if wider than the relative tolerance; `None`
+    /// if only the latter applies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period_s: Option<f64>,
     /// Relative to the flown time to half or double amplitude.
     pub amplitude_time: f64,
-    /// Absolute difference of the damping ratio.
+    /// Absolute.
     pub damping_ratio: f64,
-    /// Entry of the source ("2.c.3.a").
+    /// Entry in the source ("2.c.3.a").
     #[serde(default)]
     pub entry: String,
 }
 
-/// The table of mode tolerances; each row is checked on reading.
+/// The mode tolerances; each row is checked on reading.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<ModeTolerance>")]
 pub struct ModeToleranceTable(Vec<ModeTolerance>);
@@ -52,7 +51,7 @@ pub struct ModeToleranceError {
 }
 
 impl ModeTolerance {
-    /// Returns the tolerance of the period \[s\] around a flown period.
+    /// Returns the tolerance \[s\] around a flown period.
     pub fn period_tolerance_s(&self, period_s: f64) -> f64 {
         (self.period * period_s).max(self.period_s.unwrap_or(0.0))
     }
@@ -90,9 +89,9 @@ impl ModeTolerance {
         }
     }
 
-    /// Whether the flown mode itself is known to within the tolerance: the standard deviations of
-    /// its period, and of its time to half amplitude or damping ratio. A value that the flown mode
-    /// lacks has a tolerance of zero.
+    /// Whether the flown mode itself is known to within the tolerance: the standard deviation of
+    /// its period, and that of its time to half amplitude or damping ratio. A value that the flown
+    /// mode lacks has no tolerance.
     pub fn is_known(&self, flown: &ModeValues, deviation: &ModeValues) -> bool {
         let period_s = match flown.period_s {
             Some(period_s) => self.period_tolerance_s(period_s),
@@ -107,7 +106,7 @@ impl ModeTolerance {
                 || is_at_most(deviation.damping_ratio, self.damping_ratio))
     }
 
-    /// Checks the row of a table; `row` counts from 1.
+    /// Checks the tolerances; `row` counts from 1.
     fn check(&self, row: usize) -> Result<(), ModeToleranceError> {
         let values = [
             ("period", Some(self.period)),
@@ -136,7 +135,7 @@ impl ModeToleranceTable {
         &self.0
     }
 
-    /// Returns the row of a mode, if any.
+    /// Returns the row for a mode, if any.
     pub fn row_for(&self, mode: ModeName) -> Option<&ModeTolerance> {
         self.0.iter().find(|row| row.modes.contains(&mode))
     }

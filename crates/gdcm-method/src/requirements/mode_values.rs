@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! period 2 pi / |Im|, time to half amplitude ln 2 / -Re (negative: to double), damping ratio -Re / |lambda|
-//! sd of period: T sd_Im / |Im|;   of time to half: t sd_Re / |Re|;
+//! sd of period T: T sd_Im / |Im|;   sd of time to half t: t sd_Re / |Re|;
 //! sd of damping ratio: sqrt((Im^2 sd_Re)^2 + (Re Im sd_Im)^2) / |lambda|^3
 //! ```
 
@@ -39,8 +39,7 @@ impl ModeValues {
         }
     }
 
-    /// Computes the standard deviations of a mode's values, to first order in those of its pole
-    /// (M14.5).
+    /// Computes the standard deviations from those of the pole, to first order (M14.5).
     pub fn deviation(mode: &Mode, pole: &PoleEstimate) -> Self {
         let values = Self::new(mode);
         let re = mode.pole.re.abs();

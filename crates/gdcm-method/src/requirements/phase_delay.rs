@@ -54,7 +54,7 @@ impl PhaseLine {
     }
 }
 
-/// Returns the largest distance \[rad\] of a phase from the line between its ends.
+/// Returns the largest distance \[rad\] between a phase and the line through its ends.
 fn chord_departure(omega: &[f64], phase: &[f64]) -> f64 {
     let last = omega.len() - 1;
     let slope = (phase[last] - phase[0]) / (omega[last] - omega[0]);

@@ -1,6 +1,6 @@
 //! Check of user-defined limits.
 
-/// A named number of a table, which a message can cite.
+/// A number with the field name that a message cites.
 pub(super) struct NamedNumber {
     pub(super) name: &'static str,
     pub(super) value: f64,

@@ -1,5 +1,5 @@
-//! Uncertainty of bandwidth and phase delay (M17.1): to first order from the standard deviations of
-//! a response (M14), or from the other models of the bundles (M13).
+//! Uncertainty of bandwidth and phase delay (M17.1): to first order from a response's standard
+//! deviations (M14), or from the other models in the bundles (M13).
 //!
 //! ```text
 //! phase crossing:  sd = sd_phase / |d phase / d omega|
@@ -8,8 +8,8 @@
 //! ```
 //!
 //! Errors at distant frequencies are taken as independent, errors at neighbouring frequencies are
-//! not: a phase delay read from the least-squares line also has the deviation of its two ends,
-//! because independent errors along the line would make it arbitrarily small with more points.
+//! not: a phase delay read from the least-squares line also has its two ends' deviation, because
+//! independent errors along the line would make it arbitrarily small with more points.
 
 use gdcm_model::dataset::Pair;
 use gdcm_model::dataset::model::ModelBands;
@@ -21,8 +21,8 @@ use crate::uncertainty::{Bar, IdentificationSource, VarianceComponent};
 /// Half the step of a difference quotient, relative to the frequency.
 const HALF_STEP: f64 = 1e-4;
 
-/// The uncertainty band of one response of an identified model, linear in log omega and undefined
-/// outside its frequencies (M14).
+/// The uncertainty band of an identified response, linear in log omega and undefined outside its
+/// frequencies (M14).
 #[derive(Clone, Copy, Debug)]
 pub struct PairBand<'a> {
     pub bands: &'a ModelBands,
@@ -30,7 +30,7 @@ pub struct PairBand<'a> {
 }
 
 impl PairBand<'_> {
-    /// Returns the standard deviation of the magnitude \[dB\] at `omega` \[rad/s\].
+    /// Returns the magnitude's standard deviation \[dB\] at `omega` \[rad/s\].
     fn magnitude_db(&self, omega: f64) -> Option<f64> {
         between(
             self.bands.omega(),
@@ -39,7 +39,7 @@ impl PairBand<'_> {
         )
     }
 
-    /// Returns the standard deviation of the phase \[rad\] at `omega` \[rad/s\].
+    /// Returns the phase's standard deviation \[rad\] at `omega` \[rad/s\].
     fn phase(&self, omega: f64) -> Option<f64> {
         between(
             self.bands.omega(),
@@ -49,7 +49,8 @@ impl PairBand<'_> {
         .map(f64::to_radians)
     }
 
-    /// Returns the standard deviation of a frequency \[rad/s\] at which the phase crosses a level.
+    /// Returns the standard deviation \[rad/s\] of the frequency at which the phase crosses a
+    /// level.
     pub(super) fn phase_crossing(
         &self,
         attitude: &AttitudeResponse<'_>,
@@ -59,7 +60,7 @@ impl PairBand<'_> {
         Some(self.phase(omega)? / slope.abs())
     }
 
-    /// Returns the standard deviation of the frequency \[rad/s\] at which the magnitude exceeds
+    /// Returns the standard deviation \[rad/s\] of the frequency at which the magnitude exceeds
     /// that at `omega_180` by 6 dB.
     pub(super) fn gain_crossing(
         &self,
@@ -104,10 +105,9 @@ fn difference_quotient(omega: f64, value: impl Fn(f64) -> Option<f64>) -> Option
     Some(slope)
 }
 
-/// Computes the error bar of a value of the representatives from its values with each other physics
-/// model and each other identified model substituted (M13.1, M13.3). `None` entries are swapped
-/// pairs without the value; they are counted as left out. The bar's range is that of a value that
-/// is never negative.
+/// Computes the representatives' error bar for `value` from the values with each other physics or
+/// identified model substituted (M13.1, M13.3). `None` entries are swapped pairs without the value;
+/// they are counted as left out. The value is never negative.
 pub fn substitution_bar(value: f64, physics: &[Option<f64>], identified: &[Option<f64>]) -> Bar {
     let left_out = physics
         .iter()

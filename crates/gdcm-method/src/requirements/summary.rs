@@ -1,8 +1,8 @@
-//! Summary costs of one model of one condition (M17.4): mean J, weighted rms error in time, Theil's
+//! Summary costs of a model in a condition (M17.4): mean J, weighted rms error in time, Theil's
 //! coefficients, and the share of the band inside the MUAD envelopes.
 //!
 //! ```text
-//! J:      mean over the on-axis responses, and over all, of J_mag + J_phase after the correction (M4)
+//! J:      J_mag + J_phase after the correction, averaged over the on-axis responses and over all (M4)
 //! J_rms:  sqrt(1 / (n_t n_o) sum (y - y^)' W (y - y^)), W = 1 in deg/s, deg, ft/s^2, ft/s: 1 deg counts as 1 ft/s^2
 //! Theil:  rms(y - y^) / (rms y + rms y^) for each channel (M14, 6)
 //! MUAD:   1 - sum ln(b/a) / ln(omega_N/omega_1) over the ranges (a, b) in which the error leaves an envelope
@@ -55,12 +55,12 @@ fn mean_or_none(values: &[f64]) -> Option<f64> {
     Some(mean(values))
 }
 
-/// The weighted rms error of a model in time, `J_rms`.
+/// The weighted rms error in time, `J_rms`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RmsCost {
     /// `J_rms` \[deg, deg/s, ft/s, ft/s^2\].
     pub value: f64,
-    /// Indices of outputs without a weight: their units are not angles, speeds or accelerations.
+    /// Indices of outputs without a weight, in units other than angle, speed or acceleration.
     pub left_out: Vec<usize>,
 }
 
@@ -100,7 +100,7 @@ impl RmsCost {
 
 /// An output that counts in `J_rms`.
 struct WeightedOutput {
-    /// Index of the output.
+    /// Output index.
     output: usize,
     /// From its unit to deg, deg/s, ft/s or ft/s^2.
     factor: f64,
@@ -118,8 +118,8 @@ fn unit_factor(unit: &str) -> Option<f64> {
     conversion_factor(unit, counted)
 }
 
-/// Returns the share of the band, in `ln omega`, in which the error of a response stays inside both
-/// MUAD envelopes after `correction`; `None` with fewer than two frequencies.
+/// Returns the share of the band, in `ln omega`, in which a response error stays inside both MUAD
+/// envelopes after `correction`; `None` with fewer than two frequencies.
 pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> Option<f64> {
     let omega = mismatch.omega(omega);
     let (&first, &last) = omega.first().zip(omega.last())?;
@@ -140,33 +140,30 @@ pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> 
     Some((1.0 - outside / (last / first).ln()).clamp(0.0, 1.0))
 }
 
-/// Inputs of a model's summary costs.
 #[derive(Clone, Copy)]
 pub struct SummarySource<'a> {
-    /// Difference of the model's responses from those of the identified representative; `None`
-    /// where they are not compared.
+    /// Difference between the model's responses and the identified representative's; `None` where
+    /// they are not compared.
     pub mismatch: &'a PairTable<Option<Mismatch>>,
-    /// Correction of each response; `None` without a positive net gain.
+    /// Correction by response; `None` without a positive net gain.
     pub correction: &'a dyn Fn(Pair) -> Option<GainDelay>,
     pub on_axis: &'a PairTable<bool>,
-    /// Frequencies of the band \[rad/s\], ascending.
+    /// Band frequencies \[rad/s\], ascending.
     pub omega: &'a [f64],
     /// Average over frequency in J.
     pub average: CostAverage,
     /// The model against a record in time, if any.
     pub validation: Option<&'a Validation>,
-    /// Outputs of the dataset.
     pub outputs: &'a [Channel],
 }
 
-/// The summary costs of one model of one condition.
+/// The summary costs of a model in a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     pub cost: OnAxisAndAll,
     /// `J_rms`; `None` without a record.
     pub rms: Option<RmsCost>,
-    /// Theil's coefficient of each output, 0 to 1; empty without a record, `None` for a constant
-    /// output.
+    /// Theil's coefficient by output, 0 to 1; empty without a record, `None` for a constant output.
     pub theil: Vec<Option<f64>>,
     /// Mean share of the band inside MUAD, 0 to 1.
     pub muad: OnAxisAndAll,
@@ -224,7 +221,7 @@ mod tests {
         }
     }
 
-    /// A window of three outputs, whose samples follow each other.
+    /// A window with three outputs, stored one after the other.
     fn window(measured: &[f64], simulated: &[f64]) -> ValidationWindow {
         let samples = measured.len() / 3;
         ValidationWindow {
@@ -300,7 +297,7 @@ mod tests {
             muad_share(&mismatch(60.0, 0.0), &omega, GainDelay::NONE),
             Some(0.0)
         );
-        // A delay of a quarter of a second, removed by the correction including its whole turns.
+        // A delay of 0.25 s, removed by the correction including its whole turns.
         let lead = mismatch(0.0, -0.25);
         let share = muad_share(&lead, &omega, GainDelay::NONE).unwrap();
         assert!(share < 0.5, "{share}");

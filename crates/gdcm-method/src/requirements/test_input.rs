@@ -13,7 +13,7 @@ use gdcm_model::units::number;
 pub enum TestInputShape {
     /// Constant over the duration.
     Step,
-    /// Positive for the first half of the duration, negative for the second.
+    /// Positive in the first half, negative in the second.
     Doublet,
 }
 
@@ -22,7 +22,7 @@ pub enum TestInputShape {
 #[serde(try_from = "TestInputText")]
 pub struct TestInput {
     pub shape: TestInputShape,
-    /// Amplitude, in the unit of the input that is moved.
+    /// Amplitude, in the input's unit.
     pub size: f64,
     /// Duration \[s\].
     pub duration_s: f64,
@@ -33,7 +33,6 @@ pub struct TestInput {
 pub enum TestInputError {
     #[error("the model has {inputs} inputs, none of number {}", input + 1)]
     NoInput {
-        /// Index of the requested input.
         input: usize,
         inputs: usize,
     },
@@ -51,11 +50,11 @@ pub enum TestInputError {
     NotFinite,
 }
 
-/// Longest duration of a test \[s\].
+/// Longest test duration \[s\].
 const LONGEST_S: f64 = 600.0;
 
 impl Default for TestInput {
-    /// Returns a step of one unit that lasts two seconds.
+    /// Returns a unit step that lasts two seconds.
     fn default() -> Self {
         Self {
             shape: TestInputShape::Step,
@@ -108,7 +107,7 @@ impl TestInput {
     pub fn signal(&self, sample_time_s: f64, samples: usize) -> Vec<f64> {
         (0..samples)
             .map(|n| {
-                // A millionth of a sample covers rounding.
+                // The addition, a millionth of a sample, covers rounding.
                 let time_s = (n as f64 + 1e-6) * sample_time_s;
                 self.at(time_s)
             })
@@ -206,7 +205,7 @@ mod tests {
             .answer(&lag(), 1, 0.1, 10)
             .unwrap();
         for (n, y) in answer.iter().enumerate() {
-            // 10 / 2 (1 - e^(-2 t)); rounding errors of ten steps.
+            // 10 / 2 (1 - e^(-2 t)); rounding errors over ten steps.
             let expected = 5.0 * (1.0 - (-0.2 * n as f64).exp());
             assert!((y - expected).abs() < 1e-13, "{n}: {y} {expected}");
         }

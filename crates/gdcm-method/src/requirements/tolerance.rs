@@ -4,7 +4,7 @@
 //! 1  attitudes: theta_n = theta_(n-1) + dt (q_(n-1) + q_n) / 2 from the start of the manoeuvre, flown and simulated alike
 //! 2  corridor: w_n = max(absolute, relative |y_n - y_0|), the wider of the two
 //! 3  excess: e_n = |y^_n - y_n| - w_n; a sample is inside where e_n <= 0
-//! 4  share inside, largest e_n and its time; trend: sign of the correlation of y^ and y about their means
+//! 4  share inside, largest e_n and its time; trend: sign of the correlation between y^ and y about their means
 //! ```
 //!
 //! 14 CFR part 60, appendix C, table C2A. The check is not a qualification: the tests of that table
@@ -39,15 +39,15 @@ pub enum ToleranceCheckError {
     },
     #[error("there is no output number {} in the record", output + 1)]
     NoOutput {
-        /// Index of the output.
+        /// Output index.
         output: usize,
     },
 }
 
-/// One output over one manoeuvre, compared with its tolerance.
+/// An output over a manoeuvre, compared with its tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToleranceCheck {
-    /// Time of the first sample \[s\].
+    /// Time at the first sample \[s\].
     pub start_s: f64,
     /// Sample time \[s\].
     pub sample_time_s: f64,
@@ -63,12 +63,11 @@ pub struct ToleranceCheck {
     pub largest_excess: f64,
     /// Time of the largest excess \[s\].
     pub largest_excess_at_s: f64,
-    /// Terms of the correlation of its samples.
     trend: Moments,
 }
 
-/// Sums of products of flown and simulated samples about their means: flown squared, simulated
-/// squared, flown times simulated.
+/// Sums over flown and simulated samples about their means: flown squared, simulated squared, flown
+/// times simulated.
 type Moments = Vector3<f64>;
 
 fn moments(flown: &[f64], simulated: &[f64]) -> Moments {
@@ -96,7 +95,7 @@ fn correlation(moments: Moments) -> Option<f64> {
 }
 
 impl ToleranceCheck {
-    /// Checks one output over one window of a record, a manoeuvre of its own, against `tolerance`.
+    /// Checks a window of a record, a manoeuvre of its own, against `tolerance`.
     ///
     /// # Errors
     /// [`ToleranceCheckError`] if there is no such output, there are no samples, their numbers
@@ -134,8 +133,8 @@ impl ToleranceCheck {
         self.inside as f64 / self.samples() as f64
     }
 
-    /// Returns the correlation of simulated and flown samples about their means; `None` if either
-    /// is constant. For off-axis outputs a positive sign is the correct trend.
+    /// Returns the correlation between simulated and flown samples about their means; `None` if
+    /// either is constant. For off-axis outputs a positive sign is the correct trend.
     pub fn correlation(&self) -> Option<f64> {
         correlation(self.trend)
     }
@@ -160,7 +159,7 @@ impl ToleranceCheck {
     }
 }
 
-/// Checks that both signals of `window` have this output and equally many samples.
+/// Checks that both signals have this output and equally many samples.
 fn check_shape(window: &ValidationWindow, output: usize) -> Result<(), ToleranceCheckError> {
     let ValidationWindow {
         measured,
@@ -182,8 +181,8 @@ fn check_shape(window: &ValidationWindow, output: usize) -> Result<(), Tolerance
     Ok(())
 }
 
-/// Returns the samples of the output that `tolerance` applies to, integrated for an attitude (step
-/// 1); `samples` are those of one `origin` in `window`.
+/// Returns the samples that `tolerance` applies to, integrated for an attitude (step 1); `samples`
+/// holds the window's outputs from `origin`.
 fn compared_samples(
     origin: &'static str,
     samples: &DMatrix<f64>,
@@ -228,7 +227,7 @@ fn excesses<'a>(
         .map(|((flown, simulated), width)| (simulated - flown).abs() - width)
 }
 
-/// Returns the index of the first of the largest values.
+/// Returns the index of the largest value, the first if repeated.
 fn first_maximum(values: &[f64]) -> usize {
     let mut largest = 0;
     for (n, value) in values.iter().enumerate() {
@@ -250,8 +249,7 @@ fn integral(samples: &[f64], sample_time_s: f64) -> Vec<f64> {
     integrals
 }
 
-/// One output over all windows of a record, each with an estimated initial state of its own (M14,
-/// 6).
+/// An output over all windows of a record, each with its own estimated initial state (M14, 6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordCheck {
     /// Record index, counted from 0.
@@ -300,8 +298,8 @@ impl RecordCheck {
             .max_by(|a, b| a.largest_excess.total_cmp(&b.largest_excess))
     }
 
-    /// Returns the correlation of simulated and flown samples, each about its mean in its window;
-    /// `None` if either is constant.
+    /// Returns the correlation between simulated and flown samples, each about its mean in its
+    /// window; `None` if either is constant.
     pub fn correlation(&self) -> Option<f64> {
         correlation(self.windows.iter().map(|window| window.trend).sum())
     }

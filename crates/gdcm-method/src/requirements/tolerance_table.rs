@@ -1,4 +1,4 @@
-//! User-defined tolerances of time histories, converted to the units of a dataset (M17.2).
+//! User-defined tolerances for time histories, converted to a dataset's units (M17.2).
 //!
 //! The default table follows 14 CFR part 60, appendix C, table C2A, "Full flight simulator (FFS)
 //! objective tests", whose entries also appear in CS-FSTD(H).
@@ -13,12 +13,10 @@ use gdcm_model::units::number;
 
 use super::positive_number::{NamedNumber, first_not_positive};
 
-/// Source of the default table.
 const DEFAULT_SOURCE: &str = "14 CFR part 60, appendix C, table C2A; CS-FSTD(H)";
-/// Relative tolerance of the default table.
 const TEN_PERCENT: Option<f64> = Some(0.1);
 
-/// One row of the table: `|simulated - flown| <= max(absolute, relative |flown - flown at the start|)`.
+/// A row: `|simulated - flown| <= max(absolute, relative |flown - flown at the start|)`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tolerance {
     /// Quantity, as displayed ("bank angle").
@@ -30,18 +28,18 @@ pub struct Tolerance {
     pub integrated: bool,
     /// The absolute tolerance, in `unit`.
     pub absolute: f64,
-    /// Unit of the absolute tolerance ("deg").
+    /// Unit for `absolute` ("deg").
     pub unit: String,
-    /// The tolerance relative to the change from the start of the manoeuvre; `None` if only the
-    /// absolute one applies.
+    /// The tolerance relative to the change from the start of the manoeuvre; `None` if only
+    /// `absolute` applies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative: Option<f64>,
-    /// Entries of the source ("2.b.3.b, 2.d.1").
+    /// Entries in the source ("2.b.3.b, 2.d.1").
     #[serde(default)]
     pub entry: String,
 }
 
-/// The table of tolerances; each row is checked on reading.
+/// The tolerances with their source; each row is checked on reading.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ToleranceRows")]
 pub struct ToleranceTable {
@@ -104,7 +102,7 @@ pub enum ToleranceError {
         channel: String,
         unit: String,
     },
-    /// The unit of the tolerance does not fit the output.
+    /// The tolerance's unit does not fit the output.
     #[error(
         "{} is not compared: a tolerance in {} does not fit {} in {}",
         quoted(quantity),
@@ -116,30 +114,29 @@ pub enum ToleranceError {
         /// The quantity to compare.
         quantity: String,
         channel: String,
-        /// Unit of the tolerance.
         unit: String,
-        /// Unit of the output, or of its integral.
+        /// Unit of the output or its integral.
         compared_unit: String,
     },
 }
 
-/// A tolerance in the units of its output.
+/// A tolerance in its output's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelTolerance {
-    /// Index of the output.
+    /// Output index.
     pub output: usize,
     /// Whether the integral of the output is compared.
     pub integrated: bool,
     /// The absolute tolerance, in `unit`.
     pub absolute: f64,
-    /// The relative tolerance; zero if only the absolute one applies.
+    /// The relative tolerance; zero if only `absolute` applies.
     pub relative: f64,
-    /// Unit of the compared quantity: the output or its integral.
+    /// Unit in which the output or its integral is compared.
     pub unit: String,
 }
 
 impl Tolerance {
-    /// Checks the row of a table; `row` counts from 1.
+    /// Checks the tolerance; `row` counts from 1.
     fn check(&self, row: usize) -> Result<(), ToleranceError> {
         let quantity = self.quantity.clone();
         if self.channel.trim().is_empty() {
@@ -169,7 +166,7 @@ impl Tolerance {
         }
     }
 
-    /// Converts the tolerance to the units of the dataset's output.
+    /// Converts the tolerance to its output's units.
     ///
     /// # Errors
     /// [`ToleranceError`] if there is no such output, an integrated output is not a rate, or units
@@ -214,7 +211,7 @@ impl Tolerance {
     }
 }
 
-/// Returns the unit of the time integral of an angular rate; `None` for any other unit.
+/// Returns the unit of an angular rate's time integral; `None` for any other unit.
 fn integral_unit(rate: &str) -> Option<&'static str> {
     let rate = PhysicalUnit::of(rate)?;
     if rate.dimension != Dimension::AngularRate {
@@ -241,7 +238,6 @@ impl ToleranceTable {
         })
     }
 
-    /// Returns the source of the table.
     pub fn source(&self) -> &str {
         &self.source
     }
@@ -271,7 +267,7 @@ impl Default for ToleranceTable {
     }
 }
 
-/// A row of the default table; an absolute tolerance in deg applies to the integral of a rate.
+/// A default row; an absolute tolerance in deg applies to the integral of a rate.
 struct DefaultRow {
     quantity: &'static str,
     channel: &'static str,

@@ -138,7 +138,7 @@ fn the_trend_is_the_sign_of_the_correlation_and_none_where_nothing_moves() {
     assert_eq!(constant, None);
 }
 
-/// A window of four samples, 1 s apart, flown as 0, 1, 0, -1.
+/// A window with four samples, 1 s apart, flown as 0, 1, 0, -1.
 fn window(record: usize, start_s: f64, simulated: [f64; 4]) -> ValidationWindow {
     ValidationWindow {
         record,

@@ -32,10 +32,7 @@ pub struct TestInput {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TestInputError {
     #[error("the model has {inputs} inputs, none of number {}", input + 1)]
-    NoInput {
-        input: usize,
-        inputs: usize,
-    },
+    NoInput { input: usize, inputs: usize },
     /// Size or duration is not a number, or the duration is zero.
     #[error("test input: expected a size, and a duration above 0 s up to {LONGEST_S} s; found {} and {} s", number(*size), number(*duration_s))]
     Numbers {

@@ -148,7 +148,7 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
         (11, 11, SCHEDULE_KINDS.len())
     );
     let schedule = analysis.schedule.as_ref().unwrap();
-    let of_kind = evidence.of(schedule.settings.kind).unwrap();
+    let of_kind = evidence.form(schedule.settings.kind).unwrap();
     for (place, id) in scheduled.iter().enumerate() {
         let own = &analysis.condition(*id).unwrap().correction;
         let at = schedule.at(evidence.airspeeds_kt[place]);

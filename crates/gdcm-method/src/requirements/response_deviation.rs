@@ -127,5 +127,5 @@ pub fn substitution_bar(value: f64, physics: &[Option<f64>], identified: &[Optio
 /// Returns the variance of the changes from `value` to each of `others`.
 fn substitution_variance(value: f64, others: &[Option<f64>]) -> Option<VarianceComponent> {
     let changes: Vec<f64> = others.iter().flatten().map(|other| other - value).collect();
-    VarianceComponent::of_changes(&changes)
+    VarianceComponent::from_changes(&changes)
 }

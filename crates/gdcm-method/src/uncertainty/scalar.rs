@@ -1,0 +1,111 @@
+//! Scalar results of a condition that have error bars (M13).
+
+use std::collections::BTreeMap;
+use std::ops::Index;
+
+use gdcm_model::dataset::Pair;
+
+use crate::correction::Channel;
+
+/// Every scalar of a condition; `None` if it does not exist.
+pub type Figures = ScalarTable<Option<f64>>;
+
+/// Scalar result for a condition, `q` in M13.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Scalar {
+    /// `ln G` of a response.
+    Gain(Pair),
+    /// `D` \[s\] of a response by eq. (9).
+    Delay(Pair),
+    /// `D` \[s\] of a response from the line through its phase (M15.2).
+    BandDelay(Pair),
+    /// `ln k_o k_i` of a response.
+    NetGain(Pair),
+    /// `ln k` of a channel.
+    ChannelGain(Channel),
+    /// `tau` \[s\] of a channel.
+    ChannelDelay(Channel),
+}
+
+impl Scalar {
+    /// Whether the scalar is a time \[s\]; otherwise it is the natural logarithm of a gain.
+    pub fn is_delay(self) -> bool {
+        matches!(
+            self,
+            Self::Delay(_) | Self::BandDelay(_) | Self::ChannelDelay(_)
+        )
+    }
+}
+
+/// A table with an entry for each scalar of a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScalarTable<T>(BTreeMap<Scalar, T>);
+
+impl<T> ScalarTable<T> {
+    /// Builds a table from the entry for each scalar, for `outputs` x `inputs` responses.
+    pub fn from_fn(outputs: usize, inputs: usize, mut entry: impl FnMut(Scalar) -> T) -> Self {
+        Self(
+            scalars(outputs, inputs)
+                .into_iter()
+                .map(|scalar| (scalar, entry(scalar)))
+                .collect(),
+        )
+    }
+
+    /// Iterates over the scalars with their entries.
+    pub fn iter(&self) -> impl Iterator<Item = (Scalar, &T)> {
+        self.0.iter().map(|(scalar, entry)| (*scalar, entry))
+    }
+
+    /// Builds a table from the entries of this table.
+    pub fn map<U>(&self, mut entry: impl FnMut(Scalar, &T) -> U) -> ScalarTable<U> {
+        ScalarTable(
+            self.iter()
+                .map(|(scalar, value)| (scalar, entry(scalar, value)))
+                .collect(),
+        )
+    }
+}
+
+impl<T> Index<Scalar> for ScalarTable<T> {
+    type Output = T;
+
+    fn index(&self, scalar: Scalar) -> &T {
+        &self.0[&scalar]
+    }
+}
+
+/// Returns all scalars of a condition: those of responses, then those of channels.
+fn scalars(outputs: usize, inputs: usize) -> Vec<Scalar> {
+    let of_response = [
+        Scalar::Gain,
+        Scalar::Delay,
+        Scalar::BandDelay,
+        Scalar::NetGain,
+    ];
+    let of_channel = [Scalar::ChannelGain, Scalar::ChannelDelay];
+    let mut scalars = Vec::new();
+    for scalar in of_response {
+        for output in 0..outputs {
+            scalars.extend((0..inputs).map(|input| scalar(Pair::new(output, input))));
+        }
+    }
+    for scalar in of_channel {
+        scalars.extend(Channel::all(inputs, outputs).map(scalar));
+    }
+    scalars
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scalar_has_its_own_entry() {
+        let table = ScalarTable::from_fn(3, 2, |scalar| scalar);
+        for (scalar, entry) in table.iter() {
+            assert_eq!((*entry, table[scalar]), (scalar, scalar));
+        }
+        assert_eq!(table.iter().count(), 4 * 6 + 2 * 5);
+    }
+}

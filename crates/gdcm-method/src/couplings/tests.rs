@@ -352,8 +352,8 @@ fn a_loop_through_the_feed_through_that_cannot_be_closed_is_refused() {
     assert!(matches!(
         other,
         Err(CoupledModelError::Channels {
-            found: (3, 2),
-            expected: (2, 2)
+            found: [3, 2],
+            expected: [2, 2]
         })
     ));
 }

@@ -76,7 +76,7 @@ impl Airspeeds {
     }
 
     /// Returns the degree that the clusters allow, at most `degree`.
-    pub(super) fn attainable_degree(&self, degree: usize) -> usize {
+    pub(crate) fn attainable_degree(&self, degree: usize) -> usize {
         degree.min(self.clusters.len().saturating_sub(1))
     }
 

@@ -438,7 +438,7 @@ pub fn residual_table(
     conditions: &[ConditionId],
     evidence: &FormComparison,
 ) -> Option<Table> {
-    let kind = evidence.of(state.study.settings.schedule.kind)?;
+    let kind = evidence.form(state.study.settings.schedule.kind)?;
     let pairs = net_gain_pairs(state);
     let names = pairs
         .iter()

@@ -1,6 +1,6 @@
-//! Solution of normal equations whose matrix is an arrow (M16.2).
+//! Solves normal equations whose matrix is an arrow (M16.2).
 //!
-//! An `M_ji` has a column only in the equations of input i, a `K_jo` in those of every input. The
+//! An `M_ji` has a column only in the equations for input i, a `K_jo` in those for every input. The
 //! normal matrix therefore has a block for each input and a border for K, whose part is summed over
 //! inputs before anything is substituted:
 //!
@@ -25,7 +25,7 @@ pub(super) struct ArrowSystem {
     pub(super) right: DVector<f64>,
 }
 
-/// The rows of the equations for the unknowns of M in an input column.
+/// The rows for the unknowns in M in an input column.
 pub(super) struct ArrowColumn {
     /// `A_i`.
     pub(super) block: DMatrix<f64>,
@@ -37,9 +37,9 @@ pub(super) struct ArrowColumn {
 
 /// The unknowns.
 pub(super) struct ArrowSolution {
-    /// The unknowns of M by input column.
+    /// The unknowns in M by input column.
     pub(super) mixing: Vec<DVector<f64>>,
-    /// The unknowns of K.
+    /// The unknowns in K.
     pub(super) feedback: DVector<f64>,
 }
 
@@ -108,7 +108,7 @@ impl EliminatedColumn {
         })
     }
 
-    /// Solves for the unknowns of M, given those of K (step 3).
+    /// Solves for the unknowns in M, given those in K (step 3).
     fn substitute(&self, feedback: &DVector<f64>) -> Option<DVector<f64>> {
         let right = &self.right - &self.border * feedback;
         self.factors.l_dirty().tr_solve_lower_triangular(&right)

@@ -13,7 +13,7 @@
 
 use nalgebra::{Complex, DMatrix};
 
-/// Closes `u = u' + K y` around responses of p outputs and m inputs; reuses its work memory.
+/// Closes `u = u' + K y` around p x m responses; reuses its work memory.
 pub(super) struct ClosedLoop<'a> {
     /// `K`, m x p.
     feedback: &'a DMatrix<f64>,

@@ -1,16 +1,16 @@
-//! A condition's contribution to the normal equations of a pass, assembled from small blocks (M16.2).
+//! A condition's contribution to the normal equations in a pass, assembled from small blocks
+//! (M16.2).
 //!
-//! In input column i of the equations every unknown has the column `F[:,j]` times a factor: `v^k`
-//! for `M_ji`, `R'_oi` for `K_jo`. With `t = (1, R'_oi ...)` and `P = F^H q^2 F`, m x m, the blocks
-//! are
+//! In input column i every unknown has the column `F[:,j]` times a factor: `v^k` for `M_ji`,
+//! `R'_oi` for `K_jo`. With `t = (1, R'_oi ...)` and `P = F^H q^2 F`, m x m, the blocks are
 //!
 //! ```text
 //! G[(a, j), (b, l)] = Re conj(t_a) t_b P_jl,
 //! b[(a, j)] = Re conj(t_a) z_j,    z = F^H q^2 (S R')[:,i],
 //! ```
 //!
-//! summed over the frequencies. No row of the design matrix is kept. The airspeed `v` is the same at
-//! all frequencies of a condition and enters in `normal_equations`.
+//! summed over the frequencies. No design row is kept. The airspeed `v` is the same at all
+//! frequencies of a condition and enters in `normal_equations`.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -22,7 +22,7 @@ use super::error::CouplingError;
 use super::pair_products::{CHUNK, PairProducts, ProductChunk, RowParts, pair_count};
 use super::weighted_condition::WeightedCondition;
 
-/// The couplings of the last pass at a condition.
+/// The last pass's couplings at a condition.
 struct LastPass<'a> {
     /// `M(V)`, m x m.
     mixing: DMatrix<f64>,
@@ -34,15 +34,15 @@ struct LastPass<'a> {
 
 /// A condition's contribution to the normal equations.
 pub(super) struct ConditionBlocks {
-    /// The blocks with unknowns of M, by input column.
+    /// The blocks with unknowns in M, by input column.
     pub(super) columns: Vec<ColumnBlocks>,
-    /// The pairs of two unknowns of K, summed over the input columns.
+    /// The pairs of two unknowns in K, summed over the input columns.
     pub(super) feedback: PairProducts,
-    /// Right side for the unknowns of K: rows by fed-back output, columns by input.
+    /// Right side for the unknowns in K: rows by fed-back output, columns by input.
     pub(super) right: DMatrix<f64>,
 }
 
-/// The unknowns of M in an input column, among themselves and with those of K.
+/// The unknowns in M for an input column, among themselves and with those in K.
 #[derive(Clone)]
 pub(super) struct ColumnBlocks {
     /// Rows by factor `t_b`, each paired with `t_0 = 1`.
@@ -64,7 +64,7 @@ struct Scratch {
 
 /// `F = S H` at a frequency.
 struct ClosedResponse {
-    /// Index of the frequency.
+    /// Frequency index.
     k: usize,
     /// Column by column.
     f: Vec<Complex<f64>>,
@@ -72,8 +72,8 @@ struct ClosedResponse {
 }
 
 impl ConditionBlocks {
-    /// Computes the blocks of a condition for the couplings of the last pass; `fed_back` are the
-    /// outputs with a column in `K`.
+    /// Computes a condition's blocks for the last pass's couplings; `fed_back` are the outputs with
+    /// a column in `K`.
     ///
     /// # Errors
     /// [`CouplingError::SingularLoop`] if `I - K H` has no inverse at a frequency that counts,
@@ -145,7 +145,7 @@ impl ConditionBlocks {
         }
     }
 
-    /// Returns the memory for the blocks of a condition \[bytes\].
+    /// Returns the memory for a condition's blocks \[bytes\].
     pub(super) fn bytes(inputs: usize, fed_back: usize) -> usize {
         let rows = inputs * (fed_back + 1) + pair_count(fed_back);
         2 * std::mem::size_of::<f64>() * rows * pair_count(inputs)

@@ -62,7 +62,7 @@ pub fn feedback_shares(
     shares
 }
 
-/// The largest `|R'_jl|` of an output.
+/// An output's largest `|R'_jl|`.
 struct PeakResponse {
     magnitude: f64,
     /// The input `l`.
@@ -72,8 +72,8 @@ struct PeakResponse {
 }
 
 impl PeakResponse {
-    /// Searches all inputs, conditions and frequencies; the first of equal peaks is returned, `None`
-    /// without usable responses.
+    /// Searches all inputs, conditions and frequencies; among equal peaks the first is returned,
+    /// `None` without usable responses.
     fn find(problem: &CouplingProblem, output: usize) -> Option<Self> {
         let mut peak: Option<Self> = None;
         for condition in &problem.conditions {
@@ -114,8 +114,8 @@ pub struct MixingShare {
     pub swashplate_phase_deg: Option<f64>,
 }
 
-/// Returns the off-diagonal entries of a normalised mixing, largest first; `cyclic` are the two
-/// cyclic inputs.
+/// Returns a normalised mixing's off-diagonal entries, largest first; `cyclic` are the two cyclic
+/// inputs.
 pub fn mixing_shares(
     normalised_mixing: &DMatrix<f64>,
     cyclic: Option<[usize; 2]>,
@@ -165,7 +165,7 @@ pub fn cyclic_inputs(
     cyclic.try_into().ok()
 }
 
-/// The smallest singular value of `I - K H` over a set of frequencies.
+/// The smallest singular value of `I - K H` over several frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopMargin {
     /// 1 without feedback, 0 if a closed-loop pole is at `j omega`.
@@ -177,7 +177,7 @@ impl LoopMargin {
     /// Threshold below which the loop is close to ringing.
     pub const CAUTION: f64 = 0.5;
 
-    /// Returns the smallest of these singular values at `omega` \[rad/s\]; `None` if no value is
+    /// Returns the smallest among singular values at `omega` \[rad/s\]; `None` if no value is
     /// finite.
     pub fn of(singular_values: &[f64], omega: &[f64]) -> Option<Self> {
         let mut margin: Option<Self> = None;
@@ -198,7 +198,7 @@ impl LoopMargin {
 
 impl CouplingMatrices {
     /// Returns the smallest singular value of `I - K H` (m x m, at the inputs, where all channels
-    /// share one unit) at each frequency of `H`; NaN where `H` lacks a response of a fed-back output.
+    /// have the same unit) at each frequency; NaN where `H` lacks a fed-back response.
     pub fn least_singular_values(&self, physics: &FrequencyResponse) -> Vec<f64> {
         let points = physics.curve(Pair::new(0, 0)).len();
         (0..points)
@@ -246,16 +246,16 @@ pub fn relative_change_db(
     })
 }
 
-/// A pole of the coupled model and its match in the physics model; conjugate pairs count once.
+/// A coupled model's pole and its match in the physics model; conjugate pairs count once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoleShift {
-    /// Pole of the physics model \[rad/s\]; `None` for additional states (delays inside the loop).
+    /// Without coupling \[rad/s\]; `None` for additional states (delays inside the loop).
     pub before: Option<Complex<f64>>,
-    /// Pole of the coupled model \[rad/s\].
+    /// With coupling \[rad/s\].
     pub after: Complex<f64>,
 }
 
-/// Reasons why the poles of a coupled model are unavailable.
+/// Reasons why a coupled model's poles are unavailable.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PoleShiftError {
     #[error(transparent)]
@@ -278,9 +278,9 @@ impl PoleShift {
 }
 
 impl CouplingMatrices {
-    /// Returns the poles of a physics model with mixing and feedback, in ascending `|lambda|`, matched
-    /// to the poles without coupling so that the sum of distances is smallest.
-    /// Discrete-time poles are converted by `s = ln z / T`.
+    /// Returns a physics model's poles with mixing and feedback, in ascending `|lambda|`, matched
+    /// to the poles without coupling with the smallest sum of distances. Discrete-time poles are
+    /// converted by `s = ln z / T`.
     ///
     /// # Errors
     /// [`PoleShiftError`] if there is no coupled model or no eigenvalues.

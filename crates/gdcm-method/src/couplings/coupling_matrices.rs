@@ -41,8 +41,8 @@ impl CouplingMatrices {
         }
     }
 
-    /// Returns a copy with these values for the unknowns, which list the powers of the airspeed in
-    /// each entry of `M` from 0 up. Entries that are not among the unknowns are 0.
+    /// Returns a copy with these values for the unknowns, which list the airspeed powers in each
+    /// entry of `M` from 0 up. Entries that are not among the unknowns are 0.
     #[must_use]
     pub fn with(&self, unknowns: &[Unknown], values: &[f64]) -> Self {
         let (inputs, outputs) = self.feedback.shape();
@@ -89,12 +89,12 @@ impl CouplingMatrices {
         &self.airspeeds
     }
 
-    /// Returns `M_to,from` over the scaled airspeed of [`CouplingMatrices::airspeeds`].
+    /// Returns `M_to,from` over the scaled airspeed, see [`CouplingMatrices::airspeeds`].
     pub fn mixing_curve(&self, to: usize, from: usize) -> &Regression {
         &self.mixing[to * self.feedback.nrows() + from]
     }
 
-    /// Returns `M(V)`, m x m, `[to, from]`, constant beyond the range of the conditions' airspeeds.
+    /// Returns `M(V)`, m x m, `[to, from]`, constant beyond the conditions' range.
     pub fn mixing(&self, airspeed_kt: f64) -> DMatrix<f64> {
         let inputs = self.feedback.nrows();
         DMatrix::from_fn(inputs, inputs, |to, from| {
@@ -120,10 +120,10 @@ impl CouplingMatrices {
         &self.feedback
     }
 
-    /// Computes `H~ = (I - H K)^-1 H M~(V)` at every frequency of `H`, p x m.
+    /// Computes `H~ = (I - H K)^-1 H M~(V)` at every frequency, p x m.
     ///
-    /// Not finite where `I - H K` is singular or `H` lacks a response of a fed-back output. An output
-    /// that is not fed back stays without a response where it lacks one.
+    /// Not finite where `I - H K` is singular or `H` lacks a fed-back response. An output that is
+    /// not fed back stays without a response where it lacks one.
     #[must_use]
     pub fn response(&self, physics: &FrequencyResponse, airspeed_kt: f64) -> FrequencyResponse {
         let inputs = physics.inputs();
@@ -203,9 +203,9 @@ pub enum CoupledModelError {
         "it has {} outputs and {} inputs, and the couplings have {} and {}", found[0], found[1], expected[0], expected[1]
     )]
     Channels {
-        /// Outputs and inputs of the model.
+        /// In the model: outputs, inputs.
         found: [usize; 2],
-        /// Outputs and inputs of the couplings.
+        /// In the couplings: outputs, inputs.
         expected: [usize; 2],
     },
     /// The channel delays inside the loop cannot become states.

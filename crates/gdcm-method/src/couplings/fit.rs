@@ -1,4 +1,4 @@
-//! Fit of mixing and feedback to all conditions at once (M16.2), leave-one-out fits, and the error
+//! Fits mixing and feedback to all conditions at once (M16.2), leave-one-out fits, and the error
 //! bars derived from them (M16.4).
 //!
 //! ```text
@@ -29,12 +29,12 @@ pub struct CouplingFit {
     pub matrices: CouplingMatrices,
     /// The fitted unknowns.
     pub unknowns: Vec<Unknown>,
-    /// Values of the unknowns, by solve.
+    /// Values by solve and unknown.
     pub coefficients: Vec<Vec<f64>>,
     /// Optimality check for the last solve, a convex problem with a single optimum: the largest
     /// residual of the normal equations over the largest right side.
     pub residual: f64,
-    /// Outputs that cannot be fed back, because an input has no known response of them in any
+    /// Outputs that cannot be fed back, because their response to some input is unknown in every
     /// condition.
     pub not_fed_back: Vec<usize>,
     /// Unknowns that no response determines; they keep their uncoupled values.
@@ -44,11 +44,10 @@ pub struct CouplingFit {
 /// Memory limit for condition blocks computed in parallel \[bytes\].
 const BLOCK_MEMORY: usize = 256 << 20;
 
-/// Fits the couplings of a problem by five successive weighted linear least-squares problems
-/// (M16.2).
+/// Fits the couplings by five successive weighted linear least-squares problems (M16.2).
 ///
-/// The result is identical to the last bit with any scheduling of its pieces. `progress` is notified
-/// after every condition in every pass, and polled every few frequencies for cancellation.
+/// The result is identical to the last bit in any order of execution. `progress` is notified after
+/// every condition in every pass, and polled every few frequencies for cancellation.
 ///
 /// # Errors
 /// [`CouplingError`] if tables do not fit together, no response has a weight, the loop is singular in
@@ -76,7 +75,7 @@ pub fn fit_couplings(
         fed_back: &fed_back,
         layout: UnknownLayout::new(&unknowns, problem.inputs(), &fed_back),
         shares: Shares::new(progress),
-        // The solution of a pass counts like a condition.
+        // Solving a pass counts like a condition.
         share: 1.0 / (solves * (conditions.len() + 1)) as f64,
     };
     let mut matrices = CouplingMatrices::none(airspeeds, problem.inputs(), problem.outputs());
@@ -124,12 +123,12 @@ struct Fitting<'a> {
     fed_back: &'a [usize],
     layout: UnknownLayout,
     shares: Shares<'a>,
-    /// Share of a condition in a pass in the whole fit.
+    /// Progress of the fit per condition and pass.
     share: f64,
 }
 
 impl Fitting<'_> {
-    /// Returns the normal equations of the pass that follows these couplings.
+    /// Returns the normal equations for the pass after these couplings.
     ///
     /// As many conditions run in parallel as memory permits for their blocks; they are added in
     /// order.
@@ -165,7 +164,7 @@ impl Fitting<'_> {
 /// Fewest conditions for error bars.
 pub const LEAST_CONDITIONS: usize = 3;
 
-/// A fit without one of the conditions.
+/// A fit without a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeftOutFit {
     /// The omitted condition.
@@ -174,11 +173,11 @@ pub struct LeftOutFit {
     pub fit: CouplingFit,
 }
 
-/// Fits the couplings without each condition in turn, in the order of the conditions; the fits are
-/// independent tasks.
+/// Fits the couplings without each condition in turn, in their order; the fits are independent
+/// tasks.
 ///
 /// # Errors
-/// [`CouplingError::TooFewConditions`] for fewer than three conditions, and the errors of
+/// [`CouplingError::TooFewConditions`] for fewer than three conditions, and all errors from
 /// [`fit_couplings`].
 pub fn left_out_fits(
     problem: &CouplingProblem,
@@ -246,8 +245,8 @@ impl CouplingBars {
     }
 }
 
-/// Computes the jackknife standard deviation by entry from the leave-one-out matrices; needs at least
-/// one.
+/// Computes the jackknife standard deviation by entry from the leave-one-out matrices; at least one
+/// is needed.
 fn jackknife(without: &[DMatrix<f64>]) -> DMatrix<f64> {
     let count = without.len() as f64;
     let (rows, columns) = without[0].shape();

@@ -1,4 +1,4 @@
-//! Flight data of the coupling fit: the response without the delays and leads of its channels, and its
+//! Flight data for the coupling fit: the response without its channels' delays and leads, and its
 //! standard deviation (M16.2).
 
 use std::f64::consts::LN_10;
@@ -51,7 +51,7 @@ pub fn without_channels(
     }))
 }
 
-/// Returns the response `L` of a channel with signed delay `tau_s` \[s\].
+/// Returns a channel's response `L` for a signed delay `tau_s` \[s\].
 fn channel_response(tau_s: f64, omega: &[f64], design: Option<&LeadDesign>) -> Vec<Complex<f64>> {
     match design.and_then(|design| design.filter(tau_s)) {
         Some(filter) => omega.iter().map(|&omega| filter.at(omega)).collect(),
@@ -64,7 +64,7 @@ fn channel_response(tau_s: f64, omega: &[f64], design: Option<&LeadDesign>) -> V
 
 /// Returns the standard deviation of `ln H` from a model's bands, p x m curves on `omega`
 /// \[rad/s\]: `sd^2 = 1/2 ((sd_dB ln 10 / 20)^2 + (sd_deg pi / 180)^2)`, linear in `ln omega`,
-/// constant beyond the ends of the bands (M16.2).
+/// constant beyond the bands' ends (M16.2).
 pub fn response_deviation(bands: &ModelBands, omega: &[f64]) -> PairTable<Vec<f64>> {
     bands.sd_db().map(|pair, sd_db| {
         let sd_db = interpolate_values(bands.omega(), sd_db, omega);

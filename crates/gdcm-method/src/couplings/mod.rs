@@ -4,7 +4,7 @@
 //! ```text
 //! y = H (u' + K y),  u' = M~ u,  so that  H~ = (I - H K)^-1 H M~
 //!
-//!  1  for each condition: R' <- L_o^-1 R L_i^-1, the flight response without the delays and leads of its channels
+//!  1  for each condition: R' <- L_o^-1 R L_i^-1, the flight response without its channels' delays and leads
 //!  2  K <- 0, M <- I;  exactly R' = (I - H K)^-1 H M where R' = H (M + K R'), which is linear in M and K
 //!  3  repeat five times:
 //!  4     S <- (I - H K)^-1,  F <- S H,  H_c <- F M at each condition and frequency

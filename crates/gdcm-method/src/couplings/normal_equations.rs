@@ -1,7 +1,7 @@
-//! The normal equations of a pass: sum over the conditions, scaling, regularisation (M16.2).
+//! The normal equations in a pass: sum over the conditions, scaling, regularisation (M16.2).
 //!
 //! ```text
-//! 1  G, b <- sum over the conditions of their blocks, the unknowns M_ji with powers of the airspeed v
+//! 1  G, b <- the conditions' blocks summed, with powers of the airspeed v for the unknowns M_ji
 //! 2  scale rows and columns by the root of the diagonal, because the entries of K differ in unit
 //! 3  (G + rho diag G) theta = b + rho diag G theta_0,   theta_0: M = I, K = 0;  solved as an arrow
 //! ```
@@ -15,17 +15,17 @@ use super::pair_products::{PairProducts, pair_count, pair_index};
 use super::unknown::Unknown;
 use super::unknown_layout::{FeedbackUnknown, MixingUnknown, UnknownLayout};
 
-/// The normal equations of a pass, `G theta = b`.
+/// The normal equations, `G theta = b`.
 pub(super) struct NormalEquations<'a> {
     layout: &'a UnknownLayout,
     columns: Vec<ArrowColumn>,
-    /// The pairs of two unknowns of K.
+    /// The pairs of two unknowns in K.
     feedback: PairProducts,
-    /// Right side for the unknowns of K: rows by fed-back output, columns by input.
+    /// Right side for the unknowns in K: rows by fed-back output, columns by input.
     right: DMatrix<f64>,
 }
 
-/// The optimum of a pass.
+/// The optimum in a pass.
 pub(super) struct PassOptimum {
     /// `theta`, by unknown.
     pub(super) coefficients: DVector<f64>,
@@ -69,7 +69,7 @@ impl<'a> NormalEquations<'a> {
         self.right += &blocks.right;
     }
 
-    /// Returns the entry of the normal matrix for two unknowns of K.
+    /// Returns the normal matrix entry for two unknowns in K.
     fn feedback_entry(&self, row: &FeedbackUnknown, column: &FeedbackUnknown) -> f64 {
         let count = self.right.nrows();
         if row.fed_back <= column.fed_back {
@@ -118,7 +118,7 @@ impl<'a> NormalEquations<'a> {
         })
     }
 
-    /// Returns the scale of each unknown from the diagonal (step 2).
+    /// Returns the unknowns' scales from the diagonal (step 2).
     fn scaling<'u>(&self, unknowns: &'u [Unknown], ridge: f64) -> Scaling<'u> {
         let mut scaling = Scaling::new(unknowns, ridge);
         for (equations, mixing) in self.columns.iter().zip(&self.layout.mixing) {
@@ -160,8 +160,8 @@ impl<'a> NormalEquations<'a> {
     }
 }
 
-/// Adds a condition's blocks to the equations of an input column, with `v^power` for the unknowns
-/// of M.
+/// Adds a condition's blocks to the equations for an input column, with `v^power` for the unknowns
+/// in M.
 fn add_column(
     equations: &mut ArrowColumn,
     blocks: &ColumnBlocks,
@@ -185,7 +185,7 @@ fn add_column(
     }
 }
 
-/// Scales and regularises the equations of an input column.
+/// Scales and regularises the equations for an input column.
 fn scaled_column(
     equations: &ArrowColumn,
     mixing: &[MixingUnknown],
@@ -215,7 +215,7 @@ fn scaled_column(
     }
 }
 
-/// Factors that scale the diagonal of the normal matrix to 1, and the regularisation towards no
+/// Factors that scale the normal matrix to a unit diagonal, and the regularisation towards no
 /// couplings.
 struct Scaling<'a> {
     unknowns: &'a [Unknown],

@@ -1,4 +1,4 @@
-//! Sums of products over frequencies, for the pairs of factors and of inputs in the normal equations
+//! Sums of products over frequencies, by pair of factors and pair of inputs in the normal equations
 //! (M16.2).
 //!
 //! The sum of `Re conj(t_a) t_b P_jl` over frequencies is a difference of two matrix products, with
@@ -14,7 +14,7 @@ use nalgebra::{Complex, DMatrix, DMatrixView};
 /// cache.
 pub(super) const CHUNK: usize = 64;
 
-/// Returns the count of pairs `a <= b` among `count` items.
+/// Returns how many pairs `a <= b` there are among `count` items.
 pub(super) fn pair_count(count: usize) -> usize {
     count * (count + 1) / 2
 }
@@ -29,9 +29,9 @@ pub(super) fn pair_index(a: usize, b: usize, count: usize) -> usize {
 #[derive(Clone)]
 pub(super) struct PairProducts {
     inputs: usize,
-    /// Sums of the products of the real parts.
+    /// Products of real parts.
     real: DMatrix<f64>,
-    /// Sums of the products of the imaginary parts.
+    /// Products of imaginary parts.
     imaginary: DMatrix<f64>,
 }
 
@@ -86,15 +86,15 @@ impl PairProducts {
     }
 }
 
-/// Factors of the products at several frequencies, a column each.
+/// Factors of the products, a column by frequency.
 pub(super) struct ProductChunk {
     /// Filled columns.
     filled: usize,
-    /// Real parts of `conj(t_a) t_b`, a row for each pair `a <= b`.
+    /// `Re conj(t_a) t_b`, a row for each pair `a <= b`.
     t_re: DMatrix<f64>,
     /// Imaginary parts of the same.
     t_im: DMatrix<f64>,
-    /// Real parts of `P_jl`, a row for each pair `j <= l`.
+    /// `Re P_jl`, a row for each pair `j <= l`.
     p_re: DMatrix<f64>,
     /// Imaginary parts of the same.
     p_im: DMatrix<f64>,
@@ -123,7 +123,7 @@ impl ProductChunk {
         self.filled = 0;
     }
 
-    /// Appends a frequency: the factors `t`, and `F` with the weights `q^2` of its rows.
+    /// Appends a frequency: the factors `t`, and `F` with the weights `q^2` by row.
     pub(super) fn push(&mut self, t: &[Complex<f64>], f: &RowParts, squared_weights: &[f64]) {
         self.push_factors(t);
         self.push_weighted(f, squared_weights);

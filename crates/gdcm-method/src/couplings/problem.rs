@@ -1,4 +1,4 @@
-//! Data and settings of the coupling fit (M16.1, M16.2).
+//! Data and settings for the coupling fit (M16.1, M16.2).
 
 use std::sync::Arc;
 
@@ -13,12 +13,12 @@ pub use super::flight_data::{
 use crate::fidelity::CoherenceWeights;
 use crate::schedule::Airspeeds;
 
-/// Couplings applied at the inputs of a physics model.
+/// Couplings applied at a physics model's inputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum CouplingKind {
     /// A mixing `M` of the inputs.
     Mixing,
-    /// A mixing, and a feedback `K` of outputs to inputs.
+    /// A mixing, and a feedback `K` from outputs to inputs.
     #[default]
     MixingAndFeedback,
 }
@@ -56,7 +56,7 @@ pub struct CouplingCondition {
 #[derive(Clone, Debug)]
 pub struct CouplingProblem {
     pub kind: CouplingKind,
-    /// The common frequencies of all responses \[rad/s\], ascending.
+    /// The frequencies \[rad/s\] for all responses, ascending.
     pub omega: Arc<[f64]>,
     /// The on-axis responses, which have twice the weight.
     pub on_axis: PairTable<bool>,
@@ -64,13 +64,13 @@ pub struct CouplingProblem {
     pub options: CouplingOptions,
 }
 
-/// Settings of the coupling fit (M16.2).
+/// Settings for the coupling fit (M16.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplingOptions {
     /// `rho`: regularisation towards M = I, K = 0, relative to the responses' information about each
     /// entry.
     pub ridge: f64,
-    /// Count of successive linear least-squares problems.
+    /// Successive linear least-squares problems.
     pub solves: usize,
     /// Highest power of the scaled airspeed on the diagonal of `M`.
     pub degree: usize,
@@ -124,9 +124,9 @@ impl CouplingProblem {
     /// Returns the outputs with a column in `K`: all that the feedback can use, or none for a mixing
     /// alone.
     ///
-    /// An input column of the equations needs the flight response of every such output. An output
-    /// that is missing for some input at all frequencies of all conditions is therefore left out,
-    /// and so is an output missing from the physics models.
+    /// An input column in the equations needs every such output's flight response. An output that
+    /// is missing for some input at all frequencies of all conditions is therefore left out, and so
+    /// is an output missing from the physics models.
     pub(super) fn fed_back(&self) -> Vec<usize> {
         if !self.kind.feeds_back() {
             return Vec::new();
@@ -180,14 +180,14 @@ impl CouplingProblem {
 }
 
 impl CouplingCondition {
-    /// Whether the physics model has all responses of an output at frequency `k`.
+    /// Whether the physics model has an output's responses to all inputs at frequency `k`.
     pub(super) fn has_physics_row(&self, output: usize, k: usize) -> bool {
         (0..self.physics.inputs())
             .all(|input| self.physics.curve(Pair::new(output, input))[k].is_finite())
     }
 
-    /// Returns outputs, inputs and frequencies of each table; tables without frequencies count as
-    /// having `points`.
+    /// Returns the numbers of outputs, inputs and frequencies by table; tables without frequencies
+    /// count as having `points`.
     fn table_shapes(&self, points: usize) -> Vec<[usize; 3]> {
         let mut shapes = vec![
             table_shape(self.physics.curves(), points),
@@ -204,8 +204,8 @@ impl CouplingCondition {
     }
 }
 
-/// Returns outputs, inputs and frequencies of a table: `expected` frequencies if every curve has
-/// them, otherwise the length of the first curve that differs.
+/// Returns a table's numbers of outputs, inputs and frequencies: `expected` frequencies if every
+/// curve has them, otherwise the length of the first curve that differs.
 fn table_shape<T>(curves: &PairTable<Vec<T>>, expected: usize) -> [usize; 3] {
     let other = curves
         .iter()

@@ -1,12 +1,12 @@
-//! The unknowns of the coupling fit (M16.1).
+//! The unknowns in the coupling fit (M16.1).
 
 use super::problem::CouplingProblem;
 use crate::schedule::Airspeeds;
 
-/// A fitted coefficient of mixing or feedback.
+/// A fitted coefficient in mixing or feedback.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Unknown {
-    /// Coefficient of `v^power` in `M_to,from`: the share of input `from` that goes to input `to`.
+    /// Factor of `v^power` in `M_to,from`: the share that input `to` receives from input `from`.
     Mixing {
         /// The receiving input.
         to: usize,

@@ -1,8 +1,8 @@
-//! Places of the unknowns in the normal equations (M16.2).
+//! Order of the unknowns in the normal equations (M16.2).
 
 use super::unknown::Unknown;
 
-/// The unknowns in the order of the equations: entries of `M` by input column, then entries of `K`.
+/// The unknowns in the order of the equations: those in `M` by input column, then those in `K`.
 pub(super) struct UnknownLayout {
     /// The unknowns `M_ji` by input column i.
     pub(super) mixing: Vec<Vec<MixingUnknown>>,

@@ -42,11 +42,11 @@ pub(super) struct WeightedCondition<'a> {
 }
 
 impl<'a> WeightedCondition<'a> {
-    /// Arranges a condition of a problem; `fed_back` are the outputs with a column in `K`.
+    /// Arranges a condition; `fed_back` are the outputs with a column in `K`.
     ///
     /// A missing value has weight 0 and value 0. If flight lacks a response that is fed back, its
-    /// input column has weight 0; if the physics model lacks one, the whole frequency has weight 0.
-    /// The value 0 is then never used.
+    /// input column has weight 0; if the physics model lacks such a response, the whole frequency
+    /// has weight 0. The value 0 is then never used.
     pub(super) fn new(
         problem: &'a CouplingProblem,
         condition: &CouplingCondition,
@@ -163,7 +163,7 @@ fn columns_by_frequency(curves: &PairTable<Vec<Complex<f64>>>, points: usize) ->
     values
 }
 
-/// Returns the fixed weights in the order of [`columns_by_frequency`].
+/// Returns the fixed weights, ordered like [`columns_by_frequency`].
 fn fixed_weights(
     problem: &CouplingProblem,
     condition: &CouplingCondition,

@@ -44,6 +44,7 @@ pub enum CommandType {
     Attitude,
 }
 
+/// Response type, band, and treatment of values above the band.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandwidthSettings {
     pub command: CommandType,

@@ -27,6 +27,7 @@ const FASTEST_REGRESSING_RAD_S: f64 = 25.0;
 /// Frequency \[rad/s\] below which a real lateral mode without roll rate is the spiral.
 const FASTEST_SPIRAL_RAD_S: f64 = 1.0;
 
+/// A helicopter mode (Padfield 2007, 4.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ModeName {

@@ -26,7 +26,7 @@ pub struct ModeTolerance {
     pub period_s: Option<f64>,
     /// Relative to the flown time to half or double amplitude.
     pub amplitude_time: f64,
-    /// Absolute.
+    /// Absolute difference.
     pub damping_ratio: f64,
     /// Entry in the source ("2.c.3.a").
     #[serde(default)]
@@ -131,6 +131,7 @@ fn is_at_most(deviation: Option<f64>, limit: f64) -> bool {
 }
 
 impl ModeToleranceTable {
+    /// Returns the rows in file order.
     pub fn rows(&self) -> &[ModeTolerance] {
         &self.0
     }

@@ -26,6 +26,7 @@ pub struct ModeValues {
 }
 
 impl ModeValues {
+    /// Computes the values from the mode's pole.
     pub fn new(mode: &Mode) -> Self {
         let period_s = if mode.oscillates() {
             Some(TAU / mode.pole.im.abs())

@@ -31,7 +31,7 @@ pub struct OnAxisAndAll {
 
 impl OnAxisAndAll {
     /// Averages the defined values.
-    pub fn of(values: &PairTable<Option<f64>>, on_axis: &PairTable<bool>) -> Self {
+    pub fn average(values: &PairTable<Option<f64>>, on_axis: &PairTable<bool>) -> Self {
         let mut all_values = Vec::new();
         let mut on_axis_values = Vec::new();
         for (pair, value) in values.iter() {
@@ -140,6 +140,7 @@ pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> 
     Some((1.0 - outside / (last / first).ln()).clamp(0.0, 1.0))
 }
 
+/// A model in a condition, compared with flight.
 #[derive(Clone, Copy)]
 pub struct SummarySource<'a> {
     /// Difference between the model's responses and the identified representative's; `None` where
@@ -170,6 +171,7 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Computes all costs under the correction in `source`.
     pub fn of(source: &SummarySource<'_>) -> Self {
         let SummarySource {
             mismatch,
@@ -188,12 +190,12 @@ impl Summary {
         let muad_shares =
             mismatch.map(|pair, mismatch| muad_share(mismatch.as_ref()?, omega, correction(pair)?));
         Self {
-            cost: OnAxisAndAll::of(&costs, on_axis),
+            cost: OnAxisAndAll::average(&costs, on_axis),
             rms: validation.and_then(|validation| RmsCost::of(&validation.windows, outputs)),
             theil: validation
                 .map(|validation| validation.theil.clone())
                 .unwrap_or_default(),
-            muad: OnAxisAndAll::of(&muad_shares, on_axis),
+            muad: OnAxisAndAll::average(&muad_shares, on_axis),
         }
     }
 }
@@ -321,13 +323,13 @@ mod tests {
         });
         let on_axis = PairTable::from_fn(2, 2, |pair| pair.output == pair.input);
         assert_eq!(
-            OnAxisAndAll::of(&values, &on_axis),
+            OnAxisAndAll::average(&values, &on_axis),
             OnAxisAndAll {
                 on_axis: Some(2.0),
                 all: Some(3.0)
             }
         );
-        let nothing = OnAxisAndAll::of(&PairTable::filled(2, 2, None), &on_axis);
+        let nothing = OnAxisAndAll::average(&PairTable::filled(2, 2, None), &on_axis);
         assert_eq!(nothing, OnAxisAndAll::default());
     }
 

@@ -238,10 +238,12 @@ impl ToleranceTable {
         })
     }
 
+    /// Returns the document that the tolerances come from.
     pub fn source(&self) -> &str {
         &self.source
     }
 
+    /// Returns the rows in file order.
     pub fn rows(&self) -> &[Tolerance] {
         &self.rows
     }

@@ -1,4 +1,4 @@
-//! Airspeeds of the scheduled conditions: scale and clusters (M11, M11b).
+//! Scale and clusters of the scheduled airspeeds (M11, M11b).
 
 /// The conditions' airspeeds, centred and scaled: `v = (V - mean V) / (half the range of V)` (M11).
 #[derive(Clone, Debug, PartialEq)]
@@ -14,7 +14,7 @@ pub struct Airspeeds {
     /// Largest airspeed \[kt\].
     pub max_kt: f64,
     /// Conditions, by index, grouped by airspeed in rising order: the airspeeds in a cluster lie
-    /// within the tolerance of their next neighbour (M11b).
+    /// within the tolerance from neighbour to neighbour (M11b).
     pub clusters: Vec<Vec<usize>>,
 }
 
@@ -93,7 +93,7 @@ impl Airspeeds {
     }
 }
 
-/// Clusters airspeeds \[kt\] like [`Airspeeds::new`], and returns a row of cluster indicators by
+/// Clusters airspeeds \[kt\] like [`Airspeeds::new`], and returns cluster indicators, a row by
 /// condition.
 pub fn airspeed_indicators(airspeeds_kt: Vec<f64>, tolerance_kt: f64) -> Vec<Vec<f64>> {
     match Airspeeds::new(airspeeds_kt, tolerance_kt) {

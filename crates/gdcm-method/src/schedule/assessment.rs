@@ -7,12 +7,12 @@ pub use super::form_comparison::{compare_forms, compare_lead_degrees};
 use crate::correction::ChannelCorrection;
 use crate::fidelity::{Cost, CostAverage, Mismatch};
 
-/// J of a response before and after a correction; a negative change is an improvement.
+/// J for a response before and after a correction; a negative change is an improvement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CostChange {
-    /// J of the physics model without correction.
+    /// J without correction.
     pub uncorrected: Cost,
-    /// J of the corrected physics model.
+    /// J with correction.
     pub corrected: Cost,
 }
 
@@ -33,11 +33,11 @@ impl CostChange {
     }
 }
 
-/// Computes J of every model response before and after `correction`, against the model that it was
+/// Computes J for every model response before and after `correction`, against the model that it was
 /// compared with in `mismatch`, at the frequencies `omega` \[rad/s\].
 ///
-/// `None` if a response is not defined, or if its net gain is not positive (possible in a schedule
-/// of `k` itself).
+/// `None` if a response is not defined, or if its net gain is not positive (possible if `k` itself
+/// is regressed).
 pub fn assess(
     mismatch: &PairTable<Option<Mismatch>>,
     uncorrected: &PairTable<Option<Cost>>,
@@ -54,7 +54,7 @@ pub fn assess(
     })
 }
 
-/// Computes J of every model response after `correction`, against the model that it was compared
+/// Computes J for every model response after `correction`, against the model that it was compared
 /// with in `mismatch`; `None` in the same cases as [`assess`].
 pub fn corrected_cost(
     mismatch: &PairTable<Option<Mismatch>>,
@@ -67,7 +67,7 @@ pub fn corrected_cost(
     })
 }
 
-/// Computes J of a model response after `correction`; `None` if its net gain is not positive.
+/// Computes J for a model response after `correction`; `None` if its net gain is not positive.
 pub fn corrected_cost_on(
     mismatch: &Mismatch,
     correction: &ChannelCorrection,

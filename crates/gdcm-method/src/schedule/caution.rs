@@ -15,16 +15,16 @@ pub enum ScheduleCaution {
         /// Cluster count.
         clusters: usize,
     },
-    /// A gain leaves the range of the conditions' gains by more than half its width, between two
-    /// clusters (M11b).
+    /// A gain leaves the conditions' range by more than half its width, between two clusters
+    /// (M11b).
     Overshoot {
         channel: Channel,
-        /// Mean airspeeds of the clusters on either side \[kt\].
+        /// Mean airspeeds \[kt\] in the neighbouring clusters.
         between_kt: [f64; 2],
         /// Airspeed at the largest excursion \[kt\].
         airspeed_kt: f64,
         gain: f64,
-        /// Least and greatest gain of the conditions.
+        /// Least and greatest gain in the conditions.
         range: [f64; 2],
     },
     /// A channel's signed delay in a condition is far from the others, or has another sign (M15.6).
@@ -43,11 +43,11 @@ pub enum ScheduleCaution {
     CostsMore(ScheduledCost),
 }
 
-/// Mean on-axis J of a physics model in a condition (M12).
+/// Mean on-axis J for a physics model in a condition (M12).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduledCost {
     pub condition: ConditionId,
-    /// Name of the physics model: nominal, or representative if the nominal model is rejected.
+    /// Name: nominal, or representative if the nominal model is rejected.
     pub model: String,
     /// J under the schedule.
     pub scheduled: f64,

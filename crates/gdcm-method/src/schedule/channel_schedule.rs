@@ -2,10 +2,10 @@
 //!
 //! ```text
 //! 1  cluster the conditions' airspeeds; v = (V - mean V) / (half the range of V)
-//! 2  ln k (or k) of every channel and condition
-//! 3  contribution gamma z of the second variable, if any, subtracted from these values
-//! 4  regression of the remainder on v: polynomial by least squares, or means by cluster
-//! 5  regression of the delays, or of the signed delays, where these are scheduled
+//! 2  ln k (or k) by channel and condition
+//! 3  contribution gamma z from the second variable, if any, subtracted from these values
+//! 4  the remainder regressed on v: polynomial by least squares, or means by cluster
+//! 5  the delays, or the signed delays, regressed where these are scheduled
 //! ```
 
 use gdcm_model::dataset::condition::FlightState;
@@ -16,7 +16,7 @@ use super::error::ScheduleError;
 use super::lead_schedule::LeadSchedule;
 use super::regression::{Regression, design, interpolation_weights, powers};
 use super::scheduled_point::ScheduledPoint;
-use super::second_variable::SecondTerm;
+use super::second_term::SecondTerm;
 use super::settings::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use crate::correction::{ChannelCorrection, Channels, LeadPrice};
 
@@ -31,7 +31,7 @@ pub struct Schedule {
     pub airspeeds: Airspeeds,
     /// Each channel's gain, or its logarithm.
     pub gains: Channels<Regression>,
-    /// Contribution of the second variable to each regression, if any.
+    /// The second variable's contribution to each regression, if any.
     pub second: Option<SecondTerm>,
     /// Delays as functions of airspeed, where these are scheduled.
     pub delays: Option<DelaySchedule>,
@@ -53,8 +53,8 @@ impl Schedule {
     /// Fits the schedule, without cautions (steps 1 to 5).
     ///
     /// # Errors
-    /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if the
-    /// effect of the second variable cannot be separated from that of airspeed.
+    /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if its
+    /// effect cannot be separated from that of airspeed.
     pub(super) fn fit(
         points: &[ScheduledPoint<'_>],
         settings: ScheduleSettings,
@@ -100,7 +100,7 @@ impl Schedule {
         self.delays.is_some() || self.leads.is_some()
     }
 
-    /// Returns the price of the scheduled leads: by channel the maximum over the airspeeds. `None`
+    /// Returns the price for the scheduled leads: by channel the maximum over the airspeeds. `None`
     /// for a schedule without lead filters.
     pub fn lead_price(&self) -> Option<LeadPrice> {
         let leads = self.leads.as_ref()?;
@@ -137,7 +137,7 @@ impl Schedule {
     /// end value applies.
     ///
     /// Scheduled delays are limited to their bounds: from zero to the conditions' upper bounds,
-    /// interpolated linearly. A second variable is in the middle of its range.
+    /// interpolated linearly. A second variable takes its middle value.
     pub fn at(&self, airspeed_kt: f64) -> ChannelCorrection {
         self.evaluate(airspeed_kt, None)
     }
@@ -151,8 +151,8 @@ impl Schedule {
         self.evaluate(state.airspeed_kt, second)
     }
 
-    /// Evaluates the scheduled correction like [`Schedule::at`], at a value of the second variable;
-    /// beyond the conditions' range the end value applies.
+    /// Evaluates the scheduled correction like [`Schedule::at`], with this second variable; beyond
+    /// the conditions' range the end value applies.
     pub fn evaluate(&self, airspeed_kt: f64, second: Option<f64>) -> ChannelCorrection {
         let gains = self.gains.map(|channel, regression| {
             let contribution = match (&self.second, second) {
@@ -175,8 +175,8 @@ impl Schedule {
         ChannelCorrection::of_delays(gains, delays_s)
     }
 
-    /// Returns the design matrix `X` of the regression: a row by condition, with the second
-    /// variable in the last column.
+    /// Returns the regression's design matrix `X`: a row by condition, with the second variable in
+    /// the last column.
     pub fn design(&self) -> Vec<Vec<f64>> {
         let mut rows = self.airspeed_design();
         if let Some(term) = &self.second {
@@ -187,14 +187,13 @@ impl Schedule {
         rows
     }
 
-    /// Returns the columns of the design matrix that depend on airspeed: powers of `v`, or cluster
-    /// indicators.
+    /// Returns the design columns that depend on airspeed: powers of `v`, or cluster indicators.
     pub fn airspeed_design(&self) -> Vec<Vec<f64>> {
         design(&self.airspeeds, self.settings.kind)
     }
 
-    /// Returns the row of the design matrix for an airspeed \[kt\], limited to the conditions'
-    /// range. A second variable is in the middle of its range.
+    /// Returns the design row for an airspeed \[kt\], limited to the conditions' range. A second
+    /// variable takes its middle value.
     pub fn design_row(&self, airspeed_kt: f64) -> Vec<f64> {
         let mut row = match self.degree() {
             Some(degree) => powers(self.airspeeds.scaled(airspeed_kt), degree),
@@ -251,7 +250,7 @@ fn regressed_values(
     })
 }
 
-/// Fits the contribution of the second variable, if requested (step 3).
+/// Fits the second variable's contribution, if requested (step 3).
 fn fit_second_term(
     points: &[ScheduledPoint<'_>],
     airspeeds: &Airspeeds,

@@ -1,4 +1,4 @@
-//! Coefficients of a schedule as a table.
+//! Coefficients or values as a table.
 
 use super::channel_schedule::Schedule;
 use super::lead_schedule::LeadSchedule;
@@ -6,7 +6,7 @@ use super::regression::Regression;
 use super::settings::ScheduledQuantity;
 use crate::correction::{Channel, Channels};
 
-/// Column headings of a polynomial, lowest power first.
+/// Column headings for a polynomial, lowest power first.
 const POWERS: [&str; 4] = ["1", "v", "v²", "v³"];
 
 /// A channel's coefficients or values.
@@ -15,11 +15,11 @@ pub struct CoefficientRow {
     pub channel: Channel,
     /// Scheduled quantity with its channel: "ln k_LON", "k_Q", "τ_PED \[s\]".
     pub name: String,
-    /// By column of the table.
+    /// By column.
     pub figures: Vec<f64>,
 }
 
-/// Coefficients of a polynomial schedule in the scaled airspeed, or a table's values (M11).
+/// Polynomial coefficients in the scaled airspeed, or a lookup table's values (M11).
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoefficientTable {
     /// Factors of the coefficients ("1", "v", "v²", "v³"), or airspeeds ("60.0 kt").
@@ -87,7 +87,7 @@ impl Schedule {
         }
     }
 
-    /// Returns the regressions of delays, then of signed delays, where these are scheduled.
+    /// Returns the regressions for delays and signed delays, where these are scheduled.
     fn scheduled_delays(&self) -> Vec<&Channels<Regression>> {
         let mut scheduled = Vec::new();
         if let Some(delays) = &self.delays {
@@ -102,7 +102,7 @@ impl Schedule {
     /// Returns a regression's figures in the table's columns.
     fn row_figures(&self, regression: &Regression, columns: usize) -> Vec<f64> {
         match (self.degree(), regression) {
-            // Signed delays are a polynomial besides a table of gains.
+            // Signed delays have a polynomial even besides a table for the gains.
             (None, Regression::Polynomial { .. }) => self
                 .airspeeds
                 .clusters_kt()

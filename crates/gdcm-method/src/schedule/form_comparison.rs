@@ -1,5 +1,4 @@
-//! Forms and degrees of a schedule compared: residuals and leave-one-condition-out errors (M11,
-//! M15.5).
+//! Comparison between forms and degrees: residuals and leave-one-condition-out errors (M11, M15.5).
 
 use gdcm_model::dataset::{Pair, PairTable};
 
@@ -28,7 +27,7 @@ pub struct Residual {
 }
 
 impl Residual {
-    /// Computes the residual of a gain; `None` if the scheduled gain is not positive.
+    /// Computes a gain's residual; `None` if the scheduled gain is not positive.
     fn new(own: f64, scheduled: f64) -> Option<Self> {
         if scheduled > 0.0 {
             let ln = (own / scheduled).ln();
@@ -42,7 +41,7 @@ impl Residual {
     }
 }
 
-/// Residuals of a gain under a form of the schedule, by condition.
+/// A gain's residuals under a form of the schedule, by condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitResiduals {
     /// `None` if the scheduled gain is not positive.
@@ -64,7 +63,7 @@ impl FitResiduals {
     }
 }
 
-/// Returns the root mean square of `ln` residuals; `None` if any is missing, or without residuals.
+/// Returns the root mean square `ln` residual; `None` if any is missing, or without residuals.
 fn rms(residuals: &[Option<Residual>]) -> Option<f64> {
     let mut squares = Vec::with_capacity(residuals.len());
     for residual in residuals {
@@ -81,13 +80,13 @@ fn root_mean(squares: &[f64]) -> Option<f64> {
     Some((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }
 
-/// Residuals of every response under a form of the schedule.
+/// Residuals by response under a form of the schedule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormFit {
     pub kind: ScheduleKind,
     /// Polynomial degree, possibly less than requested (M11b); `None` for a table.
     pub degree: Option<usize>,
-    /// Residuals of each net gain, `k_o k_i`.
+    /// Net gain residuals, `k_o k_i`.
     pub pairs: PairTable<FitResiduals>,
 }
 
@@ -104,7 +103,7 @@ impl FormFit {
     }
 }
 
-/// Fits of all forms of a schedule.
+/// Fits of all forms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormComparison {
     /// Airspeed by condition \[kt\], in the order of the residuals.
@@ -152,7 +151,7 @@ pub fn compare_forms(
     })
 }
 
-/// Fills a table with the responses of the conditions; needs at least one condition.
+/// Fills a table by response; needs at least one condition.
 fn pair_table<T>(points: &[ScheduledPoint<'_>], value: impl FnMut(Pair) -> T) -> PairTable<T> {
     let first = points[0].correction;
     PairTable::from_fn(first.output_gains.len(), first.input_gains.len(), value)
@@ -161,9 +160,9 @@ fn pair_table<T>(points: &[ScheduledPoint<'_>], value: impl FnMut(Pair) -> T) ->
 /// Scheduled corrections at the conditions.
 struct Predictions {
     degree: Option<usize>,
-    /// By the schedule of all conditions.
+    /// From the schedule of all conditions.
     scheduled: Vec<ChannelCorrection>,
-    /// By the schedule of the other conditions; `None` if it does not exist.
+    /// From the schedule of the others; `None` if it does not exist.
     unseen: Vec<Option<ChannelCorrection>>,
 }
 
@@ -193,7 +192,7 @@ impl Predictions {
         })
     }
 
-    /// Returns the residuals of a response's net gain.
+    /// Returns a response's net gain residuals.
     fn gain_residuals(&self, points: &[ScheduledPoint<'_>], pair: Pair) -> FitResiduals {
         let mut residuals = Vec::with_capacity(points.len());
         let mut left_out = Vec::with_capacity(points.len());
@@ -211,7 +210,7 @@ impl Predictions {
         }
     }
 
-    /// Returns the fit of a response's net signed delay.
+    /// Returns the fit for a response's net signed delay.
     fn lead_fit(&self, points: &[ScheduledPoint<'_>], pair: Pair) -> LeadFit {
         let unseen: Option<Vec<&ChannelCorrection>> =
             self.unseen.iter().map(Option::as_ref).collect();
@@ -245,20 +244,19 @@ fn delay_rms_s<'a>(
 pub struct LeadFit {
     /// Over all conditions.
     pub rms_s: f64,
-    /// Over predictions for each condition by the schedule of the others; `None` if there are no
-    /// others.
+    /// Over predictions from the schedule of the others; `None` if there are no others.
     pub left_out_rms_s: Option<f64>,
 }
 
-/// Fit of the signed delays with a polynomial degree.
+/// Fit for the signed delays with a polynomial degree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadDegreeFit {
     pub degree: usize,
-    /// Fit of each response's net signed delay.
+    /// Fit by response, for its net signed delay.
     pub pairs: PairTable<LeadFit>,
 }
 
-/// Computes the fit of the signed delays with each degree from 0 to [`HIGHEST_DEGREE`]; empty if a
+/// Computes the fit for the signed delays with each degree from 0 to [`HIGHEST_DEGREE`]; empty if a
 /// condition's correction has no leads.
 pub fn compare_lead_degrees(
     points: &[ScheduledPoint<'_>],
@@ -270,7 +268,7 @@ pub fn compare_lead_degrees(
     }
     for degree in 0..=HIGHEST_DEGREE {
         let settings = ScheduleSettings {
-            // Signed delays depend on airspeed alone, in any form of the gains.
+            // Signed delays depend on airspeed alone, with any form for the gains.
             kind: ScheduleKind::Polynomial { degree: 0 },
             tau_degree: degree,
             second: None,

@@ -11,8 +11,8 @@ impl Schedule {
     /// Fits the schedule to the conditions' corrections and checks it between them.
     ///
     /// # Errors
-    /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if the
-    /// effect of the second variable cannot be separated from that of airspeed.
+    /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if its
+    /// effect cannot be separated from that of airspeed.
     pub fn of(
         points: &[ScheduledPoint<'_>],
         settings: ScheduleSettings,
@@ -63,7 +63,7 @@ impl Schedule {
     }
 
     /// Finds the airspeed between two clusters at which a channel's gain is farthest outside the
-    /// range of the conditions' gains; `None` if it is outside by at most half that range.
+    /// conditions' range; `None` if it is outside by at most half that range.
     fn find_overshoot(
         &self,
         points: &[ScheduledPoint<'_>],
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
     use crate::schedule::test_points::{correction, points};
 
-    /// The schedule of gains 1, 1.1, 1 at these airspeeds \[kt\].
+    /// The schedule with gains 1, 1.1, 1 at these airspeeds \[kt\].
     fn parabola(airspeeds_kt: [f64; 3]) -> Schedule {
         let corrections = [1.0, 1.1, 1.0].map(|gain| correction(gain, gain * gain));
         let points = points(&airspeeds_kt, &corrections, 1.0);

@@ -59,7 +59,7 @@ impl LeadSchedule {
         Some(schedule)
     }
 
-    /// Returns the highest degree of its polynomials.
+    /// Returns the highest degree among its polynomials.
     pub fn degree(&self) -> usize {
         self.taus_s
             .iter()
@@ -94,7 +94,7 @@ mod tests {
     use crate::correction::leads::LeadSettings;
     use crate::schedule::test_points::{correction, points};
 
-    /// Corrections with these signed delays of input and output \[s\].
+    /// Corrections with these signed delays \[s\] in input and output.
     fn corrections(taus_s: &[[f64; 2]]) -> Vec<ChannelCorrection> {
         let design = Arc::new(LeadDesign::new(
             LeadSettings::default(),

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `settings` | form, degree, regressed quantity, delays |
 //! | `airspeeds`, `regression` | clusters of airspeeds; polynomial and lookup table |
-//! | `second_variable` | altitude or mass besides airspeed |
+//! | `second_variable`, `second_term` | altitude or mass besides airspeed, and its contribution |
 //! | `channel_schedule`, `lead_schedule` | fit and evaluation |
 //! | `interpolation_check`, `caution` | checks between the conditions |
 //! | `form_comparison` | residuals and leave-one-condition-out errors by form and degree |
@@ -23,6 +23,7 @@ mod interpolation_check;
 mod lead_schedule;
 pub mod regression;
 mod scheduled_point;
+mod second_term;
 pub mod second_variable;
 mod settings;
 #[cfg(test)]

@@ -131,7 +131,7 @@ impl Bracket {
     }
 }
 
-/// Returns the weights of rising places in the linear interpolation at `x`.
+/// Returns the weights of ascending places in the linear interpolation at `x`.
 pub(super) fn interpolation_weights(places: &[f64], x: f64) -> Vec<f64> {
     let mut weights = vec![0.0; places.len()];
     let Bracket {

@@ -1,4 +1,4 @@
-//! Settings of a schedule: form, degree, regressed quantity, delays (M11).
+//! Schedule settings: form, degree, regressed quantity, delays (M11).
 
 use std::fmt;
 
@@ -9,13 +9,13 @@ use gdcm_model::whole_number::{whole, whole_or_none};
 
 use super::second_variable::SecondVariable;
 
-/// Highest degree of a polynomial schedule (M11).
+/// Highest polynomial degree (M11).
 pub const HIGHEST_DEGREE: usize = 3;
 
 /// Default cluster tolerance \[kt\] (M11b).
 pub const DEFAULT_TOLERANCE_KT: f64 = 2.0;
 
-/// Form of the schedule.
+/// Form of a schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ScheduleKind {
     /// Polynomial by least squares.
@@ -55,7 +55,7 @@ pub enum DelayScheduling {
 }
 
 impl From<bool> for DelayScheduling {
-    /// Converts the flag of older program versions.
+    /// Converts the flag from older program versions.
     fn from(flag: bool) -> Self {
         if flag { Self::Always } else { Self::Never }
     }
@@ -67,7 +67,7 @@ impl<'de> Deserialize<'de> for DelayScheduling {
     }
 }
 
-/// Reads a word, or the flag of older program versions.
+/// Reads a word, or the flag from older program versions.
 struct DelaySchedulingVisitor;
 
 impl Visitor<'_> for DelaySchedulingVisitor {
@@ -97,9 +97,9 @@ impl Visitor<'_> for DelaySchedulingVisitor {
 pub struct ScheduleSettings {
     pub kind: ScheduleKind,
     pub quantity: ScheduledQuantity,
-    /// Whether this schedule has delays too: the outcome of [`DelayScheduling`] for its conditions.
-    /// Older program versions read this field from study settings; it is `true` there if delays are
-    /// always scheduled.
+    /// Whether this schedule has delays too: the outcome from [`DelayScheduling`] for its
+    /// conditions. Older program versions read this field from study settings; it is `true` there
+    /// if delays are always scheduled.
     pub delays: bool,
     /// Polynomial degree for signed delays, 0 to [`HIGHEST_DEGREE`]; 0 by default, because servo,
     /// sensor and computing lags do not depend on airspeed (M15.5).

@@ -1,9 +1,9 @@
-//! Synthetic corrections for tests of schedules.
+//! Synthetic corrections for tests.
 
 use super::scheduled_point::ScheduledPoint;
 use crate::correction::ChannelCorrection;
 
-/// A correction with one input and one output, and an input delay of 10 ms.
+/// A correction for a single response, with 10 ms input delay.
 pub(super) fn correction(input_gain: f64, output_gain: f64) -> ChannelCorrection {
     ChannelCorrection {
         input_gains: vec![input_gain],
@@ -14,7 +14,7 @@ pub(super) fn correction(input_gain: f64, output_gain: f64) -> ChannelCorrection
     }
 }
 
-/// Pairs corrections with airspeeds \[kt\]; all have the same upper bound of the delays \[s\].
+/// Pairs corrections with airspeeds \[kt\]; all have the same upper delay bound \[s\].
 pub(super) fn points<'a>(
     airspeeds_kt: &[f64],
     corrections: &'a [ChannelCorrection],

@@ -6,7 +6,7 @@ use super::variance_component::{VarianceComponent, satterthwaite};
 /// Source of a bar's identification part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum IdentificationSource {
-    /// Spread of the identified models, pooled with the other conditions (M13.2).
+    /// Spread among the identified models, pooled with the other conditions (M13.2).
     Spread,
     /// Coherence of the measured response, where its error exceeds the spread.
     Coherence,
@@ -25,7 +25,7 @@ pub struct Bar {
     /// condition and without a reported error.
     pub identification: Option<VarianceComponent>,
     pub source: IdentificationSource,
-    /// Count of substitutions for which the value does not exist.
+    /// Substitutions for which the value does not exist.
     pub left_out: usize,
     /// Least and greatest admissible value.
     pub range: [f64; 2],
@@ -47,18 +47,18 @@ impl Bar {
         [self.trim, self.identification].into_iter().flatten()
     }
 
-    /// Returns the degrees of freedom of `u`; `None` if the bundles have no spread.
+    /// Returns the degrees of freedom in `u`; `None` if the bundles have no spread.
     pub fn degrees_of_freedom(&self) -> Option<f64> {
         satterthwaite(self.parts())
     }
 
-    /// Returns the half-width of the whole bar, `h = t(max(nu, 1)) u`; `None` without a known spread.
+    /// Returns the whole bar's half-width, `h = t(max(nu, 1)) u`; `None` without a known spread.
     pub fn half_width(&self, level: f64) -> Option<f64> {
         let degrees = self.degrees_of_freedom()?;
         Some(student_quantile(level, degrees) * self.deviation())
     }
 
-    /// Returns the half-width of the inner bar, `t(nu_id) s_id`, which holds for the chosen physics
+    /// Returns the inner bar's half-width, `t(nu_id) s_id`, which holds for the chosen physics
     /// model.
     pub fn inner_half_width(&self, level: f64) -> Option<f64> {
         let part = self.identification.filter(|part| part.variance > 0.0)?;
@@ -138,7 +138,7 @@ mod tests {
         }
     }
 
-    /// Case A of the reference, condition 1 (independent numpy code).
+    /// Reference case A, condition 1 (independent numpy code).
     #[test]
     fn a_bar_combines_both_parts_with_student_s_quantile() {
         let bar = bar(0.0316227766017, 0.0206881608656);

@@ -1,13 +1,13 @@
-//! Error of a measured response from its coherence (M13.2).
+//! Measurement error from the coherence (M13.2).
 
 use std::f64::consts::PI;
 
 use gdcm_model::response::median;
 
-/// Measurement data from which the error of a response follows.
+/// Measurement data that determine a response's error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
-    /// Count of independent averages, `n_d`.
+    /// Independent averages, `n_d`.
     pub averages: f64,
     /// Window length \[s\], `T_w`. Without it all frequencies share the same error.
     pub window_s: Option<f64>,
@@ -25,12 +25,12 @@ pub struct CoherenceError {
 }
 
 impl Measurement {
-    /// Returns the degrees of freedom of the error, `2 n_d`.
+    /// Returns the error's degrees of freedom, `2 n_d`.
     pub fn degrees_of_freedom(&self) -> f64 {
         2.0 * self.averages
     }
 
-    /// Computes the standard deviation of `ln |H|` and of `arg H` \[rad\], `epsilon = C sqrt(1 -
+    /// Computes the standard deviation both of `ln |H|` and `arg H` \[rad\], `epsilon = C sqrt(1 -
     /// gamma^2) / (|gamma| sqrt(2 n_d))`.
     ///
     /// J. S. Bendat and A. G. Piersol, *Random Data*, 4th ed. 2010, chapter 9.
@@ -38,9 +38,9 @@ impl Measurement {
         self.factor * ((1.0 - coherence) / (coherence * 2.0 * self.averages)).sqrt()
     }
 
-    /// Computes the factor by which averaging over frequency reduces the error, `kappa = sqrt(min(1,
-    /// (pi/2) sum f_j^2))`. `f_j` is the share of the frequencies \[rad/s\] with `floor(omega T_w /
-    /// (4 pi)) = j`: frequencies closer than `4 pi / T_w` have a common error.
+    /// Computes the factor by which averaging over frequency reduces the error, `kappa =
+    /// sqrt(min(1, (pi/2) sum f_j^2))`. `f_j` is the share of frequencies \[rad/s\] with
+    /// `floor(omega T_w / (4 pi)) = j`: frequencies closer than `4 pi / T_w` have a common error.
     fn averaging(&self, omega: &[f64]) -> f64 {
         let Some(window_s) = self.window_s else {
             return 1.0;

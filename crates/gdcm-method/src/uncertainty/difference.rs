@@ -4,7 +4,7 @@ use super::bar::Bar;
 use super::distributions::student_two_sided;
 use super::variance_component::satterthwaite;
 
-/// Difference of a value between two conditions, with the standard deviation expected from both
+/// Difference between two conditions in a value, with the standard deviation expected from both
 /// bars.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
@@ -27,19 +27,20 @@ impl Difference {
         }
     }
 
-    /// Returns `|delta| / u_delta`, the multiple of the expected difference; `None` without a spread.
+    /// Returns `|delta| / u_delta`, as a multiple of the expected difference; `None` without a
+    /// spread.
     pub fn ratio(&self) -> Option<f64> {
         self.degrees_of_freedom?;
         Some(self.delta.abs() / self.deviation)
     }
 
-    /// Returns the probability of a ratio this large without a true difference.
+    /// Returns the probability that a ratio this large arises without a true difference.
     pub fn p(&self) -> Option<f64> {
         Some(student_two_sided(self.ratio()?, self.degrees_of_freedom?))
     }
 }
 
-/// Applies Holm's correction for multiple tests; the result has the order of the argument.
+/// Applies Holm's correction for multiple tests; the order is kept.
 ///
 /// S. Holm, "A simple sequentially rejective multiple test procedure", *Scandinavian Journal of
 /// Statistics* 6, 1979.

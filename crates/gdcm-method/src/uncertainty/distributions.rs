@@ -7,8 +7,8 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, St
 const NORMAL_FROM: f64 = 1e8;
 
 /// Degrees of freedom above which Student's quantile is expanded about the normal quantile. Four
-/// terms have an error of 1e-12 there, and the inverse of the incomplete beta function does not
-/// converge for some larger values.
+/// terms have an error of 1e-12 there, and the inverse incomplete beta function does not converge
+/// for some larger values.
 const EXPANDED_FROM: f64 = 1e3;
 
 /// Computes Student's quantile `t(nu)` at `(1 + level) / 2` for any real `nu`, at least 1; the normal

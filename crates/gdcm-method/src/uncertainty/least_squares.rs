@@ -1,5 +1,5 @@
-//! Least squares over the conditions: split of the scatter about a fit (M13.5), bands for a schedule
-//! of `ln k` (M13.6), and the test whether the schedule needs a second variable besides airspeed
+//! Least squares over the conditions: split of the scatter about a fit (M13.5), bands for scheduled
+//! `ln k` (M13.6), and the test whether the schedule needs a second variable besides airspeed
 //! (M13.7).
 
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use super::variance_component::{VarianceComponent, satterthwaite};
 /// before it.
 const DEPENDENT: f64 = 1e-9;
 
-/// Most columns of a design; a table over more airspeeds has neither a split nor bands.
+/// Most columns in a design; a table over more airspeeds has neither a split nor bands.
 pub const MOST_COLUMNS: usize = 200;
 
 /// Design matrix `X` with full column rank, n conditions by r columns, stored as `Q R`.
@@ -72,7 +72,7 @@ impl Design {
     }
 
     /// Returns the hat values by condition, `h_c`: derivatives of the fitted values with respect to
-    /// the condition's own values.
+    /// the condition's own value.
     pub fn hat_values(&self) -> Vec<f64> {
         (0..self.conditions())
             .map(|row| self.q.row(row).norm_squared().min(1.0))
@@ -131,11 +131,11 @@ impl Design {
 pub struct BandWidths {
     /// Confidence band for the schedule itself.
     pub confidence: f64,
-    /// Band for the value of a further condition.
+    /// Band for a further condition.
     pub scatter: f64,
 }
 
-/// Bands of a schedule: `t(n - r) S' sqrt(h)` and `t(n - r) S' sqrt(1 + h)`, `S'^2 = max(S^2, B)`.
+/// Bands for a schedule: `t(n - r) S' sqrt(h)` and `t(n - r) S' sqrt(1 + h)`, `S'^2 = max(S^2, B)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduleBand {
     design: Arc<Design>,
@@ -144,7 +144,7 @@ pub struct ScheduleBand {
 }
 
 impl ScheduleBand {
-    /// Computes the bands from the scatter about the fit of `design`, with a confidence level.
+    /// Computes the bands from the scatter about the fit with `design`, for a confidence level.
     pub fn of(design: &Arc<Design>, split: &VarianceDecomposition, level: f64) -> Self {
         let deviation = split.scatter.max(split.explained()).sqrt();
         Self {
@@ -163,7 +163,7 @@ impl ScheduleBand {
     }
 }
 
-/// Scatter of a value about a fit, split into the parts expected from the bundles and the rest.
+/// Scatter about a fit, split into the parts expected from the bundles and the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VarianceDecomposition {
     /// Degrees of freedom in the scatter, `f = n - r`.
@@ -179,8 +179,8 @@ pub struct VarianceDecomposition {
 }
 
 impl VarianceDecomposition {
-    /// Splits the scatter of the bars' values about the fit of `design`; `None` without degrees of
-    /// freedom.
+    /// Splits the scatter of the bars' values about the fit with `design`; `None` without degrees
+    /// of freedom.
     pub fn of(design: &Design, bars: &[Bar]) -> Option<Self> {
         let freedom = design.freedom();
         if freedom == 0 || bars.len() != design.conditions() {
@@ -214,8 +214,8 @@ impl VarianceDecomposition {
         (self.scatter - self.explained()).max(0.0)
     }
 
-    /// Returns the shares of trim, identification and rest in `max(S^2, B)`; `None` without scatter
-    /// and spread.
+    /// Returns the shares in `max(S^2, B)` from trim, identification and rest; `None` without
+    /// scatter and spread.
     pub fn shares(&self) -> Option<[f64; 3]> {
         let whole = self.scatter.max(self.explained());
         if whole > 0.0 {
@@ -225,13 +225,13 @@ impl VarianceDecomposition {
         }
     }
 
-    /// Returns `sqrt(S^2 / B)`, the multiple of the expected scatter; `None` without spread.
+    /// Returns `sqrt(S^2 / B)`, as a multiple of the expected scatter; `None` without spread.
     pub fn ratio(&self) -> Option<f64> {
         self.degrees_of_freedom?;
         Some((self.scatter / self.explained()).sqrt())
     }
 
-    /// Returns the probability of a scatter this large if the bundles explain all of it.
+    /// Returns the probability that a scatter this large arises if the bundles explain it fully.
     pub fn p(&self) -> Option<f64> {
         fisher_upper(
             self.scatter / self.explained(),
@@ -240,7 +240,7 @@ impl VarianceDecomposition {
         )
     }
 
-    /// Returns the confidence interval of the rest, as a standard deviation.
+    /// Returns the rest's confidence interval, as a standard deviation.
     pub fn unexplained_interval(&self, level: f64) -> Option<[f64; 2]> {
         Some([
             self.unexplained_limit(0.5 * (1.0 + level))?,
@@ -261,14 +261,14 @@ fn sum_of_squares(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }
 
-/// Effect of a second variable on a value, in addition to the schedule with airspeed.
+/// A second variable's effect on a value, in addition to the schedule with airspeed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondVariableEffect {
     /// Change between the variable's lowest and highest value, `2 gamma`.
     pub effect: f64,
     /// Half-width of its interval, `2 t se`; smaller effects are not detectable.
     pub visible: f64,
-    /// Probability of an effect this large without a true effect.
+    /// Probability that an effect this large arises without a true effect.
     pub p: f64,
     /// Rms leave-one-out error without the variable; `None` if no condition can be left out.
     pub left_out_without: Option<f64>,
@@ -276,10 +276,10 @@ pub struct SecondVariableEffect {
     pub left_out_with: Option<f64>,
 }
 
-/// Reason why the effect of a second variable is unavailable.
+/// Reason why a second variable's effect is unavailable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SecondVariableError {
-    /// A condition has no value of the variable, or all values are equal.
+    /// A condition lacks the variable, or all values are equal.
     #[error("the conditions do not have two values of it")]
     NotVaried,
     /// The variable is a function of airspeed in these conditions.
@@ -305,7 +305,7 @@ pub fn scaled(values: &[f64]) -> Option<Vec<f64>> {
     Some(scaled)
 }
 
-/// Designs of a schedule without and with a second variable.
+/// Designs without and with a second variable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondVariableDesign {
     without: Design,

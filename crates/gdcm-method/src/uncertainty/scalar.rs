@@ -1,4 +1,4 @@
-//! Scalar results of a condition that have error bars (M13).
+//! Scalar results with error bars (M13).
 
 use std::collections::BTreeMap;
 use std::ops::Index;
@@ -7,28 +7,28 @@ use gdcm_model::dataset::Pair;
 
 use crate::correction::Channel;
 
-/// Every scalar of a condition; `None` if it does not exist.
+/// A condition's scalars; `None` if a scalar does not exist.
 pub type Figures = ScalarTable<Option<f64>>;
 
 /// Scalar result for a condition, `q` in M13.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Scalar {
-    /// `ln G` of a response.
+    /// `ln G`.
     Gain(Pair),
-    /// `D` \[s\] of a response by eq. (9).
+    /// `D` \[s\] by eq. (9).
     Delay(Pair),
-    /// `D` \[s\] of a response from the line through its phase (M15.2).
+    /// `D` \[s\] from the line through the phase (M15.2).
     BandDelay(Pair),
-    /// `ln k_o k_i` of a response.
+    /// `ln k_o k_i`.
     NetGain(Pair),
-    /// `ln k` of a channel.
+    /// `ln k`.
     ChannelGain(Channel),
-    /// `tau` \[s\] of a channel.
+    /// `tau` \[s\].
     ChannelDelay(Channel),
 }
 
 impl Scalar {
-    /// Whether the scalar is a time \[s\]; otherwise it is the natural logarithm of a gain.
+    /// Whether the scalar is a time \[s\]; otherwise it is a gain's natural logarithm.
     pub fn is_delay(self) -> bool {
         matches!(
             self,
@@ -37,7 +37,7 @@ impl Scalar {
     }
 }
 
-/// A table with an entry for each scalar of a condition.
+/// A table with an entry for each scalar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScalarTable<T>(BTreeMap<Scalar, T>);
 
@@ -75,7 +75,7 @@ impl<T> Index<Scalar> for ScalarTable<T> {
     }
 }
 
-/// Returns all scalars of a condition: those of responses, then those of channels.
+/// Returns all scalars: those for responses, then those for channels.
 fn scalars(outputs: usize, inputs: usize) -> Vec<Scalar> {
     let of_response = [
         Scalar::Gain,

@@ -37,8 +37,8 @@ impl Default for UncertaintySettings {
 }
 
 impl UncertaintySettings {
-    /// Combines a measured response's own data with these defaults; `None` if the count of averages
-    /// is unknown.
+    /// Combines a measured response's own data with these defaults; `None` without an average
+    /// count.
     pub fn measurement(&self, averages: Option<f64>, window_s: Option<f64>) -> Option<Measurement> {
         let averages = averages
             .or(self.averages)

@@ -1,4 +1,4 @@
-//! Changes of a condition's values if its models are substituted (M13.1), and the error bars of all
+//! Changes in a condition's values if its models are substituted (M13.1), and the error bars of all
 //! conditions (M13.2, M13.3).
 
 pub use super::coherence_error::{CoherenceError, Measurement};
@@ -15,7 +15,7 @@ pub struct ReportedUncertainty {
     pub source: IdentificationSource,
 }
 
-/// Mean square changes of a scalar.
+/// Mean square changes in a scalar.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Changes {
     trim: Option<VarianceComponent>,
@@ -23,7 +23,7 @@ struct Changes {
     left_out: usize,
 }
 
-/// Changes of a condition's scalars if other models in its bundles replace the representatives
+/// Changes in a condition's scalars if other models in its bundles replace the representatives
 /// (M13.1).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionSpread {
@@ -32,8 +32,8 @@ pub struct ConditionSpread {
 
 impl ConditionSpread {
     /// Computes the mean squares about the representatives' scalars. `trim` has an entry for each
-    /// other kept physics model, `own` for each other kept identified model; `None` if the analysis
-    /// of that pair failed.
+    /// other kept physics model, `own` for each other kept identified model; `None` if that pair's
+    /// analysis failed.
     pub fn of(
         representatives: &Figures,
         trim: &[Option<&Figures>],
@@ -56,7 +56,7 @@ impl ConditionSpread {
     }
 }
 
-/// Returns the changes of a scalar in the substitutions where it exists.
+/// Returns a scalar's changes in the substitutions where it exists.
 fn changes_from(base: f64, scalar: Scalar, swaps: &[Option<&Figures>]) -> Vec<f64> {
     let mut changes = Vec::new();
     for figures in swaps.iter().flatten() {
@@ -76,12 +76,12 @@ pub struct BarSource<'a> {
     pub spread: &'a ConditionSpread,
     /// Errors reported by the identified representative itself.
     pub told: ScalarTable<Option<ReportedUncertainty>>,
-    /// Lower and upper bound of a channel delay \[s\].
+    /// Lower and upper bound for a channel delay \[s\].
     pub delay_bounds_s: [f64; 2],
 }
 
-/// Computes the bars by condition (M13.2, M13.3). The identification part of each scalar is pooled
-/// over the conditions. A scalar that does not exist has no bar.
+/// Computes the bars by condition (M13.2, M13.3). Each scalar's identification part is pooled over
+/// the conditions. A scalar that does not exist has no bar.
 pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable<Option<Bar>>> {
     let Some(first) = conditions.first() else {
         return Vec::new();
@@ -104,7 +104,7 @@ pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable
 }
 
 impl BarSource<'_> {
-    /// Returns the bar of a scalar with the pooled identification part `spread`.
+    /// Returns a scalar's bar with the pooled identification part `spread`.
     fn bar(&self, scalar: Scalar, value: f64, spread: Option<VarianceComponent>) -> Bar {
         let changes = self.spread.changes[scalar];
         let (identification, source) = match self.told[scalar] {

@@ -11,7 +11,7 @@ pub struct VarianceComponent {
     pub degrees_of_freedom: f64,
 }
 
-/// Changes up to this size, in natural logarithms or s, are rounding errors of the solver and count
+/// Changes up to this size, in natural logarithms or s, are rounding errors in the solver and count
 /// as zero.
 const ROUNDING: f64 = 1e-9;
 
@@ -49,7 +49,7 @@ impl VarianceComponent {
     }
 }
 
-/// Computes the degrees of freedom of a sum of variances, `u^4 / sum(s^4 / nu)`; `None` if all are
+/// Computes the degrees of freedom in a sum of variances, `u^4 / sum(s^4 / nu)`; `None` if all are
 /// zero.
 ///
 /// F. E. Satterthwaite, "An approximate distribution of estimates of variance components",
@@ -133,7 +133,7 @@ mod tests {
             .collect()
     }
 
-    /// Case E of the reference (independent numpy code).
+    /// Reference case E (independent numpy code).
     #[test]
     fn few_identified_models_borrow_from_the_other_conditions() {
         let five = pooled(

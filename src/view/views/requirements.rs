@@ -239,7 +239,7 @@ fn asked_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Co
             }
         }
         ui.separator();
-        let levels = settings.levels.boundaries().len();
+        let levels = settings.levels.all().len();
         ui.label(palette.small(if levels == 0 { "levels: none".to_owned() } else { format!("levels: {levels}") }));
         if levels > 0 && ui.small_button("Remove levels").clicked() {
             commands.push(decided("levels", &|settings| settings.levels = LevelBoundaries::default()));

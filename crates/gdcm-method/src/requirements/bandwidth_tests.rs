@@ -12,7 +12,9 @@ use gdcm_model::dataset::{Band, Channel, Dynamics, Pair, PairTable, StateSpace};
 use gdcm_model::response::GainDelay;
 use gdcm_model::response::frequency_response::log_spaced;
 
-use super::attitude_response::{AttitudeResponse, ResponseAt, SampledModel, search_frequencies};
+use super::attitude_response::{
+    AttitudeResponse, AttitudeResponseError, ResponseAt, SampledModel, search_frequencies,
+};
 use super::bandwidth::{
     AboveBand, Bandwidth, BandwidthSettings, CommandType, Metric, NoMetric, PairBand,
     substitution_bar,
@@ -20,6 +22,7 @@ use super::bandwidth::{
 use super::known_answers::{answers, attitudes, number};
 use super::{AttitudeOutput, BandwidthRule};
 
+/// The only response of a model with one input and one output.
 const ONLY: Pair = Pair {
     output: 0,
     input: 0,
@@ -37,24 +40,37 @@ fn settings(command: CommandType) -> BandwidthSettings {
     }
 }
 
+/// A transfer function evaluated at `j omega`.
+fn at_frequencies(
+    transfer: impl Fn(Complex<f64>) -> Complex<f64>,
+) -> impl Fn(&[f64]) -> Vec<Complex<f64>> {
+    move |omega| {
+        omega
+            .iter()
+            .map(|omega| transfer(Complex::new(0.0, *omega)))
+            .collect()
+    }
+}
+
+/// Evaluates a response with the frequencies and the band of a model.
+fn evaluate(
+    response: &ResponseAt<'_>,
+    output: AttitudeOutput,
+    settings: &BandwidthSettings,
+    deviation: Option<PairBand<'_>>,
+) -> Bandwidth {
+    let frequencies = search_frequencies(settings.band);
+    let attitude = AttitudeResponse::new(response, output, &frequencies, settings.band).unwrap();
+    Bandwidth::of(&attitude, settings, deviation)
+}
+
 /// Evaluates a rate response, `s` times the given attitude.
-fn of_attitude(
+fn rate_bandwidth(
     attitude: impl Fn(Complex<f64>) -> Complex<f64>,
     settings: &BandwidthSettings,
 ) -> Bandwidth {
-    let rate = |omega: &[f64]| -> Vec<Complex<f64>> {
-        omega
-            .iter()
-            .map(|omega| Complex::new(0.0, *omega))
-            .map(|s| s * attitude(s))
-            .collect()
-    };
-    let frequencies = search_frequencies(settings.band);
-    Bandwidth::of(
-        &AttitudeResponse::new(&rate, AttitudeOutput::Rate, &frequencies, settings.band).unwrap(),
-        settings,
-        None,
-    )
+    let rate = at_frequencies(|s| s * attitude(s));
+    evaluate(&rate, AttitudeOutput::Rate, settings, None)
 }
 
 fn value(metric: Result<Metric, NoMetric>) -> f64 {
@@ -62,15 +78,11 @@ fn value(metric: Result<Metric, NoMetric>) -> f64 {
 }
 
 #[test]
-fn bandwidths_and_phase_delays_are_the_known_ones() {
+fn bandwidths_and_phase_delays_are_known() {
     let answers = answers();
-    for (case, attitude) in answers["bandwidth"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .zip(attitudes())
-    {
-        let found = of_attitude(attitude, &settings(CommandType::Rate));
+    let cases = answers["bandwidth"].as_array().unwrap();
+    for (case, attitude) in cases.iter().zip(attitudes()) {
+        let found = rate_bandwidth(attitude, &settings(CommandType::Rate));
         let line = found.phase_line.unwrap();
         for (found, name) in [
             (value(found.omega_180), "omega_180"),
@@ -88,122 +100,114 @@ fn bandwidths_and_phase_delays_are_the_known_ones() {
                 case["name"]
             );
         }
-        let by_line = number(case, "departure_deg") > 10.0;
+        let is_straight = number(case, "departure_deg") <= 10.0;
+        assert_eq!(line.is_straight(), is_straight);
+        let phase_delay_s = if is_straight {
+            line.two_points_s
+        } else {
+            line.least_squares_s
+        };
+        assert_eq!(value(found.phase_delay_s), phase_delay_s);
+        let is_gain_first = number(case, "omega_gain") < number(case, "omega_phase");
+        let rule = if is_gain_first {
+            BandwidthRule::Gain
+        } else {
+            BandwidthRule::Phase
+        };
         assert_eq!(
-            (line.is_straight(), value(found.phase_delay_s)),
-            (
-                !by_line,
-                if by_line {
-                    line.least_squares_s
-                } else {
-                    line.two_points_s
-                }
-            )
-        );
-        let gain_first = number(case, "omega_gain") < number(case, "omega_phase");
-        assert_eq!(found.is_gain_limited(), gain_first);
-        assert_eq!(
-            found.rule,
-            Some(if gain_first {
-                BandwidthRule::Gain
-            } else {
-                BandwidthRule::Phase
-            })
+            (found.is_gain_limited(), found.rule),
+            (is_gain_first, Some(rule))
         );
     }
 }
 
 #[test]
-fn the_gain_margin_rules_where_it_comes_first_and_never_of_attitude_command() {
-    let [_, light, ..] = attitudes();
-    let [rate, attitude] = [CommandType::Rate, CommandType::Attitude]
-        .map(|command| of_attitude(light, &settings(command)));
-    assert_eq!(rate.omega_bw.unwrap().value, rate.omega_gain.unwrap().value);
+fn the_gain_margin_limits_a_rate_command_only() {
+    let [_, lightly_damped, ..] = attitudes();
+    let rate = rate_bandwidth(lightly_damped, &settings(CommandType::Rate));
+    let attitude = rate_bandwidth(lightly_damped, &settings(CommandType::Attitude));
+    assert_eq!(value(rate.omega_bw), value(rate.omega_gain));
     assert_eq!(
         (attitude.omega_bw, attitude.rule),
         (attitude.omega_phase, Some(BandwidthRule::Phase))
     );
     assert!(
         attitude.is_gain_limited(),
-        "the standard warns of it whatever the bandwidth is"
+        "the standard warns about it for every response type"
     );
 }
 
 #[test]
-fn an_attitude_is_taken_as_it_is_and_a_rate_over_s() {
-    let unit = |unit: &str| AttitudeOutput::of(&Channel::new("P", unit));
+fn an_output_is_a_rate_or_an_attitude_by_its_unit() {
+    for (unit, expected) in [
+        ("deg/s", AttitudeOutput::Rate),
+        ("rad/s", AttitudeOutput::Rate),
+        ("deg", AttitudeOutput::Attitude),
+        ("rad", AttitudeOutput::Attitude),
+    ] {
+        assert_eq!(AttitudeOutput::of(&Channel::new("P", unit)), Ok(expected));
+    }
+    // A rotor speed is no rate of the fuselage.
+    for unit in ["rpm", "g", "m/s^2"] {
+        assert_eq!(
+            AttitudeOutput::of(&Channel::new("NZ", unit)),
+            Err(AttitudeResponseError::NotAnAttitude {
+                output: "NZ".into(),
+                unit: unit.into()
+            })
+        );
+    }
+    let error = AttitudeOutput::of(&Channel::new("NZ", "m/s^2")).unwrap_err();
     assert_eq!(
-        [unit("deg/s"), unit("rad/s"), unit("deg"), unit("rad")],
-        [
-            Ok(AttitudeOutput::Rate),
-            Ok(AttitudeOutput::Rate),
-            Ok(AttitudeOutput::Attitude),
-            Ok(AttitudeOutput::Attitude),
-        ]
-    );
-    assert!(
-        unit("rpm").is_err(),
-        "a rotor speed is no rate of the fuselage"
-    );
-    let acceleration = AttitudeOutput::of(&Channel::new("NZ", "m/s^2"))
-        .unwrap_err()
-        .to_string();
-    assert_eq!(
-        acceleration,
+        error.to_string(),
         "\"NZ\" in \"m/s^2\" has no bandwidth: it is neither a rate (deg/s, rad/s) nor an attitude (deg, rad)"
     );
-
-    let [attitude, ..] = attitudes();
-    let at = |omega: &[f64]| {
-        omega
-            .iter()
-            .map(|omega| attitude(Complex::new(0.0, *omega)))
-            .collect()
-    };
-    let response = AttitudeResponse::new(
-        &at,
-        AttitudeOutput::Attitude,
-        &search_frequencies(band()),
-        band(),
-    )
-    .unwrap();
-    let found = Bandwidth::of(&response, &settings(CommandType::Rate), None);
-    assert!(
-        (value(found.omega_bw)
-            - value(of_attitude(attitude, &settings(CommandType::Rate)).omega_bw))
-        .abs()
-            < 1e-10
-    );
 }
 
 #[test]
-fn a_phase_that_never_falls_through_has_no_crossing_and_says_up_to_where() {
-    let found = of_attitude(|s| 1.0 / (s * (s + 1.0)), &settings(CommandType::Rate));
+fn an_attitude_and_its_rate_have_the_same_bandwidth() {
+    let [attitude, ..] = attitudes();
+    let rate = settings(CommandType::Rate);
+    let of_attitude = evaluate(
+        &at_frequencies(attitude),
+        AttitudeOutput::Attitude,
+        &rate,
+        None,
+    );
+    let of_rate = rate_bandwidth(attitude, &rate);
+    assert!((value(of_attitude.omega_bw) - value(of_rate.omega_bw)).abs() < 1e-10);
+}
+
+#[test]
+fn a_phase_that_never_falls_through_a_level_has_no_crossing() {
+    let found = rate_bandwidth(|s| 1.0 / (s * (s + 1.0)), &settings(CommandType::Rate));
+    let no_crossing = NoMetric::NoCrossing {
+        level_deg: -180.0,
+        up_to: 48.0,
+    };
+    assert_eq!(found.omega_180, Err(no_crossing));
     assert_eq!(
-        found.omega_180.unwrap_err().to_string(),
+        no_crossing.to_string(),
         "no crossing of -180 deg up to 48 rad/s"
     );
-    assert_eq!(
-        (
-            found.phase_delay_s.is_err(),
-            found.omega_gain.is_err(),
-            found.phase_line
-        ),
-        (true, true, None)
-    );
+    assert!(found.phase_delay_s.is_err() && found.omega_gain.is_err());
+    assert_eq!(found.phase_line, None);
     assert!(
         (value(found.omega_bw) - 1.0).abs() < 1e-10,
-        "45 deg of margin at the pole"
+        "45 deg margin at the pole"
     );
     assert_eq!(found.rule, Some(BandwidthRule::PhaseGainUnknown));
-    let late = of_attitude(
+    let late = rate_bandwidth(
         |s| (-0.05 * s).exp() / (s * s),
         &settings(CommandType::Rate),
     );
-    assert_eq!(
-        late.omega_phase.unwrap_err().to_string(),
-        "no crossing of -135 deg: the phase is below it from 0.500 rad/s on"
-    );
+    assert!(matches!(
+        late.omega_phase,
+        Err(NoMetric::BelowFromStart {
+            level_deg: -135.0,
+            from
+        }) if (from - 0.5).abs() < 0.01
+    ));
     assert_eq!((late.omega_bw.is_err(), late.rule), (true, None));
 }
 
@@ -212,183 +216,167 @@ fn slow_modes_below_the_band_move_neither_branch_nor_crossings() {
     // An unstable phugoid at 0.2 rad/s turns the phase by a turn below the band, and nearby zeros
     // turn it back.
     let [.., short] = attitudes();
-    let turned = |s: Complex<f64>| short(s) * (s * s + 0.1 * s + 0.03) / (s * s - 0.04 * s + 0.04);
     let rate = settings(CommandType::Rate);
-    let plain = of_attitude(short, &rate);
-    let found = of_attitude(turned, &rate);
-    assert!((value(found.omega_180) / value(plain.omega_180) - 1.0).abs() < 0.1);
-    assert!((value(found.omega_bw) / value(plain.omega_bw) - 1.0).abs() < 0.2);
+    let plain = rate_bandwidth(short, &rate);
+    let turned = rate_bandwidth(
+        |s| short(s) * (s * s + 0.1 * s + 0.03) / (s * s - 0.04 * s + 0.04),
+        &rate,
+    );
+    assert!((value(turned.omega_180) / value(plain.omega_180) - 1.0).abs() < 0.1);
+    assert!((value(turned.omega_bw) / value(plain.omega_bw) - 1.0).abs() < 0.2);
     // A phase that dips through -135 deg only below the band has its crossing within the band.
-    let dips =
-        |s: Complex<f64>| short(s) * (s * s + 0.001 * s + 0.04) / (s * s + 0.001 * s + 0.0225);
-    assert!(value(of_attitude(dips, &settings(CommandType::Rate)).omega_phase) > 1.9);
-    // A slow aircraft crosses below the band and stays below the level.
-    let slow = of_attitude(|s| 1.0 / (s * (s + 0.2)), &settings(CommandType::Rate));
+    let dipping = rate_bandwidth(
+        |s| short(s) * (s * s + 0.001 * s + 0.04) / (s * s + 0.001 * s + 0.0225),
+        &rate,
+    );
+    assert!(value(dipping.omega_phase) > 1.9);
+}
+
+#[test]
+fn a_slow_aircraft_crosses_below_the_band() {
+    let rate = settings(CommandType::Rate);
+    let slow = rate_bandwidth(|s| 1.0 / (s * (s + 0.2)), &rate);
     let omega_phase = slow.omega_phase.unwrap();
     assert!((omega_phase.value - 0.2).abs() < 1e-10 && omega_phase.rests_below_band);
-    // The same if lightly damped zeros and poles near 1.5 rad/s lifts the phase for a while, so
-    // that it falls through once more.
-    let lifted =
-        |s: Complex<f64>| (s * s + 0.002 * s + 1.96) / (s * s + 0.002 * s + 2.56) / (s * (s + 0.2));
-    let again = value(of_attitude(lifted, &settings(CommandType::Rate)).omega_phase);
+    // Lightly damped zeros and poles near 1.5 rad/s lift the phase for a while, so that it falls
+    // through once more within the band.
+    let lifted = rate_bandwidth(
+        |s| (s * s + 0.002 * s + 1.96) / (s * s + 0.002 * s + 2.56) / (s * (s + 0.2)),
+        &rate,
+    );
+    let omega_phase = value(lifted.omega_phase);
     assert!(
-        (again - 0.2).abs() < 1e-3,
-        "{again}: the fall below the band comes first"
+        (omega_phase - 0.2).abs() < 1e-3,
+        "{omega_phase}: the crossing below the band comes first"
     );
 }
 
 #[test]
-fn a_stick_that_counts_the_other_way_round_is_suspected() {
+fn a_reversed_sign_is_suspected_from_the_phase() {
     let [.., short] = attitudes();
-    let phase_deg = |sign: f64| {
-        let at = |omega: &[f64]| {
-            omega
-                .iter()
-                .map(|omega| sign * short(Complex::new(0.0, *omega)))
-                .collect()
-        };
-        let response = AttitudeResponse::new(
-            &at,
-            AttitudeOutput::Attitude,
-            &search_frequencies(band()),
-            band(),
-        );
-        response.unwrap().reversed_phase_deg()
-    };
-    assert_eq!(phase_deg(1.0), None);
-    assert!((phase_deg(-1.0).unwrap() - 79.0).abs() < 2.0);
+    let [plain, reversed] = [1.0, -1.0].map(|sign| {
+        let response = at_frequencies(|s| sign * short(s));
+        let frequencies = search_frequencies(band());
+        AttitudeResponse::new(&response, AttitudeOutput::Attitude, &frequencies, band())
+            .unwrap()
+            .reversed_phase_deg()
+    });
+    assert_eq!(plain, None);
+    assert!((reversed.unwrap() - 79.0).abs() < 2.0);
 }
 
 #[test]
-fn a_magnitude_that_is_nowhere_6_db_higher_has_no_gain_margin_and_no_bandwidth() {
-    // A flat magnitude: only the delay turns the phase.
+fn a_flat_magnitude_has_no_gain_margin_and_no_bandwidth() {
+    // Only the delay turns the phase.
     let delay = |s: Complex<f64>| (-0.2 * s).exp();
-    let found = of_attitude(delay, &settings(CommandType::Rate));
-    assert!(matches!(
-        found.omega_bw,
-        Err(NoMetric::NoGainCrossing { .. })
-    ));
-    assert!(
-        found
-            .omega_gain
-            .unwrap_err()
-            .to_string()
-            .ends_with("down to 0.125 rad/s")
-    );
-    let commanded = of_attitude(delay, &settings(CommandType::Attitude));
+    let found = rate_bandwidth(delay, &settings(CommandType::Rate));
+    for metric in [found.omega_bw, found.omega_gain] {
+        assert!(matches!(
+            metric,
+            Err(NoMetric::NoGainCrossing { down_to, .. }) if (down_to - 0.125).abs() < 1e-12
+        ));
+    }
+    let commanded = rate_bandwidth(delay, &settings(CommandType::Attitude));
     // -135 deg with a 0.2 s delay.
     assert!((value(commanded.omega_bw) - 0.75 * PI / 0.2).abs() < 1e-9);
 }
 
 #[test]
-fn what_lies_above_the_band_is_said_to_rest_on_the_model_or_refused_with_leads() {
+fn values_above_the_band_are_marked_or_with_leads_refused() {
     // omega_180 is 8 rad/s: 16 is above the band.
     let attitude = |s: Complex<f64>| (-PI / 16.0 * s).exp() / s;
-    let marked = of_attitude(attitude, &settings(CommandType::Rate));
-    assert!(
-        (value(marked.omega_180) - 8.0).abs() < 1e-9 && !marked.omega_180.unwrap().rests_above_band
-    );
-    assert!(
-        marked.phase_delay_s.unwrap().rests_above_band
-            && !marked.omega_bw.unwrap().rests_above_band
-    );
+    let marked = rate_bandwidth(attitude, &settings(CommandType::Rate));
+    let omega_180 = marked.omega_180.unwrap();
+    assert!((omega_180.value - 8.0).abs() < 1e-9 && !omega_180.rests_above_band);
+    assert!(marked.phase_delay_s.unwrap().rests_above_band);
+    assert!(!marked.omega_bw.unwrap().rests_above_band);
     let refused = BandwidthSettings {
         above_band: AboveBand::Refused,
         ..settings(CommandType::Rate)
     };
-    let led = of_attitude(attitude, &refused);
-    assert_eq!((led.omega_bw, led.phase_line), (marked.omega_bw, None));
-    let words = led.phase_delay_s.unwrap_err().to_string();
+    let with_leads = rate_bandwidth(attitude, &refused);
     assert_eq!(
-        words,
-        "rests on the leads above the band: 16.000 rad/s, beyond 12 rad/s"
+        (with_leads.omega_bw, with_leads.phase_line),
+        (marked.omega_bw, None)
     );
+    assert!(matches!(
+        with_leads.phase_delay_s,
+        Err(NoMetric::AboveBand { needed, top: 12.0 }) if (needed - 16.0).abs() < 1e-8
+    ));
     // omega_180 is 15.7 rad/s: the gain margin rests on the model, and so does the bandwidth.
     let fast = |s: Complex<f64>| (-0.1 * s).exp() / s;
-    assert!(
-        of_attitude(fast, &settings(CommandType::Rate))
-            .omega_bw
-            .unwrap()
-            .rests_above_band
-    );
-    let led = of_attitude(fast, &refused);
+    let marked = rate_bandwidth(fast, &settings(CommandType::Rate));
+    assert!(marked.omega_bw.unwrap().rests_above_band);
+    let with_leads = rate_bandwidth(fast, &refused);
     assert_eq!(
-        (led.rule, led.omega_bw),
-        (Some(BandwidthRule::PhaseGainUnknown), led.omega_phase)
+        (with_leads.rule, with_leads.omega_bw),
+        (
+            Some(BandwidthRule::PhaseGainUnknown),
+            with_leads.omega_phase
+        )
     );
+}
+
+/// Evaluates the last known answer, measured at 60 frequencies up to `top` \[rad/s\].
+fn measured_bandwidth(top: f64) -> Bandwidth {
+    let [.., short] = attitudes();
+    let omega = log_spaced(0.5, top, 60);
+    let values = at_frequencies(|s| s * short(s))(&omega);
+    let re = values.iter().map(|value| value.re).collect();
+    let im = values.iter().map(|value| value.im).collect();
+    let measured = MeasuredResponse::new(
+        omega,
+        &PairTable::filled(1, 1, re),
+        &PairTable::filled(1, 1, im),
+        None,
+    )
+    .unwrap();
+    let omega = measured.omega().to_vec();
+    let model = SampledModel::of(&Dynamics::Measured(measured), band());
+    let response = model.exact(ONLY, GainDelay::NONE);
+    let attitude = AttitudeResponse::new(&response, AttitudeOutput::Rate, &omega, band()).unwrap();
+    Bandwidth::of(&attitude, &settings(CommandType::Rate), None)
 }
 
 #[test]
 fn a_measurement_is_never_extrapolated() {
-    let [.., short] = attitudes();
-    let found = |to: f64| {
-        let omega = log_spaced(0.5, to, 60);
-        let values: Vec<Complex<f64>> = omega
-            .iter()
-            .map(|omega| Complex::new(0.0, *omega))
-            .map(|s| s * short(s))
-            .collect();
-        let table = |part: fn(&Complex<f64>) -> f64| {
-            PairTable::filled(1, 1, values.iter().map(part).collect::<Vec<f64>>())
-        };
-        let measured = MeasuredResponse::new(
-            omega,
-            &table(|value| value.re),
-            &table(|value| value.im),
-            None,
-        )
-        .unwrap();
-        let omega = measured.omega().to_vec();
-        let model = SampledModel::of(&Dynamics::Measured(measured), band());
-        let response = model.exact(ONLY, GainDelay::NONE);
-        let attitude =
-            AttitudeResponse::new(&response, AttitudeOutput::Rate, &omega, band()).unwrap();
-        Bandwidth::of(&attitude, &settings(CommandType::Rate), None)
-    };
     // omega_180 is 3.79 rad/s.
-    let whole = found(12.0);
+    let complete = measured_bandwidth(12.0);
     assert!(
-        (value(whole.omega_180) / 3.7928490126513252 - 1.0).abs() < 1e-3,
-        "as far as 60 points tell it"
+        (value(complete.omega_180) / 3.7928490126513252 - 1.0).abs() < 1e-3,
+        "the resolution of 60 points"
     );
-    assert!((value(whole.phase_delay_s) / 0.12206651443391653 - 1.0).abs() < 1e-2);
-    let part = found(6.0);
-    let words = part.phase_delay_s.unwrap_err().to_string();
-    assert!(
-        words.starts_with("the response has no value at 7.5"),
-        "{words}"
-    );
-    let less = found(3.0);
+    assert!((value(complete.phase_delay_s) / 0.12206651443391653 - 1.0).abs() < 1e-2);
+    let short = measured_bandwidth(6.0);
+    assert!(matches!(
+        short.phase_delay_s,
+        Err(NoMetric::ResponseEnds { needed }) if (needed - 7.58).abs() < 0.02
+    ));
+    let shorter = measured_bandwidth(3.0);
+    assert!(matches!(
+        shorter.omega_180,
+        Err(NoMetric::NoCrossing { level_deg: -180.0, up_to }) if (up_to - 3.0).abs() < 1e-12
+    ));
     assert_eq!(
-        less.omega_180.unwrap_err().to_string(),
-        "no crossing of -180 deg up to 3 rad/s"
-    );
-    assert_eq!(
-        (less.rule, less.omega_bw),
-        (Some(BandwidthRule::PhaseGainUnknown), less.omega_phase)
+        (shorter.rule, shorter.omega_bw),
+        (Some(BandwidthRule::PhaseGainUnknown), shorter.omega_phase)
     );
 }
 
 #[test]
-fn a_response_that_is_nowhere_is_refused() {
-    let nothing = |omega: &[f64]| vec![Complex::new(0.0, 0.0); omega.len()];
-    let refused = AttitudeResponse::new(
-        &nothing,
-        AttitudeOutput::Rate,
-        &search_frequencies(band()),
-        band(),
-    )
-    .err()
-    .unwrap();
+fn a_zero_response_is_refused() {
+    let zero = at_frequencies(|_| Complex::new(0.0, 0.0));
+    let frequencies = search_frequencies(band());
+    let refused = AttitudeResponse::new(&zero, AttitudeOutput::Rate, &frequencies, band()).err();
     assert_eq!(
-        refused.to_string(),
+        refused.unwrap().to_string(),
         "there is no response between 0.125 and 48 rad/s"
     );
-    assert!(AttitudeResponse::new(&nothing, AttitudeOutput::Rate, &[], band()).is_err());
+    assert!(AttitudeResponse::new(&zero, AttitudeOutput::Rate, &[], band()).is_err());
 }
 
 #[test]
-fn a_model_and_its_correction_are_taken_exactly() {
+fn a_model_and_its_correction_are_evaluated_exactly() {
     // 5 / (s + 3) is the rate of the third known answer without its servo; the 60 ms delay comes
     // from the correction and the model.
     let lag = StateSpace::new(dmatrix![-3.0], dmatrix![5.0], dmatrix![1.0], dmatrix![0.0]).unwrap();
@@ -398,148 +386,110 @@ fn a_model_and_its_correction_are_taken_exactly() {
     };
     let model = SampledModel::of(&Dynamics::StateSpace(lag.timed(timing).unwrap()), band());
     let correction = GainDelay::new(1.7, 0.04);
-    let of = |response: &ResponseAt<'_>| {
-        let attitude = AttitudeResponse::new(
-            response,
-            AttitudeOutput::Rate,
-            &search_frequencies(band()),
-            band(),
-        );
-        Bandwidth::of(&attitude.unwrap(), &settings(CommandType::Rate), None)
-    };
-    let found = of(&model.exact(ONLY, correction));
-    let near = of(&model.interpolated(ONLY, correction));
-    let error = AttitudeOutput::of(&Channel::new("NZ", "g")).unwrap_err();
-    assert!(error.to_string().contains("has no bandwidth"));
-    let expected = of_attitude(
-        |s| 5.0 * (-0.06 * s).exp() / (s * (s + 3.0)),
-        &settings(CommandType::Rate),
+    let rate = settings(CommandType::Rate);
+    let exact = evaluate(
+        &model.exact(ONLY, correction),
+        AttitudeOutput::Rate,
+        &rate,
+        None,
     );
+    let interpolated = evaluate(
+        &model.interpolated(ONLY, correction),
+        AttitudeOutput::Rate,
+        &rate,
+        None,
+    );
+    let expected = rate_bandwidth(|s| 5.0 * (-0.06 * s).exp() / (s * (s + 3.0)), &rate);
     for (found, expected) in [
-        (found.omega_bw, expected.omega_bw),
-        (found.omega_180, expected.omega_180),
-        (found.omega_gain, expected.omega_gain),
-        (found.phase_delay_s, expected.phase_delay_s),
+        (exact.omega_bw, expected.omega_bw),
+        (exact.omega_180, expected.omega_180),
+        (exact.omega_gain, expected.omega_gain),
+        (exact.phase_delay_s, expected.phase_delay_s),
     ] {
         assert!((value(found) / value(expected) - 1.0).abs() < 1e-10);
     }
-    for (near, exact) in [
-        (near.omega_bw, found.omega_bw),
-        (near.omega_gain, found.omega_gain),
-        (near.phase_delay_s, found.phase_delay_s),
+    for (interpolated, exact) in [
+        (interpolated.omega_bw, exact.omega_bw),
+        (interpolated.omega_gain, exact.omega_gain),
+        (interpolated.phase_delay_s, exact.phase_delay_s),
     ] {
         // Four points 1.5 % apart: the fourth power of the spacing times the delay's phase.
-        let apart = (value(near) / value(exact) - 1.0).abs();
-        assert!(apart > 0.0 && apart < 1e-7, "{apart}");
+        let difference = (value(interpolated) / value(exact) - 1.0).abs();
+        assert!(difference > 0.0 && difference < 1e-7, "{difference}");
     }
 }
 
-#[test]
-fn deviations_are_those_of_moving_the_response() {
+/// An uncertainty band with the same standard deviations at these frequencies.
+fn uniform_bands(omega: Vec<f64>, sd_db: f64, sd_deg: f64) -> ModelBands {
+    let sd_db = PairTable::filled(1, 1, vec![sd_db; omega.len()]);
+    let sd_deg = PairTable::filled(1, 1, vec![sd_deg; omega.len()]);
+    ModelBands::new(omega, sd_db, sd_deg).unwrap()
+}
+
+/// Evaluates the last known answer with its phase turned by `turn_deg`, and an uncertainty band.
+fn turned_bandwidth(turn_deg: f64, bands: &ModelBands) -> Bandwidth {
     let [.., short] = attitudes();
+    let turn = Complex::from_polar(1.0, turn_deg.to_radians());
+    let rate = at_frequencies(|s| s * short(s) * turn);
+    let deviation = PairBand { bands, pair: ONLY };
+    evaluate(
+        &rate,
+        AttitudeOutput::Rate,
+        &settings(CommandType::Rate),
+        Some(deviation),
+    )
+}
+
+fn crossings(found: &Bandwidth) -> [Metric; 3] {
+    [found.omega_180, found.omega_phase, found.omega_gain].map(Result::unwrap)
+}
+
+#[test]
+fn phase_deviations_agree_with_turning_the_response() {
     let sd_deg = 0.3;
-    let sd_db = 0.05;
-    // The phase is uncertain only around omega_180, the magnitude only around omega_gain.
-    let frequencies = log_spaced(0.1, 48.0, 400);
-    let bands = |sd_db: f64, sd_deg: f64| {
-        let table = |value: f64| PairTable::filled(1, 1, vec![value; frequencies.len()]);
-        ModelBands::new(frequencies.clone(), table(sd_db), table(sd_deg)).unwrap()
-    };
-    let rate = |turn_deg: f64| {
-        move |omega: &[f64]| -> Vec<Complex<f64>> {
-            let turn = Complex::from_polar(1.0, turn_deg.to_radians());
-            omega
-                .iter()
-                .map(|omega| Complex::new(0.0, *omega))
-                .map(|s| s * short(s) * turn)
-                .collect()
-        }
-    };
-    let of = |turn_deg: f64, bands: &ModelBands| {
-        let at = rate(turn_deg);
-        let response = AttitudeResponse::new(
-            &at,
-            AttitudeOutput::Rate,
-            &search_frequencies(band()),
-            band(),
-        )
-        .unwrap();
-        Bandwidth::of(
-            &response,
-            &settings(CommandType::Rate),
-            Some(PairBand { bands, pair: ONLY }),
-        )
-    };
-    let phase_only = bands(0.0, sd_deg);
-    let low = of(-sd_deg, &phase_only);
-    let middle = of(0.0, &phase_only);
-    let high = of(sd_deg, &phase_only);
-    let half = |metric: fn(&Bandwidth) -> Result<Metric, NoMetric>| {
-        0.5 * (value(metric(&high)) - value(metric(&low))).abs()
-    };
-    for metric in [
-        |of: &Bandwidth| of.omega_180,
-        |of| of.omega_phase,
-        |of| of.omega_gain,
-    ] as [fn(&Bandwidth) -> _; 3]
-    {
-        let deviation = metric(&middle).unwrap().deviation.unwrap();
+    let bands = uniform_bands(log_spaced(0.1, 48.0, 400), 0.0, sd_deg);
+    let low = crossings(&turned_bandwidth(-sd_deg, &bands));
+    let middle = turned_bandwidth(0.0, &bands);
+    let high = crossings(&turned_bandwidth(sd_deg, &bands));
+    for (crossing, metric) in crossings(&middle).iter().enumerate() {
+        let deviation = metric.deviation.unwrap();
+        let half_change = 0.5 * (high[crossing].value - low[crossing].value).abs();
         // First order: the remainder is the phase curvature over 0.3 deg.
         assert!(
-            (deviation / half(metric) - 1.0).abs() < 1e-2,
-            "{deviation} {}",
-            half(metric)
+            (deviation / half_change - 1.0).abs() < 1e-2,
+            "{deviation} {half_change}"
         );
     }
     let twice = 2.0 * value(middle.omega_180);
     let expected = 2.0_f64.sqrt() * sd_deg.to_radians() / twice;
-    assert!((middle.phase_delay_s.unwrap().deviation.unwrap() / expected - 1.0).abs() < 1e-12);
-    let magnitude_only = of(0.0, &bands(sd_db, 0.0));
-    assert_eq!(magnitude_only.omega_180.unwrap().deviation, Some(0.0));
+    let deviation = middle.phase_delay_s.unwrap().deviation.unwrap();
+    assert!((deviation / expected - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn magnitude_deviations_move_the_gain_crossing_only() {
+    let bands = uniform_bands(log_spaced(0.1, 48.0, 400), 0.05, 0.0);
+    let found = turned_bandwidth(0.0, &bands);
+    assert_eq!(found.omega_180.unwrap().deviation, Some(0.0));
     // At 2.4 rad/s |Theta| falls by about 20 dB a decade and more: 0.05 sqrt(2) dB move the
     // frequency by less than 1 %.
-    let deviation = magnitude_only.omega_gain.unwrap().deviation.unwrap();
+    let deviation = found.omega_gain.unwrap().deviation.unwrap();
     assert!(
-        deviation > 0.0 && deviation < 0.01 * value(magnitude_only.omega_gain),
+        deviation > 0.0 && deviation < 0.01 * value(found.omega_gain),
         "{deviation}"
     );
 }
 
 #[test]
 fn a_band_that_ends_before_a_crossing_gives_no_deviation_there() {
-    let [.., short] = attitudes();
-    let table = || PairTable::filled(1, 1, vec![0.1, 0.1]);
-    let bands = ModelBands::new(vec![0.5, 5.0], table(), table()).unwrap();
-    let rate = |omega: &[f64]| -> Vec<Complex<f64>> {
-        omega
-            .iter()
-            .map(|omega| Complex::new(0.0, *omega))
-            .map(|s| s * short(s))
-            .collect()
-    };
-    let response = AttitudeResponse::new(
-        &rate,
-        AttitudeOutput::Rate,
-        &search_frequencies(band()),
-        band(),
-    )
-    .unwrap();
-    let found = Bandwidth::of(
-        &response,
-        &settings(CommandType::Rate),
-        Some(PairBand {
-            bands: &bands,
-            pair: ONLY,
-        }),
-    );
-    assert!(
-        found.omega_180.unwrap().deviation.is_some()
-            && found.phase_delay_s.unwrap().deviation.is_none()
-    );
+    let bands = uniform_bands(vec![0.5, 5.0], 0.1, 0.1);
+    let found = turned_bandwidth(0.0, &bands);
+    assert!(found.omega_180.unwrap().deviation.is_some());
+    assert!(found.phase_delay_s.unwrap().deviation.is_none());
 }
 
 #[test]
-fn the_bar_of_substitutions_holds_their_spread_and_counts_what_is_missing() {
+fn a_substitution_bar_has_the_spread_and_counts_missing_values() {
     let bar = substitution_bar(2.0, &[Some(2.3), Some(1.6), None], &[]);
     assert_eq!((bar.left_out, bar.identification), (1, None));
     assert!((bar.variance() - (0.09 + 0.16) / 2.0).abs() < 1e-15);
@@ -550,8 +500,8 @@ proptest! {
     #[test]
     fn scaling_the_gain_changes_no_bandwidth(gain in 1e-3_f64..1e3, case in 0_usize..4) {
         let attitude = attitudes()[case];
-        let plain = of_attitude(attitude, &settings(CommandType::Rate));
-        let scaled = of_attitude(|s| gain * attitude(s), &settings(CommandType::Rate));
+        let plain = rate_bandwidth(attitude, &settings(CommandType::Rate));
+        let scaled = rate_bandwidth(|s| gain * attitude(s), &settings(CommandType::Rate));
         for (plain, scaled) in [
             (plain.omega_180, scaled.omega_180),
             (plain.omega_phase, scaled.omega_phase),
@@ -563,19 +513,16 @@ proptest! {
     }
 
     #[test]
-    fn a_pure_delay_adds_exactly_half_of_itself_to_the_phase_delay_of_a_straight_phase(
-        delay_s in 0.04_f64..0.3, more_s in 0.0_f64..0.3,
-    ) {
-        // 1/s and a delay: the phase is straight. It loses pi/2 up to omega_180 and as much
-        // again up to twice that.
-        let of = |delay_s: f64| of_attitude(move |s| (-delay_s * s).exp() / s, &settings(CommandType::Rate));
-        let less = of(delay_s);
-        let more = of(delay_s + more_s);
-        prop_assert!(less.phase_line.unwrap().is_straight() && less.phase_line.unwrap().departure_deg < 1e-9);
-        for (found, delay_s) in [(less, delay_s), (more, delay_s + more_s)] {
-            prop_assert!((value(found.phase_delay_s) - 0.5 * delay_s).abs() < 1e-10);
-            let line = found.phase_line.unwrap();
-            prop_assert!((line.two_points_s - line.least_squares_s).abs() < 1e-10);
-        }
+    fn a_straight_phase_has_half_its_pure_delay_as_phase_delay(delay_s in 0.04_f64..0.6) {
+        // 1/s and a delay: the phase is straight. It loses pi/2 up to omega_180 and as much again
+        // up to twice that.
+        let found = rate_bandwidth(
+            |s| (-delay_s * s).exp() / s,
+            &settings(CommandType::Rate),
+        );
+        let line = found.phase_line.unwrap();
+        prop_assert!(line.is_straight() && line.departure_deg < 1e-9);
+        prop_assert!((value(found.phase_delay_s) - 0.5 * delay_s).abs() < 1e-10);
+        prop_assert!((line.two_points_s - line.least_squares_s).abs() < 1e-10);
     }
 }

@@ -31,7 +31,7 @@ pub struct TestInput {
 /// Reasons why a model has no response to a test.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TestInputError {
-    #[error("the model has {inputs} inputs, none of number {}", input + 1)]
+    #[error("the model has {inputs} inputs, found no input {}", input + 1)]
     NoInput { input: usize, inputs: usize },
     /// Size or duration is not a number, or the duration is zero.
     #[error("test input: expected a size, and a duration above 0 s up to {LONGEST_S} s; found {} and {} s", number(*size), number(*duration_s))]
@@ -41,9 +41,9 @@ pub enum TestInputError {
         duration_s: f64,
     },
     /// The model is in discrete time, or has channel delays beyond its states.
-    #[error("the model is not of continuous time without delays: write its delays as states first")]
+    #[error("expected a model in continuous time without delays: convert its delays to states first")]
     Timing,
-    #[error("the model cannot be simulated: its answer is not finite")]
+    #[error("the model cannot be simulated: its response is not finite")]
     NotFinite,
 }
 

@@ -23,7 +23,7 @@ pub use super::tolerance_table::{ChannelTolerance, Tolerance, ToleranceError, To
 pub enum ToleranceCheckError {
     #[error("there are no samples to compare")]
     NoSamples,
-    #[error("expected as many simulated samples as flown ones, {flown}, found {simulated}")]
+    #[error("expected {flown} simulated samples, as many as flown, found {simulated}")]
     Lengths {
         /// Flown sample count.
         flown: usize,
@@ -37,7 +37,7 @@ pub enum ToleranceCheckError {
         origin: &'static str,
         time_s: f64,
     },
-    #[error("there is no output number {} in the record", output + 1)]
+    #[error("the record has no output {}", output + 1)]
     NoOutput {
         /// Output index.
         output: usize,

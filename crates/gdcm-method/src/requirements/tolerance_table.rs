@@ -91,7 +91,7 @@ pub enum ToleranceError {
     },
     /// The integral of an output that is not a rate.
     #[error(
-        "{} is not compared: it is the integral of a rate, and {} in {} is none (deg/s, rad/s)",
+        "{} is not compared: it integrates a rate (deg/s, rad/s), and the unit of {} is {}",
         quoted(quantity),
         quoted(channel),
         quoted(unit)
@@ -104,7 +104,7 @@ pub enum ToleranceError {
     },
     /// The tolerance's unit does not fit the output.
     #[error(
-        "{} is not compared: a tolerance in {} does not fit {} in {}",
+        "{} is not compared: the tolerance is in {}, and {} is in {}",
         quoted(quantity),
         quoted(unit),
         quoted(channel),

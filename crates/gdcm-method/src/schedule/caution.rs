@@ -91,7 +91,7 @@ impl ScheduleCaution {
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         match self {
             ScheduleCaution::DegreeLowered { asked, clusters } => format!(
-                "degree {asked} takes {} distinct airspeeds, the conditions have {clusters}: the schedule has degree {}",
+                "degree {asked} takes {} distinct airspeeds, the conditions have {clusters}: the degree is lowered to {}",
                 asked + 1,
                 clusters - 1
             ),
@@ -105,7 +105,7 @@ impl ScheduleCaution {
                 let name = channel.name(inputs, outputs);
                 format!(
                     "between {low:.1} and {high:.1} kt the gain of {name} overshoots: {gain:.3} at {airspeed_kt:.1} kt, \
-                     where the conditions' gains go from {least:.3} to {most:.3}; lower the degree or take a table"
+                     where the conditions' gains range from {least:.3} to {most:.3}; lower the degree or use a table"
                 )
             }
             ScheduleCaution::SignedDelayApart {
@@ -120,7 +120,7 @@ impl ScheduleCaution {
                 signed(s_to_ms(*elsewhere_s), 0)
             ),
             ScheduleCaution::NotPositive => {
-                "a scheduled gain is not positive somewhere in this range".to_owned()
+                "a scheduled gain is not positive at an airspeed between the conditions".to_owned()
             }
             ScheduleCaution::CostsMore(cost) => {
                 // Rounded so that both numbers differ.

@@ -49,11 +49,7 @@ pub enum CouplingError {
     #[error("the responses do not determine the {unknowns} entries of the mixing and the feedback")]
     SingularNormalMatrix { unknowns: usize },
     /// The mixing removes an input or reverses its sign.
-    #[error(
-        "the mixing multiplies input {input} by {} at {} kt; expected a positive factor",
-        telling(*factor, 3),
-        number(*airspeed_kt)
-    )]
+    #[error("{}", reversed_input(&input.to_string(), *factor, *airspeed_kt))]
     ReversedInput {
         /// The input, counted from 1.
         input: usize,
@@ -69,14 +65,26 @@ impl CouplingError {
     /// Returns the reason, with the input's name.
     pub fn words(&self, inputs: &[String]) -> String {
         match self {
-            Self::ReversedInput { input, .. } => {
+            Self::ReversedInput {
+                input,
+                airspeed_kt,
+                factor,
+            } => {
                 let name = inputs.get(input - 1).map_or("", String::as_str);
-                self.to_string()
-                    .replace(&format!("input {input}"), &format!("input {name}"))
+                reversed_input(name, *factor, *airspeed_kt)
             }
             other => other.to_string(),
         }
     }
+}
+
+/// Describes a reversed input, given by its name or number.
+fn reversed_input(input: &str, factor: f64, airspeed_kt: f64) -> String {
+    format!(
+        "the mixing multiplies input {input} by {} at {} kt; expected a positive factor",
+        telling(factor, 3),
+        number(airspeed_kt)
+    )
 }
 
 #[cfg(test)]

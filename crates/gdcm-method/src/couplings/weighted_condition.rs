@@ -187,11 +187,11 @@ fn fixed_weights(
                 && fed_back
                     .iter()
                     .all(|&output| has_flight(condition, Pair::new(output, input), k));
-            for output in 0..outputs {
+            for (output, &has_row) in has_row.iter().enumerate() {
                 let pair = Pair::new(output, input);
                 let counts = has_column
                     && condition.usable[pair]
-                    && has_row[output]
+                    && has_row
                     && has_flight(condition, pair, k);
                 if !counts {
                     weights.push(FixedWeight::default());

@@ -8,10 +8,12 @@
 //!
 //! | file | answers | standard |
 //! |---|---|---|
-//! | `bandwidth` | bandwidth, phase delay | ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742 |
-//! | `mode_comparison`, `mode_pairing`, `mode_name` | modes | 14 CFR part 60, appendix C, table C2A, 2.c.3.a, 2.d.3.a |
+//! | `attitude_response` | response from which bandwidths are read | |
+//! | `bandwidth`, `phase_delay`, `response_deviation`, `level_boundary` | bandwidth, phase delay, their uncertainty and levels | ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742 |
+//! | `mode_comparison`, `mode_pairing`, `mode_name`, `mode_values`, `mode_tolerance` | modes | 14 CFR part 60, appendix C, table C2A, 2.c.3.a, 2.d.3.a |
 //! | `summary` | J, rms in time, Theil's coefficients, MUAD | MIL-STD-1797A, appendix A, 4.2.1.2 |
-//! | `tolerance` | time histories within tolerances | 14 CFR part 60, appendix C, table C2A; CS-FSTD(H) |
+//! | `test_input` | steps and doublets | |
+//! | `tolerance`, `tolerance_table` | time histories within tolerances | 14 CFR part 60, appendix C, table C2A; CS-FSTD(H) |
 
 pub mod attitude_response;
 pub mod bandwidth;

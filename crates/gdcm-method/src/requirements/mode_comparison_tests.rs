@@ -138,17 +138,16 @@ fn half_changes(re: f64, im: f64) -> [f64; 3] {
 }
 
 #[test]
-fn deviations_are_those_of_moving_the_pole() {
+fn deviations_agree_with_moving_the_pole() {
     let sd_re = 1e-4;
     let sd_im = 2e-4;
     let deviation = ModeValues::deviation(&pair(-0.4, 2.0)[0], &estimate(sd_re, sd_im));
     let deviation = all_values(deviation);
     let by_re = half_changes(sd_re, 0.0);
     let by_im = half_changes(0.0, sd_im);
-    for value in 0..3 {
-        let expected = by_re[value].hypot(by_im[value]);
+    for (deviation, (by_re, by_im)) in deviation.iter().zip(by_re.iter().zip(by_im)) {
         // Third order in 1e-4.
-        assert!((deviation[value] / expected - 1.0).abs() < 1e-6);
+        assert!((deviation / by_re.hypot(by_im) - 1.0).abs() < 1e-6);
     }
 }
 

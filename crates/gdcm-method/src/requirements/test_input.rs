@@ -41,7 +41,9 @@ pub enum TestInputError {
         duration_s: f64,
     },
     /// The model is in discrete time, or has channel delays beyond its states.
-    #[error("expected a model in continuous time without delays: convert its delays to states first")]
+    #[error(
+        "expected a model in continuous time without delays: convert its delays to states first"
+    )]
     Timing,
     #[error("the model cannot be simulated: its response is not finite")]
     NotFinite,

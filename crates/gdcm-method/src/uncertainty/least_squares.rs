@@ -48,8 +48,8 @@ impl Design {
         let qr = matrix.qr();
         let q = qr.q();
         let r = qr.r();
-        for column in 0..columns {
-            if r[(column, column)].abs() <= DEPENDENT * lengths[column] {
+        for (column, length) in lengths.iter().enumerate() {
+            if r[(column, column)].abs() <= DEPENDENT * length {
                 return None;
             }
         }

@@ -75,7 +75,7 @@ pub struct BarSource<'a> {
     /// Their changes under substitution.
     pub spread: &'a ConditionSpread,
     /// Errors reported by the identified representative itself.
-    pub told: ScalarTable<Option<ReportedUncertainty>>,
+    pub reported: ScalarTable<Option<ReportedUncertainty>>,
     /// Lower and upper bound for a channel delay \[s\].
     pub delay_bounds_s: [f64; 2],
 }
@@ -107,7 +107,7 @@ impl BarSource<'_> {
     /// Returns a scalar's bar with the pooled identification part `spread`.
     fn bar(&self, scalar: Scalar, value: f64, spread: Option<VarianceComponent>) -> Bar {
         let changes = self.spread.changes[scalar];
-        let (identification, source) = match self.told[scalar] {
+        let (identification, source) = match self.reported[scalar] {
             Some(reported) if reported.replaces(spread) => (Some(reported.part), reported.source),
             _ => (spread, IdentificationSource::Spread),
         };

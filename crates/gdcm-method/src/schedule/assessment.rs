@@ -2,8 +2,6 @@
 
 use gdcm_model::dataset::{Pair, PairTable};
 
-pub use super::form_comparison::{compare_forms, compare_lead_degrees};
-
 use crate::correction::ChannelCorrection;
 use crate::fidelity::{Cost, CostAverage, Mismatch};
 

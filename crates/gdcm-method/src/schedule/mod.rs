@@ -12,34 +12,29 @@
 //! | `assessment` | J before and after a correction |
 //! | `coefficient_table` | coefficients with channel names |
 
-mod airspeeds;
+pub mod airspeeds;
 pub mod assessment;
-mod caution;
+pub mod caution;
 mod channel_schedule;
 mod coefficient_table;
 mod error;
-mod form_comparison;
+pub mod form_comparison;
 mod interpolation_check;
 mod lead_schedule;
 pub mod regression;
 mod scheduled_point;
 mod second_term;
 pub mod second_variable;
-mod settings;
+pub mod settings;
 #[cfg(test)]
 mod test_points;
 
-pub use airspeeds::{Airspeeds, airspeed_indicators};
-pub use assessment::{CostChange, assess, corrected_cost};
-pub use caution::{ScheduleCaution, ScheduledCost};
-pub use channel_schedule::{DelaySchedule, Schedule};
+pub use airspeeds::Airspeeds;
+pub use assessment::CostChange;
+pub use caution::ScheduleCaution;
+pub use channel_schedule::Schedule;
 pub use error::ScheduleError;
-pub use form_comparison::{FormComparison, FormFit, LeadDegreeFit, LeadFit, SCHEDULE_KINDS};
-pub use lead_schedule::LeadSchedule;
 pub use regression::Regression;
 pub use scheduled_point::ScheduledPoint;
 pub use second_variable::SecondVariable;
-pub use settings::{
-    DEFAULT_TOLERANCE_KT, DelayScheduling, HIGHEST_DEGREE, NOTABLE_DELAY_S, ScheduleKind,
-    ScheduleSettings, ScheduledQuantity,
-};
+pub use settings::{DelayScheduling, ScheduleKind, ScheduleSettings, ScheduledQuantity};

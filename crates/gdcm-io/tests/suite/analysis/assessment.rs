@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use gdcm_method::fidelity::CostAverage;
-use gdcm_method::schedule::{DelayScheduling, SCHEDULE_KINDS, ScheduleKind};
+use gdcm_method::schedule::form_comparison::SCHEDULE_KINDS;
+use gdcm_method::schedule::{DelayScheduling, ScheduleKind};
 use gdcm_study::study::assessment_table::{AssessedModel, AssessmentChoice, AssessmentJob};
 use gdcm_study::study::job::Job;
 use gdcm_study::study::{AssessedCorrection, AssessmentTable};

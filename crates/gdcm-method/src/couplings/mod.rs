@@ -16,6 +16,17 @@
 //! 10  H~, its state space, its poles, the least singular value of I - K H
 //! ```
 //!
+//! | step | file |
+//! |---|---|
+//! | 1 | `problem`, `flight_data` |
+//! | 2, 3 | `unknown`, `fit` |
+//! | 4 | `closed_loop` |
+//! | 5 | `weighted_condition` |
+//! | 6 | `condition_blocks`, `pair_products`, `normal_equations` |
+//! | 7 | `normal_equations`, `arrow_system` |
+//! | 8, 10 | `coupling_matrices`, `coupling_effects` |
+//! | 9 | `fit` |
+//!
 //! M16; the jackknife: B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans", SIAM
 //! 1982, chapter 3.
 //!

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::response::Mode;
 
-/// Cyclic flap participation from which on a mode belongs to the rotor.
+/// Cyclic flap participation at or above which a mode belongs to the rotor.
 const FLAP_SHARE: f64 = 0.4;
 /// Fuselage participation below which a mode belongs to actuators, sensors or inflow.
 const FUSELAGE_SHARE: f64 = 0.3;

@@ -13,6 +13,13 @@
 //!  9  bands: t(f) S' sqrt(h), t(f) S' sqrt(1 + h),  S'^2 = max(S^2, B)
 //! 10  second variable: its coefficient beside the schedule's columns, and leave-one-out errors with and without it
 //! ```
+//!
+//! | step | file |
+//! |---|---|
+//! | 1 to 3, 6 | `scalar`, `spread`, `bar` |
+//! | 4, 5 | `variance_component`, `coherence_error` |
+//! | 7 | `difference` |
+//! | 8 to 10 | `least_squares` |
 
 pub mod bar;
 mod coherence_error;

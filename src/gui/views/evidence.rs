@@ -7,7 +7,8 @@ use egui::{
     Align2, Color32, FontId, Grid, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2,
 };
 
-use gdcm_method::schedule::{FormComparison, FormFit, LeadDegreeFit, LeadFit, ScheduleKind};
+use gdcm_method::schedule::ScheduleKind;
+use gdcm_method::schedule::form_comparison::{FormComparison, FormFit, LeadDegreeFit, LeadFit};
 use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::{s_to_ms, signed};
@@ -433,7 +434,7 @@ pub fn residual_table(
     conditions: &[ConditionId],
     evidence: &FormComparison,
 ) -> Option<Table> {
-    let kind = evidence.of(state.study.settings.schedule.kind)?;
+    let kind = evidence.form(state.study.settings.schedule.kind)?;
     let pairs = net_gain_pairs(state);
     let names = pairs
         .iter()

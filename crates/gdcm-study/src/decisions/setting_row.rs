@@ -4,9 +4,8 @@
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};
 use gdcm_method::fidelity::CostAverage;
-use gdcm_method::schedule::{
-    DelayScheduling, SCHEDULE_KINDS, ScheduleKind, ScheduledQuantity, SecondVariable,
-};
+use gdcm_method::schedule::form_comparison::SCHEDULE_KINDS;
+use gdcm_method::schedule::{DelayScheduling, ScheduleKind, ScheduledQuantity, SecondVariable};
 use gdcm_model::dataset::Band;
 use gdcm_model::response::LeadOrder;
 use gdcm_model::units::{number, six_digits};

@@ -11,7 +11,7 @@ use gdcm_method::correction::{GainBounds, GainObjective};
 use gdcm_method::couplings::CouplingKind;
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::{DelayScheduling, ScheduleSettings};
-use gdcm_method::uncertainty::bar::UncertaintySettings;
+use gdcm_method::uncertainty::settings::UncertaintySettings;
 use gdcm_model::dataset::limits::MOST_PAIRS;
 use gdcm_model::dataset::{Band, Dataset, PairTable};
 use gdcm_model::whole_number::whole;

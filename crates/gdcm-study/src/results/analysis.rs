@@ -8,8 +8,10 @@ use gdcm_method::correction::{ChannelCorrection, GainBounds, Problem, Solution};
 use gdcm_method::couplings::problem::CouplingError;
 use gdcm_method::fidelity::Discontinuity;
 use gdcm_method::fidelity::distance::Representative;
-use gdcm_method::schedule::assessment::{compare_forms, compare_lead_degrees};
-use gdcm_method::schedule::{CostChange, FormComparison, LeadDegreeFit, Schedule, ScheduleError};
+use gdcm_method::schedule::form_comparison::{
+    FormComparison, LeadDegreeFit, compare_forms, compare_lead_degrees,
+};
+use gdcm_method::schedule::{CostChange, Schedule, ScheduleError};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Model, Pair, PairTable};
 

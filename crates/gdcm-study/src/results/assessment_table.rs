@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use gdcm_method::correction::ChannelCorrection;
 use gdcm_method::fidelity::CostAverage;
-use gdcm_method::schedule::{CostChange, ScheduleError, corrected_cost};
+use gdcm_method::schedule::ScheduleError;
+use gdcm_method::schedule::assessment::{CostChange, corrected_cost};
 use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Pair, PairTable};
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::response::GainDelay;

@@ -2,7 +2,7 @@
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::assessment::corrected_cost_on;
-use gdcm_method::schedule::{ScheduleCaution, ScheduledCost};
+use gdcm_method::schedule::caution::{ScheduleCaution, ScheduledCost};
 use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Pair};
 use gdcm_model::units::s_to_ms;
 

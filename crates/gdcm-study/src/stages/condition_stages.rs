@@ -10,7 +10,7 @@ use gdcm_method::correction::{
     Bounds, ChannelCorrection, Problem, ProofBudget, Quantity, Solution,
 };
 use gdcm_method::fidelity::CostAverage;
-use gdcm_method::schedule::{CostChange, assess};
+use gdcm_method::schedule::assessment::{CostChange, assess};
 use gdcm_model::dataset::{BundleKind, Condition, Pair, PairTable};
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::response::FrequencyGrid;

@@ -6,8 +6,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use gdcm_method::correction::leads::ChannelLeads;
 use gdcm_method::correction::{Channel, Problem, ProofBudget, Solution};
+use gdcm_method::schedule::settings::NOTABLE_DELAY_S;
 use gdcm_method::schedule::{
-    DelayScheduling, NOTABLE_DELAY_S, Schedule, ScheduleCaution, ScheduleSettings, ScheduledPoint,
+    DelayScheduling, Schedule, ScheduleCaution, ScheduleSettings, ScheduledPoint,
 };
 use gdcm_model::dataset::{Band, Condition, ConditionId, Dataset};
 use gdcm_model::executor::{Executor, Sequential};

@@ -6,7 +6,7 @@ use gdcm_method::correction::delta::delta_gains;
 use gdcm_method::correction::leads::ChannelLeads;
 use gdcm_method::correction::{Channel, ChannelCorrection, LeadPrice};
 use gdcm_method::fidelity::{Cost, CostAverage, Mismatch};
-use gdcm_method::schedule::{CostChange, corrected_cost};
+use gdcm_method::schedule::assessment::{CostChange, corrected_cost};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_model::response::LeadFilter;

@@ -339,7 +339,7 @@ pub(crate) fn bar_source<'a>(
     BarSource {
         figures,
         spread: &substitutions.spread,
-        told,
+        reported: told,
         delay_bounds_s: [
             result.delay_problem.bounds.lower,
             result.delay_problem.bounds.upper,

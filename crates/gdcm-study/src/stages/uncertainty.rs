@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-use gdcm_method::schedule::{Schedule, ScheduledQuantity, SecondVariable, airspeed_indicators};
+use gdcm_method::schedule::airspeeds::airspeed_indicators;
+use gdcm_method::schedule::{Schedule, ScheduledQuantity, SecondVariable};
 use gdcm_method::uncertainty::least_squares::{SecondVariableEffect, SecondVariableError};
 use gdcm_method::uncertainty::spread::{BarSource, ScalarTable, bars};
 use gdcm_method::uncertainty::{

@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use gdcm_method::fidelity::CostAverage;
-use gdcm_method::schedule::{DelayScheduling, SCHEDULE_KINDS, ScheduleKind};
+use gdcm_method::schedule::form_comparison::SCHEDULE_KINDS;
+use gdcm_method::schedule::{DelayScheduling, ScheduleKind};
 use gdcm_study::jobs::job::Job;
-use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice, AssessmentJob};
-use gdcm_study::{AssessedCorrection, AssessmentTable};
+use gdcm_study::results::assessment_table::{
+    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentJob, AssessmentTable,
+};
 
 use super::*;
 
@@ -148,7 +150,7 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
         (11, 11, SCHEDULE_KINDS.len())
     );
     let schedule = analysis.schedule.as_ref().unwrap();
-    let of_kind = evidence.of(schedule.settings.kind).unwrap();
+    let of_kind = evidence.form(schedule.settings.kind).unwrap();
     for (place, id) in scheduled.iter().enumerate() {
         let own = &analysis.condition(*id).unwrap().correction;
         let at = schedule.at(evidence.airspeeds_kt[place]);

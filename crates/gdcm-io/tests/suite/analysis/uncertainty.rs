@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 use gdcm_method::correction::Channel;
+use gdcm_method::schedule::airspeeds::airspeed_indicators;
 use gdcm_method::schedule::{ScheduleKind, SecondVariable};
 use gdcm_method::uncertainty::{
     Bar, Design, Difference, IdentificationSource, Scalar, ScheduleBand, SecondVariableDesign,
@@ -383,8 +384,7 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
     };
     let rows: Vec<Vec<f64>> = airspeeds.iter().map(|&airspeed| row(airspeed)).collect();
     let design = Design::new(&rows).unwrap();
-    let by_airspeed =
-        Design::new(&gdcm_method::schedule::airspeed_indicators(airspeeds, 1.0)).unwrap();
+    let by_airspeed = Design::new(&airspeed_indicators(airspeeds, 1.0)).unwrap();
     for table in list(&case["tables"]) {
         let figures = numbers(&table["y"]);
         let of = |name: &str, place: usize, degrees| {

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use egui::Ui;
 
-use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::{ChannelRemedy, RecordKind};
 use gdcm_model::dataset::{Band, ConditionId, Dataset};
+use gdcm_model::names::ChannelRule;
 use gdcm_model::simulation::Signal;
 use gdcm_model::units::{number, telling};
 use gdcm_study::study::changed_models::{AdoptedModels, OfferedModels};

@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use gdcm_model::assembly::rules::standard_patterns;
 use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_model::names::standard_patterns;
 use gdcm_sysid::records::laid_out_record::RecordGuess;
 use gdcm_sysid::records::record_table::Separation;
 use gdcm_sysid::records::{ModeSpan, RecordColumn, RecordSource, RecordTable};
@@ -530,8 +530,8 @@ mod example_tests {
 
 #[cfg(test)]
 mod tests {
-    use gdcm_model::assembly::ChannelRule;
     use gdcm_model::dataset::channel::ChannelSide;
+    use gdcm_model::names::ChannelRule;
     use gdcm_sysid::records::{
         ColumnUse, LaidOutRecord, RecordChannels, RecordLayout, TimeWish, with_topics_joined,
     };

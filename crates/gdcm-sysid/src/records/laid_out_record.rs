@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
-use gdcm_model::assembly::channel_match::folded_name;
-use gdcm_model::assembly::found_model::Row;
-use gdcm_model::assembly::rules::{NamePattern, standard_patterns};
 use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord, RecordKind};
 use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::names::channel_alias::folded_name;
+use gdcm_model::names::name_pattern::read_name;
+use gdcm_model::names::{NamePattern, standard_patterns};
 use gdcm_model::simulation::FlightRecord;
 
 use super::layout_problem::{LayoutCaution, LayoutProblem};
@@ -101,15 +101,12 @@ impl RecordGuess {
             .map_or(RecordKind::Other, |(kind, _)| kind);
         let mut words = lower.split(|c: char| !c.is_alphabetic());
         let held_out = holds(&VALIDATION) || words.any(|word| VALIDATION_WORDS.contains(&word));
-        let mut row = Row::default();
-        patterns
-            .iter()
-            .for_each(|pattern| pattern.read(name, &mut row));
+        let facts = read_name(name, patterns);
         Self {
             kind,
             held_out,
-            condition: row.condition,
-            airspeed_kt: row.airspeed_kt,
+            condition: facts.condition,
+            airspeed_kt: facts.airspeed_kt,
         }
     }
 }
@@ -376,7 +373,7 @@ fn is_copy(a: &FlightRecord, b: &FlightRecord) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use gdcm_model::assembly::rules::ChannelRule;
+    use gdcm_model::names::ChannelRule;
 
     use super::*;
 

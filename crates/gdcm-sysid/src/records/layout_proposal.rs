@@ -1,10 +1,11 @@
 //! Proposed columns for the time and the channels of a record.
 
-use gdcm_model::assembly::ChannelRule;
-use gdcm_model::assembly::channel_match::{SignedName, folded_name, same_channel, sign_between};
-use gdcm_model::assembly::physical_unit::conversion_factor;
 use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::names::channel_alias::{folded_name, same_channel};
+use gdcm_model::names::signed_name::sign_between;
+use gdcm_model::names::{ChannelRule, SignedName};
 use gdcm_model::units::number;
+use gdcm_model::units::physical_unit::conversion_factor;
 
 use super::layout_problem::{LayoutCaution, LayoutProblem};
 use super::record_channels::{RecordChannels, SaidConversion};
@@ -234,7 +235,7 @@ impl Proposer<'_> {
         );
         let name = self.table.columns[column].name.as_str();
         let quoted = self.table.quoted(column);
-        let has_mark = |text: &&str| SignedName::of(text).name != text.trim();
+        let has_mark = |text: &&str| SignedName::parse(text).name != text.trim();
         let of_alias = rule.aliases.iter().map(String::as_str).find(has_mark);
         let sign = match of_alias {
             Some(alias) => sign_between(alias, &rule.name),
@@ -343,7 +344,7 @@ impl Proposer<'_> {
 
 /// Returns a name without its sign marks: "-az" and "az (down)" become "az".
 fn plain(name: &str) -> String {
-    SignedName::of(name).name
+    SignedName::parse(name).name
 }
 
 /// Returns the columns that can be a channel.

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::ChannelRemedy;
+use gdcm_model::names::ChannelRule;
 
 use super::*;
 use crate::records::laid_out_record::RecordGuess;

@@ -7,8 +7,6 @@ use std::str::FromStr;
 
 use nalgebra::DMatrix;
 
-use gdcm_model::assembly::ChannelRule;
-use gdcm_model::assembly::found_model::standard_on_axis;
 use gdcm_model::dataset::condition::{ConditionRecord, FlightState};
 use gdcm_model::dataset::dataset::DatasetHeader;
 use gdcm_model::dataset::model::Origin;
@@ -16,6 +14,8 @@ use gdcm_model::dataset::unchecked_dataset::DraftFault;
 use gdcm_model::dataset::{
     Band, Channel, Condition, ConditionId, Dataset, Dynamics, Model, PairTable, StateSpace,
 };
+use gdcm_model::names::ChannelRule;
+use gdcm_model::names::on_axis::is_standard_on_axis;
 
 use super::record_layout::RecordLayout;
 use super::record_table::RecordTable;
@@ -280,7 +280,7 @@ pub fn dataset_of_records(
 }
 
 fn on_axis(inputs: &[Channel], outputs: &[Channel]) -> PairTable<bool> {
-    let known = |output: &Channel, input: &Channel| standard_on_axis(&output.name, &input.name);
+    let known = |output: &Channel, input: &Channel| is_standard_on_axis(&output.name, &input.name);
     let any = outputs
         .iter()
         .any(|output| inputs.iter().any(|input| known(output, input)));

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
-use gdcm_model::assembly::channel_match::sign_between;
-use gdcm_model::assembly::physical_unit::{Dimension, conversion_factor};
-use gdcm_model::assembly::{ChannelRule, PhysicalUnit};
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord};
+use gdcm_model::names::ChannelRule;
+use gdcm_model::names::signed_name::sign_between;
 use gdcm_model::simulation::FlightRecord;
+use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_factor};
 
 use super::laid_out_record::RecordGuess;
 use super::layout_problem::{LayoutCaution, LayoutProblem};

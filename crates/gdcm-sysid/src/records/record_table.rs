@@ -3,12 +3,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use gdcm_model::assembly::PhysicalUnit;
-use gdcm_model::assembly::channel_match::{folded_name, time_name_rank};
-use gdcm_model::assembly::physical_unit::Dimension;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::names::channel_alias::folded_name;
+use gdcm_model::names::time_name::time_name_rank;
+use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
 use gdcm_model::units::{number, telling};
 
 use super::topic_tables::shown;

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
-use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::names::ChannelRule;
 use gdcm_model::simulation::FlightRecord;
 use gdcm_model::units::telling;
 

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use gdcm_model::assembly::channel_match::time_name_rank;
+use gdcm_model::names::time_name::time_name_rank;
 use gdcm_model::units::number;
 
 use super::layout_problem::LayoutProblem;
@@ -497,7 +497,7 @@ pub(super) fn shown(names: &[&str]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use gdcm_model::assembly::rules::ChannelRule;
+    use gdcm_model::names::ChannelRule;
 
     use super::*;
 

@@ -4,7 +4,7 @@ use gdcm_method::correction::LeadPrice;
 use gdcm_method::correction::conflict::{ConflictKind, Remedy};
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
-use gdcm_model::response::median;
+use gdcm_model::statistics::median;
 use gdcm_model::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
 use gdcm_study::study::analysis::ConditionFailure;
 use gdcm_study::study::changed_models::SignRole;

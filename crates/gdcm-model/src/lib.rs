@@ -7,6 +7,7 @@
 //! | [`dataset`] | channels, models, measured responses, flight conditions; checked at construction |
 //! | [`response`] | frequency responses, poles, zeros, lead filters |
 //! | [`simulation`] | time responses: flight records, and a model simulated against them |
+//! | [`statistics`] | mean, median, quantiles |
 //! | [`assembly`] | models from many files into one dataset: roles, channels, conversions |
 //! | [`names`] | channel aliases and signs, response names, patterns of file names |
 //! | [`units`] | physical units, conversions and number formatting |
@@ -35,5 +36,6 @@ pub mod names;
 pub mod progress;
 pub mod response;
 pub mod simulation;
+pub mod statistics;
 pub mod units;
 pub mod whole_number;

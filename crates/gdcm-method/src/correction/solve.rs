@@ -2,7 +2,7 @@
 //! quadratic program: the gains or delays, and their proof of optimality.
 
 use gdcm_model::dataset::{Pair, PairTable};
-use gdcm_model::response::curve_values::mean;
+use gdcm_model::statistics::mean;
 use gdcm_model::units::{s_to_ms, telling, told_apart};
 use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 

@@ -5,8 +5,9 @@ use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
 use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::response::PolarResponse;
 use gdcm_model::response::frequency_response::PolarCurve;
-use gdcm_model::response::{PolarResponse, median};
+use gdcm_model::statistics::median;
 
 use super::absolute_deviations::{FitError, least_absolute_deviations};
 use super::cost::{Cost, CostAverage, mean_cost};

@@ -6,9 +6,10 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Complex;
 
 use gdcm_model::dataset::{Dynamics, Pair, PairTable};
-use gdcm_model::response::curve_values::{centred_unwrap, coherence_at, weighted_median};
+use gdcm_model::response::curve_values::{centred_unwrap, coherence_at};
 use gdcm_model::response::frequency_response::PolarCurve;
-use gdcm_model::response::{GainDelay, median, wrap};
+use gdcm_model::response::{GainDelay, wrap};
+use gdcm_model::statistics::{median, weighted_median};
 
 use super::cost::{Cost, CostAverage};
 
@@ -389,7 +390,7 @@ mod tests {
             .zip(&omega)
             .map(|(phase, omega)| phase / omega);
         let mut delays: Vec<f64> = delays.collect();
-        assert!((gdcm_model::response::median(&mut delays) + 0.07).abs() < 1e-12);
+        assert!((gdcm_model::statistics::median(&mut delays) + 0.07).abs() < 1e-12);
     }
 
     #[test]

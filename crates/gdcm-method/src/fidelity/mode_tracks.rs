@@ -14,7 +14,8 @@
 
 use nalgebra::Complex;
 
-use gdcm_model::response::{Mode, median};
+use gdcm_model::response::Mode;
+use gdcm_model::statistics::median;
 
 /// Distance of a jump from the centre, in spreads of the track: a smooth track over perturbations
 /// to both sides ends at two to three.

@@ -34,8 +34,9 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::model::ModelBands;
 use gdcm_model::dataset::{Band, Pair};
-use gdcm_model::response::curve_values::{between, mean};
+use gdcm_model::response::curve_values::between;
 use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::statistics::mean;
 use gdcm_model::units::number;
 
 use super::attitude_response::AttitudeResponse;

@@ -19,8 +19,8 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::Channel;
 use gdcm_model::message_text::quoted;
-use gdcm_model::response::curve_values::mean;
 use gdcm_model::simulation::ValidationWindow;
+use gdcm_model::statistics::mean;
 use gdcm_model::units::number;
 use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_factor};
 

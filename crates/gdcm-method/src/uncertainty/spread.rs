@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use std::ops::Index;
 
 use gdcm_model::dataset::Pair;
-use gdcm_model::response::median;
+use gdcm_model::statistics::median;
 
 use super::bar::{Bar, IdentificationSource, VarianceComponent, pooled};
 use crate::correction::Channel;

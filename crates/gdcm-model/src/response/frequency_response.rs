@@ -6,8 +6,7 @@ use nalgebra::Complex;
 
 use super::curve_values::{nearest_turn_offset, unwrap, wrap};
 use super::lead_filter::GainDelay;
-use super::prepared_model::PreparedModel;
-use crate::dataset::{Band, Dynamics, Pair, PairTable};
+use crate::dataset::{Band, Pair, PairTable};
 use crate::units::ratio_to_db;
 
 /// `H(j omega)` for every response of a model on a grid of `N` frequencies: a p x m table of
@@ -21,12 +20,6 @@ pub struct FrequencyResponse {
 }
 
 impl FrequencyResponse {
-    /// Computes the response of a model on a single grid; for several grids prepare the model once,
-    /// see [`PreparedModel`].
-    pub fn of(dynamics: &Dynamics, grid: &FrequencyGrid) -> Self {
-        PreparedModel::of(dynamics).response(grid)
-    }
-
     /// Creates a response from curves of `N` values each.
     pub fn new(curves: PairTable<Vec<Complex<f64>>>) -> Self {
         Self { curves }

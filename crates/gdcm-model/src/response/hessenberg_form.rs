@@ -6,7 +6,7 @@ use std::ops::Range;
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
 
-use super::elimination::Subdiagonal;
+use super::subdiagonal::Subdiagonal;
 use crate::dataset::{Pair, StateSpace};
 
 /// Smallest `alpha`, 2^-450 rad/s: at any frequency in use, all poles of a slower model are
@@ -61,7 +61,7 @@ pub(super) struct HessenbergForm {
 impl HessenbergForm {
     /// Computes the reduced form of a model with `a` replacing its A: the same bits on every
     /// instruction set, which affects only the time.
-    pub fn of(arch: Arch, a: DMatrix<f64>, model: &StateSpace) -> Self {
+    pub fn new(arch: Arch, a: DMatrix<f64>, model: &StateSpace) -> Self {
         let dual = model.outputs() < model.inputs();
         let mut a = if dual { a.transpose() } else { a };
         let [mut b, mut c, mut d] = if dual {
@@ -374,7 +374,7 @@ mod tests {
     use super::*;
 
     fn form(model: &StateSpace) -> HessenbergForm {
-        HessenbergForm::of(Arch::new(), model.a().clone(), model)
+        HessenbergForm::new(Arch::new(), model.a().clone(), model)
     }
 
     #[test]

@@ -17,9 +17,11 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::eigenvalues::{SPlane, SchurForm};
+use super::connection::connecting_states;
 use super::hessenberg_form::balance;
-use super::prepared_model::{LargeEntry, leading_states};
+use super::large_entry::LargeEntry;
+use super::s_plane::SPlane;
+use super::schur_form::SchurForm;
 use crate::dataset::{Dynamics, Pair, StateSpace};
 
 /// The transmission zeros of one response.
@@ -71,13 +73,13 @@ pub fn finite_zeros(dynamics: &Dynamics, pair: Pair) -> Vec<Complex<f64>> {
 /// # Errors
 /// [`ZerosError`] where there is no response, or the computation fails.
 pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<TransmissionZeros, ZerosError> {
-    if let Some(entry) = LargeEntry::of(model) {
+    if let Some(entry) = LargeEntry::find(model) {
         return Err(ZerosError::TooLarge(entry));
     }
     if pair.output >= model.outputs() || pair.input >= model.inputs() {
         return Err(ZerosError::OutsideModel { pair });
     }
-    let plane = SPlane::of(model);
+    let plane = SPlane::new(model);
     let minimal = single(model, plane, pair)
         .reached()
         .transposed()
@@ -87,7 +89,7 @@ pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<Transmission
     let (reduced, mut infinite) =
         without_infinite_zeros(minimal.clone()).ok_or(ZerosError::NoResponse)?;
     let closed = &reduced.a - &reduced.b * reduced.c.transpose() / reduced.d;
-    let form = SchurForm::of(&closed).ok_or(ZerosError::NotConverged)?;
+    let form = SchurForm::new(&closed).ok_or(ZerosError::NotConverged)?;
     let mut finite = Vec::with_capacity(closed.nrows());
     for zero in form.eigenvalues().into_iter().filter(|zero| zero.im >= 0.0) {
         let zero = polished(&minimal, zero);
@@ -112,7 +114,7 @@ pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<Transmission
 
 /// Extracts the balanced model between one input and one output.
 fn single(model: &StateSpace, plane: SPlane, pair: Pair) -> SingleResponse {
-    let states = leading_states(model, pair);
+    let states = connecting_states(model, pair);
     let mut a = plane.matrix(&model.a().select_rows(&states).select_columns(&states));
     let mut b = model.b().columns(pair.input, 1).select_rows(&states);
     let mut c = model.c().rows(pair.output, 1).select_columns(&states);
@@ -506,7 +508,7 @@ mod tests {
                 // a condition number of about 1e3.
                 prop_assert!(nearest < 1e-6, "{zero}: {found:?}");
             }
-            let minimal = single(&model, SPlane::of(&model), ONLY);
+            let minimal = single(&model, SPlane::new(&model), ONLY);
             let peak = (0..200).filter_map(|k| response_and_slope(&minimal, Complex::new(0.0, 0.1 * f64::from(k))))
                 .map(|(value, _)| value.norm()).fold(0.0, f64::max);
             for zero in &found.finite {

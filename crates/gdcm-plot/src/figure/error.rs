@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use gdcm_method::fidelity::{CoherenceWeights, Mismatch, Muad, leaves};
 use gdcm_model::dataset::{BundleKind, Pair};
-use gdcm_model::response::curve_values::quantile;
 use gdcm_model::response::frequency_response::PolarCurve;
 use gdcm_model::response::{FrequencyResponse, GainDelay, wrap};
+use gdcm_model::statistics::quantile;
 use gdcm_model::units::{ratio_to_db, s_to_ms};
 use gdcm_study::study::ConditionAnalysis;
 use gdcm_study::study::condition_responses::ConditionCurves;

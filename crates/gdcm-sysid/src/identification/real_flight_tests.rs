@@ -7,7 +7,7 @@ use serde_json::Value;
 use gdcm_model::dataset::channel::Pair;
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Shares, Unobserved};
-use gdcm_model::response::median;
+use gdcm_model::statistics::median;
 
 use super::*;
 use crate::identification::blocks::BlockModel;

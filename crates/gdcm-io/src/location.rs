@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use json_event_parser::{JsonEvent, SliceJsonParser};
 
 use gdcm_model::dataset::BundleKind;
-use gdcm_model::dataset::channel::{ConditionPlace, Location, ModelPlace};
+use gdcm_model::dataset::location::{ConditionPlace, Location, ModelPlace};
 use gdcm_model::message_text::{quoted, sanitized, shortened};
 
 use crate::variables::ReadingBudget;

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::assembly::declarations::{ScopedDeclarations, Signs};
 use gdcm_model::assembly::{RowRule, Rules, UnitRule};
-use gdcm_model::dataset::channel::Location;
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
+use gdcm_model::dataset::location::Location;
 use gdcm_model::names::{ChannelRule, NamePattern, standard_patterns};
 use gdcm_model::whole_number::whole;
 

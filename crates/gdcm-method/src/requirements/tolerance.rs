@@ -797,7 +797,7 @@ mod tests {
         let stick = DMatrix::from_fn(1000, 1, |n, _| {
             10.0 * (0.8 * SAMPLE_TIME_S * n as f64).sin()
         });
-        let held = FirstOrderHold::of(&model(2.0), SAMPLE_TIME_S).unwrap();
+        let held = FirstOrderHold::new(&model(2.0), SAMPLE_TIME_S).unwrap();
         let flown = held.simulate(&dvector![1.0], &stick);
         let segment = Segment {
             record: 0,

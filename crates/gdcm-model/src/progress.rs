@@ -4,13 +4,13 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::dataset::StateSpace;
 
-/// Receives progress reports of a long computation, and can cancel it. Methods may be called from
+/// Receives progress reports, and can cancel the computation. Methods may be called from
 /// several threads.
 pub trait Progress: Sync {
     /// Returns whether the computation should stop now, without a result.
     fn cancelled(&self) -> bool;
 
-    /// Reports that `done` of `total` steps are complete.
+    /// Reports `done` out of `total` steps as complete.
     fn advanced(&self, done: usize, total: usize);
 
     /// Reports the start of a step.
@@ -32,7 +32,7 @@ impl Progress for Unobserved {
     fn advanced(&self, _done: usize, _total: usize) {}
 }
 
-/// Reports progress within a part of a computation as its share of the whole.
+/// Reports progress within a part as its share of the whole computation.
 pub struct Portion<'a> {
     shares: &'a Shares<'a>,
     share: f64,

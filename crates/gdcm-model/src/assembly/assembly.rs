@@ -22,7 +22,7 @@ use crate::names::RowRole;
 pub struct AssemblyCaution {
     /// Inputs, outputs or both.
     pub sides: Vec<ChannelSide>,
-    /// Indices of the models among those found.
+    /// Model indices.
     pub parts: Vec<usize>,
 }
 
@@ -60,7 +60,7 @@ impl Assembly {
     /// Applies the rules to models.
     ///
     /// 1. Propose a row for each model.
-    /// 2. Match the channels of each model.
+    /// 2. Match each model's channels.
     /// 3. Collect the problems.
     pub fn new(models: Vec<FoundModel>, rules: Rules) -> Self {
         let rows = proposed_rows(&models, &rules);
@@ -224,8 +224,8 @@ struct SharedProblem<'p> {
     others: usize,
 }
 
-/// Finds all problems: of the dataset's channels, of each model, of each condition. Only where there
-/// are none, the checks at construction of the dataset follow.
+/// Finds all problems in the dataset's channels, in each model and in each condition. Where there
+/// are none, the dataset itself is checked.
 fn find_problems(parts: &[Part], rules: &Rules) -> Vec<Problem> {
     let mut problems = channel_problems(rules);
     let in_use = parts_in_use(parts);

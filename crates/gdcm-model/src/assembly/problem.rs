@@ -37,7 +37,7 @@ pub enum ProblemKind {
     NoChannel {
         side: ChannelSide,
         channel: String,
-        /// Channels of the file, separated by commas.
+        /// File channels, separated by commas.
         found: String,
     },
     /// Channel whose name in the file leaves the sign open.
@@ -55,15 +55,15 @@ pub enum ProblemKind {
          enter it in s, or 0 for a continuous-time model (--sample-time)"
     )]
     NoSampleTime {
-        /// Count of poles near 1.
+        /// Poles near 1.
         near: usize,
-        /// Count of all poles.
+        /// All poles.
         poles: usize,
     },
     /// Part of the name that looks like a trim offset and matches no pattern.
     #[error("\"{0}\" in its name is not understood: enter the trim offset")]
     TrimPart(String),
-    /// Several channels of the model match the same dataset channel.
+    /// Several model channels match the same dataset channel.
     #[error("two {side}s of the model can be {channel}: {found}; choose one of them")]
     AmbiguousChannel {
         side: ChannelSide,
@@ -98,11 +98,11 @@ pub enum ProblemKind {
          \"headings\" in the rules), or in the rules: under \"models\", \"inputs\": [\"LON\"], \"outputs\": [\"Q\"]"
     )]
     ResponseName {
-        /// Name of the file or the variable.
+        /// File or variable name.
         name: String,
         error: ResponseNameError,
     },
-    /// Two files give the same response of a measured model.
+    /// Two files give the same measured response.
     #[error(
         "{output}/{input} of the measured model \"{name}\" is also in {first}; leave one of them out, or rename one to make it a separate \
          model"
@@ -113,15 +113,15 @@ pub enum ProblemKind {
         name: String,
         first: String,
     },
-    /// The count of declared channel names differs from the model's channels.
+    /// Declared channel names that do not match the model's channel count.
     #[error(
         "{said} names are given for {found} {side}s of the model; give one for each, in the file's order"
     )]
     Names {
         side: ChannelSide,
-        /// Count of names.
+        /// Names given.
         said: usize,
-        /// Count of channels.
+        /// Channels in the model.
         found: usize,
     },
     #[error("choose its condition")]
@@ -138,13 +138,13 @@ pub enum ProblemKind {
         first: String,
         second: String,
     },
-    /// A file contradicts the names of file and folders.
+    /// A file contradicts its name or its folders.
     #[error(
         "its {field} is {} in the file and {} in the names of the file and its folders: correct one, or enter the right value (\"{field}\" \
          under \"models\" in the rules)", number(*of_file), number(*of_name)
     )]
     NameContradiction {
-        /// Name of the quantity in the rules.
+        /// Quantity, by its name in the rules.
         field: String,
         of_file: f64,
         of_name: f64,
@@ -153,7 +153,7 @@ pub enum ProblemKind {
     #[error("condition {condition} has {found} nominal models; it needs exactly one")]
     Nominal {
         condition: i64,
-        /// Count of nominal models.
+        /// Nominal models.
         found: usize,
     },
     #[error("duplicate name \"{name}\" among the {bundle} models of condition {condition}")]
@@ -166,7 +166,7 @@ pub enum ProblemKind {
     /// Physics model given as measured data.
     #[error("a {} model needs matrices; this is measured data", .0.word())]
     MeasuredPhysics(RowRole),
-    /// Parts of a measured model on different frequency grids.
+    /// Measured parts with different frequency grids.
     #[error(
         "measured responses of one model must be at the same frequencies; {first} has {first_grid} and {second} has {second_grid}. Estimate \
          them at the same frequencies, or rename one to make it a separate model"
@@ -177,7 +177,7 @@ pub enum ProblemKind {
         second: String,
         second_grid: GridSpan,
     },
-    /// Fault found by the checks at construction of the dataset.
+    /// Fault found when the dataset is constructed.
     #[error("{0}")]
     Dataset(String),
 }
@@ -185,7 +185,7 @@ pub enum ProblemKind {
 /// Size and range of a frequency grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridSpan {
-    /// Count of frequencies.
+    /// Frequency count.
     pub count: usize,
     /// NaN for an empty grid.
     pub lowest_rad_s: f64,
@@ -194,7 +194,7 @@ pub struct GridSpan {
 }
 
 impl GridSpan {
-    /// Returns the span of a measured response.
+    /// Returns the span for a measured response.
     pub(super) fn new(response: &ResponseDraft) -> Self {
         let omega = &response.omega;
         Self {
@@ -282,7 +282,7 @@ pub(super) struct Question {
 /// A problem and its model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// Index of the model; `None` for a problem of the whole dataset.
+    /// Model index; `None` for a problem of the whole dataset.
     pub part: Option<usize>,
     pub kind: ProblemKind,
     /// Scope with exactly the models that raise the same question about a channel; `None` where no

@@ -1,4 +1,4 @@
-//! Search for the problems of models and conditions.
+//! Search for problems in models and conditions.
 
 use std::collections::BTreeMap;
 
@@ -38,7 +38,7 @@ pub(super) fn parts_by_condition(parts: &[Part]) -> BTreeMap<i64, Vec<IndexedPar
     conditions
 }
 
-/// Finds the problems of the dataset's channels.
+/// Finds problems in the dataset's channels.
 pub(super) fn channel_problems(rules: &Rules) -> Vec<Problem> {
     let mut problems = Vec::new();
     for (side, channels) in [("inputs", &rules.inputs), ("outputs", &rules.outputs)] {
@@ -55,7 +55,7 @@ pub(super) fn channel_problems(rules: &Rules) -> Vec<Problem> {
     problems
 }
 
-/// Finds the problems of a model: its trim, contradictions with its name, its row, its channels.
+/// Finds problems in a model: its trim, contradictions with its name, its row, its channels.
 pub(super) fn part_problems(part: &Part, rules: &Rules) -> Vec<ProblemKind> {
     let rule = rules.rows.get(&part.found.key());
     let mut problems = Vec::new();
@@ -100,8 +100,8 @@ fn row_problems(part: &Part) -> Vec<ProblemKind> {
 
 /// Reports a missing sample time for a model whose poles look discrete-time.
 ///
-/// All of them lie inside the unit circle, or as little outside as an unstable helicopter mode
-/// would, and at least half of them (and at least two) near 1. In continuous time, poles near 1
+/// All lie inside the unit circle, or as little outside as an unstable helicopter mode would, and
+/// at least half (two or more) lie near 1. In continuous time, poles near 1
 /// would grow within a second.
 fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
     /// Real part above which a pole counts as near 1.
@@ -130,7 +130,7 @@ fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
     }
 }
 
-/// Finds the problems of a condition, given its models, of which there is at least one.
+/// Finds problems in a condition, given its models, at least one.
 pub(super) fn condition_problems(
     condition: i64,
     parts: &[IndexedPart<'_>],
@@ -189,7 +189,7 @@ const CONDITION_FIELDS: [ConditionField; 5] = [
     },
 ];
 
-/// Finds fields with different values in models of the same condition.
+/// Finds fields with different values within a condition.
 fn contradictions(condition: i64, parts: &[IndexedPart<'_>]) -> Vec<ProblemKind> {
     let mut contradictions = Vec::new();
     for field in CONDITION_FIELDS {

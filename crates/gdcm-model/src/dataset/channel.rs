@@ -15,7 +15,7 @@ pub struct Channel {
     pub name: String,
     /// Unit in the dataset's spelling ("%", "deg/s").
     pub unit: String,
-    /// Meaning of the channel and its positive direction.
+    /// Meaning and positive direction.
     pub description: String,
 }
 
@@ -35,14 +35,14 @@ impl Channel {
 /// The index order is `[output, input]` everywhere (M1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Pair {
-    /// Index of the output channel, in the dataset's order.
+    /// Output index, in the dataset's order.
     pub output: usize,
-    /// Index of the input channel, in the dataset's order.
+    /// Input index, in the dataset's order.
     pub input: usize,
 }
 
 impl Pair {
-    /// Creates the response of output channel `output` to input channel `input`.
+    /// Creates the response from channel `input` to channel `output`.
     pub fn new(output: usize, input: usize) -> Self {
         Self { output, input }
     }
@@ -77,7 +77,7 @@ impl<T> PairTable<T> {
         self.inputs
     }
 
-    /// Returns the index of a response's entry.
+    /// Returns the place of an entry.
     fn place(&self, pair: Pair) -> usize {
         let outputs = self.outputs;
         let inputs = self.inputs;
@@ -158,7 +158,7 @@ impl<T> IndexMut<Pair> for PairTable<T> {
     }
 }
 
-/// Whether a channel is an input or an output of the aircraft.
+/// Whether a channel is an aircraft input or output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ChannelSide {

@@ -8,7 +8,7 @@ use super::channel::{BundleKind, ConditionId};
 use super::model::Model;
 use crate::units::number;
 
-/// Description of a flight condition, without its models.
+/// A flight condition without its models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightState {
     pub id: ConditionId,
@@ -98,11 +98,11 @@ pub enum ConditionError {
         /// Second record, counted from 1.
         second: usize,
     },
-    /// Sample time, or time of a piece, out of range.
+    /// Sample time or piece out of range.
     #[error("record \"{name}\" (number {position}), {field}: expected {expected}, found {}", number(*value))]
     Record {
         name: String,
-        /// Position of the record, counted from 1.
+        /// Record position, counted from 1.
         position: usize,
         /// The quantity.
         field: &'static str,
@@ -192,7 +192,7 @@ impl Condition {
         &self.records
     }
 
-    /// Returns the description of the condition, without its models.
+    /// Returns the condition without its models.
     pub fn flight_state(&self) -> &FlightState {
         &self.flight_state
     }
@@ -212,7 +212,7 @@ impl Condition {
         !self.bundle(BundleKind::Identified).is_empty()
     }
 
-    /// Returns the position of the named model in its bundle, in file order.
+    /// Returns the index of the named model in its bundle.
     pub fn position(&self, kind: BundleKind, name: &str) -> Option<usize> {
         let models = self.bundle(kind);
         let order = &self.by_name[kind as usize];
@@ -314,7 +314,7 @@ fn check_records(records: &[ConditionRecord]) -> Result<(), ConditionError> {
     Ok(())
 }
 
-/// A time of a record that is out of range.
+/// A time out of range.
 struct TimeFault {
     field: &'static str,
     expected: &'static str,
@@ -423,7 +423,7 @@ pub struct ConditionRecord {
     pub name: String,
     /// Path relative to the dataset's file.
     pub file: String,
-    /// Name of the record or variable in the file; `None` where the file holds a single record.
+    /// Record or variable in the file; `None` where the file holds a single record.
     pub variable: Option<String>,
     /// SHA-256 of the file, in hexadecimal.
     pub sha256: Option<String>,
@@ -434,17 +434,16 @@ pub struct ConditionRecord {
     pub used: bool,
     /// Sample time \[s\], once known.
     pub sample_time_s: Option<f64>,
-    /// First and last time \[s\] of each piece in use, on the record's clock; empty for the whole
-    /// record.
+    /// Pieces in use: first and last time \[s\] on the record's clock; empty for the whole record.
     pub used_s: Vec<[f64; 2]>,
-    /// First and last time \[s\] of this record within the file's samples, on the file's clock;
-    /// `None` for the whole file.
+    /// First and last time \[s\] within the file's samples, on the file's clock; `None` for the
+    /// whole file.
     pub part_s: Option<[f64; 2]>,
     /// Corrections specific to this record, by channel.
     pub remedies: BTreeMap<String, ChannelRemedy>,
 }
 
-/// Correction for a channel of a single record that contradicts the others (M14.16).
+/// Correction for a channel in a record that contradicts the others (M14.16).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ChannelRemedy {

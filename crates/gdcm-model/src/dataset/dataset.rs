@@ -11,7 +11,7 @@ use crate::units::number;
 
 /// Channels, on-axis responses, the default band, and the flight conditions with their models (M1).
 ///
-/// Checked once at construction: every model of every condition has `p` outputs and `m` inputs.
+/// Checked once at construction: every model has `p` outputs and `m` inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dataset {
     header: DatasetHeader,
@@ -42,7 +42,7 @@ pub enum DatasetError {
     },
     #[error("on_axis: expected a {} x {} table, found {} x {}", expected.0, expected.1, found.0, found.1)]
     OnAxisShape {
-        /// Counts of outputs and inputs.
+        /// Outputs and inputs of the dataset.
         expected: (usize, usize),
         /// Rows and columns.
         found: (usize, usize),
@@ -54,7 +54,7 @@ pub enum DatasetError {
     ModelShape {
         condition: ConditionId,
         model: String,
-        /// Counts of outputs and inputs.
+        /// Outputs and inputs of the dataset.
         expected: (usize, usize),
         /// Outputs and inputs of the model.
         found: (usize, usize),
@@ -95,7 +95,7 @@ impl Dataset {
         })
     }
 
-    /// Returns the description of the dataset, without its conditions.
+    /// Returns the description, without the conditions.
     pub fn header(&self) -> DatasetHeader {
         self.header.clone()
     }
@@ -130,7 +130,7 @@ impl Dataset {
         self.header.band
     }
 
-    /// Returns the airspeeds of the slowest and the fastest condition \[kt\].
+    /// Returns the slowest and the fastest airspeed \[kt\].
     pub fn airspeed_range_kt(&self) -> (f64, f64) {
         let mut slowest = f64::INFINITY;
         let mut fastest = f64::NEG_INFINITY;
@@ -225,7 +225,7 @@ impl Dataset {
         )
     }
 
-    /// Returns the response of the named output to the named input.
+    /// Returns the response from the named input to the named output.
     pub fn find_pair(&self, output: &str, input: &str) -> Option<Pair> {
         Some(Pair {
             output: channel_index(&self.header.outputs, output)?,

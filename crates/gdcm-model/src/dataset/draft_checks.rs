@@ -139,7 +139,7 @@ fn find_channel(kind: &'static str, channels: &[Channel], name: &str) -> Result<
         })
 }
 
-/// Channel counts of the dataset, and findings so far.
+/// Channel counts in the dataset, and findings so far.
 struct Checker {
     outputs: usize,
     inputs: usize,
@@ -147,7 +147,7 @@ struct Checker {
     warnings: Vec<Warning>,
 }
 
-/// The required third dimension of a table of frequency data.
+/// Required third dimension in a table of frequency data.
 #[derive(Clone, Copy)]
 struct TableDepth {
     count: usize,
@@ -194,7 +194,7 @@ impl Checker {
         found <= most
     }
 
-    /// Checks the draft of a condition; `position` counts from 1. Returns `None` where it has
+    /// Checks a condition; `position` counts from 1. Returns `None` where it has
     /// faults.
     fn condition(&mut self, position: usize, draft: ConditionDraft) -> Option<Condition> {
         let place = Location::condition(position, draft.flight_state.id.0);
@@ -211,7 +211,7 @@ impl Checker {
         self.record_fault(condition)
     }
 
-    /// Checks the models of a bundle; invalid models are missing in the result.
+    /// Checks a bundle; invalid models are missing in the result.
     fn bundle(
         &mut self,
         condition: &Location,
@@ -231,7 +231,7 @@ impl Checker {
         models
     }
 
-    /// Checks the draft of a model.
+    /// Checks a model.
     fn model(
         &mut self,
         place: Location,

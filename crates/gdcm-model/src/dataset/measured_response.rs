@@ -24,7 +24,7 @@ pub struct MeasuredResponse {
 /// and delays of the condition itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
-    /// Count of independent averages.
+    /// Independent averages.
     pub averages: Option<f64>,
     /// Window length \[s\].
     pub window_s: Option<f64>,
@@ -49,9 +49,9 @@ pub enum MeasuredResponseError {
         output: usize,
         /// Input, counted from 1.
         input: usize,
-        /// Count of frequencies.
+        /// Frequency count.
         expected: usize,
-        /// Count of values.
+        /// Value count.
         found: usize,
     },
     /// Valid band that starts below zero, or ends before it starts.
@@ -94,7 +94,7 @@ pub enum MeasuredResponseError {
 
 impl MeasuredResponse {
     /// Creates the response with real parts `re` and imaginary parts `im` at `omega` \[rad/s\],
-    /// both p x m tables of `N` values.
+    /// both p x m tables with `N` values per response.
     pub fn new(
         omega: Vec<f64>,
         re: &PairTable<Vec<f64>>,
@@ -176,12 +176,12 @@ impl MeasuredResponse {
         &self.omega
     }
 
-    /// Returns the values of each response at each frequency.
+    /// Returns the values per response and frequency.
     pub fn values(&self) -> &PairTable<Vec<Complex<f64>>> {
         &self.values
     }
 
-    /// Returns the coherence of each response at each frequency, 0 to 1, where the file gives it.
+    /// Returns the coherence per response and frequency, 0 to 1, where the file gives it.
     pub fn coherence(&self) -> Option<&PairTable<Vec<f64>>> {
         self.coherence.as_ref()
     }

@@ -152,7 +152,7 @@ fn check_finite(name: char, matrix: &DMatrix<f64>) -> Result<(), StateSpaceError
     })
 }
 
-/// Largest delay of a channel \[s\].
+/// Largest channel delay \[s\].
 pub const GREATEST_CHANNEL_DELAY_S: f64 = 60.0;
 
 /// Sample time and channel delays of a model, which its matrices do not contain (M2a).
@@ -160,9 +160,9 @@ pub const GREATEST_CHANNEL_DELAY_S: f64 = 60.0;
 pub struct Timing {
     /// Sample time T \[s\] of a discrete-time model; `None` in continuous time.
     pub sample_time_s: Option<f64>,
-    /// Delay of each input \[s\]; `None` without delays.
+    /// Delay per input \[s\]; `None` without delays.
     pub input_delays_s: Option<Vec<f64>>,
-    /// Delay of each output \[s\]; `None` without delays.
+    /// Delay per output \[s\]; `None` without delays.
     pub output_delays_s: Option<Vec<f64>>,
 }
 
@@ -175,9 +175,9 @@ pub enum TimingError {
     Count {
         /// `input_delays_s` or `output_delays_s`.
         list: &'static str,
-        /// Count of channels.
+        /// Channel count.
         expected: usize,
-        /// Count of delays.
+        /// Delay count.
         found: usize,
     },
     #[error("{list}, entry {entry}: expected a delay from 0 to {GREATEST_CHANNEL_DELAY_S} s, found {}", number(*value))]
@@ -203,7 +203,7 @@ impl Timing {
         Some(std::f64::consts::PI / sample_time_s)
     }
 
-    /// Returns the delay `tau_o + tau_i` \[s\] of one response.
+    /// Returns the response delay `tau_o + tau_i` \[s\].
     pub fn delay_s(&self, output: usize, input: usize) -> f64 {
         channel_delay(self.output_delays_s.as_deref(), output)
             + channel_delay(self.input_delays_s.as_deref(), input)
@@ -241,7 +241,7 @@ impl Timing {
     }
 }
 
-/// Returns the delay of a channel \[s\]; zero without delays.
+/// Returns a channel delay \[s\]; zero without delays.
 fn channel_delay(delays_s: Option<&[f64]>, channel: usize) -> f64 {
     let delay_s = delays_s.and_then(|delays_s| delays_s.get(channel));
     delay_s.copied().unwrap_or_default()

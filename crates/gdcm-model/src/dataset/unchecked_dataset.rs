@@ -15,7 +15,7 @@ use super::state_space::{StateSpaceError, Timing};
 /// fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseArray {
-    /// Counts of outputs, inputs and frequencies.
+    /// Output, input and frequency count.
     pub shape: [usize; 3],
     pub values: Vec<f64>,
 }
@@ -34,7 +34,7 @@ pub struct ResponseDraft {
     pub estimate: Estimate,
 }
 
-/// Standard deviations of a model's response, unchecked.
+/// Standard deviation of a model response, unchecked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BandsDraft {
     /// Frequencies \[rad/s\].
@@ -152,7 +152,7 @@ pub struct DatasetDraft {
     pub outputs: Vec<Channel>,
     /// On-axis responses: output, input.
     pub on_axis: Vec<(String, String)>,
-    /// Lower and upper end of the default band \[rad/s\].
+    /// Lower and upper end for the default band \[rad/s\].
     pub band: (f64, f64),
     pub conditions: Vec<ConditionDraft>,
 }
@@ -162,7 +162,7 @@ pub struct DatasetDraft {
 pub enum DraftFault {
     #[error("expected at most {most} entries, found {found}")]
     TooMany { most: usize, found: usize },
-    /// Table whose shape differs from that of the channels or the states.
+    /// Table whose shape does not fit the channels or the states.
     #[error("expected {expected}, found {found}")]
     Shape { expected: String, found: String },
     #[error("the dataset has no {kind} \"{name}\"; a pair is written [output, input]")]

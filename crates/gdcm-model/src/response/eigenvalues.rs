@@ -37,11 +37,11 @@ pub struct Mode {
     /// `-1 / Re lambda` \[s\], negative for a growing mode; `None` for a mode that neither grows
     /// nor decays.
     pub time_constant_s: Option<f64>,
-    /// Participation of each state (index, share), in descending order, sum 1; or the reason why
-    /// there is none.
+    /// State participation (index, share) in descending order, sum 1; or the reason why there is
+    /// none.
     pub participation: Result<Vec<(usize, f64)>, NearDefective>,
-    /// Residue of each output over all inputs: magnitude is the norm of the output's row of the
-    /// residue matrix, phase is relative to the other outputs. `None` for a near-defective pole.
+    /// Residue per output over all inputs: its magnitude is the row norm in the residue matrix, its
+    /// phase is relative to the other outputs. `None` for a near-defective pole.
     pub residues: Option<Vec<Complex<f64>>>,
 }
 
@@ -53,7 +53,7 @@ pub struct Mode {
      the shares of the states are meaningless"
 )]
 pub struct NearDefective {
-    /// Movement of the pole per unit change of A.
+    /// Pole movement per unit change in A.
     pub movement: f64,
 }
 
@@ -98,9 +98,9 @@ impl Mode {
     }
 }
 
-/// Computes the modes of a model, one per pole, in ascending `|lambda|`; of a conjugate pair, the
+/// Computes the modes of a model, one per pole, in ascending `|lambda|`. In a conjugate pair the
 /// pole above the real axis comes first, and the other is its exact conjugate. A pole below the
-/// rounding of the matrix counts as zero.
+/// rounding error of the matrix counts as zero.
 ///
 /// Discrete-time poles are given as `s = ln z / T`; poles at `z = 0`, which vanish within one
 /// sample, have no `s` and are left out (M2a). Channel delays do not move poles.
@@ -173,7 +173,7 @@ pub fn modes_of(dynamics: &Dynamics) -> Result<Vec<Mode>, ModesError> {
     }
 }
 
-/// The eigenvectors of an eigenvalue: `A v = lambda v`, `w A = lambda w` and `w v = 1`.
+/// Eigenvectors for an eigenvalue: `A v = lambda v`, `w A = lambda w` and `w v = 1`.
 struct Eigenvectors {
     right: DVector<Complex<f64>>,
     left: DVector<Complex<f64>>,
@@ -195,7 +195,7 @@ impl Eigenvectors {
         })
     }
 
-    /// Returns the participation of the states, in descending order.
+    /// Returns the state participation, in descending order.
     fn participation(&self) -> Vec<(usize, f64)> {
         let products: Vec<f64> = self
             .right

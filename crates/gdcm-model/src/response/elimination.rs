@@ -1,4 +1,4 @@
-//! Frequency response of a state-space model by elimination of its states from the system matrix.
+//! Frequency response of a state-space model: its states are eliminated from the system matrix.
 //!
 //! ```text
 //! 1  balance A; scale A and B to order 1; Householder reflections make A Hessenberg and B's first column b e_1; transpose
@@ -13,7 +13,7 @@
 //! 6  the last column: w <- w - (w_n / u_n) u, and the first row of [L D'] in the same way; what is left is H'
 //! ```
 //!
-//! Each frequency occupies one lane of a vector register. Hessenberg form: Laub, IEEE Trans.
+//! Each frequency occupies a lane of a vector register. Hessenberg form: Laub, IEEE Trans.
 //! Automatic Control 26(2), 1981; tau is the pivot threshold of Duff, Erisman & Reid, "Direct
 //! Methods for Sparse Matrices", 2nd ed. 2017, 5.2.
 
@@ -31,14 +31,14 @@ use crate::dataset::{PairTable, StateSpace};
 ///
 /// The model is balanced and reduced to Hessenberg form once; at each frequency its states are then
 /// eliminated from the system matrix, with pivoting, in O(n (n + 2 max(m, p)) min(m, p))
-/// operations. The vector length of the processor is the count of frequencies solved at once: eight
-/// with AVX-512, four with AVX2, two with NEON, otherwise one.
+/// operations. As many frequencies are solved at once as a vector register holds: eight with
+/// AVX-512, four with AVX2, two with NEON, otherwise one.
 ///
 /// Eight neighbouring frequencies share their pivots: a value depends on its group through rounding
 /// only. The bits are the same on all hardware with fused multiply-adds (AVX2, AVX-512, NEON).
 ///
 /// Backward error: below 1e-10 relative to the largest entry in the balanced A, in practice about
-/// 1e-13. The relative error of the response grows as `j omega` approaches a pole; at a pole, where
+/// 1e-13. The relative error in the response grows as `j omega` approaches a pole; at a pole, where
 /// elimination meets a zero pivot, the values are not finite. Entries beyond [`super::large_entry::LargeEntry`]'s limit may overflow.
 ///
 /// Uses only the matrices, as continuous-time ones; for a model with
@@ -101,7 +101,7 @@ impl WithSimd for Elimination<'_> {
     }
 }
 
-/// Each `s / alpha` of a group; real and imaginary parts apart.
+/// Each `s / alpha` in a group; real and imaginary parts apart.
 struct GroupShifts {
     re: [f64; GROUP],
     im: [f64; GROUP],
@@ -128,12 +128,11 @@ impl GroupShifts {
     }
 }
 
-/// Eliminates the states at the frequencies of a group: steps 2 to 6.
+/// Eliminates the states for a group: steps 2 to 6.
 ///
-/// The next row, which is real, costs half the operations of the active row: it clears a column
-/// unless the entry of the active row is more than tau times as large in some lane of the group.
-/// Multipliers within G are then at most tau, and since each row of G enters unchanged, entries
-/// grow to at most `n tau` times the largest.
+/// The next row, which is real, costs half as much as the active row: it clears a column unless the
+/// active row's entry is more than tau times as large in some lane. Multipliers within G are then
+/// at most tau, and since the rows of G enter unchanged, entries grow at most by the factor `n tau`.
 #[inline(always)]
 fn eliminate_group<S: Simd>(
     simd: S,
@@ -160,7 +159,7 @@ fn eliminate_group<S: Simd>(
     }
 }
 
-/// Appends the values of a group to the curves; a NaN frequency is its own value, since without
+/// Appends the values for a group to the curves; a NaN frequency is its own value, since without
 /// states it would be lost.
 #[inline(always)]
 fn append_group<S: Simd>(
@@ -187,10 +186,10 @@ fn append_group<S: Simd>(
 
 /// The complex rows of a system matrix during elimination, for a vector of frequencies.
 ///
-/// These are the *active* row, initially the first of `[G K]`, and all rows of `[L D']` except the
-/// first. The first row of `[L D']` has a single entry in G's columns, the last one, and is not
-/// needed until all other columns are clear: it takes no part, and the active row occupies its
-/// place, so that rows and responses are numbered alike.
+/// These are the *active* row, initially the first row of `[G K]`, and all rows of `[L D']` except
+/// the first. The first row of `[L D']` is zero in G's columns except for the last, and is not
+/// needed until all other columns are clear: the active row occupies its place, so that rows and
+/// responses are numbered alike.
 struct ComplexRows<S: Simd> {
     /// `s / alpha`.
     shift: ComplexLanes<S>,
@@ -213,8 +212,8 @@ impl<S: Simd> ComplexRows<S> {
         }
     }
 
-    /// Returns whether, in any lane, the entry of the active row is too large for the next row to
-    /// clear, or is NaN.
+    /// Returns whether, in any lane, the active row's entry is NaN or too large for the next row to
+    /// clear.
     #[inline(always)]
     fn needs_interchange(&self, simd: S, form: &HessenbergForm, column: usize) -> bool {
         let inverse_square_threshold =
@@ -224,7 +223,7 @@ impl<S: Simd> ComplexRows<S> {
         simd.first_true_m64s(exceeds) < S::F64_LANES
     }
 
-    /// Clears a column, with an interchange of active and next row in the lanes where the active
+    /// Clears a column; an interchange swaps active and next row in the lanes where the active
     /// entry is larger.
     #[inline(always)]
     fn clear(&mut self, simd: S, form: &HessenbergForm, column: usize, interchange: bool) {
@@ -284,7 +283,7 @@ impl<S: Simd> ComplexRows<S> {
 }
 
 /// Subtracts `multiplier (next row)` from a row, to the right of the cleared column: nearly all the
-/// work of an elimination. The first entry of the next row also contains `-shift`.
+/// work. The first entry in the next row also contains `-shift`.
 #[inline(always)]
 fn subtract_next<S: Simd>(
     simd: S,
@@ -314,8 +313,8 @@ fn subtract_multiple<S: Simd>(
 
 /// An interchange: in some lanes, the active row clears a column and the next row becomes active.
 ///
-/// With `u` the entry of the active row in the column, `w` the entry of another complex row, and
-/// `h` the entry of the next row, the rows become
+/// With the entries in the column, `u` in the active row, `w` in another complex row and `h` in the
+/// next row, the rows become
 ///
 /// ```text
 /// active row:  h (next row / h) - (h / u) (active row)
@@ -332,8 +331,7 @@ struct Interchange<S: Simd> {
 }
 
 impl<S: Simd> Interchange<S> {
-    /// Selects the lanes where the entry `u` of the active row is larger than the entry of the next
-    /// row.
+    /// Selects the lanes where the active row's entry `u` is larger than the next row's `h`.
     #[inline(always)]
     fn new(simd: S, subdiagonal: &Subdiagonal, pivot: ComplexLanes<S>) -> Self {
         let lanes = simd.greater_than_f64s(pivot.square(simd), simd.splat_f64s(subdiagonal.square));
@@ -343,7 +341,7 @@ impl<S: Simd> Interchange<S> {
         }
     }
 
-    /// Returns quotient and multiplier of a row with this entry: `w / u` and zero, or zero and `w`.
+    /// Returns quotient and multiplier for a row with entry `w`: `w / u` and zero, or zero and `w`.
     #[inline(always)]
     fn factors(&self, simd: S, entry: ComplexLanes<S>) -> [ComplexLanes<S>; 2] {
         let zero = ComplexLanes::real(simd, 0.0);
@@ -351,7 +349,7 @@ impl<S: Simd> Interchange<S> {
         [quotient, entry.replaced_where(simd, self.lanes, zero)]
     }
 
-    /// Returns quotient and multiplier of the active row: `h / u` and `-h`, or -1 and `u`.
+    /// Returns quotient and multiplier for the active row: `h / u` and `-h`, or -1 and `u`.
     #[inline(always)]
     fn active_factors(
         &self,
@@ -359,7 +357,7 @@ impl<S: Simd> Interchange<S> {
         subdiagonal: &Subdiagonal,
         pivot: ComplexLanes<S>,
     ) -> [ComplexLanes<S>; 2] {
-        // Zero even where the pivot is zero: nothing remains of the active row.
+        // Zero even where the pivot is zero: nothing remains from the active row.
         let quotient = if subdiagonal.entry == 0.0 {
             ComplexLanes::real(simd, 0.0)
         } else {

@@ -13,7 +13,7 @@ use crate::dataset::{Pair, StateSpace};
 /// effectively zero.
 const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 
-/// The system matrix of a model, prepared for elimination of its states.
+/// The system matrix of a model, prepared for state elimination.
 ///
 /// ```text
 /// [ G - (s / alpha) I   K  ]
@@ -21,40 +21,41 @@ const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 /// ```
 ///
 /// G (n x n) is zero below its first subdiagonal; L has a row per input, and its first row is zero
-/// except for the last entry; K has a column per output. All are derived from the model (A, B, C,
-/// D) in these steps: balancing (a diagonal similarity) removes the influence of the states' units;
-/// alpha and another power of two scale the largest entries of A and B to order 1; Householder
-/// reflections make A Hessenberg and the first column of B a multiple of the first unit vector;
-/// then the system matrix is transposed, and the order of the states reversed, which restores the
-/// Hessenberg form.
+/// except for the last entry; K has a column per output. Steps from the model (A, B, C, D):
 ///
-/// The cost per frequency grows with the rows of L. A model with fewer outputs than inputs is
+/// 1. Balance A by a diagonal similarity, which removes the influence of state units.
+/// 2. Scale A by alpha and B by another power of two, so that their largest entries are near 1.
+/// 3. Householder reflections make A Hessenberg and the first column in B a multiple of the first
+///    unit vector.
+/// 4. Transpose the system matrix and reverse the states, which restores the Hessenberg form.
+///
+/// The cost per frequency grows with the row count of L. A model with fewer outputs than inputs is
 /// therefore stored as its dual `(A', C', B', D')`, whose response is the transpose and whose
-/// inputs are the outputs of the model.
+/// inputs are the model's outputs.
 #[derive(Clone, Debug)]
 pub(super) struct HessenbergForm {
     /// State count, `n`.
     pub order: usize,
-    /// Rows of L: inputs of the model, or of its dual.
+    /// Row count of L: inputs (of the dual).
     pub inputs: usize,
-    /// Columns of K: outputs of the model, or of its dual.
+    /// Column count of K: outputs (of the dual).
     pub outputs: usize,
-    /// Whether this is the dual: rows of L then belong to outputs and columns of K to inputs.
+    /// Whether this is the dual: L then has a row per output, K a column per input.
     pub dual: bool,
-    /// Input in the first row of L, the one with the largest column of B; it trades places with the
-    /// first input.
+    /// Index of the input in the first row of L: it has the largest column in B, and swaps places
+    /// with the first input.
     first_input: usize,
     /// `1 / alpha`.
     pub frequency_scale: f64,
-    /// The single entry of the first row of L.
+    /// The only nonzero entry in the first row of L.
     pub gain: f64,
-    /// The subdiagonal entry of each column of G except the last.
+    /// Subdiagonal entry in each column of G except the last.
     pub subdiagonals: Vec<Subdiagonal>,
-    /// The first row of `[G K]` and all rows of `[L D']` except the first.
+    /// First row of `[G K]`, then all rows of `[L D']` except the first.
     pub complex_rows: Vec<f64>,
-    /// The other rows of `[G K]`, each divided by its subdiagonal entry.
+    /// Other rows of `[G K]`, each divided by its subdiagonal entry.
     next_rows: Vec<f64>,
-    /// The first row of D'.
+    /// First row of D'.
     pub feed_through: Vec<f64>,
 }
 
@@ -117,7 +118,7 @@ impl HessenbergForm {
         }
     }
 
-    /// Returns the model's response for a row of L and a column of K.
+    /// Returns the model response for row `input` of L and column `output` of K.
     pub fn pair(&self, input: usize, output: usize) -> Pair {
         let input = if input == 0 {
             self.first_input
@@ -145,7 +146,7 @@ impl HessenbergForm {
     }
 }
 
-/// A model or its dual, balanced, with the largest entries of A and B between 1 and 2.
+/// A model or its dual, balanced, with the largest entries in A and B between 1 and 2.
 struct ScaledSystem {
     a: DMatrix<f64>,
     b: DMatrix<f64>,
@@ -184,7 +185,7 @@ impl ScaledSystem {
         }
     }
 
-    /// Swaps the input with the largest column of B with the first input, and returns its index.
+    /// Swaps the first input with the input that has the largest column in B; returns its index.
     fn swap_largest_input_first(&mut self) -> usize {
         let mut largest = 0;
         for input in 1..self.b.ncols() {
@@ -296,8 +297,8 @@ impl WithSimd for HouseholderReduction<'_> {
     }
 }
 
-/// Clears a column below row `first` by a reflection of the states from `first` on, applied from
-/// both sides; the column does not belong to these states.
+/// Clears a column below row `first` by reflecting the states from `first` on, from both sides; the
+/// column does not belong to these states.
 #[inline(always)]
 fn clear(rows: &mut DMatrix<f64>, states: usize, column: usize, first: usize) {
     let mut v = vec![0.0; rows.nrows()];
@@ -311,7 +312,7 @@ fn clear(rows: &mut DMatrix<f64>, states: usize, column: usize, first: usize) {
     if tail == 0.0 {
         return;
     }
-    // The largest entries of A and B are of order 1: squares that underflow are negligible.
+    // The largest entries in A and B are near 1: squares that underflow are negligible.
     let norm = (*head * *head + tail).sqrt();
     let left = -norm.copysign(*head);
     let beta = 1.0 / (norm * (norm + head.abs()));
@@ -384,14 +385,13 @@ fn subtract_multiple(from: &mut [f64], factor: f64, row: &[f64]) {
     }
 }
 
-/// Balances row k and column k of `a`, for each state k, to norms within a factor of two of each
-/// other, by a diagonal similarity with powers of two, hence without rounding: `a <- S^-1 a S`,
+/// Balances row k and column k of `a`, for each state k, to norms that differ by less than a factor
+/// two. The diagonal similarity has powers of two and rounds nothing: `a <- S^-1 a S`,
 /// `b <- S^-1 b`, `c <- c S`.
 ///
 /// Balancing of Parlett and Reinsch with 2-norms (James, Langou & Lowery, arXiv:1401.5766,
-/// algorithm 3). For entries far beyond any real machine's, the number of sweeps over the states is
-/// limited (each sweep leaves a similar model), and so is the scale, so that B and C do not
-/// overflow.
+/// algorithm 3). For entries far beyond any real machine's, the sweep count is limited (each sweep
+/// leaves a similar model), and so is the scale, so that B and C do not overflow.
 pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatrix<f64>) {
     /// Most sweeps; a helicopter model takes three to six.
     const MOST_SWEEPS: usize = 100;

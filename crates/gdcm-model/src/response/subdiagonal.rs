@@ -1,24 +1,24 @@
-//! Subdiagonal entries of a Hessenberg matrix, with the constants for their elimination.
+//! Subdiagonal entries in a Hessenberg matrix, with the constants for elimination.
 
-/// Subdiagonal entries below this limit split the model in two; the largest entry is of order 1,
-/// and a double has 16 digits.
+/// Limit below which a subdiagonal entry splits the model in two; the largest entry is near 1, and a
+/// double has 16 digits.
 const NEGLIGIBLE: f64 = 1e-70;
 
-/// Ratio of the active row's entry to the next row's entry above which both are interchanged, times
-/// the order (`n tau`).
+/// Pivot threshold tau times the order n. Active and next row are interchanged where the active
+/// entry is more than tau times as large.
 ///
-/// With tau = 1 elimination is partial pivoting. Real rows cost a half to a third of complex ones,
-/// and reduce the accuracy by at most this factor: `n tau` times the unit roundoff of 1.1e-16 is
-/// 3e-11, for every order. The errors of the models in `benches/responses.rs` are at most 7e-13 of
-/// their largest value.
+/// With tau = 1 elimination is partial pivoting. Real rows cost a half to a third as much as complex
+/// rows, and reduce the accuracy by at most `n tau`: times the unit roundoff 1.1e-16 this is 3e-11,
+/// for any order. The models in `benches/responses.rs` have errors up to 7e-13, relative to their
+/// largest value.
 const PIVOT_THRESHOLD: f64 = (1_u32 << 18) as f64;
 
-/// The single subdiagonal entry `h` of a column of G, with the constants for its elimination.
+/// The subdiagonal entry `h` in a column of G, with the constants for its elimination.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Subdiagonal {
     /// `h`; zero where negligible.
     pub entry: f64,
-    /// Divisor of the row of `h`, which normalises `h` to one: `h`, or one where `h` is negligible.
+    /// Divisor that normalises `h` to 1: `h`, or 1 where `h` is negligible.
     pub divisor: f64,
     /// Reciprocal of [`divisor`](Self::divisor).
     pub reciprocal: f64,

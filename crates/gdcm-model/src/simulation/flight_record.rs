@@ -6,12 +6,12 @@ use nalgebra::{DMatrix, DVectorView};
 
 use crate::dataset::channel::ChannelSide;
 
-/// A flight record: time stamps and samples of all inputs and outputs, in file units.
+/// A flight record: time stamps and samples for all inputs and outputs, in file units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightRecord {
     /// Display name.
     pub name: String,
-    /// Time stamp of each sample \[s\]; NaN where missing.
+    /// Time stamps \[s\]; NaN where missing.
     pub time_s: Vec<f64>,
     /// Inputs: a row per sample, a column per channel; NaN where missing.
     pub inputs: DMatrix<f64>,
@@ -22,9 +22,9 @@ pub struct FlightRecord {
 /// A gap-free segment of a flight record on a uniform time grid, with all samples finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
-    /// Index of its record, counted from 0.
+    /// Record index, counted from 0.
     pub record: usize,
-    /// Time of its first sample \[s\], on the record's clock.
+    /// First sample \[s\], on the record's clock.
     pub start_s: f64,
     /// Sample time \[s\].
     pub sample_time_s: f64,
@@ -35,7 +35,7 @@ pub struct Segment {
 }
 
 impl FlightRecord {
-    /// Returns the samples of a channel.
+    /// Returns a channel's samples.
     #[must_use]
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         signal
@@ -46,7 +46,7 @@ impl FlightRecord {
 }
 
 impl Segment {
-    /// Returns the samples of a channel.
+    /// Returns a channel's samples.
     #[must_use]
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         signal

@@ -1,4 +1,4 @@
-//! Validation of a model against records in the time domain.
+//! Validation in the time domain: a model simulated against records.
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
@@ -9,7 +9,7 @@ use crate::dataset::StateSpace;
 use crate::executor::{Executor, each};
 use crate::response::eigenvalues::poles;
 
-/// Window length in time constants of the fastest diverging mode (M14, 6).
+/// Window length for an unstable model, in time constants of its fastest diverging mode (M14, 6).
 const TIME_CONSTANTS: f64 = 3.0;
 /// Smallest ratio between samples of all outputs and unknowns (initial state and offsets) in a
 /// window.
@@ -22,14 +22,13 @@ const RANK_TOLERANCE: f64 = 1e-9;
 pub struct ValidationSettings {
     /// The longest window \[s\].
     pub longest_window_s: f64,
-    /// Cut-off of the low-pass filter for inputs and outputs \[rad/s\]; `None` compares the raw
-    /// signals.
+    /// Low-pass cut-off for inputs and outputs \[rad/s\]; `None` compares raw signals.
     pub low_pass: Option<f64>,
 }
 
 impl ValidationSettings {
-    /// Returns windows of 10 s with signals low-pass filtered at twice the highest line in use,
-    /// `highest` \[rad/s\] (M14, 6).
+    /// Returns settings with 10 s windows and signals low-pass filtered at twice the highest line
+    /// in use, `highest` \[rad/s\] (M14, 6).
     #[must_use]
     pub fn filtered(highest: f64) -> Self {
         Self {
@@ -38,7 +37,7 @@ impl ValidationSettings {
         }
     }
 
-    /// Returns windows of 10 s with raw signals, for plots.
+    /// Returns settings with 10 s windows and raw signals, for plots.
     #[must_use]
     pub fn unfiltered() -> Self {
         Self {
@@ -90,7 +89,7 @@ pub struct ValidationWindow {
     pub simulated: DMatrix<f64>,
 }
 
-/// Validation of a model against records in the time domain.
+/// Agreement between a model and records in the time domain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Validation {
     /// The windows, by segment and time; at least one.
@@ -185,7 +184,7 @@ pub fn validate(
     })
 }
 
-/// Returns the length of a window \[s\]; `None` where the model is not finite or its poles cannot
+/// Returns the window length \[s\]; `None` where the model is not finite or its poles cannot
 /// be computed.
 fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
     let fastest = poles(model)?.iter().map(|pole| pole.re).fold(0.0, f64::max);
@@ -211,8 +210,8 @@ fn window_count(model: &StateSpace, segment: &Segment, window_s: f64) -> Option<
     }
 }
 
-/// Simulates the windows of a segment; none where it is too short. `std` is the standard deviation
-/// of each output.
+/// Simulates the windows of a segment; none where it is too short. `std` has the standard deviation
+/// per output.
 fn windows(
     model: &StateSpace,
     segment: &Segment,
@@ -315,7 +314,7 @@ fn solve(rows: DMatrix<f64>) -> Option<DVector<f64>> {
     Some(solution.column(0).component_div(&lengths.transpose()))
 }
 
-/// Returns the standard deviation of each column over all `parts`; 1 for a constant column.
+/// Returns the standard deviation per column over all `parts`; 1 for a constant column.
 fn deviations<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> {
     let means = means(parts.clone());
     let squares = sums(parts.clone(), |o, y| (y - means[o]).powi(2));
@@ -332,7 +331,7 @@ fn deviations<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<
     deviations
 }
 
-/// Returns the mean of each column over all `parts`.
+/// Returns the column means over all `parts`.
 fn means<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> {
     let samples: usize = parts.clone().map(DMatrix::nrows).sum();
     sums(parts, |_, y| y)
@@ -356,13 +355,13 @@ fn sums<'a>(
     sums
 }
 
-/// Agreement of each output over all windows.
+/// Agreement per output over all windows.
 struct Agreement {
     fit_percent: Vec<Option<f64>>,
     theil: Vec<Option<f64>>,
 }
 
-/// Computes fit \[%\] and Theil's coefficient of each output.
+/// Computes fit \[%\] and Theil's coefficient per output.
 fn agreement(windows: &[ValidationWindow]) -> Agreement {
     let measured = windows.iter().map(|window| &window.measured);
     let means = means(measured.clone());

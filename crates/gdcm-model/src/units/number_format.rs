@@ -29,10 +29,10 @@ pub fn without_sign_of_zero(text: &str) -> &str {
     if is_zero { digits } else { text }
 }
 
-/// Formats a nonzero value with the given decimals, or with more, so that at least two digits
-/// remain where it would round to zero.
+/// Formats a value with the given decimals; a nonzero value that would round to zero gets two
+/// significant digits instead.
 pub fn telling(value: f64, decimals: usize) -> String {
-    /// Beyond this number of decimals an exponent is shorter.
+    /// Most decimals; beyond, an exponent is shorter.
     const MOST: i32 = 6;
     if value == 0.0 || !value.is_finite() || value.abs() >= 10_f64.powi(-(decimals as i32)) {
         return format!("{value:.decimals$}");
@@ -45,21 +45,26 @@ pub fn telling(value: f64, decimals: usize) -> String {
     }
 }
 
-/// Formats two values with the given decimals, or with as many more as needed to distinguish them.
+/// Formats two values with the given decimals, or with as many more as distinguish them.
 pub fn told_apart(a: f64, b: f64, decimals: usize) -> (String, String) {
-    /// All decimals of a number of order one.
+    /// All decimals of a number near 1.
     const MOST: usize = 15;
-    let texts = |decimals: usize| (format!("{a:.decimals$}"), format!("{b:.decimals$}"));
-    let enough = (decimals..=MOST).find(|&decimals| texts(decimals).0 != texts(decimals).1);
-    texts(enough.unwrap_or(decimals))
+    for decimals in decimals..=MOST {
+        let first = format!("{a:.decimals$}");
+        let second = format!("{b:.decimals$}");
+        if first != second {
+            return (first, second);
+        }
+    }
+    (format!("{a:.decimals$}"), format!("{b:.decimals$}"))
 }
 
 /// Formats a change with its sign and the given decimals: "+12.3", "−0.4"; a change that rounds to
 /// zero has no sign.
 pub fn signed(change: f64, decimals: usize) -> String {
     let text = format!("{change:+.decimals$}");
-    let is_nothing = text.chars().all(|c| matches!(c, '+' | '-' | '0' | '.'));
-    if is_nothing {
+    let is_zero = text.chars().all(|c| matches!(c, '+' | '-' | '0' | '.'));
+    if is_zero {
         text[1..].to_owned()
     } else {
         text.replace('-', "−")
@@ -71,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_small_figure_is_given_to_the_digits_that_tell_it() {
+    fn small_values_keep_two_significant_digits() {
         let figures = [12.34, 0.1, 0.06, 0.0123, -0.000_04, 0.0, 3e-9];
         assert_eq!(
             figures.map(|value| telling(value, 1)),
@@ -100,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_has_its_sign_unless_it_rounds_to_nothing() {
+    fn a_change_has_its_sign_unless_it_rounds_to_zero() {
         assert_eq!(
             [12.34, -0.44, -0.04, 0.0].map(|change| signed(change, 1)),
             ["+12.3", "−0.4", "0.0", "0.0"]
@@ -108,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_in_a_message_is_short_and_never_another_number() {
+    fn a_number_in_a_message_parses_to_the_same_number() {
         for (value, text) in [
             (1e6, "1000000"),
             (1e-6, "0.000001"),
@@ -123,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn figures_for_people_have_six_digits_and_zeros_no_sign() {
+    fn displayed_values_have_six_digits_and_zeros_no_sign() {
         let figures = [0.530_278_677_112_3, 12.0, 1e300, -1e-12, 0.0, 1e3 * 0.0123];
         assert_eq!(
             figures.map(six_digits),

@@ -337,7 +337,7 @@ pub fn add_identified(
         .chain(once(&found.unrefined))
         .chain(&found.bundle)
         .map(|model| FoundModel {
-            draft: ModelDraft::of(model),
+            draft: ModelDraft::from_model(model),
             inputs: of.channels.inputs.iter().map(label).collect(),
             outputs: of.channels.outputs.iter().map(label).collect(),
             facts: Facts::default(),

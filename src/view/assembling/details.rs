@@ -621,7 +621,7 @@ fn curve(found: &FoundModel, place: usize, band: (f64, f64)) -> Option<BodeCurve
             (grid.omega().to_vec(), response.curve(pair).to_vec())
         }
     };
-    let shape = ResponseShape::of(&values);
+    let shape = ResponseShape::new(&values);
     Some(BodeCurve {
         id: CurveId::Model(ModelId::new(
             ConditionId(0),

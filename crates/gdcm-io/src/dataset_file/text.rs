@@ -618,7 +618,7 @@ impl ModelText {
 
     /// Creates the text of a model of a dataset.
     pub(crate) fn of_model(model: &Model) -> Self {
-        Self::of(ModelDraft::of(model))
+        Self::of(ModelDraft::from_model(model))
     }
 
     /// Creates the text of a model.

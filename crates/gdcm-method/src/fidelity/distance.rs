@@ -401,7 +401,7 @@ mod tests {
     fn distances(models: &[Dynamics], threshold: Option<f64>) -> Vec<f64> {
         let grid =
             FrequencyGrid::logarithmic(gdcm_model::dataset::Band::new(1.0, 9.0).unwrap(), 100);
-        let of = |model| PolarResponse::of(&FrequencyResponse::of(model, &grid));
+        let of = |model| PolarResponse::new(&FrequencyResponse::of(model, &grid));
         let responses: Vec<PolarResponse> = models.iter().map(of).collect();
         let coherence_weights: Vec<_> = models
             .iter()

@@ -161,7 +161,7 @@ impl Model {
     /// from a hash over numbers, bands, role and trim.
     pub fn fingerprint(&self) -> String {
         let mut hash = Sha256::new();
-        hash.update(ContentHash::of(&self.dynamics).bytes());
+        hash.update(ContentHash::new(&self.dynamics).bytes());
         hash.update([u8::from(self.is_nominal())]);
         for (coordinate, offset) in self.perturbation().into_iter().flatten() {
             hash.update(coordinate.as_bytes());
@@ -263,7 +263,7 @@ pub struct ContentHash([u8; 32]);
 impl ContentHash {
     /// Computes the hash over matrices and timing, or over measured frequencies, values, coherence
     /// and valid bands; shapes included.
-    pub fn of(dynamics: &Dynamics) -> Self {
+    pub fn new(dynamics: &Dynamics) -> Self {
         let mut hash = Sha256::new();
         match dynamics {
             Dynamics::StateSpace(model) => add_state_space(&mut hash, model),
@@ -390,23 +390,23 @@ mod content_tests {
     #[test]
     fn the_hash_depends_on_every_number() {
         assert_eq!(
-            ContentHash::of(&model(-1.0, &[2.0])),
-            ContentHash::of(&model(-1.0, &[2.0]))
+            ContentHash::new(&model(-1.0, &[2.0])),
+            ContentHash::new(&model(-1.0, &[2.0]))
         );
         let next = f64::from_bits((-1.0_f64).to_bits() + 1);
         assert_ne!(
-            ContentHash::of(&model(-1.0, &[2.0])),
-            ContentHash::of(&model(next, &[2.0]))
+            ContentHash::new(&model(-1.0, &[2.0])),
+            ContentHash::new(&model(next, &[2.0]))
         );
         assert_ne!(
-            ContentHash::of(&model(-1.0, &[2.0, 0.0])),
-            ContentHash::of(&model(-1.0, &[2.0]))
+            ContentHash::new(&model(-1.0, &[2.0, 0.0])),
+            ContentHash::new(&model(-1.0, &[2.0]))
         );
     }
 
     #[test]
     fn the_hash_of_a_model_without_timing_is_stable() {
-        let hash = |dynamics: &Dynamics| ContentHash::of(dynamics).bytes()[..4].to_vec();
+        let hash = |dynamics: &Dynamics| ContentHash::new(dynamics).bytes()[..4].to_vec();
         let plain = model(-1.0, &[2.0]);
         assert_eq!(hash(&plain), [198, 153, 200, 246]);
         let Dynamics::StateSpace(matrices) = plain.clone() else {

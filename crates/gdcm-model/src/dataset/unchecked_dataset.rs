@@ -82,7 +82,7 @@ impl ResponseArray {
 
 impl ModelDraft {
     /// Converts a model to a draft, for writing or merging.
-    pub fn of(model: &Model) -> Self {
+    pub fn from_model(model: &Model) -> Self {
         let mut draft = Self {
             name: model.name.clone(),
             origin: model.origin.clone(),

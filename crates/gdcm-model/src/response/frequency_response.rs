@@ -132,7 +132,7 @@ pub struct ResponseShape {
 impl ResponseShape {
     /// Computes the shape. The phase is principal at the first finite value, then unwrapped; a
     /// value that is not finite leaves a gap (M2).
-    pub fn of(values: &[Complex<f64>]) -> Self {
+    pub fn new(values: &[Complex<f64>]) -> Self {
         let finite: Vec<usize> = (0..values.len())
             .filter(|&k| values[k].is_finite() && values[k].norm() > 0.0)
             .collect();
@@ -230,7 +230,7 @@ pub struct PolarCurve {
 
 impl PolarCurve {
     /// Converts a response; `None` where it is zero or not finite at some frequency.
-    pub fn of(values: &[Complex<f64>]) -> Option<Self> {
+    pub fn from_values(values: &[Complex<f64>]) -> Option<Self> {
         let magnitude_db: Vec<f64> = values.iter().map(magnitude_db).collect();
         if magnitude_db.iter().any(|magnitude| !magnitude.is_finite()) {
             return None;
@@ -264,19 +264,21 @@ pub struct PolarResponse {
 
 impl PolarResponse {
     /// Computes magnitude and phase for every response.
-    pub fn of(response: &FrequencyResponse) -> Self {
+    pub fn new(response: &FrequencyResponse) -> Self {
         Self {
-            curves: response.curves.map(|_, curve| PolarCurve::of(curve)),
+            curves: response
+                .curves
+                .map(|_, curve| PolarCurve::from_values(curve)),
         }
     }
 
     /// Computes magnitude and phase for the marked responses only: a logarithm and an arc tangent
     /// cost more than the response itself.
-    pub fn of_marked(response: &FrequencyResponse, marked: &PairTable<bool>) -> Self {
+    pub fn from_marked(response: &FrequencyResponse, marked: &PairTable<bool>) -> Self {
         Self {
             curves: response.curves.map(|pair, curve| {
                 if marked[pair] {
-                    PolarCurve::of(curve)
+                    PolarCurve::from_values(curve)
                 } else {
                     None
                 }
@@ -345,7 +347,7 @@ mod tests {
     #[test]
     fn the_phase_is_continuous_across_a_gap() {
         let turned = |degrees: f64| Complex::from_polar(10.0, degrees.to_radians());
-        let shape = ResponseShape::of(&[turned(-170.0), Complex::new(0.0, 0.0), turned(170.0)]);
+        let shape = ResponseShape::new(&[turned(-170.0), Complex::new(0.0, 0.0), turned(170.0)]);
         assert!(shape.magnitude_db[1].is_nan() && shape.phase_deg[1].is_nan());
         // A few roundings of angles of 3 rad.
         assert!(
@@ -372,7 +374,7 @@ mod tests {
         let curves = PairTable::from_fn(2, 2, |pair| {
             vec![Complex::from(values[pair.output][pair.input]); 3]
         });
-        let mut polar = PolarResponse::of(&FrequencyResponse::new(curves));
+        let mut polar = PolarResponse::new(&FrequencyResponse::new(curves));
         let nothing = polar.numerically_nothing();
         assert_eq!(nothing.marked().collect::<Vec<_>>(), [Pair::new(1, 1)]);
         polar.clear(&nothing);
@@ -386,7 +388,7 @@ mod tests {
         let curves = PairTable::from_fn(2, 1, |pair| {
             vec![Complex::from([1.0, 1e-20][pair.output]); 3]
         });
-        let polar = PolarResponse::of(&FrequencyResponse::new(curves));
+        let polar = PolarResponse::new(&FrequencyResponse::new(curves));
         assert_eq!(polar.numerically_nothing().marked().count(), 0);
     }
 

@@ -226,7 +226,7 @@ impl Made {
     /// Returns the response of a model in the band; `None` if it is zero or not finite somewhere in
     /// it.
     fn polar(&self, response: &FrequencyResponse) -> Option<PolarCurve> {
-        PolarCurve::of(response.curve(self.pair).get(self.within())?)
+        PolarCurve::from_values(response.curve(self.pair).get(self.within())?)
     }
 
     /// Computes the error of a response of the condition over `omega`, the band.

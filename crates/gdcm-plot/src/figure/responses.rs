@@ -135,7 +135,7 @@ impl ResponseCache {
         let reference_shape = curves
             .identified
             .get(reference)
-            .map(|response| ResponseShape::of(response.curve(pair)));
+            .map(|response| ResponseShape::new(response.curve(pair)));
         // The last frequency of a grid may exceed its end by a rounding error.
         let limit = display_band(band).max() * (1.0 + 1e-9);
         let points = curves.grid.omega().partition_point(|omega| *omega <= limit);
@@ -160,7 +160,7 @@ impl ResponseCache {
 
     /// Returns the shape of a response, with its phase aligned with the reference.
     fn laid(&self, response: &FrequencyResponse, pair: Pair) -> ResponseShape {
-        let shape = ResponseShape::of(response.curve(pair));
+        let shape = ResponseShape::new(response.curve(pair));
         match &self.reference {
             Some((reference, points)) => shape.phase_aligned(reference, *points),
             None => shape,
@@ -240,7 +240,7 @@ impl AirspeedCache {
         }
         let mut first: Option<ResponseShape> = None;
         let shape = |(id, response): &(ModelId, Arc<FrequencyResponse>)| {
-            let shape = ResponseShape::of(response.curve(pair));
+            let shape = ResponseShape::new(response.curve(pair));
             let shape = match &first {
                 Some(first) => shape.phase_aligned(first, usize::MAX),
                 None => shape,

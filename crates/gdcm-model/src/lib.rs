@@ -1,6 +1,6 @@
 //! The Gain-Delay Correction Method: models, flight conditions and their responses.
 //!
-//! **Question answered:** which data did the engineer load, and how does one model respond?
+//! **Question answered:** which data did the engineer load, and how does a model respond?
 //!
 //! | module | holds |
 //! |---|---|

@@ -104,9 +104,8 @@ pub enum ConditionError {
         name: String,
         /// Record position, counted from 1.
         position: usize,
-        /// The quantity.
+        /// Key in the file.
         field: &'static str,
-        /// The permitted values.
         expected: &'static str,
         value: f64,
     },

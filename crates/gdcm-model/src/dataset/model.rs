@@ -60,7 +60,7 @@ pub struct Provenance {
     pub file: Option<String>,
     /// SHA-256 of the file, in hexadecimal.
     pub sha256: Option<String>,
-    /// Its variable, or the flight record.
+    /// Variable in the file, or flight record.
     pub variable: Option<String>,
     /// Creation date, in the author's format.
     pub made: Option<String>,

@@ -57,7 +57,7 @@ fn stages(criterion: &mut Criterion) {
         ConditionResponses::of(condition, (dataset.band(), 200), &alone).expect("nobody stops it");
     let figures = BundleMetrics::of(condition, &responses, &measuring, (&grid, None), &alone)
         .expect("nobody stops it");
-    let polar = PolarResponse::of;
+    let polar = PolarResponse::new;
     let mismatch = mismatch_table(
         &polar(&responses.physics[10]),
         &polar(&responses.identified[2]),

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::{Band, Dataset};
+use gdcm_model::names::ChannelRule;
 use gdcm_model::units::number;
 use gdcm_study::decisions::changed_models::OfferedModels;
 use gdcm_sysid::identification::{ChannelPreparation, Preparation, SearchSpace};

@@ -142,8 +142,10 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
             ))
         }
         None => {
-            let problems = assembly.told();
-            problems.iter().for_each(|(_, words)| error(words));
+            let problems = assembly.problem_lines();
+            for problem in &problems {
+                error(&problem.text);
+            }
             Err(Failure::Incomplete {
                 count: problems.len(),
                 rules: sanitized_path(&rules_path),

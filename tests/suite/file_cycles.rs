@@ -9,7 +9,7 @@ use super::structure::{code_of, sources};
 /// Files of each package that still import one another in a circle. The numbers may only fall: whoever breaks a cycle lowers
 /// them.
 const FILES_IN_CYCLES: &[(&str, usize)] = &[
-    ("crates/gdcm-model", 12),
+    ("crates/gdcm-model", 0),
     ("crates/gdcm-method", 0),
     ("crates/gdcm-sysid", 0),
     ("crates/gdcm-study", 25),

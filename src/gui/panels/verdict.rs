@@ -5,7 +5,7 @@ use gdcm_method::correction::conflict::ConflictKind;
 use gdcm_method::correction::remedy::Remedy;
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
-use gdcm_model::response::median;
+use gdcm_model::statistics::median;
 use gdcm_model::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
 use gdcm_study::decisions::changed_models::SignRole;
 use gdcm_study::decisions::setting;

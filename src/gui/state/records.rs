@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use egui::Color32;
 
-use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::{Band, ConditionId, Dataset};
+use gdcm_model::names::ChannelRule;
 use gdcm_model::simulation::Signal;
 use gdcm_model::units::{number, telling};
 use gdcm_study::decisions::changed_models::{AdoptedModels, OfferedModels};

@@ -37,7 +37,7 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
     assert!(
         bench(&window).assembly().problems().is_empty(),
         "{:?}",
-        bench(&window).assembly().told()
+        bench(&window).assembly().problem_lines()
     );
     type_into(
         &mut window,

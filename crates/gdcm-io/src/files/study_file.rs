@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::dataset::channel::Location;
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
+use gdcm_model::dataset::location::Location;
 use gdcm_model::dataset::{Condition, ConditionId, Dataset};
 use gdcm_model::whole_number::whole;
 use gdcm_study::Study;

@@ -6,12 +6,12 @@ use std::ops::Range;
 
 use nalgebra::Complex;
 
-use gdcm_model::assembly::PhysicalUnit;
 use gdcm_model::dataset::{Band, Channel, Dynamics, Pair};
 use gdcm_model::message_text::quoted;
 use gdcm_model::response::curve_values::{between, unwrap};
 use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::response::{FrequencyResponse, GainDelay, PreparedModel, wrap};
+use gdcm_model::units::physical_unit::PhysicalUnit;
 use gdcm_model::units::{number, ratio_to_db};
 
 /// Frequency count in the search for sign changes.

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use gdcm_model::response::curve_values::mean;
 use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::statistics::mean;
 
 use super::attitude_response::AttitudeResponse;
 

@@ -11,12 +11,11 @@
 //! Tischler & Remple, "Aircraft and Rotorcraft System Identification", 2nd ed. 2012, 14.3 (J_rms
 //! and its weights); MIL-STD-1797A, appendix A, 4.2.1.2 (MUAD).
 
-use gdcm_model::assembly::PhysicalUnit;
-use gdcm_model::assembly::physical_unit::{Dimension, conversion_factor};
 use gdcm_model::dataset::{Channel, Pair, PairTable};
-use gdcm_model::response::curve_values::mean;
 use gdcm_model::response::{GainDelay, wrap};
 use gdcm_model::simulation::{Validation, ValidationWindow};
+use gdcm_model::statistics::mean;
+use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_factor};
 
 use crate::fidelity::{CostAverage, Mismatch, leaves};
 

@@ -147,7 +147,7 @@ impl TestInput {
         if !model.timing().is_plain() {
             return Err(TestInputError::Timing);
         }
-        let held = FirstOrderHold::of(model, sample_time_s).ok_or(TestInputError::NotFinite)?;
+        let held = FirstOrderHold::new(model, sample_time_s).ok_or(TestInputError::NotFinite)?;
         let mut moved = DMatrix::zeros(samples, model.inputs());
         moved
             .column_mut(input)

@@ -13,8 +13,8 @@
 
 use nalgebra::{DMatrix, Vector3};
 
-use gdcm_model::response::curve_values::mean;
 use gdcm_model::simulation::ValidationWindow;
+use gdcm_model::statistics::mean;
 
 pub use super::tolerance_table::{ChannelTolerance, Tolerance, ToleranceError, ToleranceTable};
 

@@ -5,11 +5,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::assembly::PhysicalUnit;
-use gdcm_model::assembly::physical_unit::{Dimension, conversion_factor};
 use gdcm_model::dataset::Channel;
 use gdcm_model::message_text::quoted;
 use gdcm_model::units::number;
+use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_factor};
 
 use super::positive_number::{NamedNumber, first_not_positive};
 

@@ -208,7 +208,7 @@ fn the_model_that_flew_is_inside_and_one_of_half_its_gain_is_not() {
     let stick = DMatrix::from_fn(1000, 1, |n, _| {
         10.0 * (0.8 * SAMPLE_TIME_S * n as f64).sin()
     });
-    let held = FirstOrderHold::of(&lag(2.0), SAMPLE_TIME_S).unwrap();
+    let held = FirstOrderHold::new(&lag(2.0), SAMPLE_TIME_S).unwrap();
     let flown = held.simulate(&dvector![1.0], &stick);
     let segment = Segment {
         record: 0,

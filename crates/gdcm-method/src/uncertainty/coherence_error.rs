@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use gdcm_model::response::median;
+use gdcm_model::statistics::median;
 
 /// Measurement data that determine a response's error.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use gdcm_method::fidelity::{CoherenceWeights, Mismatch};
 use gdcm_model::dataset::{BundleKind, Pair};
-use gdcm_model::response::curve_values::quantile;
 use gdcm_model::response::frequency_response::PolarCurve;
 use gdcm_model::response::{FrequencyResponse, GainDelay};
+use gdcm_model::statistics::quantile;
 use gdcm_model::units::{ratio_to_db, s_to_ms};
 use gdcm_study::ConditionAnalysis;
 use gdcm_study::stages::condition_responses::ConditionCurves;
@@ -247,7 +247,7 @@ impl ErrorSource {
 
     /// Returns a response in the band; `None` if it is zero or not finite somewhere in it.
     fn polar(&self, response: &FrequencyResponse) -> Option<PolarCurve> {
-        PolarCurve::of(response.curve(self.key.pair).get(self.band_indices())?)
+        PolarCurve::from_values(response.curve(self.key.pair).get(self.band_indices())?)
     }
 
     /// Returns weights for the frequencies `omega`, from the reference's coherence; `None` without

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use gdcm_method::correction::delta::LARGEST_GAIN_DB;
 use gdcm_method::fidelity::distance::{DiscontinuityError, MeasuredPairs};
 use gdcm_model::dataset::{BundleKind, Condition, Dynamics, Model, Pair};
-use gdcm_model::response::prepared_model::LargeEntry;
+use gdcm_model::response::large_entry::LargeEntry;
 use gdcm_model::response::{FrequencyResponse, PolarResponse};
 use gdcm_model::units::number;
 
@@ -252,7 +252,7 @@ impl NotFinite {
                     sample_time_s,
                     nyquist_rad_s,
                 });
-                LargeEntry::of(model)
+                LargeEntry::find(model)
                     .map(NotFinite::Entry)
                     .or(sampled)
                     .unwrap_or(NotFinite::Pole)

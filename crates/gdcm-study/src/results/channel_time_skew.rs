@@ -21,8 +21,9 @@
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::{Band, BundleKind, Condition, Dataset, Dynamics, Pair};
 use gdcm_model::response::curve_values::unwrap;
-use gdcm_model::response::{FrequencyGrid, FrequencyResponse, median};
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 use gdcm_model::simulation::Signal;
+use gdcm_model::statistics::median;
 use gdcm_model::units::{s_to_ms, telling};
 use gdcm_sysid::identification::{ResponseEstimate, TRUSTED_COHERENCE};
 

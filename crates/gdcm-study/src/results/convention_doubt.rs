@@ -9,7 +9,8 @@ use gdcm_method::correction::delta::delta_gains;
 use gdcm_method::fidelity::Mismatch;
 use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Pair, PairTable};
 use gdcm_model::progress::Cancelled;
-use gdcm_model::response::{FrequencyGrid, median};
+use gdcm_model::response::FrequencyGrid;
+use gdcm_model::statistics::median;
 use gdcm_model::units::number;
 
 use crate::decisions::study::Study;

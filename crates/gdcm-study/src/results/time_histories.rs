@@ -583,7 +583,7 @@ mod tests {
         let inputs = DMatrix::from_fn(samples, model.inputs(), |n, input| {
             if input == 0 { sweep(time_s[n]) } else { 0.0 }
         });
-        let held = FirstOrderHold::of(&model, SAMPLE_TIME_S).unwrap();
+        let held = FirstOrderHold::new(&model, SAMPLE_TIME_S).unwrap();
         let outputs = held.simulate(&DVector::zeros(model.order()), &inputs);
         FlightRecord {
             name: "sweep".into(),

@@ -89,7 +89,7 @@ fn measured_pairs(
 ) -> Result<(Vec<PolarResponse>, MeasuredPairs), Cancelled> {
     let polar = |marked: &PairTable<bool>, steps| {
         execution.each(responses.len(), steps, |model| {
-            PolarResponse::of_marked(&responses[model], marked)
+            PolarResponse::from_marked(&responses[model], marked)
         })
     };
     let marked = polar(measuring, 1)?;
@@ -167,7 +167,7 @@ fn gains_out_of_range(
     choice: &ConditionChoice,
 ) -> Option<Caution> {
     let nominal = condition.nominal();
-    let physics = PolarResponse::of(&responses.bundle(BundleKind::Physics)[nominal]);
+    let physics = PolarResponse::new(&responses.bundle(BundleKind::Physics)[nominal]);
     let identified = condition
         .bundle(BundleKind::Identified)
         .iter()
@@ -175,7 +175,7 @@ fn gains_out_of_range(
     for (model, response) in
         identified.filter(|(model, _)| !choice.identified.rejected.contains(&model.name))
     {
-        let responses = GainOutOfRange::of_models(&physics, &PolarResponse::of(response));
+        let responses = GainOutOfRange::of_models(&physics, &PolarResponse::new(response));
         if !responses.is_empty() {
             let physics = condition.bundle(BundleKind::Physics)[nominal].name.clone();
             return Some(Caution::GainsOutOfRange {
@@ -478,7 +478,7 @@ impl Compared {
         (grid, coherence): (&FrequencyGrid, Option<f64>),
     ) -> Self {
         let response = responses.compared(kind, model);
-        let mut polar = PolarResponse::of(&response);
+        let mut polar = PolarResponse::new(&response);
         let absent = polar.curves().map(|pair, curve| match curve {
             Some(_) => None,
             None => Some(Absence::of(response.curve(pair))),

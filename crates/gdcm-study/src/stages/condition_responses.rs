@@ -179,7 +179,7 @@ pub(crate) struct ConditionModels {
 impl ConditionModels {
     /// Collects the models of `condition`; known models bring their responses.
     pub(crate) fn of(condition: &Arc<Condition>, known: &KnownModels) -> Self {
-        let contents = models_of(condition).map(|model| ContentHash::of(&model.dynamics));
+        let contents = models_of(condition).map(|model| ContentHash::new(&model.dynamics));
         let models = contents
             .map(|content| (content, known.responses_of(content)))
             .collect();

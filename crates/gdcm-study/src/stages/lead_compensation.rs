@@ -247,7 +247,7 @@ fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| {
             (a.min(*at), b.max(*at))
         });
-    let middle = gdcm_model::response::median(&mut wanted_s);
+    let middle = gdcm_model::statistics::median(&mut wanted_s);
     let is_common = wanted_s.len() > 1
         && most < 0.0
         && most - least <= 0.5 * middle.abs()

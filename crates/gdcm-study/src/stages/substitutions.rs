@@ -11,8 +11,8 @@ use gdcm_method::uncertainty::spread::{
 use gdcm_method::uncertainty::{IdentificationSource, Scalar, VarianceComponent};
 use gdcm_model::dataset::{BundleKind, Dynamics, Pair, PairTable};
 use gdcm_model::progress::Cancelled;
-use gdcm_model::response::curve_values::{coherence_at, quantile};
-use gdcm_model::response::median;
+use gdcm_model::response::curve_values::coherence_at;
+use gdcm_model::statistics::{median, quantile};
 
 use super::comparison::{Compared, Mismatches};
 use super::condition_responses::ConditionResponses;

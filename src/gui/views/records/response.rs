@@ -439,7 +439,7 @@ fn shape(values: impl Iterator<Item = (f64, Complex<f64>)>, reference: Option<[f
     let ResponseShape {
         magnitude_db,
         phase_deg,
-    } = ResponseShape::of(&values);
+    } = ResponseShape::new(&values);
     let distance = |at: &usize, to: f64| (omega[*at] / to).ln().abs();
     let shift = reference.map_or(0.0, |[to, _, phase]| {
         let nearest = (0..omega.len()).min_by(|a, b| distance(a, to).total_cmp(&distance(b, to)));

@@ -216,7 +216,7 @@ fn the_distances_behind_a_discontinuity_ratio_are_explained_by_the_weights_told(
                 .then(|| result.figures.physics.between(place, other).unwrap() / fitted)
         };
         let mut ratios: Vec<f64> = (0..models.len()).filter_map(ratio).collect();
-        let median = gdcm_model::response::median(&mut ratios);
+        let median = gdcm_model::statistics::median(&mut ratios);
         // Squares and roots in another order.
         assert!((median / fit.ratios[place].unwrap() - 1.0).abs() < 1e-12);
     }

@@ -199,7 +199,7 @@ fn the_error_of_the_reference_is_nothing_and_a_correction_moves_the_median_of_a_
         .representative_name(gdcm_model::dataset::BundleKind::Physics);
     let mut errors = column(&format!("{physics}, corrected"));
     // The curves have their own frequencies: a fifth as far apart as those that the median was taken of, and as many at the ends.
-    assert!(gdcm_model::response::median(&mut errors).abs() < 0.02);
+    assert!(gdcm_model::statistics::median(&mut errors).abs() < 0.02);
 }
 
 #[test]

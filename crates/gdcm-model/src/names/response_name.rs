@@ -2,21 +2,21 @@
 //! `roll_rate per lat_cyclic run 2`.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
-use super::channel_match::{
-    FIELD_INPUTS, SignedName, canonical, field_names, folded_name, same_channel,
-};
-use super::physical_unit::{Dimension, PhysicalUnit};
-use super::rules::ChannelRule;
+use super::channel_alias::{canonical_name, is_known_input, is_known_output, same_channel};
+use super::channel_rule::ChannelRule;
+use super::signed_name::SignedName;
+use crate::dataset::channel::ChannelSide;
+use crate::units::physical_unit::{Dimension, PhysicalUnit};
 
-/// Maximum number of words combined into the name of one channel.
+/// Most words combined into a channel name.
 const LONGEST_NAME: usize = 4;
-/// Maximum number of words considered in a text.
+/// Most words considered in a text.
 const MOST_WORDS: usize = 64;
 
-/// Words that describe the content of a file but none of its channels. Words with other numbers and
-/// units are ignored too.
-const NO_CHANNEL: [&str; 44] = [
+/// Words in file names that do not belong to a channel. Numbers and units are ignored too.
+const FILLERS: [&str; 44] = [
     "frf",
     "fr",
     "tf",
@@ -63,8 +63,8 @@ const NO_CHANNEL: [&str; 44] = [
     "file",
 ];
 
-/// Words that turn an adjacent channel into a different one: the derivative of q is not q.
-const CHANGES_CHANNEL: [&str; 23] = [
+/// Words that turn an adjacent channel into another: "q dot" is not q.
+const MODIFIERS: [&str; 23] = [
     "dot",
     "ddot",
     "deriv",
@@ -90,7 +90,7 @@ const CHANGES_CHANNEL: [&str; 23] = [
     "delta",
 ];
 
-/// An output and an input in the words of the text, as far as the text names them.
+/// An output and an input as spelt in a text, as far as the text names them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ResponseName {
     /// The output: "q", "roll_rate".
@@ -99,38 +99,37 @@ pub struct ResponseName {
     pub input: Option<String>,
 }
 
-/// Why a text does not name one output and one input.
+/// Error for a text with an ambiguous output or input.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ResponseNameError {
-    /// Several outputs, or several inputs.
     #[error("it names several {side}s: {found}")]
     Several {
         /// "output" or "input".
         side: &'static str,
+        /// The channels as spelt in the text, separated by commas.
         found: String,
     },
-    /// A word beside a channel that may turn it into a different channel.
-    #[error("\"{word}\" beside {channel} may make another channel of it")]
+    #[error("\"{word}\" beside {channel} may change the channel")]
     OtherChannel {
         word: String,
-        /// The channel in the words of the text.
+        /// The channel as spelt in the text.
         channel: String,
     },
 }
 
-/// The channels that a text may name.
+/// Channels that a text may name.
 #[derive(Clone, Copy, Debug)]
 pub enum KnownChannels<'r> {
-    /// The channels of a dataset, by their names, aliases and synonyms in the field.
+    /// Dataset channels, by name and alias.
     Dataset {
         inputs: &'r [ChannelRule],
         outputs: &'r [ChannelRule],
     },
-    /// All channels with a name in the field.
+    /// All channels in the alias table, whether or not the dataset has them.
     Field,
 }
 
-/// The canonical names of the known channels.
+/// Canonical names of the known channels.
 enum KnownNames {
     Dataset {
         inputs: BTreeSet<String>,
@@ -140,157 +139,182 @@ enum KnownNames {
 }
 
 impl KnownNames {
-    fn of(known: KnownChannels<'_>) -> Self {
-        let names = |rules: &[ChannelRule]| {
-            let each = rules
-                .iter()
-                .flat_map(|rule| std::iter::once(&rule.name).chain(&rule.aliases));
-            each.map(|name| canonical(&SignedName::of(name).name))
-                .collect()
-        };
+    fn new(known: KnownChannels<'_>) -> Self {
         match known {
             KnownChannels::Dataset { inputs, outputs } => Self::Dataset {
-                inputs: names(inputs),
-                outputs: names(outputs),
+                inputs: canonical_names(inputs),
+                outputs: canonical_names(outputs),
             },
             KnownChannels::Field => Self::Field,
         }
     }
 
-    /// Returns whether a name denotes an output, and whether it denotes an input.
+    /// Returns the sides that have a channel called `name`.
     fn sides(&self, name: &str) -> Sides {
         match self {
             Self::Dataset { inputs, outputs } => {
-                let name = canonical(name);
+                let name = canonical_name(name);
                 Sides {
                     output: outputs.contains(&name),
                     input: inputs.contains(&name),
                 }
             }
-            Self::Field => {
-                let folded = folded_name(name);
-                let row = field_names().position(|mut names| names.any(|known| known == folded));
-                Sides {
-                    output: row.is_some_and(|row| row >= FIELD_INPUTS),
-                    input: row.is_some_and(|row| row < FIELD_INPUTS),
-                }
-            }
+            Self::Field => Sides {
+                output: is_known_output(name),
+                input: is_known_input(name),
+            },
         }
     }
 }
 
-/// The sides that have a channel of a given name.
+/// Returns the canonical names of channels and of their aliases, without sign marks.
+fn canonical_names(rules: &[ChannelRule]) -> BTreeSet<String> {
+    let mut names = BTreeSet::new();
+    for rule in rules {
+        for name in std::iter::once(&rule.name).chain(&rule.aliases) {
+            names.insert(canonical_name(&SignedName::parse(name).name));
+        }
+    }
+    names
+}
+
+/// The sides that have a channel with a given name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Sides {
     output: bool,
     input: bool,
 }
 
-/// A channel named by one or more words of a text.
+impl Sides {
+    fn are_both(self) -> bool {
+        self.output && self.input
+    }
+
+    fn has(self, side: ChannelSide) -> bool {
+        side.of(self.input, self.output)
+    }
+}
+
+/// A channel named by a run of words.
 struct NamedChannel<'t> {
-    /// Half-open range of word indices.
-    words: std::ops::Range<usize>,
+    /// Indices of its words.
+    words: Range<usize>,
+    /// Its name as spelt in the text.
     text: &'t str,
     sides: Sides,
+}
+
+/// A word and its first byte in the text.
+struct Word<'t> {
+    start: usize,
+    text: &'t str,
 }
 
 impl ResponseName {
     /// Finds the channels that a text names.
     ///
     /// 1. Split the text into words.
-    /// 2. From the left, take the longest run of words that together name a known channel.
-    /// 3. A name that fits both sides is read as "output input", or as "input to output" where "to"
-    ///    separates them.
+    /// 2. From the left, take the longest run of words that names a known channel.
+    /// 3. Reject a word that may change a channel beside it.
+    /// 4. Two names that fit both sides are "output input", or "input to output".
+    /// 5. Otherwise each side takes the name that fits it alone, or else the name that fits both.
     ///
     /// # Errors
-    /// The text names several outputs or inputs, or a word beside a channel may turn it into a
-    /// different one.
+    /// The text names several outputs or inputs, or a word may change the channel beside it.
     pub fn find(text: &str, known: KnownChannels<'_>) -> Result<Self, ResponseNameError> {
         let words = words_of(text);
-        let named = named_channels(text, &words, &KnownNames::of(known));
-        let Some(last) = named.last() else {
-            return Ok(Self::default());
-        };
-        let begins = named[0].words.start;
-        let ends = last.words.end;
-        for (index, word) in words.iter().enumerate() {
-            let is_named = named.iter().any(|channel| channel.words.contains(&index));
-            if is_named || says_no_channel(word.text) {
-                continue;
-            }
-            let is_between = begins < index && index < ends;
-            if is_between || CHANGES_CHANNEL.contains(&word.text.to_lowercase().as_str()) {
-                let before = named
-                    .iter()
-                    .rev()
-                    .find(|channel| channel.words.start < index);
-                let channel = before.unwrap_or(&named[0]).text.to_owned();
-                return Err(ResponseNameError::OtherChannel {
-                    word: word.text.to_owned(),
-                    channel,
-                });
-            }
-        }
+        let named = named_channels(text, &words, &KnownNames::new(known));
+        reject_modifiers(&words, &named)?;
         if let [first, second] = named.as_slice()
-            && [first, second]
-                .iter()
-                .all(|channel| channel.sides.output && channel.sides.input)
+            && first.sides.are_both()
+            && second.sides.are_both()
         {
-            let between = &words[first.words.end..second.words.start];
-            let input_first = between
-                .iter()
-                .any(|word| word.text.eq_ignore_ascii_case("to"));
-            let (output, input) = if input_first {
-                (second, first)
-            } else {
-                (first, second)
-            };
-            return Ok(Self {
-                output: Some(output.text.to_owned()),
-                input: Some(input.text.to_owned()),
-            });
+            return Ok(Self::from_order(&words, first, second));
         }
-        let outputs: Vec<&NamedChannel<'_>> = named
-            .iter()
-            .filter(|channel| channel.sides.output)
-            .collect();
-        let inputs: Vec<&NamedChannel<'_>> =
-            named.iter().filter(|channel| channel.sides.input).collect();
-        // A name that fits both sides takes the side left open by the others.
-        let only = |side: &'static str,
-                    of_side: &[&NamedChannel<'_>],
-                    is_other: fn(Sides) -> bool| {
-            let sure: Vec<&str> = of_side
-                .iter()
-                .filter(|channel| !is_other(channel.sides))
-                .map(|channel| channel.text)
-                .collect();
-            let open: Vec<&str> = of_side.iter().map(|channel| channel.text).collect();
-            let names = if sure.is_empty() { open } else { sure };
-            match names.split_first() {
-                None => Ok(None),
-                Some((first, others)) if others.iter().all(|other| same_channel(first, other)) => {
-                    Ok(Some((*first).to_owned()))
-                }
-                Some(_) => Err(ResponseNameError::Several {
-                    side,
-                    found: names.join(", "),
-                }),
-            }
-        };
         Ok(Self {
-            output: only("output", &outputs, |sides| sides.input)?,
-            input: only("input", &inputs, |sides| sides.output)?,
+            output: only_channel(ChannelSide::Output, &named)?,
+            input: only_channel(ChannelSide::Input, &named)?,
         })
+    }
+
+    /// Reads two channels by their order: "output input", or "input to output".
+    fn from_order(words: &[Word<'_>], first: &NamedChannel<'_>, second: &NamedChannel<'_>) -> Self {
+        let input_first = words[first.words.end..second.words.start]
+            .iter()
+            .any(|word| word.text.eq_ignore_ascii_case("to"));
+        let [output, input] = if input_first {
+            [second, first]
+        } else {
+            [first, second]
+        };
+        Self {
+            output: Some(output.text.to_owned()),
+            input: Some(input.text.to_owned()),
+        }
     }
 }
 
-/// A word and its start position in the text.
-struct Word<'t> {
-    start: usize,
-    text: &'t str,
+/// Returns an error where a word may change the channel beside it: a modifier, or any unknown word
+/// between the channels.
+fn reject_modifiers(
+    words: &[Word<'_>],
+    named: &[NamedChannel<'_>],
+) -> Result<(), ResponseNameError> {
+    let [first, ..] = named else {
+        return Ok(());
+    };
+    let begin = first.words.start;
+    let end = named[named.len() - 1].words.end;
+    for (index, word) in words.iter().enumerate() {
+        let is_named = named.iter().any(|channel| channel.words.contains(&index));
+        if is_named || is_filler(word.text) {
+            continue;
+        }
+        let is_between = begin < index && index < end;
+        if is_between || MODIFIERS.contains(&word.text.to_lowercase().as_str()) {
+            let before = named
+                .iter()
+                .rev()
+                .find(|channel| channel.words.start < index);
+            return Err(ResponseNameError::OtherChannel {
+                word: word.text.to_owned(),
+                channel: before.unwrap_or(first).text.to_owned(),
+            });
+        }
+    }
+    Ok(())
 }
 
+/// Returns the channel on a side, or `None` where the text names none. Names that fit this side
+/// only come before names that fit both.
+fn only_channel(
+    side: ChannelSide,
+    named: &[NamedChannel<'_>],
+) -> Result<Option<String>, ResponseNameError> {
+    let mut fitting = Vec::new();
+    let mut certain = Vec::new();
+    for channel in named {
+        if channel.sides.has(side) {
+            fitting.push(channel.text);
+            if !channel.sides.are_both() {
+                certain.push(channel.text);
+            }
+        }
+    }
+    let names = if certain.is_empty() { fitting } else { certain };
+    let Some((first, others)) = names.split_first() else {
+        return Ok(None);
+    };
+    if others.iter().all(|other| same_channel(first, other)) {
+        return Ok(Some((*first).to_owned()));
+    }
+    Err(ResponseNameError::Several {
+        side: side.of("input", "output"),
+        found: names.join(", "),
+    })
+}
+
+/// Splits a text into runs of letters and digits.
 fn words_of(text: &str) -> Vec<Word<'_>> {
     let mut words = Vec::new();
     let mut start = None;
@@ -312,6 +336,7 @@ fn words_of(text: &str) -> Vec<Word<'_>> {
     words
 }
 
+/// Finds the known channels in a text, the longest run of words first.
 fn named_channels<'t>(
     text: &'t str,
     words: &[Word<'t>],
@@ -320,19 +345,7 @@ fn named_channels<'t>(
     let mut named = Vec::new();
     let mut first = 0;
     while first < words.len() {
-        let longest = (words.len() - first).min(LONGEST_NAME);
-        let found = (1..=longest).rev().find_map(|count| {
-            let last = &words[first + count - 1];
-            let name = &text[words[first].start..last.start + last.text.len()];
-            let sides = known.sides(name);
-            let words = first..first + count;
-            (sides.output || sides.input).then_some(NamedChannel {
-                words,
-                text: name,
-                sides,
-            })
-        });
-        match found {
+        match longest_channel(text, words, first, known) {
             Some(channel) => {
                 first = channel.words.end;
                 named.push(channel);
@@ -343,9 +356,32 @@ fn named_channels<'t>(
     named
 }
 
-/// Returns whether a word is a number, a unit with or without a number, or a description of the
-/// file's content: "run2", "60kt", "v2".
-fn says_no_channel(word: &str) -> bool {
+/// Returns the longest known channel name that begins at word `first`.
+fn longest_channel<'t>(
+    text: &'t str,
+    words: &[Word<'t>],
+    first: usize,
+    known: &KnownNames,
+) -> Option<NamedChannel<'t>> {
+    let longest = (words.len() - first).min(LONGEST_NAME);
+    for count in (1..=longest).rev() {
+        let last = &words[first + count - 1];
+        let name = &text[words[first].start..last.start + last.text.len()];
+        let sides = known.sides(name);
+        if sides.output || sides.input {
+            return Some(NamedChannel {
+                words: first..first + count,
+                text: name,
+                sides,
+            });
+        }
+    }
+    None
+}
+
+/// Returns whether a word is a number, a unit with or without a number, or a filler: "run2",
+/// "60kt", "v2".
+fn is_filler(word: &str) -> bool {
     let word = word.to_lowercase();
     let plain = word.trim_matches(|letter: char| letter.is_ascii_digit());
     let is_unit = PhysicalUnit::of(plain).is_some_and(|unit| {
@@ -355,7 +391,7 @@ fn says_no_channel(word: &str) -> bool {
         )
     });
     let is_number = plain.len() < word.len() && plain.len() <= 1;
-    plain.is_empty() || is_number || is_unit || NO_CHANNEL.contains(&plain)
+    plain.is_empty() || is_number || is_unit || FILLERS.contains(&plain)
 }
 
 #[cfg(test)]
@@ -383,7 +419,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_files_are_matched_against_the_channels_longest_first() {
+    fn file_names_give_output_and_input() {
         for (text, output, input) in [
             ("frf_q_delta_lon", "q", "delta_lon"),
             ("q_per_lon", "q", "lon"),
@@ -409,7 +445,7 @@ mod tests {
     }
 
     #[test]
-    fn what_names_another_or_several_channels_is_asked_about() {
+    fn ambiguous_names_are_errors() {
         for text in ["frf_q_dot_lon", "q_lon_cmd", "q_imu_lon"] {
             assert!(
                 matches!(read(text), Err(ResponseNameError::OtherChannel { .. })),
@@ -419,7 +455,7 @@ mod tests {
         }
         for (text, side) in [("p_q_lon", "output"), ("q_lon_lat", "input")] {
             assert!(
-                matches!(read(text), Err(ResponseNameError::Several { side: of, .. }) if of == side),
+                matches!(read(text), Err(ResponseNameError::Several { side: found, .. }) if found == side),
                 "{text}"
             );
         }
@@ -431,7 +467,7 @@ mod tests {
     }
 
     #[test]
-    fn names_and_aliases_of_the_rules_are_known_and_order_tells_what_can_be_both() {
+    fn aliases_are_known_and_order_decides_between_sides() {
         let inputs = [ChannelRule {
             aliases: vec!["boost lon".into()],
             ..ChannelRule::named("u1")

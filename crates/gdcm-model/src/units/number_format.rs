@@ -1,36 +1,4 @@
-//! Conversions between internal units (SI, rad/s, rad, ratios) and display units.
-
-/// Converts a magnitude ratio to decibels: `20 log10 r`. Zero gives minus infinity.
-pub fn ratio_to_db(ratio: f64) -> f64 {
-    20.0 * ratio.log10()
-}
-
-/// Converts decibels to a magnitude ratio: `10^(db/20)`.
-pub fn db_to_ratio(db: f64) -> f64 {
-    10.0_f64.powf(db / 20.0)
-}
-
-/// Converts the natural logarithm of a magnitude ratio, such as a small relative error, to
-/// decibels: `20 neper / ln 10`.
-pub fn neper_to_db(neper: f64) -> f64 {
-    const DB_PER_NEPER: f64 = 8.685_889_638_065_037;
-    DB_PER_NEPER * neper
-}
-
-/// Converts an angular frequency \[rad/s\] to a frequency \[Hz\]: `f = omega / 2 pi`.
-pub fn rad_s_to_hz(omega: f64) -> f64 {
-    omega / std::f64::consts::TAU
-}
-
-/// Converts milliseconds to seconds.
-pub fn ms_to_s(milliseconds: f64) -> f64 {
-    1e-3 * milliseconds
-}
-
-/// Converts seconds to milliseconds.
-pub fn s_to_ms(seconds: f64) -> f64 {
-    1e3 * seconds
-}
+//! Numbers as text, for messages and tables.
 
 /// Formats a number for a message: the shortest text that parses to the same number, with an
 /// exponent where the digits before or after the point would hide it (1e300, 2.5e-12).
@@ -61,10 +29,10 @@ pub fn without_sign_of_zero(text: &str) -> &str {
     if is_zero { digits } else { text }
 }
 
-/// Formats a nonzero value with the given decimals, or with more, so that at least two digits
-/// remain where it would round to zero.
+/// Formats a value with the given decimals; a nonzero value that would round to zero gets two
+/// significant digits instead.
 pub fn telling(value: f64, decimals: usize) -> String {
-    /// Beyond this number of decimals an exponent is shorter.
+    /// Most decimals; beyond, an exponent is shorter.
     const MOST: i32 = 6;
     if value == 0.0 || !value.is_finite() || value.abs() >= 10_f64.powi(-(decimals as i32)) {
         return format!("{value:.decimals$}");
@@ -77,21 +45,26 @@ pub fn telling(value: f64, decimals: usize) -> String {
     }
 }
 
-/// Formats two values with the given decimals, or with as many more as needed to distinguish them.
+/// Formats two values with the given decimals, or with as many more as distinguish them.
 pub fn told_apart(a: f64, b: f64, decimals: usize) -> (String, String) {
-    /// All decimals of a number of order one.
+    /// All decimals of a number near 1.
     const MOST: usize = 15;
-    let texts = |decimals: usize| (format!("{a:.decimals$}"), format!("{b:.decimals$}"));
-    let enough = (decimals..=MOST).find(|&decimals| texts(decimals).0 != texts(decimals).1);
-    texts(enough.unwrap_or(decimals))
+    for decimals in decimals..=MOST {
+        let first = format!("{a:.decimals$}");
+        let second = format!("{b:.decimals$}");
+        if first != second {
+            return (first, second);
+        }
+    }
+    (format!("{a:.decimals$}"), format!("{b:.decimals$}"))
 }
 
 /// Formats a change with its sign and the given decimals: "+12.3", "−0.4"; a change that rounds to
 /// zero has no sign.
 pub fn signed(change: f64, decimals: usize) -> String {
     let text = format!("{change:+.decimals$}");
-    let is_nothing = text.chars().all(|c| matches!(c, '+' | '-' | '0' | '.'));
-    if is_nothing {
+    let is_zero = text.chars().all(|c| matches!(c, '+' | '-' | '0' | '.'));
+    if is_zero {
         text[1..].to_owned()
     } else {
         text.replace('-', "−")
@@ -103,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_small_figure_is_given_to_the_digits_that_tell_it() {
+    fn small_values_keep_two_significant_digits() {
         let figures = [12.34, 0.1, 0.06, 0.0123, -0.000_04, 0.0, 3e-9];
         assert_eq!(
             figures.map(|value| telling(value, 1)),
@@ -132,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_has_its_sign_unless_it_rounds_to_nothing() {
+    fn a_change_has_its_sign_unless_it_rounds_to_zero() {
         assert_eq!(
             [12.34, -0.44, -0.04, 0.0].map(|change| signed(change, 1)),
             ["+12.3", "−0.4", "0.0", "0.0"]
@@ -140,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_in_a_message_is_short_and_never_another_number() {
+    fn a_number_in_a_message_parses_to_the_same_number() {
         for (value, text) in [
             (1e6, "1000000"),
             (1e-6, "0.000001"),
@@ -155,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn figures_for_people_have_six_digits_and_zeros_no_sign() {
+    fn displayed_values_have_six_digits_and_zeros_no_sign() {
         let figures = [0.530_278_677_112_3, 12.0, 1e300, -1e-12, 0.0, 1e3 * 0.0123];
         assert_eq!(
             figures.map(six_digits),
@@ -176,23 +149,5 @@ mod tests {
             "0.0", "0.00", "0", "-0.01", "-", "-.", "0.0", "-0.0 dB", "-x",
         ];
         assert_eq!(texts.map(without_sign_of_zero), expected);
-    }
-
-    #[test]
-    fn decibels_and_ratios_are_inverse() {
-        for ratio in [1e-6, 0.5, 1.0, 2.0, 1e6] {
-            // A few ulp of log10 and powf, amplified by |db| / 8.7 <= 14.
-            assert!((db_to_ratio(ratio_to_db(ratio)) / ratio - 1.0).abs() < 1e-13);
-        }
-    }
-
-    #[test]
-    fn a_factor_of_ten_is_twenty_decibels() {
-        assert_eq!(ratio_to_db(10.0), 20.0);
-    }
-
-    #[test]
-    fn one_hertz_is_two_pi_radians_per_second() {
-        assert_eq!(rad_s_to_hz(std::f64::consts::TAU), 1.0);
     }
 }

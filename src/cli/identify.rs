@@ -16,8 +16,8 @@ use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord};
 use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dataset};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_model::simulation::Signal;
-use gdcm_study::decisions::changed_models::AdoptedModels;
-use gdcm_study::jobs::job::IdentificationRequest;
+use gdcm_study::decisions::adopted_models::AdoptedModels;
+use gdcm_study::jobs::identification_jobs::IdentificationRequest;
 use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
 use gdcm_sysid::identification::preparation::RecordUse;
 use gdcm_sysid::identification::topics::is_held;
@@ -27,6 +27,7 @@ use gdcm_sysid::identification::{
 };
 use gdcm_sysid::records::record_table::median_step;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
+use gdcm_words::channel_time_skew::time_skew_text;
 
 use super::existing;
 use super::flight_records::{ReadRecords, hold_out, is_called, laid_out, record_table};
@@ -253,7 +254,8 @@ impl IdentificationTask {
         let late = ChannelTimeSkew::of_condition(&found.measured, options.band, condition)?;
         let signal = late.signal(dataset)?;
         let known = options.preparation.channel(&signal)?.delay_s;
-        let words = late.words(
+        let words = time_skew_text(
+            &late,
             &signal.name,
             &condition
                 .bundle(BundleKind::Physics)

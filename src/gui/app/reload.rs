@@ -1,6 +1,7 @@
 //! A dataset whose file changes on the disk while open: the thread that detects changes, and the
 //! reload.
 
+use gdcm_words::decisions::dataset_difference_text;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -69,7 +70,7 @@ impl GdcmApp {
             .record_reload(before, format!("reload {name}"));
         self.earlier.push(loaded);
         self.study_changed();
-        let sentences: Vec<String> = differences.iter().map(ToString::to_string).collect();
+        let sentences: Vec<String> = differences.iter().map(dataset_difference_text).collect();
         if sentences.is_empty() {
             self.done(format!("reloaded {name}: every decision still applies"));
         } else {

@@ -7,7 +7,7 @@ use egui::ViewportCommand;
 use gdcm_io::Existing;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::message_text::{sanitized, shortened_message};
-use gdcm_study::decisions::study::History;
+use gdcm_study::decisions::history::History;
 use gdcm_study::{Edit, Study};
 
 use super::GdcmApp;

@@ -15,8 +15,9 @@ use gdcm_io::{Existing, LoadedDataset, Opened};
 use gdcm_method::correction::Solution;
 use gdcm_method::correction::problem::ProblemError;
 use gdcm_model::dataset::{BundleKind, ConditionId};
-use gdcm_study::jobs::job::{CurvesJob, ProofJob};
-use gdcm_study::stages::condition_responses::ConditionCurves;
+use gdcm_study::jobs::analysis_jobs::ProofJob;
+use gdcm_study::jobs::curve_jobs::CurvesJob;
+use gdcm_study::stages::condition_curves::ConditionCurves;
 use gdcm_study::{Analysis, Study};
 
 use super::Setup;

@@ -10,7 +10,8 @@ use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::gains::{Across, Measure};
 use gdcm_plot::figure::{ColumnWidth, FigureFormat};
-use gdcm_study::{AcrossRole, Edit, ExplainTarget, Table};
+use gdcm_study::{AcrossRole, Edit};
+use gdcm_words::{ExplainTarget, Table};
 
 use crate::gui::panels::bars::Bar;
 use crate::gui::panels::cost_map::MappedCost;

@@ -13,6 +13,7 @@ use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Pair};
 use gdcm_plot::figure::decimals;
 use gdcm_plot::figure::gains::Classes;
 use gdcm_study::Edit;
+use gdcm_words::caution::failure_text;
 
 use super::cost_map::{CostColumn, MappedCost, columns, cost_of_column};
 use super::explanation::Sheet;
@@ -589,7 +590,7 @@ impl Marks {
             .and_then(|analysis| analysis.conditions.get(&condition))
         {
             None => {}
-            Some(Err(failure)) => marks.failure = Some(failure.to_string()),
+            Some(Err(failure)) => marks.failure = Some(failure_text(failure, state.dataset())),
             Some(Ok(result)) => {
                 marks.suggested = state.open_suggestions(result).len();
                 marks.unmatched_gains = result.gains.unmatched.len();

@@ -11,7 +11,9 @@ use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::{BundleKind, Model, ModelId};
 use gdcm_plot::figure::axis::compact;
-use gdcm_study::{Edit, ExplainTarget};
+use gdcm_study::Edit;
+use gdcm_words::ExplainTarget;
+use gdcm_words::caution::caution_text;
 
 use super::answer_panel::chevron;
 use super::explanation::question_menu_ui;
@@ -355,7 +357,9 @@ impl<'a> ModelRow<'a> {
                     .cautions
                     .iter()
                     .find(|caution| caution.is_set_aside(kind, &model.name))?;
-                Some(caution.words(|pair| state.dataset().pair_name(pair)))
+                Some(caution_text(caution, |pair| {
+                    state.dataset().pair_name(pair)
+                }))
             }),
             id,
         }

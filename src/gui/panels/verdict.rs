@@ -6,13 +6,15 @@ use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
 use gdcm_model::response::median;
 use gdcm_model::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
-use gdcm_study::decisions::changed_models::SignRole;
 use gdcm_study::decisions::setting;
 use gdcm_study::decisions::setting_row::Value;
+use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_study::results::couplings_assessment::CouplingCost;
-use gdcm_study::results::remark::RemarkKind;
 use gdcm_study::{ConditionAnalysis, CouplingCorrection, Edit, PhaseCorrection};
+use gdcm_words::caution::failure_text;
+use gdcm_words::couplings::coupling_cautions;
+use gdcm_words::remark::RemarkKind;
 
 use super::explanation::{Sheet, turn_entry};
 use crate::gui::commands::command::{Command, FormKind};
@@ -124,12 +126,12 @@ impl Verdict {
             Some(Err(failure @ ConditionFailure::NoReference)) => {
                 let identify = Step::new("Identify from records", Command::ShowView(View::Records));
                 Self {
-                    caution: Some(failure.to_string()),
+                    caution: Some(failure_text(failure, state.dataset())),
                     ..nothing("no reference yet".to_owned(), vec![identify])
                 }
             }
             Some(Err(failure)) => Self {
-                caution: Some(failure.to_string()),
+                caution: Some(failure_text(failure, state.dataset())),
                 ..nothing("no result".to_owned(), Vec::new())
             },
             Some(Ok(shown)) => Self::of_result(state, shown),
@@ -467,7 +469,7 @@ fn coupling_caution(state: &State) -> Option<(RemarkKind, String)> {
             "No couplings could be found".to_owned(),
         ));
     }
-    let cautions = used_couplings(state)?.cautions(state.dataset());
+    let cautions = coupling_cautions(used_couplings(state)?, state.dataset());
     match (unstable_in_band(state), cautions.len()) {
         (0, 0) => None,
         (1, _) => Some((

@@ -5,7 +5,7 @@ use egui::{
     Ui, WidgetInfo,
 };
 
-use gdcm_study::ExplainTarget;
+use gdcm_words::ExplainTarget;
 
 use super::bode::{BodeEvent, BodeScene};
 use super::bode_view::BodeView;

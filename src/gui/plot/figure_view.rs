@@ -16,7 +16,7 @@ use gdcm_plot::figure::drawing::{Area, Shape};
 use gdcm_plot::figure::figure::{Along, Dots, Plot};
 use gdcm_plot::figure::paint::dot_shapes;
 use gdcm_plot::figure::{Figure, Mark, MarkId, Panel, Range};
-use gdcm_study::ExplainTarget;
+use gdcm_words::ExplainTarget;
 
 use super::axes::{
     LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, axis_hints, caption_font, labelled_mark, message_ui,

@@ -11,7 +11,8 @@ use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::error::ErrorCache;
 use gdcm_plot::figure::gains::{Across, Measure};
 use gdcm_plot::figure::responses::{AirspeedCache, ResponseCache};
-use gdcm_study::{AcrossRole, ExplainTarget};
+use gdcm_study::AcrossRole;
+use gdcm_words::ExplainTarget;
 
 use super::curve_display::CurveDisplay;
 use crate::gui::panels::cost_map::MappedCost;

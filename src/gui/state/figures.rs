@@ -5,7 +5,7 @@ use egui::{Button, Role, Ui};
 
 use gdcm_plot::figure::bode::BodeOptions;
 use gdcm_plot::figure::{Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
-use gdcm_study::Table;
+use gdcm_words::Table;
 
 use super::window_state::State;
 use crate::gui::commands::command::Command;

@@ -4,14 +4,18 @@ use egui::{Align, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::CostChange;
-use gdcm_model::dataset::{Condition, ConditionId, Pair};
+use gdcm_model::dataset::{Condition, ConditionId, Dataset, Pair};
 use gdcm_plot::figure::assessment::change_table;
 use gdcm_plot::figure::axis::Axis;
 use gdcm_plot::figure::drawing::{Hue, Stroke};
 use gdcm_plot::figure::figure::{Bars, Curve, Note, Place, Plot, Rule, Spans};
 use gdcm_plot::figure::{Color, Figure, MarkId, Panel, Range, decimals};
-use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice, held_out_verdict};
-use gdcm_study::{AssessedCorrection, AssessmentTable, ExplainTarget, Table};
+use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
+use gdcm_study::{AssessedCorrection, AssessmentTable};
+use gdcm_words::assessment::{
+    held_out_verdict, missing_cost_text, not_assessed_text, summary_text,
+};
+use gdcm_words::{ExplainTarget, Table};
 
 use super::View;
 use crate::gui::commands::command::Command;
@@ -393,7 +397,7 @@ impl FigureWords for AssessmentPlots<'_> {
         let Some(change) = self.table.change(*id, pair) else {
             return Some(format!(
                 "{of} · left out: {}",
-                why_not(self.table, *id, pair)
+                why_not(self.state.dataset(), self.table, *id, pair)
             ));
         };
         let [total, magnitude, phase] =
@@ -536,7 +540,12 @@ pub fn assessed_pairs(state: &State) -> Vec<Pair> {
 }
 
 /// Returns the reason why a response of a condition has no change of J.
-fn why_not(table: &AssessmentTable, condition: ConditionId, pair: Pair) -> String {
+fn why_not(
+    dataset: &Dataset,
+    table: &AssessmentTable,
+    condition: ConditionId,
+    pair: Pair,
+) -> String {
     let left_out = table
         .left_out
         .iter()
@@ -551,10 +560,11 @@ fn why_not(table: &AssessmentTable, condition: ConditionId, pair: Pair) -> Strin
             .iter()
             .find(|(missing, _)| *missing == pair)
     });
-    let why = left_out
-        .map(|left_out| left_out.why.as_str())
-        .or(missing.map(|(_, why)| why.as_str()));
-    why.unwrap_or("not computed").to_owned()
+    match (left_out, missing) {
+        (Some(left_out), _) => not_assessed_text(&left_out.why, dataset),
+        (None, Some((_, why))) => missing_cost_text(*why),
+        (None, None) => "not computed".to_owned(),
+    }
 }
 
 /// Builds the table with the responses in rows, the conditions in columns, and the signed change of
@@ -581,7 +591,7 @@ pub fn assessment_sentences(state: &State, table: &AssessmentTable) -> Vec<Strin
         .dataset()
         .on_axis()
         .map(|pair, _| pairs.contains(&pair));
-    let mut sentences = vec![table.summary(&marked).words(state.dataset())];
+    let mut sentences = vec![summary_text(&table.summary(&marked), state.dataset())];
     let verdict = state
         .analysis()
         .and_then(|analysis| held_out_verdict(analysis, table.choice));
@@ -589,7 +599,8 @@ pub fn assessment_sentences(state: &State, table: &AssessmentTable) -> Vec<Strin
     for left_out in &table.left_out {
         sentences.push(format!(
             "condition {} is left out: {}",
-            left_out.condition, left_out.why
+            left_out.condition,
+            not_assessed_text(&left_out.why, state.dataset())
         ));
     }
     sentences

@@ -9,9 +9,10 @@ use gdcm_plot::figure::error::{muad_about, noticed};
 use gdcm_plot::figure::responses::{airspeed_curves, uncertainty_bands};
 use gdcm_plot::figure::{ConditionSource, decimals};
 use gdcm_study::AcrossRole;
-use gdcm_study::jobs::job::AcrossJob;
+use gdcm_study::jobs::curve_jobs::AcrossJob;
 use gdcm_study::results::caution::Undefined;
-use gdcm_study::stages::condition_responses::display_band;
+use gdcm_study::stages::condition_curves::display_band;
+use gdcm_words::caution::undefined_text;
 
 use super::View;
 use super::frequency::{
@@ -254,7 +255,7 @@ pub fn error_message(state: &State, pair: Pair) -> String {
             format!(
                 "{} is not compared: {}",
                 state.dataset().pair_name(pair),
-                Undefined::NotCoherent
+                undefined_text(Undefined::NotCoherent)
             )
         }
         Some(shown) if shown.comparison.undefined[pair].is_some() => {

@@ -6,8 +6,9 @@ use gdcm_method::uncertainty::{Bar, Scalar};
 use gdcm_model::units::s_to_ms;
 use gdcm_plot::figure::gains::{Across, GainQuantity, Measure, channels_figure, quieten};
 use gdcm_plot::figure::{Figure, MarkId, all_channels};
-use gdcm_study::stages::uncertainty::Uncertainty;
-use gdcm_study::{Edit, ExplainTarget};
+use gdcm_study::Edit;
+use gdcm_study::results::uncertainty::Uncertainty;
+use gdcm_words::ExplainTarget;
 
 use super::net_gain::bars_switch_ui;
 use crate::gui::commands::command::Command;

@@ -11,10 +11,13 @@ use gdcm_method::schedule::{FormComparison, FormFit, LeadDegreeFit, LeadFit, Sch
 use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::{s_to_ms, signed};
+use gdcm_study::Analysis;
 use gdcm_study::decisions::setting;
-use gdcm_study::results::table::{difference_table, second_variable_table};
-use gdcm_study::stages::uncertainty::Uncertainty;
-use gdcm_study::{Analysis, Table};
+use gdcm_study::results::uncertainty::Uncertainty;
+use gdcm_words::Table;
+use gdcm_words::uncertainty::{
+    difference_table, difference_verdict, differences_summary, second_variable_table,
+};
 
 use super::net_gain::net_gain_pairs;
 use crate::gui::commands::command::Command;
@@ -42,7 +45,7 @@ pub fn evidence_view_ui(
         return;
     };
     let mut sorting = state.display.evidence_tables;
-    ui.label(RichText::new(uncertainty.differences_in_words()).font(medium(BODY_SIZE)));
+    ui.label(RichText::new(differences_summary(&uncertainty)).font(medium(BODY_SIZE)));
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         answer_ui(ui, state, &uncertainty, palette);
         scatter_ui(ui, state, &uncertainty, palette);
@@ -60,7 +63,7 @@ fn answer_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Pa
         .filter(|of| of.is_significant(uncertainty.level))
         .collect();
     if let Some(of) = beyond.first() {
-        let verdict = of.verdict(uncertainty.level);
+        let verdict = difference_verdict(of, uncertainty.level);
         ui.label(palette.small(format!(
             "{verdict}; expected: from trim and identification uncertainty"
         )));

@@ -9,8 +9,11 @@ use gdcm_method::requirements::{TestInput, TestInputShape};
 use gdcm_model::units::number;
 use gdcm_plot::figure::{Figure, FigureKind, OverTime};
 use gdcm_study::Analysis;
-use gdcm_study::results::condition_answers::{RecordHistory, RecordHistoryJob, TestAnswersJob};
-use gdcm_study::results::time_histories::{HistoryRecord, Trend};
+use gdcm_study::jobs::requirement_jobs::{RecordHistoryJob, TestAnswersJob};
+use gdcm_study::results::condition_answers::RecordHistory;
+use gdcm_study::results::record_comparison::Trend;
+use gdcm_study::results::time_histories::HistoryRecord;
+use gdcm_words::time_histories::record_history_table;
 
 use super::records::RecordsCommand;
 use super::requirement_limits::tolerances_ui;
@@ -210,7 +213,7 @@ fn shares_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let table = history.table();
+    let table = record_history_table(history);
     let is_outside = |row: usize| table.rows[row][5] != "none";
     let color = |row: usize, column: usize| match column {
         4 | 5 => Some(if is_outside(row) {

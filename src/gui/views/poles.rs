@@ -14,9 +14,10 @@ use gdcm_model::units::number;
 use gdcm_plot::figure::figure::Along;
 use gdcm_plot::figure::poles::{damping_grid, poles_figure};
 use gdcm_plot::figure::{Figure, Mark, MarkId, Range, Role};
-use gdcm_study::jobs::job::ConditionModes;
-use gdcm_study::stages::fitted_couplings::FittedCouplings;
-use gdcm_study::{ConditionAnalysis, Edit, Table};
+use gdcm_study::jobs::curve_jobs::ConditionModes;
+use gdcm_study::results::fitted_couplings::FittedCouplings;
+use gdcm_study::{ConditionAnalysis, Edit};
+use gdcm_words::Table;
 
 use super::View;
 use super::frequency::{bode_options, condition_source};

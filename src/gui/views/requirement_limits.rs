@@ -5,7 +5,7 @@ use egui::{Button, Grid, Ui};
 
 use gdcm_method::requirements::{ModeToleranceTable, ToleranceTable};
 use gdcm_model::units::number;
-use gdcm_study::results::requirements::OverviewLimits;
+use gdcm_study::decisions::requirement_settings::OverviewLimits;
 
 use super::requirements::decided;
 use crate::gui::commands::command::{Command, RequirementTable};

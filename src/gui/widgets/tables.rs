@@ -11,7 +11,8 @@ use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, Model, Pair};
 use gdcm_model::units::s_to_ms;
 use gdcm_plot::figure::all_channels;
-use gdcm_study::{ConditionAnalysis, Table};
+use gdcm_study::ConditionAnalysis;
+use gdcm_words::Table;
 
 use super::controls::{entries_ui, named};
 use super::palette::{Palette, SMALL_SIZE};

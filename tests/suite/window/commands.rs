@@ -6,7 +6,7 @@ use gdcm::gui::views::assembling::AssemblingCommand;
 use gdcm::gui::widgets::tables::{TableKind, table_of};
 use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::Scalar;
-use gdcm_study::Table;
+use gdcm_words::Table;
 
 use super::views::give;
 use super::*;

@@ -1,7 +1,7 @@
 //! Decisions, by hand, and what they give.
 
 use gdcm::gui::commands::command::Command as Action;
-use gdcm_study::results::derivation::derivation;
+use gdcm_words::derivation::derivation;
 
 use super::views::give;
 use super::*;

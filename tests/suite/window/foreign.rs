@@ -2,6 +2,7 @@
 
 use gdcm::gui::views::assembling::AssemblingCommand;
 use gdcm::gui::views::records::{RecordsCommand, RecordsPage};
+use gdcm_words::convention_doubt::doubt_text;
 
 use super::assembling::{bench, type_into};
 use super::views::{give, show};
@@ -52,7 +53,7 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
         analysis
             .doubts
             .iter()
-            .map(|doubt| doubt.words(state(window).dataset()))
+            .map(|doubt| doubt_text(doubt, state(window).dataset()))
             .collect()
     };
     let words = doubted(&window);

@@ -3,8 +3,8 @@
 use gdcm::gui::commands::command::Command as Action;
 use gdcm::gui::commands::command_table::every_command;
 use gdcm::gui::views::View;
-use gdcm_study::ExplainTarget;
-use gdcm_study::results::derivation::derivation;
+use gdcm_words::ExplainTarget;
+use gdcm_words::derivation::derivation;
 
 use super::views::{give, show};
 use super::walk::stays_within;

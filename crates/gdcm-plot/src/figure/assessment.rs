@@ -7,8 +7,11 @@ use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::units::signed;
 use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
-use gdcm_study::stages::uncertainty::{PairScatter, Uncertainty};
-use gdcm_study::{Analysis, AssessedCorrection, AssessmentTable, Table};
+use gdcm_study::results::uncertainty::{PairScatter, Uncertainty};
+use gdcm_study::{Analysis, AssessedCorrection, AssessmentTable};
+use gdcm_words::Table;
+use gdcm_words::assessment::not_assessed_text;
+use gdcm_words::uncertainty::differences_summary;
 
 use super::axis::{Axis, Range};
 use super::condition_source::{schedule_words, settings_words};
@@ -183,7 +186,8 @@ fn caption(analysis: &Analysis, table: &AssessmentTable) -> String {
     for left_out in &table.left_out {
         caption.push_str(&format!(
             " Condition {} is left out: {}.",
-            left_out.condition, left_out.why
+            left_out.condition,
+            not_assessed_text(&left_out.why, &study.dataset)
         ));
     }
     caption
@@ -355,7 +359,7 @@ fn evidence_caption(analysis: &Analysis, uncertainty: &Uncertainty) -> String {
     format!(
         "{} Of ln(k_o k_i), about the mean of each airspeed and about the schedule ({}): shares of the variance, and standard \
          deviations. Trim, identification: expected from the bundles; unexplained: what neither makes. Above the bars: scatter, × expected. {}",
-        uncertainty.differences_in_words(),
+        differences_summary(uncertainty),
         schedule_words(&settings.schedule),
         settings_words(&analysis.study.dataset, settings)
     )

@@ -10,8 +10,9 @@ use gdcm_model::dataset::{
 };
 use gdcm_model::progress::Unobserved;
 use gdcm_model::units::db_to_ratio;
-use gdcm_study::jobs::job::{AcrossJob, Job};
-use gdcm_study::stages::condition_responses::{CURVE_POINTS, display_band};
+use gdcm_study::jobs::curve_jobs::AcrossJob;
+use gdcm_study::jobs::job::Job;
+use gdcm_study::stages::condition_curves::{CURVE_POINTS, display_band};
 use gdcm_study::{AcrossRole, Analysis};
 use gdcm_sysid::identification::TRUSTED_COHERENCE;
 

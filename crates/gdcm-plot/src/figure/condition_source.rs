@@ -10,7 +10,7 @@ use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Model, ModelId, Pair
 use gdcm_model::response::GainDelay;
 use gdcm_model::units::s_to_ms;
 use gdcm_study::decisions::settings::Settings;
-use gdcm_study::stages::condition_responses::ConditionCurves;
+use gdcm_study::stages::condition_curves::ConditionCurves;
 use gdcm_study::{ConditionAnalysis, CouplingCorrection, PhaseCorrection, Study};
 
 use super::axis::compact;

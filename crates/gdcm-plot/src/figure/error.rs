@@ -10,7 +10,7 @@ use gdcm_model::response::frequency_response::PolarCurve;
 use gdcm_model::response::{FrequencyResponse, GainDelay, wrap};
 use gdcm_model::units::{ratio_to_db, s_to_ms};
 use gdcm_study::ConditionAnalysis;
-use gdcm_study::stages::condition_responses::ConditionCurves;
+use gdcm_study::stages::condition_curves::ConditionCurves;
 
 use super::axis::{Axis, PhaseErrorUnit};
 use super::bode::{BodeOptions, FrequencyPanels, figure_of_pairs};

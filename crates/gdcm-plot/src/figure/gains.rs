@@ -8,8 +8,8 @@ use gdcm_method::uncertainty::{BandWidths, Bar, Scalar};
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_model::units::s_to_ms;
-use gdcm_study::decisions::study::ConditionChoice;
-use gdcm_study::stages::uncertainty::{AirspeedDifference, Uncertainty};
+use gdcm_study::decisions::choices::ConditionChoice;
+use gdcm_study::results::uncertainty::{AirspeedDifference, Uncertainty};
 use gdcm_study::{Analysis, ConditionAnalysis};
 
 use super::axis::{Axis, Range, decimals};

@@ -27,7 +27,7 @@ use std::sync::Arc;
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{ModelId, Pair};
 use gdcm_model::progress::Unobserved;
-use gdcm_study::jobs::job::ConditionModes;
+use gdcm_study::jobs::curve_jobs::ConditionModes;
 use gdcm_study::results::assessment_table::AssessmentChoice;
 use gdcm_study::results::condition_answers::{RecordHistory, TestAnswers};
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;

@@ -6,8 +6,9 @@ use nalgebra::Complex;
 use gdcm_method::couplings::{LoopMargin, PoleShift};
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm_model::response::zeros::finite_zeros;
-use gdcm_study::jobs::job::ConditionModes;
+use gdcm_study::jobs::curve_jobs::ConditionModes;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_words::couplings::couplings_heading;
 
 use super::axis::{Axis, FrequencyUnit, Range, step_above};
 use super::bode::BodeOptions;
@@ -270,7 +271,7 @@ pub fn couplings_figure(
         .or_else(nearest)?;
     let title = format!("Couplings: {}", assessment.couplings.name());
     let figure = Figure::new(title)
-        .caption(assessment.heading())
+        .caption(couplings_heading(assessment))
         .columns(2)
         .aspect(0.72);
     Some(

@@ -8,7 +8,8 @@ use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_model::units::{number, s_to_ms};
 use gdcm_study::results::condition_answers::{QuantityHistory, RecordHistory, TestAnswers};
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
-use gdcm_study::results::requirements::{RequirementRole, Requirements};
+use gdcm_study::results::requirement_role::RequirementRole;
+use gdcm_study::results::requirements::Requirements;
 
 use super::axis::{Axis, Range};
 use super::drawing::{Color, Dash, Hue, Stroke};

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::BundleKind;
-use gdcm_study::results::requirements::RequirementRole;
+use gdcm_study::results::requirement_role::RequirementRole;
 
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{DotShape, Mark};

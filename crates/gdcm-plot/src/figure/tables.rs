@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use gdcm_model::message_text::sanitized;
-use gdcm_study::Table;
+use gdcm_words::Table;
 
 use super::axis::Axis;
 use super::figure::{Along, Bracket, Curve, Envelope, Figure, Intervals, Mark, Panel, Spans};

@@ -1,160 +1,20 @@
-//! Differences between two sets of decisions about one dataset, and between two states of one
-//! dataset, with the decisions carried over from one to the other.
+//! Differences between two states of a dataset, and the decisions carried over from one to the
+//! other.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId, PairTable};
 
-use super::changed_models::{AdoptedModels, TurnedChannel};
+use super::adopted_models::AdoptedModels;
+use super::choices::ConditionChoice;
 use super::edit::Edit;
-use super::setting::SETTINGS;
+use super::requirement_settings::RequirementSettings;
 use super::settings::{ResponseNames, Settings};
-use super::study::{BundleChoice, ConditionChoice, Study, Variant};
-use crate::results::requirements::RequirementSettings;
-
-/// One changed decision.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct DecisionDifference {
-    /// Subject of the decision: "α of the gains", "LON → Q", "nominal (condition 10)".
-    pub what: String,
-    /// Decision before: "1", "held", "rejected".
-    pub before: String,
-    /// Decision after.
-    pub after: String,
-}
-
-impl DecisionDifference {
-    fn new(what: impl Into<String>, before: impl Into<String>, after: impl Into<String>) -> Self {
-        Self {
-            what: what.into(),
-            before: before.into(),
-            after: after.into(),
-        }
-    }
-}
-
-impl fmt::Display for DecisionDifference {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{}: {} → {}", self.what, self.before, self.after)
-    }
-}
-
-/// Lists every decision in which `after` differs from `before`, a study of the same dataset:
-/// settings, responses, then condition by condition. Variants are not compared.
-pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
-    let a = &before.settings;
-    let b = &after.settings;
-    let changed = SETTINGS
-        .iter()
-        .filter(|setting| setting.value(a) != setting.value(b));
-    let changed = changed
-        .map(|setting| DecisionDifference::new(setting.name, setting.words(a), setting.words(b)));
-    let mut differences: Vec<DecisionDifference> = changed.collect();
-    differences.extend(pair_differences(
-        before,
-        (&a.constrained, &b.constrained),
-        ["held", "free"],
-    ));
-    differences.extend(pair_differences(
-        before,
-        (&a.ignored, &b.ignored),
-        ["ignored", "fitted"],
-    ));
-    for channel in Channel::all_of(&before.dataset)
-        .filter(|channel| before.signs.get(channel) != after.signs.get(channel))
-    {
-        let sign = |of: &Study| {
-            of.signs
-                .get(&channel)
-                .map_or("as in the file".to_owned(), |of| {
-                    format!("{} turned", of.models())
-                })
-        };
-        let what = format!("sign of {}", channel.name_in(&before.dataset));
-        differences.push(DecisionDifference::new(what, sign(before), sign(after)));
-    }
-    for condition in before.dataset.conditions() {
-        let id = condition.id();
-        let a = before.choice(id);
-        let b = after.choice(id);
-        let mut compare = |before: bool, after: bool, [no, yes]: [&str; 2]| {
-            let word = |is_so: bool| if is_so { yes } else { no };
-            let difference =
-                DecisionDifference::new(format!("condition {id}"), word(before), word(after));
-            differences.extend((before != after).then_some(difference));
-        };
-        compare(
-            a.scheduled,
-            b.scheduled,
-            ["left out of the schedule", "in the schedule"],
-        );
-        compare(a.held_out, b.held_out, ["not held out", "held out"]);
-        for kind in BundleKind::BOTH {
-            differences.extend(bundle_differences(id, kind, a.bundle(kind), b.bundle(kind)));
-        }
-    }
-    differences
-}
-
-fn pair_differences(
-    study: &Study,
-    (before, after): (&PairTable<bool>, &PairTable<bool>),
-    [yes, no]: [&str; 2],
-) -> Vec<DecisionDifference> {
-    let word = |marked: bool| if marked { yes } else { no };
-    let changed = before
-        .iter()
-        .filter(|(pair, marked)| **marked != after[*pair]);
-    changed
-        .map(|(pair, &marked)| {
-            DecisionDifference::new(study.dataset.pair_name(pair), word(marked), word(!marked))
-        })
-        .collect()
-}
-
-fn bundle_differences(
-    condition: ConditionId,
-    kind: BundleKind,
-    before: &BundleChoice,
-    after: &BundleChoice,
-) -> Vec<DecisionDifference> {
-    let rejected = |choice: &BundleChoice, name: &String| match (
-        choice.rejected.contains(name),
-        choice.reasons.get(name),
-    ) {
-        (true, Some(reason)) => format!("rejected ({reason})"),
-        (true, None) => "rejected".to_owned(),
-        (false, _) => "kept".to_owned(),
-    };
-    let names: BTreeSet<&String> = before.rejected.iter().chain(&after.rejected).collect();
-    let of_models = names.into_iter().map(|name| {
-        DecisionDifference::new(
-            format!("{name} (condition {condition})"),
-            rejected(before, name),
-            rejected(after, name),
-        )
-    });
-    let represents = |choice: &BundleChoice| {
-        choice
-            .pinned
-            .clone()
-            .unwrap_or_else(|| "the medoid".to_owned())
-    };
-    let pinned = DecisionDifference::new(
-        format!("{kind} representative (condition {condition})"),
-        represents(before),
-        represents(after),
-    );
-    of_models
-        .chain([pinned])
-        .filter(|difference| difference.before != difference.after)
-        .collect()
-}
+use super::signs::TurnedChannel;
+use super::study::{Study, Variant};
 
 /// One difference between a dataset and the dataset that a study was made with, or a decision that
 /// does not apply to it.
@@ -188,36 +48,6 @@ pub enum Difference {
         decision: String,
         why: String,
     },
-}
-
-impl fmt::Display for Difference {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Difference::AnotherFile { expected, found } => write!(
-                formatter,
-                "the dataset has changed since the study was saved, and the study does not say what it held: expected \
-                 SHA-256 {expected}, found {found}"
-            ),
-            Difference::ConditionAdded(id) => write!(formatter, "condition {id} was added"),
-            Difference::ConditionRemoved(id) => write!(formatter, "condition {id} was removed"),
-            Difference::AirspeedChanged {
-                condition,
-                before_kt,
-                now_kt,
-            } => {
-                write!(
-                    formatter,
-                    "condition {condition} is flown at {now_kt} kt, was {before_kt} kt"
-                )
-            }
-            Difference::ModelAdded(id) => write!(formatter, "{id} was added"),
-            Difference::ModelRemoved(id) => write!(formatter, "{id} was removed"),
-            Difference::ModelChanged(id) => write!(formatter, "{id} has changed"),
-            Difference::NotApplied { decision, why } => {
-                write!(formatter, "a decision no longer applies: {decision}: {why}")
-            }
-        }
-    }
 }
 
 /// Every decision of a study by the names of channels, conditions and models, independent of the

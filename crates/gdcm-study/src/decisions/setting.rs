@@ -10,6 +10,7 @@ use gdcm_model::dataset::dataset::{GREATEST_OMEGA, LEAST_OMEGA};
 use gdcm_model::dataset::{Band, limits};
 use gdcm_model::response::LeadOrder;
 
+use super::edit_refusal::EditRefusal;
 use super::setting_row::{Choice, Control, Digits, Kind, Place, Setting, Unit};
 use super::settings::{
     CouplingCorrection, DEFAULT_COHERENCE, DelayFrom, PhaseCorrection, Settings,
@@ -668,3 +669,18 @@ pub static SETTINGS: [&Setting; 29] = [
     &WINDOW,
     &HALF_OVERLAP,
 ];
+
+impl Settings {
+    /// Refuses values outside their ranges: returns the first, with its setting.
+    ///
+    /// # Errors
+    /// The setting, and why its value is refused.
+    pub fn check(&self) -> Result<(), (&'static Setting, EditRefusal)> {
+        for setting in SETTINGS {
+            setting
+                .check(setting.value(self))
+                .map_err(|refusal| (setting, refusal))?;
+        }
+        Ok(())
+    }
+}

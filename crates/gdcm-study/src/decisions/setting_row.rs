@@ -11,12 +11,11 @@ use gdcm_model::dataset::Band;
 use gdcm_model::response::LeadOrder;
 use gdcm_model::units::{number, six_digits};
 
-use super::edit::{Edit, EditRefusal};
-use super::setting::SETTINGS;
+use super::edit_refusal::EditRefusal;
 use super::settings::{CouplingCorrection, DelayFrom, PhaseCorrection, Settings};
 use super::study::Study;
 
-/// One setting: a row of [`SETTINGS`].
+/// One setting: a row of [`SETTINGS`](super::setting::SETTINGS).
 #[derive(Debug)]
 pub struct Setting {
     /// Its name in running text: "α of the gains".
@@ -253,11 +252,6 @@ impl PartialEq for Setting {
 }
 
 impl Setting {
-    /// Returns the decision that sets this value.
-    pub fn to(&'static self, value: impl Into<Value>) -> Edit {
-        Edit::Set(self, value.into())
-    }
-
     /// Returns the present value.
     pub fn value(&self, settings: &Settings) -> Value {
         match self.kind {
@@ -475,20 +469,5 @@ impl Setting {
                 said.join(" ")
             )),
         }
-    }
-}
-
-impl Settings {
-    /// Refuses values outside their ranges: returns the first, with its setting.
-    ///
-    /// # Errors
-    /// The setting, and why its value is refused.
-    pub fn check(&self) -> Result<(), (&'static Setting, EditRefusal)> {
-        let check = |setting: &&'static Setting| {
-            setting
-                .check(setting.value(self))
-                .map_err(|refusal| (*setting, refusal))
-        };
-        SETTINGS.iter().try_for_each(check)
     }
 }

@@ -8,26 +8,47 @@ use gdcm_method::correction::{ChannelCorrection, GainBounds, Problem, Solution};
 use gdcm_method::couplings::problem::CouplingError;
 use gdcm_method::fidelity::Discontinuity;
 use gdcm_method::fidelity::distance::Representative;
-use gdcm_method::schedule::assessment::{compare_forms, compare_lead_degrees};
-use gdcm_method::schedule::{CostChange, FormComparison, LeadDegreeFit, Schedule, ScheduleError};
+use gdcm_method::schedule::{CostChange, Schedule, ScheduleError};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Model, Pair, PairTable};
 
 use super::caution::Caution;
+use super::comparison::{BundleMetrics, Comparison};
 use super::convention_doubt::ConventionDoubt;
 use super::couplings_assessment::CouplingsAssessment;
-use super::couplings_words::no_couplings;
-use super::remark::Remark;
+use super::fitted_couplings::{CoupledCondition, FittedCouplings};
+use super::lead_compensation::{LeadCompensated, LeadOffer};
+use super::uncertainty::Uncertainty;
+use crate::decisions::requirement_settings::RequirementSettings;
 use crate::decisions::study::Study;
-use crate::stages::comparison::{BundleMetrics, Comparison};
-use crate::stages::engine::{schedule_settings, scheduled_points};
-use crate::stages::fitted_couplings::{CoupledCondition, FittedCouplings};
-use crate::stages::lead_compensation::{LeadCompensated, LeadOffer};
-use crate::stages::uncertainty::Uncertainty;
+
+/// Result of each condition, or why it has none.
+pub(crate) type Outcomes = BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>;
 
 /// J of every response of a condition's nominal model before and after the scheduled correction
-/// (M12), or the reason in words why the condition is left out.
-pub type Assessed = Result<PairTable<Option<CostChange>>, String>;
+/// (M12), or why the condition is left out.
+pub type Assessed = Result<PairTable<Option<CostChange>>, NotAssessed>;
+
+/// Why a condition is left out of an assessment.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotAssessed {
+    NotAnalysed,
+    NominalRejected,
+    NoResult(ConditionFailure),
+    NoSchedule(ScheduleError),
+}
+
+impl NotAssessed {
+    /// Returns the stable code.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NotAnalysed => "not-analysed",
+            Self::NominalRejected => "nominal-rejected",
+            Self::NoResult(failure) => failure.code(),
+            Self::NoSchedule(_) => "no-schedule",
+        }
+    }
+}
 
 /// Complete result of a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,12 +56,13 @@ pub struct Analysis {
     pub study: Study,
     /// Frequencies of comparison \[rad/s\].
     pub omega: Arc<[f64]>,
+    /// Result of each condition, or why it has none.
     pub conditions: BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>,
     /// Couplings put on every physics model, or why there are none; `None` where none are requested
     /// (M16).
     pub couplings: Option<Result<Arc<FittedCouplings>, CouplingError>>,
     /// Benefit and cost of the couplings, once assessed
-    /// ([`super::couplings_assessment::CouplingsJob`]).
+    /// ([`Engine::assess_couplings`](crate::stages::engine::Engine::assess_couplings)).
     pub coupling_assessment: Option<Arc<CouplingsAssessment>>,
     /// Channels with an apparent sign or unit difference between the two sides; reported first.
     pub doubts: Vec<ConventionDoubt>,
@@ -60,8 +82,17 @@ impl Analysis {
 
     /// Returns the result of one condition, or the reason in words why there is none.
     pub(crate) fn result(&self, id: ConditionId) -> Result<&ConditionAnalysis, String> {
-        let outcome = self.conditions.get(&id).ok_or("it was not analysed")?;
-        outcome.as_ref().map_err(ToString::to_string)
+        match self.conditions.get(&id) {
+            Some(outcome) => outcome.as_ref().map_err(ToString::to_string),
+            None => Err("it was not analysed".to_owned()),
+        }
+    }
+
+    /// Returns the same analysis with other requirement settings.
+    pub fn asked_with(&self, settings: &Arc<RequirementSettings>) -> Self {
+        let mut analysis = self.clone();
+        analysis.study.requirements = Arc::clone(settings);
+        analysis
     }
 
     /// Returns the couplings put on every physics model, where there are any.
@@ -75,65 +106,14 @@ impl Analysis {
     /// The reason, naming the channels, why the requested couplings are unavailable: an export
     /// without them would not match the request.
     pub fn asked_couplings(&self) -> Result<Option<&Arc<FittedCouplings>>, String> {
-        let words = |error: &CouplingError| error.words(&self.study.dataset.names_of_channels().0);
-        self.couplings
-            .as_ref()
-            .map(|found| found.as_ref().map_err(words))
-            .transpose()
-    }
-
-    /// Returns the remarks on the couplings: why there are none, or their meaning, benefit and
-    /// cost, as far as requested.
-    pub fn coupling_remarks(&self) -> Vec<Remark> {
-        match (self.asked_couplings(), &self.coupling_assessment) {
-            (Err(why), _) => vec![no_couplings(&why)],
-            (Ok(Some(_)), Some(assessment)) => assessment.remarks(&self.study.dataset),
-            _ => Vec::new(),
+        match &self.couplings {
+            None => Ok(None),
+            Some(Ok(fitted)) => Ok(Some(fitted)),
+            Some(Err(error)) => {
+                let (inputs, _) = self.study.dataset.names_of_channels();
+                Err(error.words(&inputs))
+            }
         }
-    }
-
-    /// Returns the conditions in the schedule, in the dataset's order: the chosen conditions with a
-    /// result.
-    pub fn scheduled(&self) -> Vec<ConditionId> {
-        self.study
-            .dataset
-            .ids()
-            .filter(|id| self.study.choice(*id).is_in_schedule() && self.condition(*id).is_some())
-            .collect()
-    }
-
-    /// Fits the schedule of the chosen conditions without one of them.
-    ///
-    /// # Errors
-    /// [`ScheduleError`] where these conditions have no schedule.
-    pub fn schedule_without(&self, left_out: ConditionId) -> Result<Schedule, ScheduleError> {
-        let mut others = self.study.clone();
-        if let Some(choice) = others.choices.get_mut(&left_out) {
-            choice.scheduled = false;
-        }
-        let settings = schedule_settings(&others, &self.conditions);
-        Schedule::of(&scheduled_points(&others, &self.conditions), settings)
-    }
-
-    /// Compares the forms of the schedule, with lists in the order of [`Analysis::scheduled`]
-    /// (M11). Solves some hundred small least squares problems.
-    ///
-    /// # Errors
-    /// [`ScheduleError`] where there is no schedule.
-    pub fn compare_forms(&self) -> Result<FormComparison, ScheduleError> {
-        compare_forms(
-            &scheduled_points(&self.study, &self.conditions),
-            self.study.settings.schedule,
-        )
-    }
-
-    /// Compares the degrees of the scheduled signed delays; `None` where leads are not requested
-    /// (M15.5).
-    pub fn compare_lead_degrees(&self) -> Vec<LeadDegreeFit> {
-        compare_lead_degrees(
-            &scheduled_points(&self.study, &self.conditions),
-            self.study.settings.schedule,
-        )
     }
 }
 
@@ -173,9 +153,10 @@ pub struct ConditionAnalysis {
 impl ConditionAnalysis {
     /// Returns the comparison of the models before the couplings, where there are any.
     pub fn before_couplings(&self) -> &Comparison {
-        self.coupled
-            .as_ref()
-            .map_or(&self.comparison, |coupled| &coupled.before)
+        match &self.coupled {
+            Some(coupled) => &coupled.before,
+            None => &self.comparison,
+        }
     }
 
     /// Returns the constrained responses that are defined.
@@ -203,8 +184,7 @@ impl ConditionAnalysis {
 
     /// Returns the scalar behind [`Self::wanted_delay_s`], to look up its error bar (M13).
     pub fn wanted_delay(&self, pair: Pair) -> Scalar {
-        let is_median = self.delay_problem.delta[pair] == self.comparison.delta.delay_s[pair];
-        if is_median {
+        if self.delay_problem.delta[pair] == self.comparison.delta.delay_s[pair] {
             Scalar::Delay(pair)
         } else {
             Scalar::BandDelay(pair)
@@ -284,13 +264,13 @@ pub enum ConditionFailure {
     /// The two representatives have no response in common that is defined over the whole band.
     #[error(
         "no response of \"{physics}\" can be compared with \"{identified}\" over the whole band: each is zero, not finite or out of \
-         the range of gains somewhere; choose another representative, or another band{because}"
+         the range of gains somewhere; choose another representative, or another band"
     )]
     NothingToCompare {
         physics: String,
         identified: String,
-        /// Known facts about the models' responses, each after "; ".
-        because: String,
+        /// Known facts about the models' responses.
+        cautions: Vec<Caution>,
     },
     /// Every kept model is set aside (M5b).
     #[error(

@@ -23,7 +23,6 @@ use gdcm_model::dataset::{Band, BundleKind, Condition, Dataset, Dynamics, Pair};
 use gdcm_model::response::curve_values::unwrap;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse, median};
 use gdcm_model::simulation::Signal;
-use gdcm_model::units::{s_to_ms, telling};
 use gdcm_sysid::identification::{ResponseEstimate, TRUSTED_COHERENCE};
 
 /// Least share of the points in the band at which a response must be coherent.
@@ -98,17 +97,6 @@ impl ChannelTimeSkew {
             index: self.index,
             name,
         })
-    }
-
-    /// Returns the finding in words; `name` is the channel's name, `physics` the physics model's.
-    pub fn words(&self, name: &str, physics: &str) -> String {
-        let ms = telling(s_to_ms(self.delay_s.abs()), 0);
-        let how = if self.delay_s < 0.0 { "early" } else { "late" };
-        format!(
-            "{name} seems to be logged {ms} ms {how} in all records: against the physics model \"{physics}\" its responses differ as by a \
-             delay, and the others do not. That delay can be taken out. Leave it where the sensor or servo is as slow as that: the \
-             correction has a delay for it"
-        )
     }
 }
 

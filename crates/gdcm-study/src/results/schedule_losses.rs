@@ -3,11 +3,10 @@
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::assessment::corrected_cost_on;
 use gdcm_method::schedule::{ScheduleCaution, ScheduledCost};
-use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Pair};
-use gdcm_model::units::s_to_ms;
+use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
 
 use super::analysis::{Analysis, ConditionAnalysis};
-use crate::stages::comparison::ModelMismatch;
+use super::comparison::ModelMismatch;
 
 /// Delay \[s\] below which a channel counts as having none: it is displayed as 0.0 ms.
 const NO_DELAY_S: f64 = 5e-5;
@@ -26,34 +25,6 @@ pub struct OwnDelay {
     pub condition: ConditionId,
     /// The delay \[s\].
     pub delay_s: f64,
-}
-
-impl DelayedChannel {
-    /// Describes the delay: "delay of output NX: 5.3 ms in condition 4".
-    pub fn words(&self, dataset: &Dataset) -> String {
-        let side = match self.channel {
-            Channel::Input(_) => "input",
-            Channel::Output(_) => "output",
-        };
-        let name = self.channel.name_in(dataset);
-        let Some(longest) = self.delays.first() else {
-            return format!("delay of {side} {name}: none");
-        };
-        let delay_ms = s_to_ms(longest.delay_s);
-        let condition = longest.condition;
-        match self.delays.len() {
-            1 => format!("delay of {side} {name}: {delay_ms:.1} ms in condition {condition}"),
-            2 => format!(
-                "delay of {side} {name}: up to {delay_ms:.1} ms, in condition {condition} and in 1 other"
-            ),
-            count => {
-                let others = count - 1;
-                format!(
-                    "delay of {side} {name}: up to {delay_ms:.1} ms, in condition {condition} and in {others} others"
-                )
-            }
-        }
-    }
 }
 
 impl Analysis {

@@ -3,20 +3,17 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
-use gdcm_method::correction::leads::ABOVE_BAND;
 use gdcm_model::dataset::model::ContentHash;
 use gdcm_model::dataset::{Band, BundleKind, Condition, Model};
 use gdcm_model::progress::Cancelled;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
-use super::execution::{Execution, Memo};
-use super::fitted_couplings::FittedCouplings;
-use crate::decisions::settings::{PhaseCorrection, Settings};
-use crate::results::analysis::ConditionAnalysis;
+use crate::execution::{Execution, Memo};
+use crate::results::fitted_couplings::FittedCouplings;
 
 /// Dependencies of a response besides the numbers of its model: the band and the number of
 /// frequencies in it.
-pub(crate) type GridKey = (Band, usize);
+pub type GridKey = (Band, usize);
 
 /// Purpose of a response. The last response for each purpose is cached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,6 +54,15 @@ impl CoupledResponses {
             made,
         }
     }
+
+    /// Returns `H~` of a model with the response `physics`.
+    fn response(&self, model: usize, physics: &FrequencyResponse) -> Arc<FrequencyResponse> {
+        let coupled = self.made[model].get_or_init(|| {
+            let matrices = self.couplings.matrices();
+            Arc::new(matrices.response(physics, self.airspeed_kt))
+        });
+        Arc::clone(coupled)
+    }
 }
 
 impl ConditionResponses {
@@ -65,17 +71,7 @@ impl ConditionResponses {
     pub(crate) fn compared(&self, kind: BundleKind, model: usize) -> Arc<FrequencyResponse> {
         let response = &self.bundle(kind)[model];
         match &self.coupled {
-            Some(coupled) if kind == BundleKind::Physics => {
-                let couple = || {
-                    Arc::new(
-                        coupled
-                            .couplings
-                            .matrices()
-                            .response(response, coupled.airspeed_kt),
-                    )
-                };
-                Arc::clone(coupled.made[model].get_or_init(couple))
-            }
+            Some(coupled) if kind == BundleKind::Physics => coupled.response(model, response),
             _ => Arc::clone(response),
         }
     }
@@ -88,15 +84,16 @@ impl ConditionResponses {
         }
     }
 
-    /// Computes the responses of every model of `condition` on `points` frequencies of `band`.
+    /// Computes the responses of every model of `condition` in the band, on its number of
+    /// frequencies.
     pub fn of(
         condition: &Arc<Condition>,
-        (band, points): (Band, usize),
+        key: GridKey,
         execution: &Execution<'_>,
     ) -> Result<Self, Cancelled> {
-        let models = ConditionModels::of(condition, &KnownModels::default());
-        let grid = FrequencyGrid::logarithmic(band, points);
-        models.responses(Purpose::Comparison, (band, points), &grid, execution)
+        let models = ConditionModels::new(condition, &KnownModels::default());
+        let grid = FrequencyGrid::logarithmic(key.0, key.1);
+        models.responses(Purpose::Comparison, key, &grid, execution)
     }
 
     /// Returns the responses of one bundle.
@@ -138,7 +135,7 @@ impl ModelResponses {
 
 /// The models used by some condition of some engine, keyed by their numbers: a model that stays, or
 /// returns under another name or in another place, keeps its responses. Engines of one study that
-/// share them ([`super::engine::Engine::sharing`]) compute and store each only once.
+/// share them ([`Engine::sharing`](super::engine::Engine::sharing)) compute and store each only once.
 #[derive(Clone, Debug, Default)]
 pub struct KnownModels {
     by_content: Arc<Mutex<HashMap<ContentHash, Weak<ModelResponses>>>>,
@@ -172,16 +169,28 @@ impl KnownModels {
 #[derive(Clone, Debug)]
 pub(crate) struct ConditionModels {
     condition: Arc<Condition>,
-    /// Hash and responses of each model of both bundles, the physics models first.
-    models: Vec<(ContentHash, Arc<ModelResponses>)>,
+    /// The models of both bundles, the physics models first.
+    models: Vec<HashedModel>,
+}
+
+/// The hash of a model's numbers, and its responses.
+#[derive(Clone, Debug)]
+struct HashedModel {
+    content: ContentHash,
+    responses: Arc<ModelResponses>,
 }
 
 impl ConditionModels {
     /// Collects the models of `condition`; known models bring their responses.
-    pub(crate) fn of(condition: &Arc<Condition>, known: &KnownModels) -> Self {
-        let contents = models_of(condition).map(|model| ContentHash::of(&model.dynamics));
-        let models = contents
-            .map(|content| (content, known.responses_of(content)))
+    pub(crate) fn new(condition: &Arc<Condition>, known: &KnownModels) -> Self {
+        let models = models_of(condition)
+            .map(|model| {
+                let content = ContentHash::of(&model.dynamics);
+                HashedModel {
+                    content,
+                    responses: known.responses_of(content),
+                }
+            })
             .collect();
         Self {
             condition: Arc::clone(condition),
@@ -201,24 +210,22 @@ impl ConditionModels {
         } else {
             self.condition.bundle(BundleKind::Physics).len()
         };
-        self.models[before + model].0
+        self.models[before + model].content
     }
 
     /// Returns whether the bundles contain the same models, by name, origin and numbers, in the
     /// same order.
     pub(crate) fn are_the_same_as(&self, other: &Self) -> bool {
-        let contents = |models: &Self| {
-            models
-                .models
-                .iter()
-                .map(|(content, _)| *content)
-                .collect::<Vec<_>>()
-        };
-        let named = |condition| models_of(condition).map(|model| (&model.name, &model.origin));
-        let physics = |models: &Self| models.condition.bundle(BundleKind::Physics).len();
-        physics(self) == physics(other)
-            && contents(self) == contents(other)
-            && named(&self.condition).eq(named(&other.condition))
+        let [own, others] = [self, other].map(|models| {
+            let contents: Vec<ContentHash> =
+                models.models.iter().map(|model| model.content).collect();
+            let physics = models.condition.bundle(BundleKind::Physics).len();
+            (physics, contents)
+        });
+        own == others
+            && models_of(&self.condition)
+                .zip(models_of(&other.condition))
+                .all(|(a, b)| a.name == b.name && a.origin == b.origin)
     }
 
     /// Computes the responses of every model, model by model; each is a step.
@@ -229,28 +236,27 @@ impl ConditionModels {
         grid: &FrequencyGrid,
         execution: &Execution<'_>,
     ) -> Result<ConditionResponses, Cancelled> {
-        let physics = self.condition.bundle(BundleKind::Physics);
-        let bundle = |models: &[Model], responses: &[(ContentHash, Arc<ModelResponses>)]| {
-            let kept: Option<Vec<_>> = responses
+        let (physics, identified) = self
+            .models
+            .split_at(self.condition.bundle(BundleKind::Physics).len());
+        let bundle = |kind, hashed: &[HashedModel]| {
+            let models = self.condition.bundle(kind);
+            let kept: Option<Vec<Arc<FrequencyResponse>>> = hashed
                 .iter()
-                .map(|(_, responses)| responses.last(purpose).kept(&key).cloned())
+                .map(|model| model.responses.last(purpose).kept(&key).cloned())
                 .collect();
-            match kept {
-                Some(kept) => {
-                    execution.step(kept.len());
-                    Ok(kept)
-                }
-                None => execution.each(models.len(), 1, |index| {
-                    responses[index]
-                        .1
-                        .response(&models[index], purpose, key, grid)
-                }),
+            if let Some(kept) = kept {
+                execution.step(kept.len());
+                return Ok(kept);
             }
+            execution.each(models.len(), 1, |index| {
+                let responses = &hashed[index].responses;
+                responses.response(&models[index], purpose, key, grid)
+            })
         };
-        let (of_physics, of_identified) = self.models.split_at(physics.len());
-        let identified = bundle(self.condition.bundle(BundleKind::Identified), of_identified)?;
+        let identified = bundle(BundleKind::Identified, identified)?;
         Ok(ConditionResponses {
-            physics: bundle(physics, of_physics)?,
+            physics: bundle(BundleKind::Physics, physics)?,
             identified,
             coupled: None,
         })
@@ -258,8 +264,8 @@ impl ConditionModels {
 
     /// Drops the responses computed for drawing.
     pub(crate) fn forget_drawn(&self) {
-        for (_, responses) in &self.models {
-            *responses.last(Purpose::Drawing) = Memo::default();
+        for model in &self.models {
+            *model.responses.last(Purpose::Drawing) = Memo::default();
         }
     }
 }
@@ -268,99 +274,4 @@ fn models_of(condition: &Condition) -> impl Iterator<Item = &Model> {
     BundleKind::BOTH
         .into_iter()
         .flat_map(|kind| condition.bundle(kind))
-}
-
-/// Responses of every model of a condition on a grid for drawing.
-#[derive(Debug)]
-pub struct ConditionCurves {
-    /// The condition; its models define the order of the responses.
-    pub condition: Arc<Condition>,
-    pub grid: FrequencyGrid,
-    pub physics: Vec<Arc<FrequencyResponse>>,
-    pub identified: Vec<Arc<FrequencyResponse>>,
-    /// Coupled responses drawn last, with their inputs.
-    coupled: Mutex<Vec<CoupledCurve>>,
-}
-
-/// The response of one physics model with couplings.
-#[derive(Debug)]
-struct CoupledCurve {
-    fitted: Arc<FittedCouplings>,
-    model: usize,
-    response: Arc<FrequencyResponse>,
-}
-
-impl ConditionCurves {
-    pub(crate) fn new(
-        condition: Arc<Condition>,
-        grid: FrequencyGrid,
-        responses: ConditionResponses,
-    ) -> Self {
-        let ConditionResponses {
-            physics,
-            identified,
-            ..
-        } = responses;
-        Self {
-            condition,
-            grid,
-            physics,
-            identified,
-            coupled: Mutex::default(),
-        }
-    }
-
-    /// Returns `H~` of a physics model under the couplings of a result; `H` without couplings.
-    pub fn with_couplings(
-        &self,
-        result: &ConditionAnalysis,
-        model: usize,
-    ) -> Arc<FrequencyResponse> {
-        /// A result and a variant, each with its representative now and before.
-        const KEPT: usize = 4;
-        let Some(coupled) = &result.coupled else {
-            return Arc::clone(&self.physics[model]);
-        };
-        let mut kept = self.coupled.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_of =
-            |of: &&CoupledCurve| Arc::ptr_eq(&of.fitted, &coupled.fitted) && of.model == model;
-        if let Some(of) = kept.iter().find(is_of) {
-            return Arc::clone(&of.response);
-        }
-        let response = Arc::new(result.coupled_response(&self.physics[model]).into_owned());
-        kept.truncate(KEPT - 1);
-        let fitted = Arc::clone(&coupled.fitted);
-        kept.insert(
-            0,
-            CoupledCurve {
-                fitted,
-                model,
-                response: Arc::clone(&response),
-            },
-        );
-        response
-    }
-
-    /// Returns the responses of one bundle.
-    pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
-        kind.pick(&self.physics, &self.identified)
-    }
-}
-
-/// Number of frequencies of drawn curves.
-pub const CURVE_POINTS: usize = 500;
-
-/// Returns the band drawn around a band of comparison: wider by a factor of 1.7 on either side.
-pub fn display_band(band: Band) -> Band {
-    const MARGIN: f64 = 1.7;
-    Band::beyond(band.min() / MARGIN, band.max() * MARGIN).unwrap_or(band)
-}
-
-/// Returns the band of a condition's curves: [`display_band`], and up to ten times the band where
-/// leads are requested, to show their effect above it (M15.6).
-pub fn curves_band(settings: &Settings) -> Band {
-    let usual = display_band(settings.band);
-    let has_leads = settings.phase == PhaseCorrection::Lead;
-    let top = settings.band.max() * if has_leads { ABOVE_BAND } else { 1.0 };
-    Band::beyond(usual.min(), usual.max().max(top)).unwrap_or(usual)
 }

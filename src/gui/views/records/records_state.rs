@@ -12,8 +12,8 @@ use gdcm_model::dataset::condition::{ChannelRemedy, RecordKind};
 use gdcm_model::dataset::{Band, ConditionId, Dataset};
 use gdcm_model::simulation::Signal;
 use gdcm_model::units::{number, telling};
-use gdcm_study::decisions::changed_models::{AdoptedModels, OfferedModels};
-use gdcm_study::jobs::job::{IdentificationRequest, IdentifyJob};
+use gdcm_study::decisions::adopted_models::{AdoptedModels, OfferedModels};
+use gdcm_study::jobs::identification_jobs::{IdentificationRequest, IdentifyJob};
 use gdcm_sysid::identification::{
     CautionNote, ChannelPreparation, Hold, Identification, IdentificationError, Preparation,
     SearchSpace,
@@ -668,7 +668,7 @@ impl RecordsState {
 
     /// Returns the running job, once it has reported a step.
     pub fn under_way(&self) -> Option<&IdentifyJob> {
-        self.running.iter().find(|job| !job.told().step.is_empty())
+        self.running.iter().find(|job| !job.news().step.is_empty())
     }
 
     /// Returns the identification jobs, that of the displayed condition first.

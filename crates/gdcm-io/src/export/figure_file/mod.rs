@@ -9,7 +9,7 @@ use gdcm_model::units::without_sign_of_zero;
 use gdcm_plot::figure::tables::LONG_COLUMNS;
 use gdcm_plot::figure::{ColumnWidth, Figure, FigureFormat};
 use gdcm_plot::paper::{pdf, svg, write_png};
-use gdcm_study::Table;
+use gdcm_words::Table;
 
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;

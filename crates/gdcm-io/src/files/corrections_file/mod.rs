@@ -14,6 +14,7 @@ use gdcm_model::dataset::{Condition, ConditionId, Pair};
 use gdcm_model::response::LeadFilter;
 use gdcm_plot::figure::all_channels;
 use gdcm_study::{Analysis, ConditionAnalysis};
+use gdcm_words::assessment::not_assessed_text;
 
 use crate::export::contents::ExportContents;
 use crate::export::figure_file::write_records;
@@ -498,7 +499,7 @@ impl ResponseRow<'_> {
             .assessment
             .get(&self.found.condition.id())
         {
-            Some(Err(why)) => why.clone(),
+            Some(Err(why)) => not_assessed_text(why, &self.found.analysis.study.dataset),
             _ => String::new(),
         }
     }

@@ -11,6 +11,7 @@ use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
 use gdcm_sysid::identification::local_polynomial::local_polynomial;
 use gdcm_sysid::identification::preparation::prepare;
 use gdcm_sysid::identification::{Preparation, ResponseEstimate, spectra};
+use gdcm_words::channel_time_skew::time_skew_text;
 
 use crate::made_up::{Flight, Gusts, stable_aircraft};
 
@@ -95,7 +96,7 @@ fn words_say_what_is_seen_and_what_else_it_may_be() {
         index: 1,
         delay_s: -0.0401,
     };
-    let words = late.words("Q", "nominal");
+    let words = time_skew_text(&late, "Q", "nominal");
     assert!(
         words.starts_with(
             "Q seems to be logged 40 ms early in all records: against the physics model \"nominal\""

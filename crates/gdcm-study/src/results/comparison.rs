@@ -1,0 +1,55 @@
+//! Comparison of the models of a condition: distances within each bundle, the two representatives
+//! and their differences, which do not depend on constraints, alpha or bounds.
+
+use gdcm_method::correction::delta::Delta;
+use gdcm_method::fidelity::distance::{BundleDistance, DiscontinuityError, Representative};
+use gdcm_method::fidelity::{Cost, Discontinuity, Mismatch};
+use gdcm_model::dataset::{BundleKind, PairTable};
+
+use super::caution::{Caution, Undefined};
+
+/// Difference of every response that two models have.
+pub type Mismatches = PairTable<Option<Mismatch>>;
+
+/// Distances within each bundle and discontinuity ratios of the physics bundle, independent of
+/// rejections.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BundleMetrics {
+    pub physics: BundleDistance,
+    pub identified: BundleDistance,
+    /// Discontinuity ratios of the physics models, or why there are none.
+    pub discontinuity: Result<Discontinuity, DiscontinuityError>,
+}
+
+impl BundleMetrics {
+    /// Returns the distances within a bundle.
+    pub fn bundle(&self, kind: BundleKind) -> &BundleDistance {
+        kind.pick(&self.physics, &self.identified)
+    }
+}
+
+/// Mismatch of a physics model and the identified representative, with the resulting J.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelMismatch {
+    /// Difference of every response that both models have.
+    pub mismatch: Mismatches,
+    /// J of the uncorrected physics model.
+    pub cost: PairTable<Option<Cost>>,
+}
+
+/// The two representatives and their differences.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    pub physics: Representative,
+    pub identified: Representative,
+    /// The physics representative against the identified one.
+    pub representative: ModelMismatch,
+    /// The nominal physics model against the identified representative.
+    pub nominal: ModelMismatch,
+    /// G and D of the representatives.
+    pub delta: Delta,
+    /// Why a response has no G and no D, where it has none.
+    pub undefined: PairTable<Option<Undefined>>,
+    /// Cautions about the models, independent of the constraints.
+    pub cautions: Vec<Caution>,
+}

@@ -1,0 +1,128 @@
+//! Comparison of a model's responses with one flight record, row by row of the tolerances (M17.2).
+
+use serde::Serialize;
+
+use gdcm_method::requirements::tolerance::{ChannelTolerance, ToleranceError};
+use gdcm_method::requirements::{Tolerance, ToleranceTable};
+use gdcm_model::dataset::{Channel, Dataset, Pair, PairTable, StateSpace};
+use gdcm_model::simulation::{Segment, ValidationSettings};
+use gdcm_sysid::identification::Preparation;
+
+/// Shortest piece of a record that is compared \[s\]: qualification tests are short steps and
+/// doublets.
+const LEAST_PIECE_S: f64 = 2.0;
+
+/// Returns the preparation of a record for comparison: shorter pieces than for identification.
+pub(crate) fn comparison_preparation(preparation: &Preparation) -> Preparation {
+    Preparation {
+        least_segment_s: LEAST_PIECE_S,
+        ..preparation.clone()
+    }
+}
+
+/// Returns the settings for simulating every model of a condition with a record: unfiltered
+/// signals, and the same windows.
+pub(crate) fn common_windows<'m>(
+    models: impl IntoIterator<Item = &'m StateSpace>,
+    segments: &[Segment],
+) -> ValidationSettings {
+    ValidationSettings::unfiltered().common_to(models, segments)
+}
+
+/// Whether an off-axis output has the same trend as in flight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Trend {
+    /// The correlation of simulated and measured output is positive.
+    Correct,
+    /// The correlation is not positive.
+    Opposite,
+}
+
+impl Trend {
+    /// Returns the trend of an output off-axis to the input that moved most, from the correlation
+    /// of simulated and measured output; `None` on-axis.
+    pub fn from_correlation(correlation: Option<f64>, on_axis: Option<bool>) -> Option<Self> {
+        let correlation = correlation?;
+        if on_axis != Some(false) {
+            None
+        } else if correlation > 0.0 {
+            Some(Self::Correct)
+        } else {
+            Some(Self::Opposite)
+        }
+    }
+
+    /// Returns the name of the trend.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Correct => "correct",
+            Self::Opposite => "opposite",
+        }
+    }
+}
+
+/// A row of the tolerance table, with its tolerance in the unit of the dataset.
+pub(crate) struct AppliedTolerance<'a> {
+    pub(crate) tolerance: &'a Tolerance,
+    pub(crate) channel: ChannelTolerance,
+}
+
+/// Common data of the comparisons of all records.
+pub(crate) struct RecordComparison<'a> {
+    pub(crate) inputs: &'a [Channel],
+    pub(crate) outputs: &'a [Channel],
+    on_axis: PairTable<bool>,
+    /// The applicable rows of the tolerance table.
+    pub(crate) rows: Vec<AppliedTolerance<'a>>,
+    /// Why the other rows are not applicable.
+    pub(crate) not_applied: Vec<ToleranceError>,
+}
+
+impl<'a> RecordComparison<'a> {
+    pub(crate) fn new(dataset: &'a Dataset, tolerances: &'a ToleranceTable) -> Self {
+        let mut rows = Vec::new();
+        let mut not_applied = Vec::new();
+        for tolerance in tolerances.rows() {
+            match tolerance.of_outputs(dataset.outputs()) {
+                Ok(channel) => rows.push(AppliedTolerance { tolerance, channel }),
+                Err(why) => not_applied.push(why),
+            }
+        }
+        Self {
+            inputs: dataset.inputs(),
+            outputs: dataset.outputs(),
+            on_axis: dataset.measuring_pairs(),
+            rows,
+            not_applied,
+        }
+    }
+
+    /// Returns the input that varies most over the segments of a record; `None` where the inputs
+    /// cannot be compared.
+    pub(crate) fn moved_input(&self, segments: &[Segment]) -> Option<usize> {
+        let (first, others) = self.inputs.split_first()?;
+        if others.iter().any(|input| input.unit != first.unit) {
+            return None;
+        }
+        (0..self.inputs.len())
+            .max_by(|a, b| variation(segments, *a).total_cmp(&variation(segments, *b)))
+    }
+
+    /// Returns whether an output is on-axis to the input that moved most; `None` where that input
+    /// is unknown.
+    pub(crate) fn is_on_axis(&self, output: usize, moved: Option<usize>) -> Option<bool> {
+        moved.map(|input| self.on_axis[Pair::new(output, input)])
+    }
+}
+
+/// Returns the sum of squares of an input about its mean in each segment.
+fn variation(segments: &[Segment], input: usize) -> f64 {
+    segments
+        .iter()
+        .map(|segment| {
+            let samples = segment.inputs.column(input);
+            samples.variance() * samples.len() as f64
+        })
+        .sum()
+}

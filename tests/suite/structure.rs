@@ -13,7 +13,8 @@ const CRATES: &[(&str, ModuleTable)] = &[
     (
         "gdcm-model",
         &[
-            ("units", &[]),
+            ("number_format", &[]),
+            ("units", &["number_format"]),
             ("message_text", &[]),
             ("executor", &[]),
             ("whole_number", &[]),

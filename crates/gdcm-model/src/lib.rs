@@ -8,7 +8,7 @@
 //! | [`response`] | frequency responses, poles, zeros, lead filters |
 //! | [`simulation`] | time responses: flight records, and a model simulated against them |
 //! | [`assembly`] | models from many files into one dataset: names, channels, units |
-//! | [`units`] | unit conversions and number formatting |
+//! | [`units`], [`number_format`] | unit conversions; numbers as text |
 //! | [`executor`], [`progress`] | parallel tasks, progress and cancellation |
 //! | [`message_text`], [`whole_number`] | sanitised text, and whole numbers in JSON |
 //!
@@ -30,6 +30,7 @@ pub mod assembly;
 pub mod dataset;
 pub mod executor;
 pub mod message_text;
+pub mod number_format;
 pub mod progress;
 pub mod response;
 pub mod simulation;

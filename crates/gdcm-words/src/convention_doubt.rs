@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use gdcm_model::dataset::Dataset;
-use gdcm_model::units::number;
+use gdcm_model::number_format::rounded_to_three_digits;
 use gdcm_study::results::convention_doubt::{Convention, ConventionDoubt};
 
 /// Tolerance for a factor to match a known one, as a ratio.
@@ -47,7 +47,7 @@ pub fn doubt_text(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
             let are = if is_single { "is" } else { "are" };
             format!(
                 "{names} of the identified models {are} {} times that of the physics model{alike} {place}{}. Check the unit of {channel}",
-                three_digits(factor),
+                rounded_to_three_digits(factor),
                 known_units_text(factor)
             )
         }
@@ -70,20 +70,14 @@ fn known_units_text(factor: f64) -> String {
     for (known, units) in KNOWN_FACTORS {
         if is_near(factor, known) {
             let known = if factor < 1.0 {
-                format!("1/{}", three_digits(known))
+                format!("1/{}", rounded_to_three_digits(known))
             } else {
-                three_digits(known)
+                rounded_to_three_digits(known)
             };
             return format!(", near {known}: {units}");
         }
     }
     String::new()
-}
-
-/// Formats a factor with three significant digits, without trailing zeros.
-fn three_digits(factor: f64) -> String {
-    let scale = 10_f64.powf(2.0 - factor.log10().floor());
-    number((factor * scale).round() / scale)
 }
 
 fn is_near(factor: f64, known: f64) -> bool {

@@ -10,6 +10,7 @@ use gdcm_method::couplings::coupling_effects::{
 };
 use gdcm_method::couplings::{LEAST_CONDITIONS, LoopMargin, PoleShift, Unknown};
 use gdcm_model::dataset::{Channel, ConditionId, Dataset, Pair};
+use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::{number, signed, telling};
 use gdcm_study::results::couplings_assessment::{
     AxisCost, CouplingCost, CouplingEntry, CouplingsAssessment, UnstablePole,
@@ -370,7 +371,7 @@ fn mixing_words(dataset: &Dataset, mixing: &MixingShare) -> String {
         return format!(
             "{} takes {} {} per {} of {}.",
             to.name,
-            with_minus(telling(mixing.share, 3)),
+            with_minus_sign(&telling(mixing.share, 3)),
             to.unit,
             from.unit,
             from.name
@@ -379,7 +380,7 @@ fn mixing_words(dataset: &Dataset, mixing: &MixingShare) -> String {
     let phase = match mixing.swashplate_phase_deg {
         Some(phase_deg) => format!(
             ": as a swashplate phase of {}°",
-            with_minus(telling(phase_deg, 1))
+            with_minus_sign(&telling(phase_deg, 1))
         ),
         None => String::new(),
     };
@@ -414,7 +415,7 @@ fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare) -> String {
         "{} follows {} by {} {} per {}, up to {share} at {} rad/s: {meaning} that the physics model does not have right.",
         input.name,
         output.name,
-        with_minus(telling(feedback.entry, 3)),
+        with_minus_sign(&telling(feedback.entry, 3)),
         input.unit,
         output.unit,
         telling(feedback.omega_rad_s, 1)
@@ -444,12 +445,7 @@ fn feedback_meaning(dataset: &Dataset, feedback: &FeedbackShare) -> &'static str
 
 /// Formats a share in percent.
 fn percent(share: f64) -> String {
-    with_minus(telling(100.0 * share, 1))
-}
-
-/// Replaces the hyphen of a formatted number by a minus sign.
-fn with_minus(number: String) -> String {
-    number.replace('-', "−")
+    with_minus_sign(&telling(100.0 * share, 1))
 }
 
 /// Locates unstable poles, grouped by condition: "in the band condition 4, slow at 2 rad/s;
@@ -631,7 +627,7 @@ fn matrix_table(
 
 /// Formats an entry: "0.047 ± 0.011", in brackets where it is within its error bar.
 fn entry_words(entry: &CouplingEntry) -> String {
-    let mut text = with_minus(telling(entry.value, 3));
+    let mut text = with_minus_sign(&telling(entry.value, 3));
     if let Some(half_width) = entry.half_width
         && half_width > 0.0
     {
@@ -686,7 +682,7 @@ fn pole_cell(pole: Complex<f64>) -> String {
     } else {
         format!(" ± {}j", telling(pole.im.abs(), 3))
     };
-    format!("{}{imaginary}", with_minus(telling(pole.re, 3)))
+    format!("{}{imaginary}", with_minus_sign(&telling(pole.re, 3)))
 }
 
 #[cfg(test)]

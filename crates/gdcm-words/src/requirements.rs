@@ -10,6 +10,7 @@
 
 use gdcm_method::requirements::{BandwidthRule, ModeVerdict, NamedBy};
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
+use gdcm_model::number_format::decimals_or_dash;
 use gdcm_model::units::{number, s_to_ms, signed, telling};
 use gdcm_study::decisions::requirement_settings::OverviewLimits;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
@@ -23,14 +24,6 @@ use crate::time_histories::{cost_cells, cost_heads, output_weights_text, percent
 
 /// Heading of the modulus of a pole.
 const MODULUS: &str = "|\u{3bb}| [rad/s]";
-
-/// Formats a number with a fixed number of decimals and a minus sign, or a dash.
-fn cell(value: Option<f64>, decimals: usize) -> String {
-    match value {
-        Some(value) => format!("{value:.decimals$}").replace('-', "\u{2212}"),
-        None => "-".to_owned(),
-    }
-}
 
 /// Tabulates bandwidth and phase delay of every on-axis response of every condition and model, with
 /// cautions.
@@ -54,11 +47,11 @@ pub fn bandwidth_table(requirements: &Requirements, dataset: &Dataset) -> Table 
             telling(finding.airspeed_kt, 0),
             dataset.pair_name(finding.pair),
             finding.role.name().to_owned(),
-            cell(finding.omega_bw_rad_s, 2),
-            cell(finding.omega_phase_rad_s, 2),
-            cell(finding.omega_gain_rad_s, 2),
-            cell(finding.omega_180_rad_s, 2),
-            cell(finding.phase_delay_s.map(s_to_ms), 0),
+            decimals_or_dash(finding.omega_bw_rad_s, 2),
+            decimals_or_dash(finding.omega_phase_rad_s, 2),
+            decimals_or_dash(finding.omega_gain_rad_s, 2),
+            decimals_or_dash(finding.omega_180_rad_s, 2),
+            decimals_or_dash(finding.phase_delay_s.map(s_to_ms), 0),
             bandwidth_remark(finding),
         ]);
     }
@@ -163,12 +156,12 @@ fn mode_row(mode: &ModeFinding) -> Vec<String> {
 /// Formats modulus, damping ratio and period of a mode; dashes where there is none.
 fn mode_cells(mode: Option<&ModeNumbers>) -> [String; 3] {
     [
-        cell(
+        decimals_or_dash(
             mode.map(|mode| mode.pole_real_rad_s.hypot(mode.pole_imaginary_rad_s)),
             2,
         ),
-        cell(mode.and_then(|mode| mode.values.damping_ratio), 2),
-        cell(mode.and_then(|mode| mode.values.period_s), 1),
+        decimals_or_dash(mode.and_then(|mode| mode.values.damping_ratio), 2),
+        decimals_or_dash(mode.and_then(|mode| mode.values.period_s), 1),
     ]
 }
 
@@ -226,13 +219,13 @@ pub fn summary_table(requirements: &Requirements, histories: Option<&TimeHistori
 }
 
 fn summary_cells(finding: &SummaryFinding) -> Vec<String> {
-    let percent = |share: Option<f64>| cell(share.map(|share| 100.0 * share), 0);
+    let percent = |share: Option<f64>| decimals_or_dash(share.map(|share| 100.0 * share), 0);
     vec![
         finding.condition.to_string(),
         telling(finding.airspeed_kt, 0),
         finding.role.name().to_owned(),
-        cell(finding.mean_j_on_axis, 1),
-        cell(finding.mean_j_all, 1),
+        decimals_or_dash(finding.mean_j_on_axis, 1),
+        decimals_or_dash(finding.mean_j_all, 1),
         percent(finding.muad_share_on_axis),
         percent(finding.muad_share_all),
     ]

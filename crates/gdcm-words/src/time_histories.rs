@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use gdcm_model::dataset::ConditionId;
+use gdcm_model::number_format::{decimals_or_dash, with_minus_sign};
 use gdcm_model::units::telling;
 use gdcm_study::results::condition_answers::RecordHistory;
 use gdcm_study::results::record_comparison::Trend;
@@ -52,9 +53,12 @@ pub(crate) fn cost_cells(
     condition: ConditionId,
     role: RequirementRole,
 ) -> Vec<String> {
-    let mut cells = vec![decimals(histories.j_rms(condition, role), 2)];
+    let mut cells = vec![decimals_or_dash(histories.j_rms(condition, role), 2)];
     for output in histories.moved_outputs() {
-        cells.push(decimals(histories.theil(condition, role, output), 2));
+        cells.push(decimals_or_dash(
+            histories.theil(condition, role, output),
+            2,
+        ));
     }
     cells
 }
@@ -215,7 +219,7 @@ pub fn record_history_table(history: &RecordHistory) -> Table {
                 None => String::new(),
             };
             let correlation = match correlation {
-                Some(correlation) => telling(correlation, 2).replace('-', "\u{2212}"),
+                Some(correlation) => with_minus_sign(&telling(correlation, 2)),
                 None => String::new(),
             };
             table.row([
@@ -236,13 +240,5 @@ pub fn record_history_table(history: &RecordHistory) -> Table {
 
 /// Formats a share in percent, rounded down: 100 means the whole.
 pub(crate) fn percent_rounded_down(share: Option<f64>) -> String {
-    decimals(share.map(|share| (1e3 * share).floor() / 10.0), 1)
-}
-
-/// Formats a number with a fixed number of decimals, or a dash.
-fn decimals(value: Option<f64>, count: usize) -> String {
-    match value {
-        Some(value) => format!("{value:.count$}"),
-        None => "-".to_owned(),
-    }
+    decimals_or_dash(share.map(|share| (1e3 * share).floor() / 10.0), 1)
 }

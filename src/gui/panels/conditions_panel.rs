@@ -10,7 +10,7 @@ use gdcm_method::correction::solve::Unmatched;
 use gdcm_method::fidelity::Cost;
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Pair};
-use gdcm_plot::figure::decimals;
+use gdcm_model::number_format::decimals;
 use gdcm_plot::figure::gains::Classes;
 use gdcm_study::Edit;
 use gdcm_words::caution::failure_text;

@@ -9,8 +9,8 @@ use egui::{
 use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::Pair;
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::s_to_ms;
-use gdcm_plot::figure::decimals;
 use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::results::caution::Undefined;
 use gdcm_study::{ConditionAnalysis, Edit};

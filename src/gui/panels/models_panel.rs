@@ -10,7 +10,7 @@ use egui::{
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::{BundleKind, Model, ModelId};
-use gdcm_plot::figure::axis::compact;
+use gdcm_model::number_format::compact;
 use gdcm_study::Edit;
 use gdcm_words::ExplainTarget;
 use gdcm_words::caution::caution_text;

@@ -7,7 +7,7 @@ use egui::{
 };
 use serde::{Deserialize, Serialize};
 
-use gdcm_plot::figure::axis::compact;
+use gdcm_model::number_format::compact;
 
 use super::conditions_panel::cost_picture_ui;
 use crate::gui::commands::command::Command;

@@ -4,6 +4,7 @@ use gdcm_method::correction::LeadPrice;
 use gdcm_method::correction::conflict::{ConflictKind, Remedy};
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
+use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::response::median;
 use gdcm_model::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
 use gdcm_study::decisions::setting;
@@ -289,7 +290,7 @@ fn lag_words(left_ms: &mut [f64]) -> String {
     } else {
         [-most, -least]
     }
-    .map(|at| telling(at, 0).replace('-', "\u{2212}"));
+    .map(|at| with_minus_sign(&telling(at, 0)));
     if low == high {
         format!("{verb} by {low} ms")
     } else if most - least <= 0.5 * middle.abs() {

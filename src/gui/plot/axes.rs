@@ -5,10 +5,11 @@ use std::ops::RangeInclusive;
 use egui::{Align2, Color32, FontId, Id, Rangef, Rect, RichText, Sense, Ui, WidgetInfo};
 use egui_plot::{Axis, AxisHints, GridInput, GridMark, Plot};
 
+use gdcm_model::number_format::compact;
 use gdcm_model::units::{db_to_ratio, ratio_to_db};
 use gdcm_plot::figure::Range;
 pub use gdcm_plot::figure::axis::FrequencyUnit;
-use gdcm_plot::figure::axis::{Scale, Tick, TickGaps, compact, ticks_of};
+use gdcm_plot::figure::axis::{Scale, Tick, TickGaps, ticks_of};
 
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 

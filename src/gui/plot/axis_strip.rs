@@ -6,8 +6,8 @@ use egui::{
     Vec2, WidgetInfo, vec2,
 };
 
+use gdcm_model::number_format::compact;
 use gdcm_plot::figure::Range;
-use gdcm_plot::figure::axis::compact;
 
 use super::axes::Ticks;
 use super::bode::BodeScene;

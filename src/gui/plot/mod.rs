@@ -21,7 +21,7 @@ mod tiles;
 
 pub use gdcm_plot::figure::axis::FrequencyUnit;
 pub use gdcm_plot::figure::gains::{Across, Measure};
-pub use gdcm_plot::figure::{Range, decimals};
+pub use gdcm_plot::figure::Range;
 
 #[cfg(test)]
 mod tests;

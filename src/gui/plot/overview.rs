@@ -9,7 +9,8 @@ use egui::{
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
 
 use gdcm_model::dataset::Pair;
-use gdcm_plot::figure::{Range, decimals};
+use gdcm_model::number_format::decimals;
+use gdcm_plot::figure::Range;
 
 use super::axes::{caption_font, message_ui};
 use super::bode::PANES;

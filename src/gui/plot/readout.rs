@@ -3,8 +3,8 @@
 
 use egui::{FontId, Rect, Role as WidgetRole, Sense, Stroke, Ui, WidgetInfo, vec2};
 
+use gdcm_model::number_format::decimals;
 use gdcm_model::response::wrap;
-use gdcm_plot::figure::decimals;
 
 use super::axes::FrequencyUnit;
 use super::bode_view::BodeView;

@@ -5,11 +5,12 @@ use egui::{Align, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{Condition, ConditionId, Dataset, Pair};
+use gdcm_model::number_format::decimals;
 use gdcm_plot::figure::assessment::change_table;
 use gdcm_plot::figure::axis::Axis;
 use gdcm_plot::figure::drawing::{Hue, Stroke};
 use gdcm_plot::figure::figure::{Bars, Curve, Note, Place, Plot, Rule, Spans};
-use gdcm_plot::figure::{Color, Figure, MarkId, Panel, Range, decimals};
+use gdcm_plot::figure::{Color, Figure, MarkId, Panel, Range};
 use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
 use gdcm_study::{AssessedCorrection, AssessmentTable};
 use gdcm_words::assessment::{

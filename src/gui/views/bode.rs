@@ -4,10 +4,11 @@
 use egui::{Align2, Pos2, Rect, Ui, vec2};
 
 use gdcm_model::dataset::Pair;
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::{number, ratio_to_db, s_to_ms};
+use gdcm_plot::figure::ConditionSource;
 use gdcm_plot::figure::error::{muad_about, noticed};
 use gdcm_plot::figure::responses::{airspeed_curves, uncertainty_bands};
-use gdcm_plot::figure::{ConditionSource, decimals};
 use gdcm_study::AcrossRole;
 use gdcm_study::jobs::curve_jobs::AcrossJob;
 use gdcm_study::results::caution::Undefined;

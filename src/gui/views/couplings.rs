@@ -6,6 +6,7 @@ use egui::{Label, Panel, RichText, ScrollArea, Ui, vec2};
 
 use gdcm_method::couplings::LEAST_CONDITIONS;
 use gdcm_model::dataset::Dataset;
+use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::telling;
 use gdcm_study::decisions::setting;
 use gdcm_study::jobs::analysis_jobs::CouplingsJob;
@@ -306,7 +307,7 @@ fn above_band_table(dataset: &Dataset, assessment: &CouplingsAssessment) -> Tabl
         let most = of.most_changed_above_band(dataset.on_axis());
         let (change, pair) = most.map_or((String::new(), String::new()), |(pair, change_db)| {
             (
-                telling(change_db, 1).replace('-', "\u{2212}"),
+                with_minus_sign(&telling(change_db, 1)),
                 dataset.pair_name(pair),
             )
         });

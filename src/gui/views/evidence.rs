@@ -10,6 +10,7 @@ use egui::{
 use gdcm_method::schedule::{FormComparison, FormFit, LeadDegreeFit, LeadFit, ScheduleKind};
 use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::{s_to_ms, signed};
 use gdcm_study::Analysis;
 use gdcm_study::decisions::setting;
@@ -476,7 +477,7 @@ pub fn coefficient_table(state: &State) -> Option<Table> {
         let figures = row
             .figures
             .iter()
-            .map(|figure| format!("{figure:.5}").replace('-', "\u{2212}"));
+            .map(|figure| with_minus_sign(&format!("{figure:.5}")));
         table.row(std::iter::once(row.name).chain(figures));
     }
     Some(table)

@@ -8,6 +8,7 @@ use nalgebra::Complex;
 use gdcm_method::couplings::PoleShift;
 use gdcm_method::requirements::{ModeName, NamedBy};
 use gdcm_model::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
+use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::response::Mode;
 use gdcm_model::response::zeros::finite_zeros;
 use gdcm_model::units::number;
@@ -438,7 +439,7 @@ fn modes_table(
             .iter()
             .map(|&model| models[model].name.as_str())
             .collect();
-        let figure = |value: f64| format!("{value:.3}").replace('-', "\u{2212}");
+        let figure = |value: f64| with_minus_sign(&format!("{value:.3}"));
         table.row([
             name_words(mode, &models[reference]).unwrap_or_default(),
             figure(mode.frequency_rad_s),

@@ -9,6 +9,7 @@ use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, Model, Pair};
+use gdcm_model::number_format::full_precision;
 use gdcm_model::units::s_to_ms;
 use gdcm_plot::figure::all_channels;
 use gdcm_study::ConditionAnalysis;
@@ -75,14 +76,6 @@ pub fn table_of(state: &State, kind: TableKind) -> Table {
     }
 }
 
-/// Formats a number with full precision; empty for `None`.
-fn digits(value: Option<f64>) -> String {
-    // Debug writes an exponent where Display would write hundreds of zeros.
-    value
-        .filter(|value| value.is_finite())
-        .map_or(String::new(), |value| format!("{value:?}"))
-}
-
 fn yes(is_so: bool) -> String {
     if is_so { "yes" } else { "no" }.to_owned()
 }
@@ -123,11 +116,11 @@ fn conditions(state: &State) -> Table {
         vec![
             ("condition", id.to_string()),
             ("name", flight.name.clone()),
-            ("airspeed [kt]", digits(Some(flight.airspeed_kt))),
+            ("airspeed [kt]", full_precision(Some(flight.airspeed_kt))),
             ("altitude", flight.altitude.clone().unwrap_or_default()),
-            ("altitude [ft]", digits(flight.altitude_ft)),
+            ("altitude [ft]", full_precision(flight.altitude_ft)),
             ("weight", flight.weight.clone().unwrap_or_default()),
-            ("mass [kg]", digits(flight.mass_kg)),
+            ("mass [kg]", full_precision(flight.mass_kg)),
             ("scheduled", yes(state.study.choice(id).scheduled)),
             (
                 "suggested outliers not rejected",
@@ -172,9 +165,9 @@ fn models(state: &State, bundle: BundleKind) -> Table {
             ),
             (
                 "mean distance [√J]",
-                digits(shown.and_then(|shown| shown.score(bundle, &model.name))),
+                full_precision(shown.and_then(|shown| shown.score(bundle, &model.name))),
             ),
-            ("discontinuity ratio", digits(ratio)),
+            ("discontinuity ratio", full_precision(ratio)),
             (
                 "suggested",
                 ratio.map_or(String::new(), |ratio| yes(ratio > SUGGESTION_RATIO)),
@@ -264,7 +257,7 @@ fn matrix(state: &State) -> Table {
         ];
         words
             .into_iter()
-            .chain(values.map(|(heading, value)| (heading, digits(value))))
+            .chain(values.map(|(heading, value)| (heading, full_precision(value))))
             .collect()
     };
     table_of_rows(
@@ -299,7 +292,7 @@ fn channels(state: &State) -> Table {
         ];
         words
             .into_iter()
-            .chain(values.map(|(heading, value)| (heading, digits(value))))
+            .chain(values.map(|(heading, value)| (heading, full_precision(value))))
             .collect()
     };
     let rows = all_channels(state.dataset()).into_iter().map(row).collect();

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use gdcm_method::fidelity::ACCEPTABLE;
 use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{ConditionId, Pair, PairTable};
+use gdcm_model::number_format::decimals;
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::units::signed;
 use gdcm_plot::figure::assessment::{
     assessment_figure, average_word, change_table, evidence_figure, usual_choice,
 };
 use gdcm_plot::figure::axis::FrequencyUnit;
-use gdcm_plot::figure::decimals;
 use gdcm_plot::figure::poles::couplings_figure;
 use gdcm_study::results::assessment_table::AssessmentChoice;
 use gdcm_study::{Analysis, AssessmentTable, Engine};

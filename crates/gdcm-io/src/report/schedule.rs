@@ -3,11 +3,12 @@
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::Schedule;
 use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_model::number_format::compact;
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::{number, s_to_ms};
-use gdcm_plot::figure::axis::compact;
+use gdcm_plot::figure::all_channels;
 use gdcm_plot::figure::condition_source::quantity_symbol;
 use gdcm_plot::figure::gains::{Across, Measure, channels_figure, net_gain_figure};
-use gdcm_plot::figure::{all_channels, decimals};
 use gdcm_study::{Analysis, Study};
 use gdcm_words::Table;
 use gdcm_words::schedule::delayed_channel_text;

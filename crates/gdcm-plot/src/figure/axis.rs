@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use gdcm_model::number_format::compact;
 use gdcm_model::units::rad_s_to_hz;
 
 /// Margin on either side of the shown values, as a fraction of their range.
@@ -406,41 +407,6 @@ fn decades(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     }
 }
 
-/// Formats `value` with up to six significant digits, without trailing zeros, with a true minus
-/// sign.
-pub fn compact(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return if value == 0.0 {
-            "0".to_owned()
-        } else {
-            value.to_string()
-        };
-    }
-    let decimals = (5 - value.abs().log10().floor() as i64).clamp(0, 12) as usize;
-    let text = format!("{value:.decimals$}");
-    let text = if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        &text
-    };
-    signed(text)
-}
-
-/// Formats `value` with `count` decimals and a true minus sign.
-pub fn decimals(value: f64, count: usize) -> String {
-    signed(&format!("{value:.count$}"))
-}
-
-/// Drops the sign of a value that rounds to zero, and writes a minus sign, as wide as a plus,
-/// instead of a hyphen.
-fn signed(text: &str) -> String {
-    match text.strip_prefix('-') {
-        Some(digits) if digits.chars().all(|c| matches!(c, '0' | '.')) => digits.to_owned(),
-        Some(digits) => format!("\u{2212}{digits}"),
-        None => text.to_owned(),
-    }
-}
-
 /// Unit of displayed frequencies; internally they are always rad/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FrequencyUnit {
@@ -669,27 +635,6 @@ mod tests {
             (degree_step(40.0), degree_step(1.5), degree_step(1e5)),
             (45.0, 2.0, 1e5)
         );
-    }
-
-    #[test]
-    fn ticks_have_no_more_digits_than_they_need() {
-        for (value, text) in [
-            (0.3, "0.3"),
-            (1.0 - 1e-12, "1"),
-            (20.0, "20"),
-            (-25.0, "\u{2212}25"),
-            (0.0, "0"),
-            (1.25, "1.25"),
-            (100_000.0, "100000"),
-        ] {
-            assert_eq!(compact(value), text);
-        }
-    }
-
-    #[test]
-    fn what_rounds_to_zero_has_no_sign() {
-        assert_eq!(decimals(-0.04, 1), "0.0");
-        assert_eq!(decimals(-0.06, 1), "\u{2212}0.1");
     }
 
     #[test]

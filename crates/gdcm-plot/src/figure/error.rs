@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use gdcm_method::fidelity::{CoherenceWeights, Mismatch, Muad, leaves};
 use gdcm_model::dataset::{BundleKind, Pair};
+use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::response::curve_values::quantile;
 use gdcm_model::response::frequency_response::PolarCurve;
 use gdcm_model::response::{FrequencyResponse, GainDelay, wrap};
@@ -417,7 +418,7 @@ fn gain_rule(kind: ReferenceKind, label: String, gain: f64) -> ReferenceLine {
 }
 
 fn signed(value: f64) -> String {
-    format!("{value:.1}").replace('-', "\u{2212}")
+    with_minus_sign(&format!("{value:.1}"))
 }
 
 fn delta_rules(shown: &ConditionAnalysis, pair: Pair, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {

@@ -7,12 +7,13 @@ use gdcm_method::schedule::Schedule;
 use gdcm_method::uncertainty::{BandWidths, Bar, Scalar};
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_model::dataset::{Dataset, Pair};
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::s_to_ms;
 use gdcm_study::decisions::choices::ConditionChoice;
 use gdcm_study::results::uncertainty::{AirspeedDifference, Uncertainty};
 use gdcm_study::{Analysis, ConditionAnalysis};
 
-use super::axis::{Axis, Range, decimals};
+use super::axis::{Axis, Range};
 use super::condition_source::{schedule_words, settings_words};
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{

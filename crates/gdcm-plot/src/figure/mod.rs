@@ -57,7 +57,7 @@ pub mod role;
 pub mod tables;
 pub mod thinning;
 
-pub use axis::{Range, decimals};
+pub use axis::Range;
 pub use condition_source::ConditionSource;
 pub use drawing::Color;
 pub use figure::{ColumnWidth, Figure, FigureFormat, Mark, MarkId, Panel};

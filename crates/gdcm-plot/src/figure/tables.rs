@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use gdcm_model::message_text::sanitized;
+use gdcm_model::number_format::full_precision;
 use gdcm_words::Table;
 
 use super::axis::Axis;
@@ -285,12 +286,7 @@ fn place(axis: &Axis, value: f64) -> String {
 
 /// Formats a number at full precision; empty if it is not finite.
 fn figure(value: f64) -> String {
-    // Debug writes an exponent, unlike Display, which would write hundreds of zeros.
-    if value.is_finite() {
-        format!("{value:?}")
-    } else {
-        String::new()
-    }
+    full_precision(Some(value))
 }
 
 #[cfg(test)]

@@ -2,24 +2,25 @@
 
 use gdcm_method::correction::{Channel, Problem, Quantity, Solution};
 use gdcm_model::dataset::Pair;
+use gdcm_model::number_format::five_digits;
 use gdcm_model::units::{s_to_ms, six_digits};
 
-use super::{Context, Derivation, digits, gain_objective_equation};
+use super::{Context, Derivation, gain_objective_equation};
 use crate::leads::servo_words;
 
 pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
     let correction = &context.result.correction;
     let [output, input] = Channel::of(pair);
     let [name_o, name_i] = [output, input].map(|channel| context.channel(channel));
-    let gain_o = digits(correction.gain(output));
-    let gain_i = digits(correction.gain(input));
+    let gain_o = five_digits(correction.gain(output));
+    let gain_i = five_digits(correction.gain(input));
     let value = correction.net_gain(pair);
     Derivation {
         title: context.title(&format!("net gain of {}", context.pair(pair))),
         equation: "k_o k_i".to_owned(),
         with_numbers: vec![format!(
             "k_{name_o} k_{name_i} = {gain_o} · {gain_i} = {}",
-            digits(value)
+            five_digits(value)
         )],
         rests_on: vec![held_at(
             context,
@@ -37,7 +38,7 @@ pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
     let [output, input] = Channel::of(pair).map(|channel| context.channel(channel));
     let value = s_to_ms(correction.net_delay_s(pair));
     let parts = Channel::of(pair)
-        .map(|channel| digits(s_to_ms(correction.delay_s(channel))))
+        .map(|channel| five_digits(s_to_ms(correction.delay_s(channel))))
         .join(" + ");
     let delta_ms = context.result.wanted_delay_s(pair).map(s_to_ms);
     Derivation {
@@ -45,7 +46,7 @@ pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
         equation: "τ_o + τ_i".to_owned(),
         with_numbers: vec![format!(
             "τ_{output} + τ_{input} = {parts} = {} ms",
-            digits(value)
+            five_digits(value)
         )],
         rests_on: vec![held_at(context, pair, &context.result.delays, delta_ms)],
         section: "M10, eq. (12)",
@@ -55,7 +56,7 @@ pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
 
 /// Describes whether a response is constrained, and its value.
 fn held_at(context: &Context<'_>, pair: Pair, solution: &Solution, delta: Option<f64>) -> String {
-    let delta = delta.map_or("nothing defined".to_owned(), digits);
+    let delta = delta.map_or("nothing defined".to_owned(), five_digits);
     let name = context.pair(pair);
     match solution.targets[pair] {
         None => format!("{name} is free, its delta is {delta}"),
@@ -79,7 +80,7 @@ pub(super) fn gain(context: &Context<'_>, channel: Channel) -> Option<Derivation
             channel,
             problem,
             &context.result.gains,
-            &format!("{name} = {}", digits(value)),
+            &format!("{name} = {}", five_digits(value)),
         ),
         rests_on: optimum_rests_on(context, problem, &context.result.gains),
         section: "M8, eq. (7)",
@@ -103,10 +104,10 @@ pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivatio
         channel,
         problem,
         solution,
-        &format!("{name} = {} ms", digits(value)),
+        &format!("{name} = {} ms", five_digits(value)),
     );
     with_numbers.extend(context.result.correction.lead(channel).map(|filter| {
-        let lead_ms = digits(s_to_ms(filter.lead_s()));
+        let lead_ms = five_digits(s_to_ms(filter.lead_s()));
         format!(
             "its filter has {lead_ms} ms of lead at low frequency: {}",
             servo_words(filter)
@@ -152,7 +153,10 @@ fn steps(
         } else {
             format!("τ_{output} + τ_{input}")
         };
-        Some(format!("{sum} = {}{unit} (held)", digits(scale * target)))
+        Some(format!(
+            "{sum} = {}{unit} (held)",
+            five_digits(scale * target)
+        ))
     };
     let mut steps: Vec<String> = ties.filter_map(tie).collect();
     let lower = problem.bounds.lower;
@@ -163,8 +167,8 @@ fn steps(
         (_, true) => ", on the upper bound",
         _ => "",
     };
-    let lower = digits(scale * lower);
-    let upper = digits(scale * upper);
+    let lower = five_digits(scale * lower);
+    let upper = five_digits(scale * upper);
     steps.push(format!("{lower} ≤ {last} ≤ {upper}{unit}{place}"));
     steps
 }
@@ -224,19 +228,19 @@ fn objective(
         .objective_at(&solution.inputs, &solution.outputs);
     let parts = format!(
         "{} (fit) + {} (α = {})",
-        digits(fit),
-        digits(value - fit),
+        five_digits(fit),
+        five_digits(value - fit),
         six_digits(problem.alpha)
     );
     let mut rests_on = optimum_rests_on(context, problem, solution);
     rests_on.push(format!(
         "no less than {}{unit} is possible",
-        digits(scale * solution.proof.lower_bound)
+        five_digits(scale * solution.proof.lower_bound)
     ));
     Derivation {
         title: context.title(&format!("objective of the {}s", problem.quantity)),
         equation: equation.to_owned(),
-        with_numbers: vec![format!("{parts} = {}{unit}", digits(value))],
+        with_numbers: vec![format!("{parts} = {}{unit}", five_digits(value))],
         rests_on,
         section,
         value,

@@ -4,10 +4,11 @@ use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::fidelity::{Cost, CostAverage, SUGGESTION_RATIO};
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
+use gdcm_model::number_format::five_digits;
 use gdcm_model::units::{s_to_ms, signed};
 use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice, assessed};
 
-use super::{Context, Derivation, average_word, counted_words, digits, median_words};
+use super::{Context, Derivation, average_word, counted_words, median_words};
 use crate::assessment::correction_source;
 
 /// Greatest number of terms of a sum that are written out.
@@ -18,7 +19,7 @@ fn sum_words(terms: &[f64]) -> String {
     let shown: Vec<String> = terms
         .iter()
         .take(MOST_TERMS)
-        .map(|term| digits(*term))
+        .map(|term| five_digits(*term))
         .collect();
     let more = if terms.len() > MOST_TERMS {
         format!(" + … ({} terms)", terms.len())
@@ -76,7 +77,7 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
             "s = ({}) / {} = {}",
             sum_words(&distances),
             distances.len(),
-            digits(value)
+            five_digits(value)
         )]
     };
     let representative = result.representative_name(kind);
@@ -126,12 +127,16 @@ pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation
         format!(
             "w_{} = {} over ±{}",
             of.name,
-            digits(of.weight),
-            digits(of.largest)
+            five_digits(of.weight),
+            five_digits(of.largest)
         )
     });
     let mut with_numbers: Vec<String> = weights.collect();
-    with_numbers.push(format!("r = {} = {}", median_words(&ratios), digits(value)));
+    with_numbers.push(format!(
+        "r = {} = {}",
+        median_words(&ratios),
+        five_digits(value)
+    ));
     let bundle = format!("all {} physics models, whatever is rejected", models.len());
     let mut rests_on = distance_rests_on(context, bundle);
     rests_on.extend(model_words(&models[place]));
@@ -160,10 +165,10 @@ fn equation(average: CostAverage) -> String {
 fn steps(symbol: &str, cost: Cost, average: CostAverage) -> Vec<String> {
     let word = average_word(average);
     let [of_db, of_deg] = Cost::factors();
-    let [db_squared, deg_squared] = cost.averages().map(digits);
-    let magnitude = digits(cost.magnitude);
-    let phase = digits(cost.phase);
-    let total = digits(cost.total());
+    let [db_squared, deg_squared] = cost.averages().map(five_digits);
+    let magnitude = five_digits(cost.magnitude);
+    let phase = five_digits(cost.phase);
+    let total = five_digits(cost.total());
     vec![
         format!(
             "{symbol}_mag = {of_db} · {db_squared} dB² = {magnitude}   ({word} of the squares)"
@@ -179,8 +184,8 @@ fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorre
     let delay_ms = s_to_ms(correction.net_delay_s(pair));
     format!(
         "k_{output} k_{input} = {}, τ_{output} + τ_{input} = {} ms",
-        digits(gain),
-        digits(delay_ms)
+        five_digits(gain),
+        five_digits(delay_ms)
     )
 }
 
@@ -248,9 +253,9 @@ pub(super) fn change(
     );
     with_numbers.push(format!(
         "ΔJ = {} − {} = {} ({parts})",
-        digits(after),
-        digits(before),
-        digits(change.total())
+        five_digits(after),
+        five_digits(before),
+        five_digits(change.total())
     ));
     let mut rests_on = vec![
         format!("{role} {} (H_sim)", found.model),

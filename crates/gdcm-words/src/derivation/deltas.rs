@@ -6,12 +6,13 @@ use gdcm_method::fidelity::Mismatch;
 use gdcm_method::schedule::{Regression, Schedule, ScheduledQuantity};
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
 use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
+use gdcm_model::number_format::five_digits;
 use gdcm_model::units::{db_to_ratio, number, s_to_ms};
 use gdcm_study::results::model_swap::{ConditionSubstitutions, ModelSwap};
 use gdcm_study::results::reported_error::{reports_error, takes_reported_error};
 use gdcm_study::{Analysis, ConditionAnalysis};
 
-use super::{Context, Derivation, ExplainTarget, digits, median_words, spread};
+use super::{Context, Derivation, ExplainTarget, median_words, spread};
 
 /// Returns `|H_ref| / |H_sim|` at each frequency.
 fn ratios(mismatch: &Mismatch) -> Vec<f64> {
@@ -73,7 +74,7 @@ pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     Some(Derivation {
         title: context.title(&format!("G of {}", context.pair(pair))),
         equation: equation.to_owned(),
-        with_numbers: vec![format!("{step} = {}", digits(value))],
+        with_numbers: vec![format!("{step} = {}", five_digits(value))],
         rests_on,
         section,
         value,
@@ -96,8 +97,8 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
         };
         let step = format!(
             "{} rad²/s / {} rad²/s²",
-            digits(sum(&phase)),
-            digits(sum(omega))
+            five_digits(sum(&phase)),
+            five_digits(sum(omega))
         );
         ("D = Σ W ω Δφ(H_sim, H_ref) / Σ W ω²", step, "M15.2")
     } else {
@@ -113,7 +114,7 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     Some(Derivation {
         title: context.title(&format!("D of {}", context.pair(pair))),
         equation: equation.to_owned(),
-        with_numbers: vec![format!("D = {step} = {} ms", digits(value))],
+        with_numbers: vec![format!("D = {step} = {} ms", five_digits(value))],
         rests_on,
         section,
         value,
@@ -141,8 +142,8 @@ fn pool_rests_on(context: &Context<'_>) -> Vec<String> {
 
 pub(super) fn gain_bounds(context: &Context<'_>) -> Derivation {
     let bounds = context.result.gain_bounds();
-    let lower = digits(bounds.lower);
-    let upper = digits(bounds.upper);
+    let lower = five_digits(bounds.lower);
+    let upper = five_digits(bounds.upper);
     let percent = |share: f64| number((1e6 * share).round() / 1e4);
     let quantile = context.settings().quantile;
     let (with_numbers, rests_on) = match context.settings().gain_bounds {
@@ -183,7 +184,7 @@ pub(super) fn delay_bound(context: &Context<'_>) -> Derivation {
     let quantile = context.settings().quantile;
     let (with_numbers, rests_on) = match context.settings().delay_upper_s {
         Some(_) => (
-            vec![format!("UB = {} ms", digits(value))],
+            vec![format!("UB = {} ms", five_digits(value))],
             vec!["set by hand".to_owned()],
         ),
         None => {
@@ -196,7 +197,7 @@ pub(super) fn delay_bound(context: &Context<'_>) -> Derivation {
             let step = format!(
                 "UB = max(0, {percent} % quantile of {}) = {} ms",
                 spread(&pool),
-                digits(value)
+                five_digits(value)
             );
             (vec![step], pool_rests_on(context))
         }
@@ -355,8 +356,8 @@ pub(super) fn scheduled_gain(
     if schedule.settings.quantity == ScheduledQuantity::LnGain {
         with_numbers.push(format!(
             "{name} = e^({}) = {}",
-            digits(value.ln()),
-            digits(value)
+            five_digits(value.ln()),
+            five_digits(value)
         ));
     }
     Some(Derivation {
@@ -407,22 +408,22 @@ fn fit_steps(
 ) -> Vec<String> {
     const POWERS: [&str; 4] = ["", " v", " v²", " v³"];
     let airspeeds = &schedule.airspeeds;
-    let fitted = digits(regression.at(airspeeds, airspeed_kt));
+    let fitted = five_digits(regression.at(airspeeds, airspeed_kt));
     match regression {
         Regression::Polynomial { coefficients } => {
             let v = airspeeds.scaled(airspeed_kt);
             let terms = coefficients
                 .iter()
                 .zip(POWERS)
-                .map(|(coefficient, power)| format!("{}{power}", digits(*coefficient)));
+                .map(|(coefficient, power)| format!("{}{power}", five_digits(*coefficient)));
             let inside = airspeed_kt.clamp(airspeeds.min_kt, airspeeds.max_kt);
-            let mean_kt = digits(airspeeds.mean_kt);
-            let half_kt = digits(airspeeds.half_range_kt);
+            let mean_kt = five_digits(airspeeds.mean_kt);
+            let half_kt = five_digits(airspeeds.half_range_kt);
             vec![
                 format!(
                     "v = ({} − {mean_kt}) / {half_kt} = {}",
                     number(inside),
-                    digits(v)
+                    five_digits(v)
                 ),
                 format!(
                     "{symbol} = {} = {fitted}",
@@ -437,8 +438,13 @@ fn fit_steps(
             let after = airspeeds_kt
                 .partition_point(|&at| at < airspeed_kt)
                 .min(values.len() - 1);
-            let point =
-                |at: usize| format!("{} at {} kt", digits(values[at]), digits(airspeeds_kt[at]));
+            let point = |at: usize| {
+                format!(
+                    "{} at {} kt",
+                    five_digits(values[at]),
+                    five_digits(airspeeds_kt[at])
+                )
+            };
             let between = if after == 0 {
                 point(0)
             } else {

@@ -8,6 +8,7 @@ mod deltas;
 use gdcm_method::correction::{Channel, GainObjective};
 use gdcm_method::fidelity::{CostAverage, Mismatch};
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
+use gdcm_model::number_format::five_digits;
 use gdcm_model::units::six_digits;
 use gdcm_study::decisions::settings::Settings;
 use gdcm_study::results::assessment_table::AssessmentChoice;
@@ -239,36 +240,18 @@ fn band_words(settings: &Settings) -> String {
     )
 }
 
-/// Formats with five significant digits and a true minus sign.
-fn digits(value: f64) -> String {
-    const SIGNIFICANT: i32 = 5;
-    if value == 0.0 || !value.is_finite() {
-        return if value == 0.0 {
-            "0".to_owned()
-        } else {
-            value.to_string()
-        };
-    }
-    let exponent = value.abs().log10().floor() as i32;
-    let text = match exponent {
-        -5..=7 => format!("{value:.*}", (SIGNIFICANT - 1 - exponent).max(0) as usize),
-        _ => format!("{value:.4e}"),
-    };
-    text.replace('-', "−")
-}
-
 /// Describes the least, the median and the greatest of some values.
 fn spread(values: &[f64]) -> String {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     match sorted.as_slice() {
         [] => "no values".to_owned(),
-        [only] => digits(*only),
+        [only] => five_digits(*only),
         [least, .., most] => format!(
             "{} values from {} to {}",
             sorted.len(),
-            digits(*least),
-            digits(*most)
+            five_digits(*least),
+            five_digits(*most)
         ),
     }
 }
@@ -283,11 +266,11 @@ fn median_words(values: &[f64]) -> String {
         count if count % 2 == 1 => format!(
             "the middle one of {}: {}",
             spread(values),
-            digits(sorted[middle])
+            five_digits(sorted[middle])
         ),
         _ => {
-            let below = digits(sorted[middle - 1]);
-            let above = digits(sorted[middle]);
+            let below = five_digits(sorted[middle - 1]);
+            let above = five_digits(sorted[middle]);
             format!(
                 "the mean of the middle two of {}: ({below} + {above}) / 2",
                 spread(values)
@@ -380,15 +363,6 @@ fn place_of(symbol: &str, equation: &str) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_figure_has_five_digits() {
-        let figures = [1.234_567, -0.012_345_6, 123_456.7, 0.0, 1e-9, 2.0];
-        assert_eq!(
-            figures.map(digits),
-            ["1.2346", "−0.012346", "123457", "0", "1.0000e−9", "2.0000"]
-        );
-    }
 
     #[test]
     fn a_median_is_told_from_its_middle_values() {

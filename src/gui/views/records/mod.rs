@@ -17,8 +17,8 @@ use egui::{
 };
 
 use gdcm_model::dataset::ConditionId;
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::{number, six_digits};
-use gdcm_plot::figure::decimals;
 use gdcm_sysid::identification::SearchSpace;
 use gdcm_sysid::identification::identification_error::{HIGHEST_ORDER, LONGEST_PAST};
 use gdcm_sysid::records::LayoutProblem;

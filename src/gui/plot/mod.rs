@@ -19,9 +19,9 @@ pub mod quantity;
 pub mod readout;
 mod tiles;
 
+pub use gdcm_plot::figure::Range;
 pub use gdcm_plot::figure::axis::FrequencyUnit;
 pub use gdcm_plot::figure::gains::{Across, Measure};
-pub use gdcm_plot::figure::Range;
 
 #[cfg(test)]
 mod tests;

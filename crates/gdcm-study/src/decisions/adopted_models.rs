@@ -48,7 +48,7 @@ pub struct AdoptedModels {
 }
 
 impl AdoptedModels {
-    /// Returns the selectable models of an identification of `records`, the recommended model
+    /// Returns the selectable models of an identification from `records`, the recommended model
     /// first.
     pub fn of(
         found: &Identification,
@@ -57,11 +57,8 @@ impl AdoptedModels {
     ) -> Self {
         let mut models = Vec::new();
         if offered.refined {
-            models.extend(
-                std::iter::once(&found.refined)
-                    .chain(&found.bundle)
-                    .cloned(),
-            );
+            models.push(found.refined.clone());
+            models.extend_from_slice(&found.bundle);
         }
         if offered.unrefined {
             models.push(found.unrefined.clone());
@@ -69,14 +66,12 @@ impl AdoptedModels {
         if offered.measured
             && let Some(response) = found.measured.measured()
         {
-            let method = Some("local polynomial method".to_owned());
             let origin = Origin::Identified {
-                method,
+                method: Some("local polynomial method".to_owned()),
                 order: None,
             };
-            let source = found.unrefined.source.clone();
             models.push(Model {
-                source,
+                source: found.unrefined.source.clone(),
                 ..Model::new("measured", origin, Dynamics::Measured(response))
             });
         }
@@ -93,17 +88,24 @@ impl AdoptedModels {
         let before = dataset
             .condition(id)
             .ok_or(EditRefusal::NoCondition { condition: id })?;
-        let refused = |why: String| EditRefusal::Models { condition: id, why };
         // A condition without identified models is valid, but an empty set of models replaces
         // nothing.
         if self.models.is_empty() {
             let error = ConditionError::EmptyBundle(BundleKind::Identified);
-            return Err(refused(error.to_string()));
+            return Err(refused(id, &error));
         }
-        let condition = before.with_identified(self.models.clone(), self.records.clone());
-        let condition = condition.map_err(|error| refused(error.to_string()))?;
+        let condition = before
+            .with_identified(self.models.clone(), self.records.clone())
+            .map_err(|error| refused(id, &error))?;
         dataset
             .with_condition(condition)
-            .map_err(|error| refused(error.to_string()))
+            .map_err(|error| refused(id, &error))
+    }
+}
+
+fn refused(condition: ConditionId, error: &dyn std::error::Error) -> EditRefusal {
+    EditRefusal::Models {
+        condition,
+        why: error.to_string(),
     }
 }

@@ -8,6 +8,7 @@ pub mod differences;
 pub mod edit;
 pub mod edit_refusal;
 pub mod history;
+pub mod named_decisions;
 pub mod requirement_settings;
 pub mod setting;
 pub mod setting_row;

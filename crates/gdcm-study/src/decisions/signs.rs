@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::channel::ChannelSide;
-use gdcm_model::dataset::measured_response::MeasuredResponse;
+use gdcm_model::dataset::measured_response::{MeasuredResponse, MeasuredResponseError};
+use gdcm_model::dataset::state_space::StateSpaceError;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset, Dynamics, Model, Pair, StateSpace};
 
 use super::edit_refusal::EditRefusal;
@@ -65,14 +66,17 @@ pub struct TurnedChannel {
 impl TurnedChannel {
     /// Returns the channel in a dataset, where it exists.
     pub fn find(&self, dataset: &Dataset) -> Option<Channel> {
-        let (channels, of): (_, fn(usize) -> Channel) = match self.side {
-            ChannelSide::Input => (dataset.inputs(), Channel::Input),
-            ChannelSide::Output => (dataset.outputs(), Channel::Output),
+        let channels = match self.side {
+            ChannelSide::Input => dataset.inputs(),
+            ChannelSide::Output => dataset.outputs(),
         };
-        channels
+        let index = channels
             .iter()
-            .position(|channel| channel.name == self.channel)
-            .map(of)
+            .position(|channel| channel.name == self.channel)?;
+        Some(match self.side {
+            ChannelSide::Input => Channel::Input(index),
+            ChannelSide::Output => Channel::Output(index),
+        })
     }
 }
 
@@ -80,91 +84,125 @@ impl TurnedChannel {
 /// D, for an input its columns of B and D, for measured responses every response of the channel.
 pub(crate) fn turned(dataset: &Arc<Dataset>, signs: &Signs) -> Result<Arc<Dataset>, EditRefusal> {
     let mut turned = Arc::clone(dataset);
-    for condition in dataset.conditions().iter().filter(|_| !signs.is_empty()) {
+    if signs.is_empty() {
+        return Ok(turned);
+    }
+    for condition in dataset.conditions() {
         let refused = |why: String| EditRefusal::Models {
             condition: condition.id(),
             why,
         };
-        let models = turned_condition(condition, signs).map_err(refused)?;
-        turned = Arc::new(
-            turned
-                .with_condition(models)
-                .map_err(|error| refused(error.to_string()))?,
-        );
+        let condition = turned_condition(condition, signs).map_err(refused)?;
+        let dataset = turned.with_condition(condition);
+        turned = Arc::new(dataset.map_err(|error| refused(error.to_string()))?);
     }
     Ok(turned)
 }
 
 fn turned_condition(condition: &Condition, signs: &Signs) -> Result<Condition, String> {
-    let bundle = |kind| -> Result<Vec<Model>, String> {
-        let sign = |channel: Channel| {
-            if signs.get(&channel).is_some_and(|role| role.covers(kind)) {
-                -1.0
-            } else {
-                1.0
-            }
-        };
-        let models = condition.bundle(kind).iter();
-        models
-            .map(|model| {
-                Ok(Model {
-                    dynamics: turned_dynamics(&model.dynamics, sign)?,
-                    ..model.clone()
-                })
-            })
-            .collect()
-    };
-    let physics = bundle(BundleKind::Physics)?;
-    let identified = bundle(BundleKind::Identified)?;
-    let turned = Condition::new(condition.flight_state().clone(), physics, identified);
+    let physics = turned_models(condition, BundleKind::Physics, signs)?;
+    let identified = turned_models(condition, BundleKind::Identified, signs)?;
+    let state = condition.flight_state().clone();
+    let turned = Condition::new(state, physics, identified).map_err(|error| error.to_string())?;
     turned
-        .and_then(|turned| turned.with_records(condition.records().to_vec()))
+        .with_records(condition.records().to_vec())
         .map_err(|error| error.to_string())
 }
 
-fn turned_dynamics(dynamics: &Dynamics, sign: impl Fn(Channel) -> f64) -> Result<Dynamics, String> {
-    match dynamics {
-        Dynamics::StateSpace(model) => {
-            let mut b = model.b().clone();
-            let mut c = model.c().clone();
-            let mut d = model.d().clone();
-            for input in 0..model.inputs() {
-                b.column_mut(input).scale_mut(sign(Channel::Input(input)));
-                d.column_mut(input).scale_mut(sign(Channel::Input(input)));
-            }
-            for output in 0..model.outputs() {
-                c.row_mut(output).scale_mut(sign(Channel::Output(output)));
-                d.row_mut(output).scale_mut(sign(Channel::Output(output)));
-            }
-            let turned =
-                StateSpace::new(model.a().clone(), b, c, d).map_err(|error| error.to_string())?;
-            Ok(Dynamics::StateSpace(
-                turned
-                    .timed(model.timing().clone())
-                    .map_err(|error| error.to_string())?,
-            ))
+fn turned_models(
+    condition: &Condition,
+    kind: BundleKind,
+    signs: &Signs,
+) -> Result<Vec<Model>, String> {
+    let signs = BundleSigns { signs, kind };
+    let mut models = Vec::new();
+    for model in condition.bundle(kind) {
+        models.push(Model {
+            dynamics: signs.turned(&model.dynamics)?,
+            ..model.clone()
+        });
+    }
+    Ok(models)
+}
+
+/// The signs of the channels in the models of a bundle.
+struct BundleSigns<'a> {
+    signs: &'a Signs,
+    kind: BundleKind,
+}
+
+impl BundleSigns<'_> {
+    /// Returns -1 for a channel with reversed sign, otherwise 1.
+    fn sign(&self, channel: Channel) -> f64 {
+        match self.signs.get(&channel) {
+            Some(role) if role.covers(self.kind) => -1.0,
+            _ => 1.0,
         }
-        Dynamics::Measured(response) => {
-            let sign = |pair: Pair| Channel::of(pair).into_iter().map(&sign).product::<f64>();
-            let values = response.values();
-            let re = values
-                .map(|pair, values| values.iter().map(|value| sign(pair) * value.re).collect());
-            let im = values
-                .map(|pair, values| values.iter().map(|value| sign(pair) * value.im).collect());
-            let turned = MeasuredResponse::new(
-                response.omega().to_vec(),
-                &re,
-                &im,
-                response.coherence().cloned(),
-            );
-            let turned = turned.and_then(|turned| turned.with_estimate(response.estimate()));
-            let turned = turned.map_err(|error| error.to_string())?;
-            Ok(Dynamics::Measured(match response.valid_bands() {
-                Some(bands) => turned
-                    .with_valid_bands(bands.clone())
-                    .map_err(|error| error.to_string())?,
-                None => turned,
-            }))
+    }
+
+    /// Returns the product of the signs of a response's two channels.
+    fn pair_sign(&self, pair: Pair) -> f64 {
+        let [output, input] = Channel::of(pair);
+        self.sign(output) * self.sign(input)
+    }
+
+    fn turned(&self, dynamics: &Dynamics) -> Result<Dynamics, String> {
+        match dynamics {
+            Dynamics::StateSpace(model) => {
+                let turned = self.turned_state_space(model);
+                turned
+                    .map(Dynamics::StateSpace)
+                    .map_err(|error| error.to_string())
+            }
+            Dynamics::Measured(response) => {
+                let turned = self.turned_response(response);
+                turned
+                    .map(Dynamics::Measured)
+                    .map_err(|error| error.to_string())
+            }
+        }
+    }
+
+    fn turned_state_space(&self, model: &StateSpace) -> Result<StateSpace, StateSpaceError> {
+        let mut b = model.b().clone();
+        let mut c = model.c().clone();
+        let mut d = model.d().clone();
+        for input in 0..model.inputs() {
+            let sign = self.sign(Channel::Input(input));
+            b.column_mut(input).scale_mut(sign);
+            d.column_mut(input).scale_mut(sign);
+        }
+        for output in 0..model.outputs() {
+            let sign = self.sign(Channel::Output(output));
+            c.row_mut(output).scale_mut(sign);
+            d.row_mut(output).scale_mut(sign);
+        }
+        StateSpace::new(model.a().clone(), b, c, d)?.timed(model.timing().clone())
+    }
+
+    fn turned_response(
+        &self,
+        response: &MeasuredResponse,
+    ) -> Result<MeasuredResponse, MeasuredResponseError> {
+        let values = response.values();
+        let re = values.map(|pair, values| {
+            let sign = self.pair_sign(pair);
+            values.iter().map(|value| sign * value.re).collect()
+        });
+        let im = values.map(|pair, values| {
+            let sign = self.pair_sign(pair);
+            values.iter().map(|value| sign * value.im).collect()
+        });
+        let turned = MeasuredResponse::new(
+            response.omega().to_vec(),
+            &re,
+            &im,
+            response.coherence().cloned(),
+        )?;
+        let turned = turned.with_estimate(response.estimate())?;
+        match response.valid_bands() {
+            Some(bands) => turned.with_valid_bands(bands.clone()),
+            None => Ok(turned),
         }
     }
 }

@@ -7,7 +7,7 @@ use gdcm_method::correction::Channel;
 use gdcm_model::dataset::measured_response::MeasuredResponse;
 use gdcm_model::dataset::{Condition, Dataset, Model};
 use gdcm_study::Execution;
-use gdcm_study::decisions::differences::Decisions;
+use gdcm_study::decisions::named_decisions::Decisions;
 use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::results::convention_doubt::Convention;
 use gdcm_study::stages::convention_check::doubts_of_models;

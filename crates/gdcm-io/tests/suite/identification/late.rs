@@ -42,7 +42,7 @@ fn late(mut channel: DVectorViewMut<'_, f64>) {
 }
 
 fn found(measured: &ResponseEstimate) -> Option<(ChannelSide, usize, f64)> {
-    let late = ChannelTimeSkew::of(measured, BAND, &Dynamics::StateSpace(stable_aircraft()))?;
+    let late = ChannelTimeSkew::find(measured, BAND, &Dynamics::StateSpace(stable_aircraft()))?;
     Some((late.role, late.index, late.delay_s))
 }
 
@@ -80,11 +80,11 @@ fn a_physics_model_that_is_wrong_otherwise_is_no_delay() {
     // The sign of an output.
     turned.row_mut(1).neg_mut();
     assert_eq!(
-        ChannelTimeSkew::of(&clean, BAND, &with(of.a().clone(), turned)),
+        ChannelTimeSkew::find(&clean, BAND, &with(of.a().clone(), turned)),
         None
     );
     assert_eq!(
-        ChannelTimeSkew::of(&clean, BAND, &with(of.a() * 1.6, of.c().clone())),
+        ChannelTimeSkew::find(&clean, BAND, &with(of.a() * 1.6, of.c().clone())),
         None
     );
 }

@@ -6,8 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use gdcm_model::executor::{Executor, Sequential, each};
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 
-/// Runs the pieces of one analysis, checks for cancellation between two of them, and reports
-/// progress.
+/// Runs an analysis's pieces, checks for cancellation between two of them, and reports progress.
 pub struct Execution<'a> {
     executor: &'a dyn Executor,
     progress: &'a dyn Progress,
@@ -16,7 +15,7 @@ pub struct Execution<'a> {
 }
 
 impl<'a> Execution<'a> {
-    /// Creates the execution of an analysis with `total` steps.
+    /// Creates an analysis's execution with `total` steps.
     pub fn new(executor: &'a dyn Executor, progress: &'a dyn Progress, total: usize) -> Self {
         Self {
             executor,
@@ -31,12 +30,12 @@ impl<'a> Execution<'a> {
         Execution::new(&Sequential, &Unobserved, 0)
     }
 
-    /// Returns the observer of the progress.
+    /// Returns the progress observer.
     pub(crate) fn progress(&self) -> &'a dyn Progress {
         self.progress
     }
 
-    /// Returns the executor of the pieces.
+    /// Returns the pieces' executor.
     pub(crate) fn executor(&self) -> &'a dyn Executor {
         self.executor
     }
@@ -65,7 +64,7 @@ impl<'a> Execution<'a> {
         .ok_or(Cancelled)
     }
 
-    /// Runs one piece of work; `None` after cancellation.
+    /// Runs a piece of work; `None` after cancellation.
     fn piece<T>(&self, steps: usize, work: impl FnOnce() -> T) -> Option<T> {
         if self.progress.cancelled() {
             return None;

@@ -1,4 +1,4 @@
-//! Remarks on the result of a condition, identical in the window and in a terminal.
+//! Remarks on a condition's result, identical in the window and in a terminal.
 
 use gdcm_method::correction::sensitivity::{kkt_residual, sensitivities};
 use gdcm_method::schedule::Schedule;
@@ -284,10 +284,10 @@ fn needed_lead_remark(study: &Study, result: &ConditionAnalysis, held: usize) ->
     Some(Remark::caution("needs-lead", text).repeated(Repeated::NeedsLead(needed)))
 }
 
-/// Lists the details of the solution: other minima, the error at the top of the band due to each
-/// missed delay, and the cost of the constrained responses and the active bounds.
+/// Lists the solution's details: other minima, the error at the top of the band due to each missed
+/// delay, and the cost of the constrained responses and the active bounds.
 pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
-    /// Share of the objective below which the cost of a constraint is negligible.
+    /// Share of the objective below which a constraint's cost is negligible.
     const NOTABLE: f64 = 1e-3;
     let (inputs, outputs) = study.dataset.names_of_channels();
     let mut details = vec![result.gains.proof.outcome.words()];

@@ -1,4 +1,4 @@
-//! Sentences about apparent differences of sign and unit between the two bundles.
+//! Sentences about apparent sign and unit differences between the two bundles.
 
 use std::f64::consts::PI;
 

@@ -25,8 +25,8 @@ const MOST_REPORTED: usize = 3;
 /// Shares below this are negligible.
 const NOTHING: f64 = 0.005;
 
-/// Returns the remarks on the couplings of an analysis: why there are none, or their meaning,
-/// benefit and cost, as far as requested.
+/// Returns the remarks on an analysis's couplings: why there are none, or their meaning, benefit
+/// and cost, as far as requested.
 pub fn analysis_coupling_remarks(analysis: &Analysis) -> Vec<Remark> {
     match (analysis.asked_couplings(), &analysis.coupling_assessment) {
         (Err(why), _) => vec![no_couplings(&why)],
@@ -90,7 +90,7 @@ fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<String>
     words
 }
 
-/// Names the source of the deciding costs.
+/// Names the deciding costs' source.
 fn cost_source(assessment: &CouplingsAssessment) -> &'static str {
     if assessment.costs.left_out.is_some() {
         "conditions left out"
@@ -147,8 +147,8 @@ pub fn coupling_offer(assessment: &CouplingsAssessment) -> Option<String> {
     ))
 }
 
-/// Describes the effect of the couplings above the band, the pole shifts in it, and the meaning of
-/// the error bars.
+/// Describes the effect of the couplings above the band, the pole shifts in it, and the error bars'
+/// meaning.
 fn price(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     let mut remarks = Vec::new();
     if let Some(text) = above_band_words(assessment, dataset) {
@@ -422,7 +422,7 @@ fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare) -> String {
     )
 }
 
-/// Names the physical meaning of a feedback entry, by the unit of its output.
+/// Names the physical meaning of a feedback entry, by its output's unit.
 fn feedback_meaning(dataset: &Dataset, feedback: &FeedbackShare) -> &'static str {
     let is_on_axis = |output: usize| dataset.on_axis()[Pair::new(output, feedback.input)];
     if !is_on_axis(feedback.output) {
@@ -471,7 +471,7 @@ fn unstable_places(poles: &[&UnstablePole]) -> String {
     places.join("; ")
 }
 
-/// Locates the unstable poles of one condition: "condition 1, 8 models at 0.143 to 0.149 rad/s".
+/// Locates the unstable poles of a condition: "condition 1, 8 models at 0.143 to 0.149 rad/s".
 fn unstable_place(condition: ConditionId, poles: &[&UnstablePole]) -> String {
     let moduli: Vec<f64> = poles.iter().map(|pole| pole.pole.norm()).collect();
     let least = telling(moduli.iter().copied().fold(f64::INFINITY, f64::min), 3);

@@ -59,7 +59,7 @@ pub fn lead_words(
     words
 }
 
-/// Describes the lead or delay that a response wants, and the parts of its two channels.
+/// Describes the lead or delay that a response wants, and its two channels' parts.
 fn wanted_lead_words(
     study: &Study,
     result: &ConditionAnalysis,
@@ -96,7 +96,7 @@ fn wanted_lead_words(
     Some(text)
 }
 
-/// Formats the size of a delay in milliseconds.
+/// Formats a delay's size in milliseconds.
 fn whole_ms(tau_s: f64) -> String {
     telling(s_to_ms(tau_s.abs()), 0)
 }
@@ -165,7 +165,7 @@ pub(crate) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Rem
     remarks
 }
 
-/// Reports J of the constrained responses without and with leads, where leads would help.
+/// Reports J over the constrained responses without and with leads, where leads would help.
 fn offered_leads(result: &ConditionAnalysis) -> Option<Remark> {
     let offer = result.offer?;
     let without = telling(offer.without, 0);

@@ -26,7 +26,7 @@ pub struct Remark {
     pub text: String,
     /// The response to consider ignoring in the objective.
     pub ignore: Option<Pair>,
-    /// The correction of the phase to consider instead of the present one.
+    /// The phase correction to consider instead of the present one.
     pub phase: Option<PhaseCorrection>,
     /// The channel whose sign can be reversed, or restored (`None` as the role), at once.
     pub turn: Option<(Channel, Option<SignRole>)>,
@@ -46,7 +46,7 @@ pub enum Repeated {
     Farther(Vec<Pair>),
     /// Greatest gain increase within the band by the lead filters \[dB\], and its response.
     RaisedGain(String, Pair),
-    /// Mean J of the constrained responses without leads, and with them.
+    /// Mean J over the constrained responses without leads, and with them.
     LeadsOffered([String; 2]),
 }
 

@@ -22,7 +22,7 @@ use gdcm_study::results::time_histories::TimeHistories;
 use crate::table::Table;
 use crate::time_histories::{cost_cells, cost_heads, output_weights_text, percent_rounded_down};
 
-/// Heading of the modulus of a pole.
+/// Heading of a pole's modulus.
 const MODULUS: &str = "|\u{3bb}| [rad/s]";
 
 /// Tabulates bandwidth and phase delay of every on-axis response of every condition and model, with
@@ -89,8 +89,8 @@ fn bandwidth_remark(finding: &BandwidthFinding) -> String {
     words.join("; ")
 }
 
-/// Tabulates the modes of a condition: identified, of the physics representative, and with the
-/// couplings of the study where there are any.
+/// Tabulates a condition's modes: identified, of the physics representative, and with the study's
+/// couplings where there are any.
 pub fn mode_table(requirements: &Requirements, condition: ConditionId) -> Table {
     let modes: Vec<&ModeFinding> = requirements
         .modes
@@ -277,7 +277,7 @@ pub struct RequirementsOverview {
     outside: Vec<Vec<bool>>,
 }
 
-/// Columns that identify the requirement of a row.
+/// Columns that identify a row's requirement.
 const HEADS: [&str; 3] = ["requirement", "unit", "limit"];
 
 /// A requirement in the overview, with its unit and its limit.
@@ -460,8 +460,8 @@ fn modes_outside(requirements: &Requirements, id: ConditionId) -> Option<Judged>
         if mode.condition != id {
             continue;
         }
-        // Gains and delays move no pole: without couplings the corrected model has the poles of the
-        // physics model.
+        // Gains and delays move no pole: without couplings the corrected model has the physics
+        // model's poles.
         match mode.corrected_verdict.unwrap_or(mode.verdict) {
             ModeVerdict::Within => within += 1,
             ModeVerdict::Outside => outside += 1,

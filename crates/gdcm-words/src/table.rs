@@ -8,7 +8,7 @@ use gdcm_model::units::without_sign_of_zero;
 pub struct Table {
     /// Title in words.
     pub title: String,
-    /// The heading of each column, with its unit.
+    /// Each column's heading, with its unit.
     pub columns: Vec<String>,
     /// The rows, with one cell for each column; a cell without a value is empty.
     pub rows: Vec<Vec<String>>,
@@ -64,7 +64,7 @@ impl Table {
         text
     }
 
-    /// Returns the width of a column in characters, with its heading.
+    /// Returns a column's width in characters, with its heading.
     fn width(&self, column: usize) -> usize {
         std::iter::once(&self.columns)
             .chain(&self.rows)
@@ -94,9 +94,9 @@ struct TextColumn {
 }
 
 impl TextColumn {
-    /// Pads a cell to the width of the column.
+    /// Pads a cell to the column's width.
     fn aligned(&self, cell: &str) -> String {
-        // Not by the width of a format string, which is limited to 65535.
+        // Not by a format string's width, which is limited to 65535.
         let padding = " ".repeat(self.width - cell.chars().count());
         if self.is_numeric {
             format!("{padding}{cell}")

@@ -88,8 +88,8 @@ pub fn history_cost_table(histories: &TimeHistories) -> Table {
     table
 }
 
-/// Tabulates the records of a condition against every tolerance: largest excess of each model, and
-/// its time. Rows where every model is inside throughout, and off-axis has the correct trend, are
+/// Tabulates a condition's records against every tolerance: largest excess of each model, and its
+/// time. Rows where every model is inside throughout, and off-axis has the correct trend, are
 /// omitted and counted.
 pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table {
     let mut columns = ["record", "quantity"].map(str::to_owned).to_vec();
@@ -137,7 +137,7 @@ pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table 
     table
 }
 
-/// Returns the finding of the model of a role in one row of the tolerances.
+/// Returns the finding of a role's model in a row of the tolerances.
 fn finding_of_role<'a>(
     models: &[&'a HistoryFinding],
     role: RequirementRole,
@@ -154,7 +154,7 @@ fn is_exceptional(finding: &ToleranceFinding) -> bool {
     finding.largest_excess > 0.0 || finding.trend == Some(Trend::Opposite)
 }
 
-/// Describes the weights of the outputs in `J_rms`, and the outputs excluded from it.
+/// Describes the outputs' weights in `J_rms`, and the outputs excluded from it.
 pub fn output_weights_text(histories: &TimeHistories) -> String {
     let mut excluded: BTreeSet<&str> = BTreeSet::new();
     for finding in &histories.records {
@@ -186,7 +186,7 @@ fn excess_words(finding: &ToleranceFinding) -> String {
     words.join("; ")
 }
 
-/// Tabulates one record: share of time inside, largest excess and its time, for each quantity and
+/// Tabulates a record: share of time inside, largest excess and its time, for each quantity and
 /// model; off-axis, also whether the trend is correct.
 pub fn record_history_table(history: &RecordHistory) -> Table {
     let columns = [

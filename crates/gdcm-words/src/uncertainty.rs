@@ -1,4 +1,4 @@
-//! Sentences and tables about the uncertainty of the figures (M13).
+//! Sentences and tables about the figures' uncertainty (M13).
 
 use gdcm_method::uncertainty::{Scalar, VarianceDecomposition};
 use gdcm_model::dataset::Dataset;
@@ -106,7 +106,7 @@ fn probability(p: Option<f64>) -> String {
 }
 
 /// Tabulates the differences of net gains at equal airspeed, largest multiple of the expected
-/// difference first, with the difference of each row.
+/// difference first, with each row's difference.
 pub fn difference_table(
     dataset: &Dataset,
     uncertainty: &Uncertainty,
@@ -176,7 +176,7 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
     table
 }
 
-/// Tabulates the components of the scatter of each on-axis net gain.
+/// Tabulates the scatter components of each on-axis net gain.
 pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
     let columns = [
         "response",

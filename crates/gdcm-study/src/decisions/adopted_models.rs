@@ -7,7 +7,7 @@ use gdcm_sysid::identification::Identification;
 
 use super::edit_refusal::EditRefusal;
 
-/// Selection of the models of an identification.
+/// Selection of an identification's models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OfferedModels {
     /// The refined model, its neighbours in order, and the models without each record (M14, section

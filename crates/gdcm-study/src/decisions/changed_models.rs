@@ -15,12 +15,12 @@ use super::signs::{SignRole, Signs, TurnedChannel, turned};
 use super::study::Study;
 
 impl Study {
-    /// Returns the dataset of the file, without adopted models and reversed signs.
+    /// Returns the file's dataset, without adopted models and reversed signs.
     pub fn file_dataset(&self) -> &Arc<Dataset> {
         self.file.as_ref().unwrap_or(&self.dataset)
     }
 
-    /// Returns the models adopted instead of those of the file, condition by condition.
+    /// Returns the models adopted instead of the ones in the file, condition by condition.
     pub fn taken_models(&self) -> impl Iterator<Item = (ConditionId, &Arc<AdoptedModels>)> {
         self.taken.iter().map(|(id, models)| (*id, models))
     }
@@ -36,7 +36,7 @@ impl Study {
         self.rebuild(models, self.signs.clone())
     }
 
-    /// Restores the models of the file in a condition.
+    /// Restores the file's models in a condition.
     pub(crate) fn return_models(&mut self, condition: ConditionId) -> Result<(), EditRefusal> {
         let mut models = self.taken.clone();
         models.remove(&condition);
@@ -58,8 +58,7 @@ impl Study {
         self.rebuild(self.taken.clone(), signs)
     }
 
-    /// Returns the dataset of the file with these models in its conditions, then with reversed
-    /// signs.
+    /// Returns the file's dataset with these models in its conditions, then with reversed signs.
     fn rebuild(
         &mut self,
         models: BTreeMap<ConditionId, Arc<AdoptedModels>>,

@@ -1,4 +1,4 @@
-//! The engineer's choices among the models of a condition.
+//! The engineer's choices among a condition's models.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::BundleKind;
 
-/// The engineer's choices in one bundle.
+/// The engineer's choices in a bundle.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct BundleChoice {
     /// Names of the rejected models.
@@ -27,7 +27,7 @@ impl BundleChoice {
     }
 }
 
-/// The engineer's choices in one condition.
+/// The engineer's choices in a condition.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct ConditionChoice {
     pub physics: BundleChoice,
@@ -80,12 +80,12 @@ impl ConditionChoice {
         self.scheduled && !self.held_out
     }
 
-    /// Returns the choices in one bundle.
+    /// Returns the choices in a bundle.
     pub fn bundle(&self, kind: BundleKind) -> &BundleChoice {
         kind.pick(&self.physics, &self.identified)
     }
 
-    /// Returns the choices in one bundle, mutable.
+    /// Returns the choices in a bundle, mutable.
     pub fn bundle_mut(&mut self, kind: BundleKind) -> &mut BundleChoice {
         kind.pick(&mut self.physics, &mut self.identified)
     }

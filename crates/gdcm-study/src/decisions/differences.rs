@@ -46,7 +46,7 @@ pub enum Difference {
 pub struct Inventory(pub Vec<ConditionInventory>);
 
 impl Inventory {
-    /// Takes the inventory of a dataset.
+    /// Takes a dataset's inventory.
     pub fn of(dataset: &Dataset) -> Self {
         let conditions = dataset.conditions().iter();
         Self(
@@ -82,7 +82,7 @@ impl Inventory {
     }
 }
 
-/// The models of a condition: name, and fingerprint of the numbers, the bands and the trim.
+/// A condition's models: name, and fingerprint of the numbers, the bands and the trim.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConditionInventory {
     pub id: ConditionId,
@@ -108,7 +108,7 @@ impl ConditionInventory {
         }
     }
 
-    /// Returns the models of a bundle.
+    /// Returns a bundle's models.
     pub fn bundle(&self, kind: BundleKind) -> &BTreeMap<String, String> {
         kind.pick(&self.physics, &self.identified)
     }

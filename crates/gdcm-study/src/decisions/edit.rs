@@ -22,7 +22,7 @@ pub enum Edit {
         model: ModelId,
         reason: String,
     },
-    /// Sets the reason of a rejection; an empty reason removes it.
+    /// Sets a rejection's reason; an empty reason removes it.
     SetReason(ModelId, String),
     Restore(ModelId),
     /// Restores every rejected model of a condition, in both bundles.

@@ -63,7 +63,7 @@ pub enum EditRefusal {
     NoResponse { pair: Pair },
 }
 
-/// Checks the length of a text in characters.
+/// Checks a text's length in characters.
 pub(crate) fn check_length(what: &'static str, text: &str, most: usize) -> Result<(), EditRefusal> {
     let found = text.chars().count();
     if found > most {

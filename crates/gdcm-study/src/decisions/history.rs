@@ -3,7 +3,7 @@
 use super::edit::Edit;
 use super::study::Study;
 
-/// Greatest number of steps; a snapshot takes a few kilobytes, because the models are shared.
+/// Most steps; a snapshot takes a few kilobytes, because the models are shared.
 const MOST_STEPS: usize = 500;
 
 /// One decision that can be undone or redone.
@@ -14,7 +14,7 @@ struct Step<B> {
     beside: B,
 }
 
-/// Undo history: whole studies, each with the label of the decision between it and the next.
+/// Undo history: whole studies, each with the decision's label between it and the next.
 ///
 /// `B` is state outside the study that a step changes: its value on the other side of the step,
 /// which undo and redo exchange for the present value. Decisions about the study alone use

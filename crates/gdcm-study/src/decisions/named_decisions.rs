@@ -21,7 +21,7 @@ use super::study::{Study, Variant};
 pub struct Decisions {
     pub settings: Settings<ResponseNames>,
     pub choices: BTreeMap<ConditionId, ConditionChoice>,
-    /// Models adopted instead of those of the file.
+    /// Models adopted instead of the ones in the file.
     pub taken: Vec<(ConditionId, Arc<AdoptedModels>)>,
     /// The channels with reversed sign.
     pub signs: Vec<TurnedChannel>,
@@ -31,7 +31,7 @@ pub struct Decisions {
 }
 
 impl Decisions {
-    /// Collects the decisions of a study.
+    /// Collects a study's decisions.
     pub fn of(study: &Study) -> Self {
         let mut variants = Vec::new();
         for variant in &study.variants {

@@ -11,7 +11,7 @@ use gdcm_model::units::number;
 
 use super::settings::is_default;
 
-/// Settings of the requirements; an omitted part has its default.
+/// Requirement settings; an omitted part has its default.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RequirementSettings {
@@ -91,7 +91,7 @@ impl OverviewLimits {
 }
 
 impl RequirementSettings {
-    /// Returns the command type of an axis, by the name of its output.
+    /// Returns the command type of an axis, by its output's name.
     pub fn command_of(&self, output: &str) -> CommandType {
         if self.attitude_command.contains(output) {
             CommandType::Attitude

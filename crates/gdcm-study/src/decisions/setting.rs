@@ -1,6 +1,6 @@
-//! The table of settings: name, key in files, command-line option, allowed values and window
-//! control of each. Undo, comparisons of decisions, refusals, the report, the command line and the
-//! window read it.
+//! The settings table: name, key in files, command-line option, allowed values and window control
+//! of each. Undo, comparisons of decisions, refusals, the report, the command line and the window
+//! read it.
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};
@@ -51,7 +51,7 @@ impl Setting {
         }
     }
 
-    /// Sets the value of the option without an argument.
+    /// Sets the option's value without an argument.
     const fn bare(self, word: &'static str) -> Self {
         Self {
             bare: Some(word),
@@ -121,8 +121,7 @@ const fn choice(
     Kind::Choice { words, get, set }
 }
 
-/// Weight of the regularisation of the output gains, eq. (7); beyond its range the optimum is
-/// constant.
+/// Regularisation weight for the output gains, eq. (7); beyond its range the optimum is constant.
 pub static ALPHA_GAIN: Setting = row(
     ["α of the gains", "alpha_gain", "--alpha"],
     "Weight that keeps the output gains, eq. (7), near 1; 0 is the limit α → 0",
@@ -134,7 +133,7 @@ pub static ALPHA_GAIN: Setting = row(
 )
 .at(Place::Slider, "α gains", "α gains");
 
-/// Weight of the regularisation of the output delays, eq. (11), or of all signed delays (M15.4).
+/// Regularisation weight for the output delays, eq. (11), or for all signed delays (M15.4).
 pub static ALPHA_DELAY: Setting = row(
     ["α of the delays", "alpha_delay", "--alpha-delay"],
     "Weight that keeps the output delays, eq. (11), or all signed delays (M15) near 0; 0 is the limit α → 0",
@@ -142,7 +141,7 @@ pub static ALPHA_DELAY: Setting = row(
 )
 .at(Place::Slider, "α delays", "α delays");
 
-/// Correction of the phase.
+/// Phase correction.
 pub static PHASE: Setting = row(
     ["phase correction", "phase", "--phase"],
     "How the phase is corrected: not at all, by delays, or by a delay or a lead filter a channel",
@@ -266,7 +265,7 @@ pub static BAND: Setting = row(
 .unit("rad/s", "rad/s", 1.0)
 .at(Place::Line, "Band", "Band");
 
-/// Number of frequencies in the band.
+/// Frequency count in the band.
 pub static POINTS: Setting = row(
     ["number of frequencies", "points", "--points"],
     "Number of logarithmically spaced frequencies in the band",
@@ -413,7 +412,7 @@ pub static GAIN_SOURCE: Setting = row(
 )
 .at(Place::Line, "G from", "Source of G");
 
-/// Level of every error bar, interval and test.
+/// Level of all error bars, interval and test.
 pub static LEVEL: Setting = row(
     ["confidence level", "error_bars.level", "--level"],
     "Level of every error bar, interval and test",
@@ -427,7 +426,7 @@ pub static LEVEL: Setting = row(
 .at(Place::Line, "Confidence level", "Confidence level")
 .digits(0.5, Digits::Decimals(1));
 
-/// Greatest number of degrees of freedom that a condition's identification part borrows.
+/// Most degrees of freedom that a condition's identification part borrows.
 pub static POOLING: Setting = row(
     ["pooling (degrees of freedom borrowed)", "error_bars.prior_degrees", "--pooling"],
     "Degrees of freedom that a condition's identification part borrows from the other conditions at most; 0 trusts the condition \
@@ -437,7 +436,7 @@ pub static POOLING: Setting = row(
 .at(Place::Beside, "pooling", "Pooling (degrees of freedom borrowed)")
 .digits(0.1, Digits::Significant);
 
-/// Least coherence of a frequency with weight.
+/// Least coherence at a frequency with weight.
 pub static COHERENCE: Setting = row(
     ["coherence threshold", "coherence_threshold", "--coherence"],
     "Least coherence γ² of measured responses that is used: off, on, or the least (on is 0.6); off: every frequency counts alike",

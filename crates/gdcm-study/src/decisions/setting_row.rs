@@ -1,4 +1,4 @@
-//! Rows of the table of settings, and their operations: setting, checking, formatting and parsing a
+//! Rows in the settings table, and their operations: setting, checking, formatting and parsing a
 //! value.
 
 use gdcm_method::correction::delta::GainSource;
@@ -115,7 +115,7 @@ pub enum Digits {
 /// Place of the control of a setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// Above the table of settings, with a slider.
+    /// Above the settings table, with a slider.
     Slider,
     /// Above the table, on its own line.
     Top,
@@ -123,7 +123,7 @@ pub enum Place {
     Line,
     /// On the line of the setting before it.
     Beside,
-    /// In the view of its subject.
+    /// In its subject's view.
     Elsewhere,
 }
 

@@ -22,11 +22,11 @@ const DEFAULT_AGREEMENT_DB: f64 = 0.05;
 /// Default least coherence of a frequency with weight (M4a).
 pub const DEFAULT_COHERENCE: f64 = 0.6;
 
-/// Correction of the phase.
+/// Phase correction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PhaseCorrection {
-    /// No correction of the phase: gains alone.
+    /// No phase correction: gains alone.
     None,
     /// By delays (the paper, M9).
     #[default]
@@ -119,10 +119,9 @@ pub struct Settings<R = PairTable<bool>> {
     /// Number of logarithmically spaced frequencies in the band, both ends included (M2).
     #[serde(deserialize_with = "whole")]
     pub points: usize,
-    /// Weight of the regularisation of the output gains, eq. (7).
+    /// Regularisation weight for the output gains, eq. (7).
     pub alpha_gain: f64,
-    /// Weight of the regularisation of the output delays, eq. (11), or of all signed delays
-    /// (M15.4).
+    /// Regularisation weight for the output delays, eq. (11), or for all signed delays (M15.4).
     pub alpha_delay: f64,
     /// Quantile that sets the bounds, and its complement (M7).
     pub quantile: f64,
@@ -132,17 +131,17 @@ pub struct Settings<R = PairTable<bool>> {
     pub ignored: R,
     /// Average over frequency in J: the median (the paper) or the mean (Tischler) (M4).
     pub cost_average: CostAverage,
-    /// Least coherence of a frequency with weight, where the reference is measured with coherence,
+    /// Least coherence at a frequency with weight, where the reference is measured with coherence,
     /// which then weights J, G and D too; `None`: coherence is not used (M4a).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coherence_threshold: Option<f64>,
     /// Objective of the gains.
     pub gain_objective: GainObjective,
-    /// Manual bounds of every channel gain, instead of the quantiles.
+    /// Manual bounds on every channel gain, instead of the quantiles.
     pub gain_bounds: Option<GainBounds>,
-    /// Manual upper bound of every channel delay \[s\], instead of the quantile.
+    /// Manual upper bound on every channel delay \[s\], instead of the quantile.
     pub delay_upper_s: Option<f64>,
-    /// Correction of the phase (M9, M15).
+    /// Phase correction (M9, M15).
     #[serde(default)]
     pub phase: PhaseCorrection,
     /// The D that the delays are fitted to (M15.2).

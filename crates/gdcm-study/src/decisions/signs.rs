@@ -17,9 +17,9 @@ use super::edit_refusal::EditRefusal;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SignRole {
-    /// The models of the identified bundles.
+    /// The identified bundles' models.
     Identified,
-    /// The models of the physics bundles.
+    /// The physics bundles' models.
     Physics,
     All,
 }
@@ -46,7 +46,7 @@ impl SignRole {
         }
     }
 
-    /// Returns whether the sign is reversed in the models of a bundle.
+    /// Returns whether the sign is reversed in a bundle's models.
     pub fn covers(self, kind: BundleKind) -> bool {
         self == Self::All || self == kind.pick(Self::Physics, Self::Identified)
     }
@@ -125,7 +125,7 @@ fn turned_models(
     Ok(models)
 }
 
-/// The signs of the channels in the models of a bundle.
+/// The channels' signs in a bundle's models.
 struct BundleSigns<'a> {
     signs: &'a Signs,
     kind: BundleKind,

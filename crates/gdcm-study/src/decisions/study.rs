@@ -23,9 +23,9 @@ pub struct Study {
     pub variants: Vec<Arc<Variant>>,
     /// The channels with reversed sign; `dataset` already contains the reversal.
     pub signs: Signs,
-    /// Settings of the requirements. No correction depends on them.
+    /// Requirement settings. No correction depends on them.
     pub requirements: Arc<RequirementSettings>,
-    /// Models adopted instead of those of the dataset's file; `dataset` contains them.
+    /// Models adopted instead of the ones in the dataset's file; `dataset` contains them.
     pub(crate) taken: BTreeMap<ConditionId, Arc<AdoptedModels>>,
     /// The dataset as in its file, where models are adopted or reversed.
     pub(crate) file: Option<Arc<Dataset>>,
@@ -53,7 +53,7 @@ impl PartialEq for Study {
 }
 
 impl Study {
-    /// Creates the study of a dataset, before any decision.
+    /// Creates a dataset's study, before any decision.
     pub fn new(dataset: Arc<Dataset>) -> Self {
         let settings = Settings::of(&dataset);
         let choices = dataset
@@ -72,8 +72,8 @@ impl Study {
         }
     }
 
-    /// Returns the choices in one condition; empty choices for a condition that the dataset does
-    /// not have.
+    /// Returns the choices in a condition; empty choices for a condition that the dataset does not
+    /// have.
     pub fn choice(&self, condition: ConditionId) -> &ConditionChoice {
         static NONE: LazyLock<ConditionChoice> = LazyLock::new(ConditionChoice::default);
         self.choices.get(&condition).unwrap_or(&NONE)
@@ -96,7 +96,7 @@ impl Study {
             .map(String::as_str)
     }
 
-    /// Returns the names of the rejected models of one condition in file order, the physics bundle
+    /// Returns the names of the rejected models of a condition in file order, the physics bundle
     /// first.
     pub fn rejected_names(&self, condition: ConditionId) -> Vec<&str> {
         let of = |kind| {

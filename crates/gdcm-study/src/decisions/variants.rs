@@ -1,4 +1,4 @@
-//! Variants: alternative decisions about the dataset of a study, stored under names.
+//! Variants: alternative decisions about a study's dataset, stored under names.
 
 use std::sync::Arc;
 

@@ -21,7 +21,7 @@ use crate::stages::coupling_costs::with_couplings;
 use crate::stages::engine::Engine;
 use crate::stages::optima::solved;
 
-/// The complete proof of equation (7) for one condition, where the live answer's budget was too
+/// The complete proof of equation (7) for a condition, where the live answer's budget was too
 /// small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProofJob {
@@ -37,7 +37,7 @@ impl Job for ProofJob {
     }
 }
 
-/// Cost of constraining or releasing each response of one condition.
+/// Cost of constraining or releasing each response of a condition.
 #[derive(Clone, Debug)]
 pub struct TogglesJob {
     pub condition: ConditionAnalysis,
@@ -100,14 +100,14 @@ pub struct Toggles {
 }
 
 impl Toggles {
-    /// Returns the toggles of one response: of its gain and of its delay.
+    /// Returns a response's toggles: of its gain and of its delay.
     pub fn of_pair(&self, pair: Pair) -> (Option<&Toggle>, Option<&Toggle>) {
         let gain = self.gains.iter().find(|toggle| toggle.pair == pair);
         (gain, self.delays.iter().find(|toggle| toggle.pair == pair))
     }
 }
 
-/// The analysis of a variant ([`Study::of_variant`]), beside the live answer.
+/// A variant's analysis ([`Study::of_variant`]), beside the live answer.
 #[derive(Clone, Debug)]
 pub struct VariantJob {
     pub study: Study,

@@ -1,4 +1,4 @@
-//! Jobs for drawing: responses of the models of a condition, responses over the conditions, modes.
+//! Jobs for drawing: responses of a condition's models, responses over the conditions, modes.
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ use crate::shared::Shared;
 use crate::stages::condition_curves::ConditionCurves;
 use crate::stages::engine::Engine;
 
-/// The frequency responses of every model of one condition, for drawing.
+/// The frequency responses of every model of a condition, for drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvesJob {
     pub dataset: Shared<Dataset>,
@@ -38,7 +38,7 @@ impl Job for CurvesJob {
     }
 }
 
-/// The modes of every model of one condition.
+/// The modes of every model of a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModesJob {
     pub condition: Shared<Condition>,
@@ -53,7 +53,7 @@ impl Job for ModesJob {
     }
 }
 
-/// The responses of selected models, from any condition of the dataset, on one grid.
+/// The responses of selected models, from any condition of the dataset, on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossJob {
     pub dataset: Shared<Dataset>,
@@ -73,7 +73,7 @@ pub struct AcrossCurves {
 }
 
 impl AcrossJob {
-    /// Returns the job for the model of a role in every condition that has one.
+    /// Returns the job for a role's model in every condition that has one.
     pub fn of(
         dataset: &Arc<Dataset>,
         analysis: Option<&Analysis>,
@@ -143,7 +143,7 @@ impl AcrossRole {
         Self::Identified,
     ];
 
-    /// Returns the name of the role.
+    /// Returns the role's name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Nominal => "nominal",
@@ -184,7 +184,7 @@ impl AcrossRole {
     }
 }
 
-/// The modes of one model; an error for a measured response.
+/// A model's modes; an error for a measured response.
 pub type ModelModes = Result<Vec<Mode>, ModesError>;
 
 /// The modes of every model of a condition, in file order.
@@ -197,7 +197,7 @@ pub struct ConditionModes {
 }
 
 impl ConditionModes {
-    /// Computes the modes of every model, model by model; each is a step.
+    /// Computes every model's modes, model by model; each is a step.
     ///
     /// # Errors
     /// [`Cancelled`] between two models, where `progress` requests it.
@@ -215,7 +215,7 @@ impl ConditionModes {
         })
     }
 
-    /// Returns the modes of one bundle.
+    /// Returns a bundle's modes.
     pub fn bundle(&self, kind: BundleKind) -> &[ModelModes] {
         kind.pick(&self.physics, &self.identified)
     }

@@ -24,10 +24,10 @@ pub enum NothingToIdentify {
     AllHeldOut,
 }
 
-/// Records, and the options of an identification.
+/// Records, and an identification's options.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IdentificationRequest {
-    /// The records, in the units of the channels.
+    /// The records, in the channels' units.
     pub records: Shared<[FlightRecord]>,
     pub options: Options,
 }
@@ -93,7 +93,7 @@ pub struct IdentificationNews {
     pub duration_s: Option<f64>,
 }
 
-/// Identification of one condition's models from its flight records.
+/// Identification of a condition's models from its flight records.
 #[derive(Clone, Debug)]
 pub struct IdentifyJob {
     pub condition: ConditionId,
@@ -103,7 +103,7 @@ pub struct IdentifyJob {
 }
 
 impl IdentifyJob {
-    /// Creates the job of this request.
+    /// Creates this request's job.
     pub fn new(condition: ConditionId, request: IdentificationRequest) -> Self {
         Self {
             condition,
@@ -154,7 +154,7 @@ impl Progress for NewsProgress<'_> {
 }
 
 impl Job for IdentifyJob {
-    /// Executor of the pieces.
+    /// Runs the pieces.
     type Tools = Box<dyn Executor>;
     type Output = Result<Arc<Identification>, IdentificationError>;
 
@@ -179,7 +179,7 @@ impl Job for IdentifyJob {
     }
 }
 
-/// Simulation of a model with the inputs of a flight record (M14, section 6).
+/// Simulation of a model with a flight record's inputs (M14, section 6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationJob {
     pub record: Shared<FlightRecord>,
@@ -189,7 +189,7 @@ pub struct SimulationJob {
 }
 
 impl Job for SimulationJob {
-    /// Executor of the pieces.
+    /// Runs the pieces.
     type Tools = Box<dyn Executor>;
     /// Error: the reason in words.
     type Output = Result<Arc<Validation>, String>;

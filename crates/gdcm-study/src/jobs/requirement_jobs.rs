@@ -21,19 +21,19 @@ use crate::results::time_histories::{
 use crate::results::uncertainty::Uncertainty;
 use crate::shared::Shared;
 
-/// Requirements on the models of an analysis, with error bars where they are known.
+/// Requirements on an analysis's models, with error bars where they are known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementsJob {
     pub analysis: Shared<Analysis>,
     /// Error bars of its values.
     pub uncertainty: Option<Shared<Uncertainty>>,
-    /// Settings of the requirements, on which the analysis does not depend.
+    /// Requirement settings, on which the analysis does not depend.
     pub settings: Arc<RequirementSettings>,
     pub known: KnownPoles,
 }
 
 impl Job for RequirementsJob {
-    /// Executor of the pieces.
+    /// Runs the pieces.
     type Tools = Box<dyn Executor>;
     type Output = Arc<Requirements>;
 
@@ -52,7 +52,7 @@ impl Job for RequirementsJob {
     }
 }
 
-/// Comparison of records with the models of an analysis.
+/// Comparison of records with an analysis's models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeHistoriesJob {
     pub analysis: Shared<Analysis>,
@@ -61,7 +61,7 @@ pub struct TimeHistoriesJob {
 }
 
 impl Job for TimeHistoriesJob {
-    /// Executor of the pieces.
+    /// Runs the pieces.
     type Tools = Box<dyn Executor>;
     type Output = Arc<TimeHistories>;
 
@@ -78,7 +78,7 @@ impl Job for TimeHistoriesJob {
     }
 }
 
-/// Comparison of one record of a condition with the tolerances of the study.
+/// Comparison of a record of a condition with the study's tolerances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordHistoryJob {
     pub analysis: Shared<Analysis>,
@@ -90,7 +90,7 @@ pub struct RecordHistoryJob {
 }
 
 impl Job for RecordHistoryJob {
-    /// Executor of the pieces.
+    /// Runs the pieces.
     type Tools = Box<dyn Executor>;
     /// Error: the reason in words.
     type Output = Result<Arc<RecordHistory>, String>;
@@ -114,7 +114,7 @@ impl Job for RecordHistoryJob {
     }
 }
 
-/// Simulation of the models of a condition with the study's test input.
+/// Simulation of a condition's models with the study's test input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestAnswersJob {
     pub analysis: Shared<Analysis>,
@@ -125,7 +125,7 @@ pub struct TestAnswersJob {
 }
 
 impl Job for TestAnswersJob {
-    /// Executor of the pieces.
+    /// Runs the pieces.
     type Tools = Box<dyn Executor>;
     /// Error: the reason in words.
     type Output = Result<Arc<TestAnswers>, String>;

@@ -54,7 +54,7 @@ impl NotAssessed {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
     pub study: Study,
-    /// Frequencies of comparison \[rad/s\].
+    /// Comparison frequencies \[rad/s\].
     pub omega: Arc<[f64]>,
     /// Result of each condition, or why it has none.
     pub conditions: BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>,
@@ -75,12 +75,12 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// Returns the result of one condition, where there is one.
+    /// Returns a condition's result, where there is one.
     pub fn condition(&self, id: ConditionId) -> Option<&ConditionAnalysis> {
         self.conditions.get(&id)?.as_ref().ok()
     }
 
-    /// Returns the result of one condition, or the reason in words why there is none.
+    /// Returns a condition's result, or the reason in words why there is none.
     pub(crate) fn result(&self, id: ConditionId) -> Result<&ConditionAnalysis, String> {
         match self.conditions.get(&id) {
             Some(outcome) => outcome.as_ref().map_err(ToString::to_string),
@@ -117,7 +117,7 @@ impl Analysis {
     }
 }
 
-/// Result of one condition.
+/// Result of a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionAnalysis {
     /// The analysed condition; its models define the order of the figures below.
@@ -151,7 +151,7 @@ pub struct ConditionAnalysis {
 }
 
 impl ConditionAnalysis {
-    /// Returns the comparison of the models before the couplings, where there are any.
+    /// Returns the models' comparison before the couplings, where there are any.
     pub fn before_couplings(&self) -> &Comparison {
         match &self.coupled {
             Some(coupled) => &coupled.before,
@@ -191,7 +191,7 @@ impl ConditionAnalysis {
         }
     }
 
-    /// Returns the bounds of every channel gain.
+    /// Returns the bounds on every channel gain.
     pub fn gain_bounds(&self) -> GainBounds {
         self.gain_problem.bounds
     }
@@ -205,7 +205,7 @@ impl ConditionAnalysis {
         ]
     }
 
-    /// Returns the upper bound of every channel delay \[s\].
+    /// Returns the upper bound on every channel delay \[s\].
     pub fn delay_upper_s(&self) -> f64 {
         self.delay_problem.bounds.upper
     }
@@ -225,7 +225,7 @@ impl ConditionAnalysis {
             .collect()
     }
 
-    /// Returns the representative of a bundle, with the scores of its models in the order of
+    /// Returns a bundle's representative, with its models' scores in the order of
     /// [`ConditionAnalysis::condition`].
     pub fn representative(&self, kind: BundleKind) -> &Representative {
         kind.pick(&self.comparison.physics, &self.comparison.identified)

@@ -23,12 +23,12 @@ impl AskedCondition<'_> {
         self.result.condition.flight_state().airspeed_kt
     }
 
-    /// Returns the name of the model of a role.
+    /// Returns the name of a role's model.
     pub(crate) fn model_name(&self, role: RequirementRole) -> String {
         self.result.representative_name(role.bundle()).to_owned()
     }
 
-    /// Returns the correction of a role; `None` for roles without a correction.
+    /// Returns a role's correction; `None` for roles without a correction.
     pub(crate) fn correction(&self, role: RequirementRole) -> Option<&ChannelCorrection> {
         match role {
             RequirementRole::Corrected => Some(&self.result.correction),

@@ -30,15 +30,15 @@ pub enum AssessedCorrection {
     Scheduled,
     /// The schedule without the lead filters of its signed delays (M15).
     ScheduledWithoutLeads,
-    /// The schedule of the other conditions at the condition's airspeed: a prediction for a flight
-    /// not used in the fit.
+    /// The other conditions' schedule at the condition's airspeed: a prediction for a flight not
+    /// used in the fit.
     ScheduleOfOthers,
     /// The condition's own optimum.
     Own,
 }
 
 impl AssessedCorrection {
-    /// Returns the correction of a condition.
+    /// Returns a condition's correction.
     ///
     /// # Errors
     /// [`ScheduleError`] where the requested schedule does not exist.
@@ -87,7 +87,7 @@ impl AssessmentChoice {
     }
 }
 
-/// Assessment of one condition.
+/// Assessment of a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessedCondition {
     pub condition: ConditionId,
@@ -210,7 +210,7 @@ impl AssessmentTable {
     }
 }
 
-/// Assesses one condition.
+/// Assesses a condition.
 ///
 /// # Errors
 /// [`NotAssessed`] where the condition is left out.

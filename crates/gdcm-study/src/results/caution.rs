@@ -8,7 +8,7 @@ use gdcm_model::dataset::{BundleKind, Condition, Dynamics, Pair};
 use gdcm_model::response::PolarResponse;
 use gdcm_model::response::prepared_model::LargeEntry;
 
-/// Range of usual G; beyond it, suspect a change of units or the sign of a meaningless response.
+/// Range of usual G; beyond it, suspect a change of units or a meaningless response's sign.
 pub const USUAL_GAINS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
 /// A caution attached to a result.
@@ -56,7 +56,7 @@ pub enum Caution {
     /// Frequencies of the identified representative's responses have no weight, because it was not
     /// measured there (M4a).
     NotCoherent {
-        /// Least coherence of a frequency that counts.
+        /// Least coherence at a frequency that counts.
         threshold: f64,
         /// Number of responses weighted by coherence.
         weighed: usize,
@@ -117,7 +117,7 @@ impl Caution {
     }
 }
 
-/// A response whose gain, flight over physics, is out of the computable range.
+/// A response whose gain, flight over physics, is beyond the computable range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GainOutOfRange {
     pub pair: Pair,
@@ -185,15 +185,15 @@ impl fmt::Display for BundleModel {
 /// Why a response has no G and no D.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Undefined {
-    /// Zero over the whole band in the representative of this bundle.
+    /// Zero over the whole band in this bundle's representative.
     Zero(BundleKind),
-    /// Zero at some frequency of the band in the representative of this bundle.
+    /// Zero at some frequency of the band in this bundle's representative.
     ZeroSomewhere(BundleKind),
-    /// Not finite somewhere in the band in the representative of this bundle.
+    /// Not finite somewhere in the band in this bundle's representative.
     NotFinite(BundleKind),
     /// The gain, flight over physics, is about this power of ten: beyond 1e50 or 1e-50.
     GainOutOfRange(i32),
-    /// Numerically zero in the representative of this bundle (M6a).
+    /// Numerically zero in this bundle's representative (M6a).
     NumericallyNothing(BundleKind),
     /// No frequency of the identified representative's response is coherent enough, or all lie
     /// outside its valid band (M4a).

@@ -84,7 +84,7 @@ impl ChannelTimeSkew {
         Self::find(measured, band, &nominal.dynamics)
     }
 
-    /// Returns the channel of a dataset.
+    /// Returns a dataset's channel.
     pub fn signal(&self, dataset: &Dataset) -> Option<Signal> {
         let channels = match self.role {
             ChannelSide::Input => dataset.inputs(),
@@ -108,7 +108,7 @@ struct PhasePoint {
     weight: f64,
 }
 
-/// Lag of one response against that of a physics model.
+/// Lag of a response against that of a physics model.
 struct Lag {
     pair: Pair,
     delay_s: f64,
@@ -116,7 +116,7 @@ struct Lag {
 }
 
 impl Lag {
-    /// Fits the delay of a response; `None` where it is coherent at too few points.
+    /// Fits a response's delay; `None` where it is coherent at too few points.
     fn fit(points: &[&EstimatePoint], physics: &FrequencyResponse, pair: Pair) -> Option<Self> {
         let at = (pair.output, pair.input);
         let mut angles = Vec::new();

@@ -1,5 +1,5 @@
-//! Comparison of the models of a condition: distances within each bundle, the two representatives
-//! and their differences, which do not depend on constraints, alpha or bounds.
+//! Comparison of a condition's models: distances within each bundle, the two representatives and
+//! their differences, which do not depend on constraints, alpha or bounds.
 
 use gdcm_method::correction::delta::Delta;
 use gdcm_method::fidelity::distance::{BundleDistance, DiscontinuityError, Representative};

@@ -1,6 +1,5 @@
-//! Time responses of the models of one condition for plots (M17.2): to the inputs of a flight
-//! record, with the tolerance corridors about flight, and to a test input, with no record to
-//! compare with.
+//! Time responses of a condition's models for plots (M17.2): to a flight record's inputs, with the
+//! tolerance corridors about flight, and to a test input, with no record to compare with.
 
 use nalgebra::DMatrix;
 
@@ -17,7 +16,7 @@ use super::requirement_role::RequirementRole;
 use super::time_histories::HistoryRecord;
 use crate::shared::Shared;
 
-/// Time shown, as a multiple of the duration of the test input.
+/// Time shown, as a multiple of the test input's duration.
 const SHOWN: f64 = 5.0;
 /// Least time shown \[s\].
 const LEAST_SHOWN_S: f64 = 10.0;
@@ -44,17 +43,17 @@ pub struct QuantityHistory {
 pub struct RecordHistory {
     pub condition: ConditionId,
     pub record: String,
-    /// Whether the record was excluded from the identification of the models.
+    /// Whether the record was excluded from the models' identification.
     pub held_out: bool,
     /// The record, in the units of the dataset's channels.
     pub flight: Shared<FlightRecord>,
-    /// Each applicable row of the table.
+    /// Each applicable table row.
     pub quantities: Vec<QuantityHistory>,
     /// The quantities that are not compared, with reasons in words.
     pub missing: Vec<String>,
 }
 
-/// A record to compare with the models of a condition.
+/// A record to compare with a condition's models.
 pub(crate) struct ComparedRecord<'a> {
     pub(crate) condition: ConditionId,
     pub(crate) record: &'a HistoryRecord,
@@ -63,8 +62,7 @@ pub(crate) struct ComparedRecord<'a> {
 }
 
 impl RecordHistory {
-    /// Simulates the models of the condition with the record, and compares them with the
-    /// tolerances.
+    /// Simulates the condition's models with the record, and compares them with the tolerances.
     ///
     /// # Errors
     /// The reason in words why there is no comparison.
@@ -128,7 +126,7 @@ impl RecordHistory {
     }
 }
 
-/// Responses of the models of a condition to a test input, starting from rest.
+/// Responses of a condition's models to a test input, starting from rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestAnswers {
     pub condition: ConditionId,
@@ -144,7 +142,7 @@ pub struct TestAnswers {
 }
 
 impl TestAnswers {
-    /// Simulates the models of a condition with a test input in an input channel.
+    /// Simulates a condition's models with a test input in an input channel.
     ///
     /// # Errors
     /// The reason in words why the condition has no result.
@@ -174,7 +172,7 @@ impl TestAnswers {
         })
     }
 
-    /// Returns the times of the samples \[s\].
+    /// Returns the samples' times \[s\].
     pub fn time_s(&self) -> Vec<f64> {
         (0..self.signal.len())
             .map(|sample| sample as f64 * self.sample_time_s)

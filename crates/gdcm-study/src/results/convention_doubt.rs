@@ -1,5 +1,5 @@
-//! Apparent differences of sign and unit between the two bundles, reported first: before a delay,
-//! zero or mode is blamed for their effect.
+//! Apparent sign and unit differences between the two bundles, reported first: before a delay, zero
+//! or mode is blamed for their effect.
 
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{ConditionId, Pair};

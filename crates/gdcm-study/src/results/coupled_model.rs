@@ -1,4 +1,4 @@
-//! Physics models with the couplings of the analysis, the only source of coupled models for exports
+//! Physics models with the analysis's couplings, the only source of coupled models for exports
 //! (M16.3).
 
 use std::borrow::Cow;
@@ -36,8 +36,8 @@ impl ConditionAnalysis {
         }
     }
 
-    /// Returns how the couplings move the poles of the physics representative; empty without
-    /// couplings, or where it has no poles.
+    /// Returns how the couplings move the physics representative's poles; empty without couplings,
+    /// or where it has no poles.
     #[must_use]
     pub fn pole_shifts(&self) -> Vec<PoleShift> {
         let representative = self.representative_model(BundleKind::Physics).state_space();

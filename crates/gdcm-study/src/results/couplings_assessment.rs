@@ -14,7 +14,7 @@ use gdcm_model::dataset::{Band, ConditionId, Pair, PairTable};
 use super::fitted_couplings::FittedCouplings;
 use crate::decisions::settings::CouplingCorrection;
 
-/// Result of an assessment; without couplings, the error of the fit.
+/// Result of an assessment; without couplings, the fit's error.
 pub type AssessedCouplings = Result<Arc<CouplingsAssessment>, CouplingError>;
 
 /// An entry of `M~` or of `K`.
@@ -29,7 +29,7 @@ pub struct CouplingEntry {
     pub is_within_bar: bool,
 }
 
-/// Effect of the couplings on one condition.
+/// Effect of the couplings on a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionCouplings {
     /// True airspeed \[kt\].
@@ -58,7 +58,7 @@ pub struct UnstablePole {
     pub is_representative: bool,
     /// The pole \[rad/s\].
     pub pole: Complex<f64>,
-    /// Whether its frequency lies in the band of comparison.
+    /// Whether its frequency lies in the comparison band.
     pub is_in_band: bool,
 }
 
@@ -117,8 +117,8 @@ impl CouplingsAssessment {
         entries(self.fitted.matrices().feedback(), bars, |_, _| false)
     }
 
-    /// Returns the number of newly unstable poles whose frequency lies in the band of comparison,
-    /// over all kept physics models.
+    /// Counts the newly unstable poles whose frequency lies in the comparison band, over all kept
+    /// physics models.
     pub fn unstable_in_band(&self) -> usize {
         self.unstable.iter().filter(|pole| pole.is_in_band).count()
     }
@@ -130,7 +130,7 @@ impl CouplingsAssessment {
     }
 }
 
-/// Error bars of the entries of a matrix.
+/// Error bars of a matrix's entries.
 struct MatrixBars<'a> {
     half_widths: &'a DMatrix<f64>,
     /// Student's quantile: half-width over standard deviation.

@@ -1,4 +1,4 @@
-//! The couplings of a study, and their effect on a condition (M16).
+//! A study's couplings, and their effect on a condition (M16).
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use gdcm_model::dataset::ConditionId;
 
 use super::comparison::Comparison;
 
-/// The couplings of a study.
+/// A study's couplings.
 #[derive(Clone, Debug)]
 pub struct FittedCouplings {
     /// Problem of the fit: the representatives of the conditions that are analysed and not held

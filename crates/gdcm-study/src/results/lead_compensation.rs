@@ -12,8 +12,8 @@ use gdcm_model::dataset::PairTable;
 
 use super::comparison::Mismatches;
 
-/// The physics representative with the leads of its channels against the identified one: the basis
-/// of the gains.
+/// The physics representative with its channels' leads against the identified one: the gains'
+/// basis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadCompensated {
     /// The signed delays with their filters.
@@ -42,7 +42,7 @@ impl LeadCompensated {
     }
 }
 
-/// Mean J of the constrained responses, all of which want lead: with the present correction, and
+/// Mean J over the constrained responses, all of which want lead: with the present correction, and
 /// with leads too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeadOffer {
@@ -57,9 +57,9 @@ impl LeadOffer {
     /// Largest J with leads, relative to J without, at which leads are offered.
     const WORTH: f64 = 0.9;
 
-    /// Returns the offer of these leads, where they would reduce J of the constrained responses by
-    /// at least a tenth. `mismatch` contains the constrained responses alone; `now` is J under the
-    /// present correction.
+    /// Returns the offer of these leads, where they would reduce J over the constrained responses
+    /// by at least a tenth. `mismatch` contains the constrained responses alone; `now` is J under
+    /// the present correction.
     pub(crate) fn new(
         leads: ChannelLeads,
         mismatch: &Mismatches,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use gdcm_method::uncertainty::spread::{ConditionSpread, Figures};
 use gdcm_model::dataset::BundleKind;
 
-/// A model in place of its bundle's representative, with the figures of the resulting correction.
+/// A model in place of its bundle's representative, with the resulting correction's figures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelSwap {
     pub bundle: BundleKind,
@@ -15,7 +15,7 @@ pub struct ModelSwap {
     pub figures: Option<Arc<Figures>>,
 }
 
-/// Results of the swaps of one condition.
+/// Results of a condition's swaps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionSubstitutions {
     /// Spread of the figures.

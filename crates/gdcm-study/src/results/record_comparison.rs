@@ -12,7 +12,7 @@ use gdcm_sysid::identification::Preparation;
 /// doublets.
 const LEAST_PIECE_S: f64 = 2.0;
 
-/// Returns the preparation of a record for comparison: shorter pieces than for identification.
+/// Returns a record's preparation for comparison: shorter pieces than for identification.
 pub(crate) fn comparison_preparation(preparation: &Preparation) -> Preparation {
     Preparation {
         least_segment_s: LEAST_PIECE_S,
@@ -53,7 +53,7 @@ impl Trend {
         }
     }
 
-    /// Returns the name of the trend.
+    /// Returns the trend's name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Correct => "correct",
@@ -62,7 +62,7 @@ impl Trend {
     }
 }
 
-/// A row of the tolerance table, with its tolerance in the unit of the dataset.
+/// A row of the tolerance table, with its tolerance in the dataset's unit.
 pub(crate) struct AppliedTolerance<'a> {
     pub(crate) tolerance: &'a Tolerance,
     pub(crate) channel: ChannelTolerance,
@@ -98,8 +98,8 @@ impl<'a> RecordComparison<'a> {
         }
     }
 
-    /// Returns the input that varies most over the segments of a record; `None` where the inputs
-    /// cannot be compared.
+    /// Returns the input that varies most over a record's segments; `None` where the inputs cannot
+    /// be compared.
     pub(crate) fn moved_input(&self, segments: &[Segment]) -> Option<usize> {
         let (first, others) = self.inputs.split_first()?;
         if others.iter().any(|input| input.unit != first.unit) {

@@ -34,8 +34,7 @@ impl ReportedErrors {
         }
     }
 
-    /// Returns the variance of a figure; from coherence where that is known, otherwise from the
-    /// bands.
+    /// Returns a figure's variance; from coherence where that is known, otherwise from the bands.
     pub(crate) fn of_scalar(
         &self,
         result: &ConditionAnalysis,
@@ -117,7 +116,7 @@ fn errors_by_coherence(
 }
 
 /// Returns the error of each response of the identified representative from its own bands: medians
-/// over the band of comparison. Its deviations are taken as known.
+/// over the comparison band. Its deviations are taken as known.
 fn errors_by_bands(
     analysis: &Analysis,
     result: &ConditionAnalysis,

@@ -1,4 +1,4 @@
-//! Bandwidth and phase delay of the models of a condition, with intervals (M17.1).
+//! Bandwidth and phase delay of a condition's models, with intervals (M17.1).
 //!
 //! ```text
 //! physics     the other kept physics models in its place, without correction                       (M13.1)
@@ -88,13 +88,13 @@ const METRICS: [&str; 5] = [
     "omega_180_rad_s",
     "phase_delay_s",
 ];
-/// Name of the deviation of the phase from a straight line.
+/// Name of the phase's deviation from a straight line.
 const DEPARTURE: &str = "phase_departure_deg";
 
-/// Values of the numbers of a response, where they exist, in the order of [`METRICS`].
+/// Values of a response's numbers, where they exist, in the order of [`METRICS`].
 type MetricValues = [Option<f64>; 5];
 
-/// Returns the numbers of a response, in the order of [`METRICS`].
+/// Returns a response's numbers, in the order of [`METRICS`].
 fn metrics(bandwidth: &Bandwidth) -> [Result<Metric, NoMetric>; 5] {
     [
         bandwidth.omega_bw,
@@ -105,7 +105,7 @@ fn metrics(bandwidth: &Bandwidth) -> [Result<Metric, NoMetric>; 5] {
     ]
 }
 
-/// Returns the values of the numbers of a response, in the order of [`METRICS`].
+/// Returns the values of a response's numbers, in the order of [`METRICS`].
 fn metric_values(bandwidth: &Bandwidth) -> MetricValues {
     metrics(bandwidth).map(|metric| Some(metric.ok()?.value))
 }
@@ -195,7 +195,7 @@ pub(crate) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFin
     findings
 }
 
-/// A model prepared for the evaluation of its response.
+/// A model prepared for its response's evaluation.
 struct EvaluatedModel<'a> {
     dynamics: Cow<'a, Dynamics>,
     /// Uncertainty of its response, where the model contains it.
@@ -218,7 +218,7 @@ impl<'a> EvaluatedModel<'a> {
 #[derive(Clone, Copy, PartialEq)]
 enum Evaluation {
     Exact,
-    /// By interpolation, for models used only for the scatter of a number.
+    /// By interpolation, for models used only for a number's scatter.
     Interpolated,
 }
 
@@ -247,7 +247,7 @@ impl PairCorrection {
         })
     }
 
-    /// Returns the effect for the figures of a swap; `None` where one of them does not exist.
+    /// Returns the effect for a swap's figures; `None` where one of them does not exist.
     fn from_figures(figures: &Figures, pair: Pair, leads: Option<&ChannelLeads>) -> Option<Self> {
         let gain = figures[Scalar::NetGain(pair)]?.exp();
         let [output, input] = Channel::of(pair);
@@ -271,7 +271,7 @@ struct MeasuredBandwidth {
     reversed_phase_deg: Option<f64>,
 }
 
-/// The models of a condition, prepared for bandwidths.
+/// A condition's models, prepared for bandwidths.
 struct ConditionBandwidths<'a> {
     asked: &'a AskedCondition<'a>,
     /// Index of the physics representative.
@@ -351,7 +351,7 @@ impl<'a> ConditionBandwidths<'a> {
         finding
     }
 
-    /// Returns the bandwidth of the model of a role, or why it has none.
+    /// Returns the bandwidth of a role's model, or why it has none.
     fn bandwidth(&self, pair: Pair, role: RequirementRole) -> Result<MeasuredBandwidth, String> {
         let correction = match self.asked.correction(role) {
             None => PairCorrection::NONE,
@@ -425,7 +425,7 @@ impl<'a> ConditionBandwidths<'a> {
         })
     }
 
-    /// Adds the intervals of the numbers, or why there are none.
+    /// Adds the numbers' intervals, or why there are none.
     fn add_intervals(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
         let level = self.asked.analysis.study.settings.uncertainty.level;
         let why = match finding.role {
@@ -475,7 +475,7 @@ impl<'a> ConditionBandwidths<'a> {
         }
     }
 
-    /// Computes the numbers of a response after each swap of a model of a bundle.
+    /// Computes a response's numbers after each swap of a model of a bundle.
     fn swapped_values(&self, finding: &BandwidthFinding, bundle: BundleKind) -> Vec<MetricValues> {
         let mut values = Vec::new();
         for swap in self.swaps {
@@ -487,7 +487,7 @@ impl<'a> ConditionBandwidths<'a> {
         values
     }
 
-    /// Computes the numbers of a response after a swap; `None` where there is no response.
+    /// Computes a response's numbers after a swap; `None` where there is no response.
     fn swapped(&self, swap: &ModelSwap, pair: Pair, role: RequirementRole) -> Option<MetricValues> {
         let correction = match role {
             RequirementRole::Corrected => {
@@ -508,7 +508,7 @@ impl<'a> ConditionBandwidths<'a> {
     }
 }
 
-/// Returns the swaps of the models of a condition; empty without error bars.
+/// Returns the swaps of a condition's models; empty without error bars.
 fn swaps_of<'a>(asked: &AskedCondition<'a>) -> &'a [ModelSwap] {
     let Some(uncertainty) = asked.analysis.uncertainty.as_deref() else {
         return &[];

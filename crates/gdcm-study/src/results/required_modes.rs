@@ -1,5 +1,5 @@
-//! The modes of the physics representative, without and with the couplings of the study, against
-//! those of the identified representative, where the matrices of both are known (M17.3).
+//! The physics representative's modes, without and with the study's couplings, against those of the
+//! identified representative, where the matrices of both are known (M17.3).
 
 use std::collections::BTreeMap;
 
@@ -28,7 +28,7 @@ impl FromIterator<(ConditionId, Vec<PoleEstimate>)> for KnownPoles {
 }
 
 impl KnownPoles {
-    /// Returns the poles of a condition; empty where no model was identified for it.
+    /// Returns a condition's poles; empty where no model was identified for it.
     fn poles(&self, condition: ConditionId) -> &[PoleEstimate] {
         match self.0.get(&condition) {
             Some(poles) => poles,
@@ -37,7 +37,7 @@ impl KnownPoles {
     }
 }
 
-/// A mode of one model.
+/// A mode of a model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModeNumbers {
     pub model: String,
@@ -105,8 +105,8 @@ pub struct ModeFinding {
     pub identified_deviation: Option<ModeValues>,
     /// The matching mode of the physics representative, where there is one.
     pub physics: Option<ModeNumbers>,
-    /// Verdict with the couplings of the study; `None` without couplings, because gains and delays
-    /// move no pole.
+    /// Verdict with the study's couplings; `None` without couplings, because gains and delays move
+    /// no pole.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corrected_verdict: Option<ModeVerdict>,
     /// The matching mode with the couplings; `None` also without couplings.
@@ -116,7 +116,7 @@ pub struct ModeFinding {
     pub tolerance: Option<ModeTolerance>,
 }
 
-/// Compares the modes of a condition.
+/// Compares a condition's modes.
 ///
 /// # Errors
 /// The reason in words why there are no modes.
@@ -175,7 +175,7 @@ pub(crate) fn mode_findings(
     Ok(findings)
 }
 
-/// Returns the modes of a physics model with the couplings of the study; `None` without couplings.
+/// Returns a physics model's modes with the study's couplings; `None` without couplings.
 fn coupled_modes(asked: &AskedCondition<'_>, physics: &Model) -> Result<Option<Vec<Mode>>, String> {
     let Some(matrices) = physics.state_space() else {
         return Ok(None);
@@ -192,7 +192,7 @@ fn coupled_modes(asked: &AskedCondition<'_>, physics: &Model) -> Result<Option<V
     Ok(Some(modes))
 }
 
-/// Returns the modes of a model, or why they are unknown.
+/// Returns a model's modes, or why they are unknown.
 fn known_modes(model: &Model) -> Result<Vec<Mode>, String> {
     if model.state_space().is_none() {
         return Err(format!(

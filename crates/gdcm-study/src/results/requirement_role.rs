@@ -1,4 +1,4 @@
-//! Roles of the models of a condition in the requirements, and the model of each role for simulation.
+//! Roles of a condition's models in the requirements, and each role's model for simulation.
 
 use serde::Serialize;
 
@@ -44,7 +44,7 @@ impl RequirementRole {
         }
     }
 
-    /// Returns the name of the role.
+    /// Returns the role's name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Physics => "physics",
@@ -100,7 +100,7 @@ impl Analysis {
     }
 }
 
-/// Returns the matrices of a continuous-time model.
+/// Returns a continuous-time model's matrices.
 fn continuous(model: &Model) -> Result<&StateSpace, RoleModelError> {
     let name = || model.name.clone();
     let matrices = model

@@ -1,4 +1,4 @@
-//! Qualification requirements on the models of every condition (M17) that need no flight records:
+//! Qualification requirements on every condition's models (M17) that need no flight records:
 //! bandwidth and phase delay, modes, summary costs.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -51,7 +51,7 @@ impl SummaryFinding {
     }
 }
 
-/// A missing answer, in one condition or in all.
+/// A missing answer, in a condition or in all.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct MissingFinding {
     /// The condition; `None` for all conditions.
@@ -61,14 +61,14 @@ pub struct MissingFinding {
     pub why: String,
 }
 
-/// A caution about the numbers of a condition.
+/// A caution about a condition's numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RequirementCaution {
     pub condition: ConditionId,
     pub text: String,
 }
 
-/// Qualification requirements on the models of every condition, in the format of the export.
+/// Qualification requirements on every condition's models, in the export's format.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Requirements {
     /// The identified band \[rad/s\].
@@ -110,7 +110,7 @@ impl Requirements {
     }
 }
 
-/// Computes the requirements on the models of every condition with a result (M17.1, M17.3, M17.4),
+/// Computes the requirements on every condition's models with a result (M17.1, M17.3, M17.4),
 /// without records. Each condition is a step. Intervals use the error bars of the analysis
 /// ([`Analysis::uncertainty`]); whether flight determines a mode is judged from the `known` poles.
 ///
@@ -149,7 +149,7 @@ pub fn requirements_of(
     Ok(requirements)
 }
 
-/// Computes the findings of one condition.
+/// Computes a condition's findings.
 fn condition_requirements(
     analysis: &Analysis,
     known: &KnownPoles,
@@ -190,7 +190,7 @@ fn condition_requirements(
     found
 }
 
-/// Computes the summary costs of the model of a role against the identified representative.
+/// Computes the summary costs of a role's model against the identified representative.
 fn summary_finding(asked: &AskedCondition<'_>, role: RequirementRole) -> SummaryFinding {
     let study = &asked.analysis.study;
     let correction = asked.correction(role);

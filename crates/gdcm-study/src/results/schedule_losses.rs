@@ -19,7 +19,7 @@ pub struct DelayedChannel {
     pub delays: Vec<OwnDelay>,
 }
 
-/// The delay of a channel in a condition's own correction.
+/// A channel's delay in a condition's own correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnDelay {
     pub condition: ConditionId,

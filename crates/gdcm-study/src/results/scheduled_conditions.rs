@@ -1,4 +1,4 @@
-//! The conditions of the schedule, and its alternatives: without a condition, in other forms (M11).
+//! The schedule's conditions, and its alternatives: without a condition, in other forms (M11).
 
 use gdcm_method::schedule::assessment::{compare_forms, compare_lead_degrees};
 use gdcm_method::schedule::{
@@ -21,7 +21,7 @@ impl Analysis {
             .collect()
     }
 
-    /// Fits the schedule of the chosen conditions without one of them.
+    /// Fits the chosen conditions' schedule without one of them.
     ///
     /// # Errors
     /// [`ScheduleError`] where these conditions have no schedule.
@@ -34,8 +34,8 @@ impl Analysis {
         Schedule::of(&scheduled_points(&others, &self.conditions), settings)
     }
 
-    /// Compares the forms of the schedule, with lists in the order of [`Analysis::scheduled`]
-    /// (M11). Solves some hundred small least squares problems.
+    /// Compares the schedule's forms, with lists in the order of [`Analysis::scheduled`] (M11).
+    /// Solves some hundred small least squares problems.
     ///
     /// # Errors
     /// [`ScheduleError`] where there is no schedule.
@@ -97,7 +97,7 @@ fn has_notable_delay(result: &ConditionAnalysis) -> bool {
         .any(|pair| result.correction.net_delay_s(pair) > NOTABLE_DELAY_S)
 }
 
-/// Returns the results of the scheduled conditions, in file order.
+/// Returns the scheduled conditions' results, in file order.
 pub(crate) fn in_schedule<'a>(
     study: &Study,
     outcomes: &'a Outcomes,

@@ -43,7 +43,7 @@ const WHAT: &str = "time histories";
 #[derive(Clone, Debug, PartialEq)]
 pub struct HistoryRecord {
     pub flight: Shared<FlightRecord>,
-    /// Whether the record was excluded from the identification of the models.
+    /// Whether the record was excluded from the models' identification.
     pub held_out: bool,
 }
 
@@ -78,21 +78,21 @@ impl HistoryRecords {
         }
     }
 
-    /// Returns the number of steps of [`time_histories_of`]: one to prepare each record, one for
-    /// each model's response to it.
+    /// Returns the step count for [`time_histories_of`]: one to prepare each record, one for each
+    /// model's response to it.
     pub fn steps(records: &[Self]) -> usize {
         (1 + RequirementRole::ALL.len()) * records.iter().map(|of| of.records.len()).sum::<usize>()
     }
 }
 
-/// Result of one model and one record for one row of the table.
+/// Result of a model and a record for a table row.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ToleranceFinding {
     /// Name of the compared quantity ("bank angle").
     pub quantity: String,
     /// The output that it is computed from.
     pub output: String,
-    /// Whether it is the integral of that output from the start of each window.
+    /// Whether it is the integral of that output from each window's start.
     pub integrated: bool,
     /// Unit of the compared quantity.
     pub unit: String,
@@ -108,7 +108,7 @@ pub struct ToleranceFinding {
     /// Whether the output is on-axis to the input that moved most; `None` where that input is
     /// unknown.
     pub on_axis: Option<bool>,
-    /// For off-axis outputs, the sign of the correlation.
+    /// For off-axis outputs, the correlation's sign.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trend: Option<Trend>,
 }
@@ -125,24 +125,24 @@ impl ToleranceFinding {
     }
 }
 
-/// Result of one model and one record.
+/// Result of a model and a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HistoryFinding {
     pub condition: ConditionId,
     /// Its true airspeed \[kt\].
     pub airspeed_kt: f64,
     pub record: String,
-    /// Whether the record was excluded from the identification of the models.
+    /// Whether the record was excluded from the models' identification.
     pub held_out: bool,
     pub role: RequirementRole,
     pub model: String,
     /// The input that moved most; `None` where the inputs have different units.
     pub moved_input: Option<String>,
-    /// Number of samples compared.
+    /// Compared sample count.
     pub samples: usize,
     /// Number of windows with these samples.
     pub windows: usize,
-    /// Length of the longest window \[s\].
+    /// Longest window \[s\].
     pub window_s: f64,
     /// Weighted rms error (M17.4) \[deg, deg/s, ft/s, ft/s^2\]; `None` where no output has such a
     /// unit.
@@ -153,11 +153,11 @@ pub struct HistoryFinding {
     pub j_rms_left_out: Vec<String>,
     /// Theil's coefficient of each output that varies, by its name: 0 to 1.
     pub theil: BTreeMap<String, f64>,
-    /// Each applicable row of the table.
+    /// Each applicable table row.
     pub tolerances: Vec<ToleranceFinding>,
 }
 
-/// Time histories of the models of every condition that has records, in the format of the export.
+/// Time histories of the models of every condition that has records, in the export's format.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TimeHistories {
     pub tolerance_table: ToleranceTable,
@@ -299,8 +299,8 @@ struct Simulation<'a> {
     settings: ValidationSettings,
 }
 
-/// Computes time histories of the models of every condition, and compares them within `tolerances`
-/// about its `records` (M17.2). The number of steps is [`HistoryRecords::steps`].
+/// Computes time histories of every condition's models, and compares them within `tolerances` about
+/// its `records` (M17.2). The step count is [`HistoryRecords::steps`].
 ///
 /// # Errors
 /// [`Cancelled`] where `execution` is cancelled.
@@ -413,7 +413,7 @@ fn prepare_records<'a>(
     Ok(prepared)
 }
 
-/// The models of each condition with their roles.
+/// Each condition's models with their roles.
 type RoleModels = BTreeMap<ConditionId, Vec<(RequirementRole, StateSpace)>>;
 
 /// Builds the models of each condition that has a record.
@@ -445,7 +445,7 @@ fn role_models(
     models
 }
 
-/// Lists the simulations of every record with every model of its condition, in common windows.
+/// Lists every record's simulations with every model of its condition, in common windows.
 fn simulations<'a>(
     prepared: &'a [PreparedRecord<'a>],
     models: &'a RoleModels,
@@ -529,7 +529,7 @@ fn finding(
     })
 }
 
-/// Evaluates one row of the table over all windows of a record.
+/// Evaluates one table row over all windows of a record.
 fn tolerance_finding(
     comparison: &RecordComparison<'_>,
     row: &AppliedTolerance<'_>,

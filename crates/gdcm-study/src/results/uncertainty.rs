@@ -1,4 +1,4 @@
-//! Uncertainty of the figures of an analysis, components of their scatter over the conditions, and
+//! Uncertainty of an analysis's figures, components of their scatter over the conditions, and
 //! conclusions for the schedule (M13).
 
 use std::collections::BTreeMap;
@@ -16,10 +16,10 @@ use super::model_swap::ConditionSubstitutions;
 /// Greatest difference of airspeeds that count as equal \[kt\] (M13.4).
 pub(crate) const EQUAL_AIRSPEED_KT: f64 = 1.0;
 
-/// Uncertainty of the figures of an analysis.
+/// Uncertainty of an analysis's figures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
-    /// Level of every error bar, interval and test.
+    /// Level of all error bars, interval and test.
     pub level: f64,
     /// Each analysed condition.
     pub conditions: BTreeMap<ConditionId, ConditionUncertainty>,
@@ -28,7 +28,7 @@ pub struct Uncertainty {
     pub differences: Vec<AirspeedDifference>,
     /// Number of differences where they are too many to compare; none is stored then.
     pub too_many_differences: Option<usize>,
-    /// Components of the scatter of each on-axis net gain.
+    /// Scatter components of each on-axis net gain.
     pub scatter: Vec<PairScatter>,
     /// Confidence bands of the schedule, where it is a schedule of `ln k` with degrees of freedom
     /// left.
@@ -66,7 +66,7 @@ impl Uncertainty {
     }
 }
 
-/// Uncertainty of the figures of one condition.
+/// Uncertainty of a condition's figures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionUncertainty {
     /// Error bar of each figure that exists.
@@ -78,7 +78,7 @@ pub struct ConditionUncertainty {
     pub substitutions: ConditionSubstitutions,
 }
 
-/// Components of the scatter of one on-axis net gain (M13.5).
+/// Scatter components of an on-axis net gain (M13.5).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairScatter {
     pub pair: Pair,
@@ -88,7 +88,7 @@ pub struct PairScatter {
     pub about_schedule: Option<VarianceDecomposition>,
 }
 
-/// Test for a second scheduling variable of one on-axis net gain (M13.7).
+/// Test for a second scheduling variable of an on-axis net gain (M13.7).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondVariableTest {
     pub pair: Pair,
@@ -104,7 +104,7 @@ pub struct SecondVariableTest {
 /// Confidence bands of a schedule of `ln k` (M13.6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduleBands {
-    /// The band of each scheduled figure.
+    /// Each scheduled figure's band.
     pub(crate) bands: Vec<(Scalar, ScheduleBand)>,
 }
 

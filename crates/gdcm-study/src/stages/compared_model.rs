@@ -15,7 +15,7 @@ use crate::results::comparison::Mismatches;
 #[derive(Clone, Copy)]
 pub struct ComparisonGrid<'a> {
     pub grid: &'a FrequencyGrid,
-    /// Least coherence of a frequency with weight; `None`: coherence is not used (M4a).
+    /// Least coherence at a frequency with weight; `None`: coherence is not used (M4a).
     pub coherence: Option<f64>,
 }
 
@@ -92,7 +92,7 @@ impl ComparedModel {
         )
     }
 
-    /// Returns the number of frequencies with weight in a response, where coherence is used.
+    /// Counts the frequencies with weight in a response, where coherence is used.
     pub(crate) fn weighted_frequencies(&self, pair: Pair) -> Option<usize> {
         let weights = self.coherence_weights.as_ref()?;
         Some(weights[pair].weights.len())

@@ -1,4 +1,4 @@
-//! Comparison of the representatives of a condition (M5, M6), which does not depend on constraints,
+//! Comparison of a condition's representatives (M5, M6), which does not depend on constraints,
 //! alpha or bounds.
 //!
 //! ```text
@@ -24,7 +24,7 @@ use crate::results::analysis::ConditionFailure;
 use crate::results::caution::{BundleModel, Caution, GainOutOfRange, Undefined};
 use crate::results::comparison::{BundleMetrics, Comparison, ModelMismatch};
 
-/// Inputs of the comparison of a condition.
+/// Inputs of a condition's comparison.
 #[derive(Clone, Copy)]
 pub(crate) struct ComparisonInput<'a> {
     pub(crate) condition: &'a Condition,
@@ -63,7 +63,7 @@ impl ComparisonInput<'_> {
         cautions
     }
 
-    /// Selects the representative of a bundle among its kept models.
+    /// Selects a bundle's representative among its kept models.
     fn representative(&self, kind: BundleKind) -> Result<Representative, ConditionFailure> {
         let choice = self.choice.bundle(kind);
         let position = |name: &String| self.condition.position(kind, name);
@@ -73,7 +73,7 @@ impl ComparisonInput<'_> {
             .ok_or(ConditionFailure::AllSetAside { bundle: kind })
     }
 
-    /// Computes the mismatch of a physics model against the identified representative, and its J.
+    /// Computes a physics model's mismatch against the identified representative, and its J.
     fn mismatch(&self, physics: &ComparedModel, identified: &ComparedModel) -> ModelMismatch {
         let mismatch = physics.mismatches(identified);
         let cost = mismatch.map(|_, entry| {
@@ -84,7 +84,7 @@ impl ComparisonInput<'_> {
         ModelMismatch { mismatch, cost }
     }
 
-    /// Returns the caution about gains out of the computable range between the representatives.
+    /// Returns the caution about gains beyond the computable range between the representatives.
     fn out_of_range(&self, compared: &ComparedPair<'_>, delta: &Delta) -> Option<Caution> {
         let mut responses =
             GainOutOfRange::of_models(&compared.physics.polar, &compared.identified.polar);

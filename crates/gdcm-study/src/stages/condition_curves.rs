@@ -23,7 +23,7 @@ pub struct ConditionCurves {
     coupled: Mutex<Vec<CoupledCurve>>,
 }
 
-/// The response of one physics model with couplings.
+/// A physics model's response with couplings.
 #[derive(Debug)]
 struct CoupledCurve {
     fitted: Arc<FittedCouplings>,
@@ -51,7 +51,7 @@ impl ConditionCurves {
         }
     }
 
-    /// Returns `H~` of a physics model under the couplings of a result; `H` without couplings.
+    /// Returns `H~` of a physics model under a result's couplings; `H` without couplings.
     pub fn with_couplings(
         &self,
         result: &ConditionAnalysis,
@@ -80,7 +80,7 @@ impl ConditionCurves {
         response
     }
 
-    /// Returns the responses of one bundle.
+    /// Returns a bundle's responses.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
         kind.pick(&self.physics, &self.identified)
     }
@@ -89,7 +89,7 @@ impl ConditionCurves {
 /// Number of frequencies of drawn curves.
 pub const CURVE_POINTS: usize = 500;
 
-/// Returns the band drawn around a band of comparison: wider by a factor of 1.7 on either side.
+/// Returns the band drawn around a comparison band: wider by a factor of 1.7 on either side.
 pub fn display_band(band: Band) -> Band {
     const MARGIN: f64 = 1.7;
     Band::beyond(band.min() / MARGIN, band.max() * MARGIN).unwrap_or(band)

@@ -11,20 +11,20 @@ use gdcm_model::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 use crate::execution::{Execution, Memo};
 use crate::results::fitted_couplings::FittedCouplings;
 
-/// Dependencies of a response besides the numbers of its model: the band and the number of
-/// frequencies in it.
+/// Dependencies of a response besides its model's numbers: the band and the number of frequencies
+/// in it.
 pub type GridKey = (Band, usize);
 
 /// Purpose of a response. The last response for each purpose is cached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// Comparison of models, in the band of comparison.
+    /// Comparison of models, in the comparison band.
     Comparison,
     /// Drawing, in a wider band.
     Drawing,
 }
 
-/// Responses of every model of a condition on one grid.
+/// Responses of every model of a condition on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionResponses {
     /// Responses of the physics models, in file order.
@@ -66,8 +66,8 @@ impl CoupledResponses {
 }
 
 impl ConditionResponses {
-    /// Returns the response of a model for comparison and correction: `H` of an identified model,
-    /// `H~` of a physics model, equal to `H` without couplings (M16.3).
+    /// Returns a model's response for comparison and correction: `H` of an identified model, `H~`
+    /// of a physics model, equal to `H` without couplings (M16.3).
     pub(crate) fn compared(&self, kind: BundleKind, model: usize) -> Arc<FrequencyResponse> {
         let response = &self.bundle(kind)[model];
         match &self.coupled {
@@ -96,13 +96,13 @@ impl ConditionResponses {
         models.responses(Purpose::Comparison, key, &grid, execution)
     }
 
-    /// Returns the responses of one bundle.
+    /// Returns a bundle's responses.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
         kind.pick(&self.physics, &self.identified)
     }
 }
 
-/// The last responses of one model, and the model prepared for them.
+/// The last responses of a model, and the model prepared for them.
 #[derive(Debug, Default)]
 struct ModelResponses {
     prepared: OnceLock<PreparedModel>,
@@ -134,8 +134,9 @@ impl ModelResponses {
 }
 
 /// The models used by some condition of some engine, keyed by their numbers: a model that stays, or
-/// returns under another name or in another place, keeps its responses. Engines of one study that
-/// share them ([`Engine::sharing`](super::engine::Engine::sharing)) compute and store each only once.
+/// returns under another name or in another place, keeps its responses. Engines of a study that
+/// share them ([`Engine::sharing`](super::engine::Engine::sharing)) compute and store each only
+/// once.
 #[derive(Clone, Debug, Default)]
 pub struct KnownModels {
     by_content: Arc<Mutex<HashMap<ContentHash, Weak<ModelResponses>>>>,
@@ -165,7 +166,7 @@ impl KnownModels {
     }
 }
 
-/// The models of a condition with their responses.
+/// A condition's models with their responses.
 #[derive(Clone, Debug)]
 pub(crate) struct ConditionModels {
     condition: Arc<Condition>,
@@ -203,7 +204,7 @@ impl ConditionModels {
         &self.condition
     }
 
-    /// Returns the hash of the numbers of a model.
+    /// Returns the hash of a model's numbers.
     pub(crate) fn content(&self, kind: BundleKind, model: usize) -> ContentHash {
         let before = if kind == BundleKind::Physics {
             0
@@ -228,7 +229,7 @@ impl ConditionModels {
                 .all(|(a, b)| a.name == b.name && a.origin == b.origin)
     }
 
-    /// Computes the responses of every model, model by model; each is a step.
+    /// Computes every model's responses, model by model; each is a step.
     pub(crate) fn responses(
         &self,
         purpose: Purpose,

@@ -1,4 +1,4 @@
-//! The analysis stages of one condition, each cached while its inputs stay the same.
+//! The analysis stages of a condition, each cached while its inputs stay the same.
 //!
 //! ```text
 //! 1  responses of every model                                    (numbers of the model, grid)
@@ -34,7 +34,7 @@ use crate::results::comparison::{BundleMetrics, Comparison};
 use crate::results::fitted_couplings::{CoupledCondition, FittedCouplings};
 use crate::results::model_swap::ConditionSubstitutions;
 
-/// Proof budget for the gains of a swap: as for a live answer, without a search for other minima.
+/// Proof budget for a swap's gains: as for a live answer, without a search for other minima.
 pub(crate) const SUBSTITUTION_PROOF: ProofBudget = ProofBudget {
     work: 1_000_000,
     listing: 0,
@@ -59,7 +59,7 @@ impl MetricsKey {
     }
 }
 
-/// Dependencies of the comparison of the representatives, besides the models.
+/// Dependencies of the representatives' comparison, besides the models.
 #[derive(Clone, Debug, PartialEq)]
 struct ComparisonKey {
     metrics: MetricsKey,
@@ -89,7 +89,7 @@ pub(crate) struct ConditionStages {
     swaps: SwapMemo,
 }
 
-/// The last comparison of the representatives of a condition, and the optima based on it.
+/// The last comparison of a condition's representatives, and the optima based on it.
 #[derive(Clone, Debug, Default)]
 struct ComparedStages {
     comparison: Memo<ComparisonKey, Result<Arc<Comparison>, ConditionFailure>>,
@@ -128,7 +128,7 @@ impl ConditionStages {
         }
     }
 
-    /// Returns the number of steps of a condition's analysis: three for each model, plus one.
+    /// Returns the step count for a condition's analysis: three for each model, plus one.
     pub(crate) fn steps(condition: &Condition) -> usize {
         3 * model_count(condition) + 1
     }
@@ -170,8 +170,8 @@ impl ConditionStages {
         })
     }
 
-    /// Returns the condition's contribution to the fit of the couplings; `None` where its
-    /// representatives cannot be compared, or have no delays.
+    /// Returns the condition's contribution to the couplings' fit; `None` where its representatives
+    /// cannot be compared, or have no delays.
     ///
     /// # Errors
     /// [`Cancelled`] where the run is cancelled.
@@ -213,8 +213,8 @@ impl ConditionStages {
         }))
     }
 
-    /// Completes the analysis of the condition, with the couplings on the physics models where
-    /// there are any.
+    /// Completes the condition's analysis, with the couplings on the physics models where there are
+    /// any.
     ///
     /// # Errors
     /// [`Cancelled`] where the run is cancelled; a condition without a result is no error.
@@ -451,7 +451,7 @@ fn result_cautions(
     cautions
 }
 
-/// Returns the number of models of both bundles.
+/// Returns the model count in both bundles.
 pub(crate) fn model_count(condition: &Condition) -> usize {
     condition.bundle(BundleKind::Physics).len() + condition.bundle(BundleKind::Identified).len()
 }

@@ -1,4 +1,4 @@
-//! Search for apparent differences of sign and unit between the two bundles.
+//! Search for apparent sign and unit differences between the two bundles.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -25,7 +25,7 @@ const USUAL_FACTOR: f64 = 5.0;
 /// besides a unit.
 const MOST_SPREAD: f64 = 2.0;
 
-/// The mismatches of the models of a condition.
+/// The mismatches of a condition's models.
 struct Sample<'a> {
     condition: ConditionId,
     mismatch: &'a Mismatches,
@@ -55,7 +55,7 @@ impl Sample<'_> {
         f64::from(opposed) / f64::from(responses.max(1))
     }
 
-    /// Returns the natural logarithms of G of the responses of a channel.
+    /// Returns the natural logarithms of G of a channel's responses.
     fn ln_gains(&self, channel: Channel) -> Vec<f64> {
         self.of_channel(channel)
             .filter_map(|(pair, _)| Some(self.gains[pair]?.ln()))
@@ -116,7 +116,7 @@ fn is_turned(mismatch: &Mismatch) -> bool {
     near > 0.5 * weighted_sum(mismatch, |_| 1.0)
 }
 
-/// Evidence for a channel in one condition.
+/// Evidence for a channel in a condition.
 struct Evidence {
     condition: ConditionId,
     /// The responses that show the difference.

@@ -45,7 +45,7 @@ const LEAVING_OUT: &str = "couplings without each condition";
 const MARGIN_POINTS: [usize; 2] = [60, 300];
 
 impl Engine {
-    /// Assesses the couplings of a study; `None` where it requests none.
+    /// Assesses a study's couplings; `None` where it requests none.
     ///
     /// # Errors
     /// [`Cancelled`] soon after `progress` requests it.
@@ -186,7 +186,7 @@ impl LeftOutCondition {
     }
 }
 
-/// Returns J of the representative of a condition before and after a correction.
+/// Returns J of a condition's representative before and after a correction.
 fn changes(
     analysis: &Analysis,
     condition: ConditionId,
@@ -257,7 +257,7 @@ struct ConditionEffect {
     unstable: Vec<UnstablePole>,
 }
 
-/// Computes the effect of the couplings on a condition.
+/// Computes the couplings' effect on a condition.
 fn condition_effect(
     study: &Study,
     result: &ConditionAnalysis,
@@ -351,7 +351,7 @@ fn condition_poles(
     Ok(poles)
 }
 
-/// Returns the poles of a model without and with couplings, or why they are unknown.
+/// Returns a model's poles without and with couplings, or why they are unknown.
 fn pole_shifts(
     result: &ConditionAnalysis,
     coupled: &CoupledCondition,

@@ -1,4 +1,4 @@
-//! Fit of the couplings of a study (M16.1, M16.2).
+//! Fit of a study's couplings (M16.1, M16.2).
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ use crate::results::fitted_couplings::FittedCouplings;
 /// The requested couplings, or why there are none.
 pub(crate) type CouplingOutcome = Result<Arc<FittedCouplings>, CouplingError>;
 
-/// Contribution of one condition to the fit: its representatives, and its channel delays without
+/// Contribution of a condition to the fit: its representatives, and its channel delays without
 /// couplings.
 pub(crate) struct CouplingSource {
     pub(crate) condition: Arc<Condition>,
@@ -58,7 +58,7 @@ impl CouplingSource {
     }
 }
 
-/// Dependencies of a fit in one condition.
+/// Dependencies of a fit in a condition.
 #[derive(Clone, Debug, PartialEq)]
 struct ConditionKey {
     id: ConditionId,
@@ -189,8 +189,8 @@ impl CouplingFitKey {
     }
 }
 
-/// Returns the standard deviation of `ln H` from the bands of an identified model, or from its
-/// coherence where that is used (M16.2).
+/// Returns the standard deviation of `ln H` from an identified model's bands, or from its coherence
+/// where that is used (M16.2).
 fn deviation(study: &Study, identified: &Model, omega: &[f64]) -> Option<PairTable<Vec<f64>>> {
     if let Some(bands) = &identified.bands {
         return Some(response_deviation(bands, omega));

@@ -1,4 +1,4 @@
-//! The analysis of a study, stage by stage; each stage is cached while its inputs stay the same.
+//! A study's analysis, stage by stage; each stage is cached while its inputs stay the same.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -50,7 +50,7 @@ use crate::results::uncertainty::Uncertainty;
 #[derive(Clone)]
 pub struct Engine {
     executor: Arc<dyn Executor>,
-    /// Budget of the proof of each condition's gains.
+    /// Proof budget for each condition's gains.
     proofs: ProofBudget,
     dataset: Option<Arc<Dataset>>,
     known: KnownModels,
@@ -62,7 +62,8 @@ pub struct Engine {
     curves: Memo<GridKey, Arc<ConditionCurves>>,
 }
 
-/// Budget of a proof within a live answer; longer proofs run beside it ([`ProofJob`](crate::jobs::analysis_jobs::ProofJob)).
+/// Proof budget within a live answer; longer proofs run beside it
+/// ([`ProofJob`](crate::jobs::analysis_jobs::ProofJob)).
 pub const LIVE_PROOF: ProofBudget = ProofBudget {
     work: 1_000_000,
     listing: 100_000,
@@ -103,7 +104,7 @@ impl Engine {
         self.executor.as_ref()
     }
 
-    /// Sets the budget of the proof of each condition's gains.
+    /// Sets the proof budget for each condition's gains.
     pub fn with_proofs_within(self, proofs: ProofBudget) -> Self {
         Self { proofs, ..self }
     }
@@ -134,7 +135,7 @@ impl Engine {
         self.analyze_first(study, None, progress)
     }
 
-    /// Works as [`Engine::analyze`], and reports the result of one condition before the others are
+    /// Works as [`Engine::analyze`], and reports a condition's result before the others are
     /// started.
     pub fn analyze_first(
         &mut self,
@@ -218,7 +219,7 @@ impl Engine {
         Ok(Uncertainty::new(analysis, &swaps))
     }
 
-    /// Computes the requirements on the models of every condition; see [`requirements_of`].
+    /// Computes the requirements on every condition's models; see [`requirements_of`].
     ///
     /// # Errors
     /// [`Cancelled`] soon after `progress` requests it.
@@ -233,8 +234,8 @@ impl Engine {
         requirements_of(analysis, known, &execution)
     }
 
-    /// Simulates the models of an analysis with `records` and compares them within the tolerances
-    /// of its study; see [`time_histories_of`].
+    /// Simulates an analysis's models with `records` and compares them within its study's
+    /// tolerances; see [`time_histories_of`].
     ///
     /// # Errors
     /// [`Cancelled`] soon after `progress` requests it.
@@ -328,8 +329,8 @@ pub struct WantedFirst<'a> {
     pub tell: &'a (dyn Fn(&Result<ConditionAnalysis, ConditionFailure>) + Sync),
 }
 
-/// Returns the number of steps of an analysis: those of the conditions, plus, for the conditions
-/// that couplings are fitted to, once more for the inputs of the fit and once more for the fit.
+/// Returns the analysis step count: those of the conditions, plus, for the conditions that
+/// couplings are fitted to, once more for the inputs of the fit and once more for the fit.
 fn steps(study: &Study) -> usize {
     let has_couplings = study.settings.couplings.kind().is_some();
     let mut steps = 0;
@@ -348,7 +349,7 @@ fn add_schedule_cautions(analysis: &mut Analysis, cautions: Vec<ScheduleCaution>
     }
 }
 
-/// Fits the couplings of a study to the conditions that are analysed and not held out; `None` where
+/// Fits a study's couplings to the conditions that are analysed and not held out; `None` where
 /// couplings are not requested (M16.1).
 fn fit_couplings(
     run: Run<'_>,
@@ -384,7 +385,7 @@ fn fit_couplings(
     Ok(Some(fit))
 }
 
-/// Reports the progress of a fit as steps of the analysis.
+/// Reports a fit's progress as steps of the analysis.
 struct FitProgress<'a> {
     execution: &'a Execution<'a>,
     /// Number of steps of the fit.

@@ -1,4 +1,4 @@
-//! Computation of the uncertainty of an analysis from the swaps of its models (M13).
+//! Computation of an analysis's uncertainty from its models' swaps (M13).
 //!
 //! ```text
 //! 1  error bar of every figure of a condition, from its swaps and reported errors        (M13.2, M13.3)
@@ -31,7 +31,7 @@ use crate::results::uncertainty::{
     SecondVariableTest, Uncertainty,
 };
 
-/// Greatest number of differences that are compared.
+/// Most differences that are compared.
 const MOST_DIFFERENCES: usize = 20_000;
 
 impl Uncertainty {
@@ -90,7 +90,7 @@ fn condition_bars(
     conditions
 }
 
-/// Collects the figures of a condition with the spread of its swaps and the errors reported by its
+/// Collects a condition's figures with the spread of its swaps and the errors reported by its
 /// identified representative.
 fn bar_source<'a>(
     analysis: &Analysis,
@@ -163,7 +163,7 @@ impl<'a> ScheduleEvidence<'a> {
             .collect()
     }
 
-    /// Splits the scatter of each net gain, at equal airspeed and about the schedule.
+    /// Splits each net gain's scatter, at equal airspeed and about the schedule.
     fn scatter(&self, pairs: &[Pair]) -> Vec<PairScatter> {
         let same_airspeed = self.schedule.and_then(|schedule| {
             let airspeeds_kt = schedule.airspeeds.values_kt.clone();

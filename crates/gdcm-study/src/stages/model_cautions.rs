@@ -143,7 +143,7 @@ pub fn cautions_of_models(
     Ok(found)
 }
 
-/// Returns the gains out of the computable range, between the nominal physics model and the first
+/// Returns the gains beyond the computable range, between the nominal physics model and the first
 /// kept identified model with any.
 fn gains_out_of_range(
     condition: &Condition,

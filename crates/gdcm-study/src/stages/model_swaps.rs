@@ -97,7 +97,7 @@ pub(crate) fn representative_figures(analysis: &ConditionAnalysis) -> Figures {
 /// Dependencies of a swap besides the two models.
 #[derive(Clone, Debug, PartialEq)]
 struct SwapKey {
-    /// The settings of the analysis, without those that no swap depends on.
+    /// The analysis's settings, without those that no swap depends on.
     settings: Settings,
     measuring: PairTable<bool>,
     /// The reference of phase branches.
@@ -148,7 +148,7 @@ impl SwapInput<'_> {
         }
     }
 
-    /// Returns the dependencies of the swaps.
+    /// Returns the swaps' dependencies.
     fn key(&self) -> SwapKey {
         let mut settings = self.run.study.settings.clone();
         settings.schedule = Default::default();

@@ -26,7 +26,7 @@ use crate::results::analysis::ConditionFailure;
 use crate::results::comparison::Mismatches;
 use crate::results::lead_compensation::{LeadCompensated, LeadOffer};
 
-/// Outcome of one problem.
+/// Outcome of a problem.
 pub(crate) type Solved = Result<Arc<Solution>, ProblemError>;
 
 /// Solves a problem, with the proof within a budget.
@@ -198,7 +198,7 @@ pub(crate) struct SolveInput<'a> {
     measuring: &'a PairTable<bool>,
     mismatch: &'a Mismatches,
     delta: &'a Delta,
-    /// Upper bound of the delays \[s\].
+    /// Upper delay bound \[s\].
     delay_upper_s: f64,
 }
 
@@ -250,7 +250,7 @@ impl<'a> SolveInput<'a> {
         Some(Arc::new(LeadDesign::new(self.settings().lead, omega)))
     }
 
-    /// Builds the problem of the gains, on the difference left after the leads where there are any.
+    /// Builds the gains' problem, on the difference left after the leads where there are any.
     fn gain_problem(&self, compensated: Option<&LeadCompensated>) -> Problem {
         let settings = self.settings();
         let (mismatch, gain) = match compensated {

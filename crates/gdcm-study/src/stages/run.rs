@@ -1,4 +1,4 @@
-//! Context of a computation on the conditions of a study.
+//! Context of a computation on a study's conditions.
 
 use gdcm_method::correction::ProofBudget;
 use gdcm_model::response::FrequencyGrid;
@@ -12,9 +12,9 @@ use crate::execution::Execution;
 #[derive(Clone, Copy)]
 pub(crate) struct Run<'a> {
     pub(crate) study: &'a Study,
-    /// The frequencies of comparison.
+    /// The comparison frequencies.
     pub(crate) grid: &'a FrequencyGrid,
-    /// Budget of the proof of each condition's gains.
+    /// Proof budget for each condition's gains.
     pub(crate) proofs: ProofBudget,
     pub(crate) execution: &'a Execution<'a>,
 }
@@ -25,7 +25,7 @@ impl<'a> Run<'a> {
         (self.study.settings.band, self.study.settings.points)
     }
 
-    /// Returns the frequencies of comparison and their least coherence.
+    /// Returns the comparison frequencies and their least coherence.
     pub(crate) fn comparison_grid(&self) -> ComparisonGrid<'a> {
         ComparisonGrid {
             grid: self.grid,

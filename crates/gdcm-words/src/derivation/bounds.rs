@@ -36,7 +36,7 @@ fn percent(share: f64) -> String {
     number((1e6 * share).round() / 1e4)
 }
 
-/// Derives the bounds of the channel gains.
+/// Derives the channel gains' bounds.
 pub(super) fn gain_bounds(context: &Context<'_>) -> Derivation {
     let bounds = context.result.gain_bounds();
     let lower = five_digits(bounds.lower);

@@ -119,7 +119,7 @@ fn constraint_words(
     }
 }
 
-/// Derives the gain of a channel.
+/// Derives a channel's gain.
 pub(super) fn gain(context: &Context<'_>, channel: Channel) -> Option<Derivation> {
     let result = context.result;
     let value = *result.gains.channels().get(channel)?;
@@ -179,7 +179,7 @@ pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivatio
     })
 }
 
-/// Derives the objective of the gains.
+/// Derives the gains' objective.
 pub(super) fn gain_objective(context: &Context<'_>) -> Derivation {
     let optimum = Optimum {
         context,
@@ -189,7 +189,7 @@ pub(super) fn gain_objective(context: &Context<'_>) -> Derivation {
     optimum.objective(&Objective::of_gains(context))
 }
 
-/// Derives the objective of the delays.
+/// Derives the delays' objective.
 pub(super) fn delay_objective(context: &Context<'_>) -> Derivation {
     let problem = &context.result.delay_problem;
     let optimum = Optimum {

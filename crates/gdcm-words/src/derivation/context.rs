@@ -14,7 +14,7 @@ pub(super) struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    /// Returns the context of a condition, where it has a result.
+    /// Returns a condition's context, where it has a result.
     pub(super) fn new(analysis: &'a Analysis, condition: ConditionId) -> Option<Self> {
         Some(Self {
             analysis,
@@ -45,7 +45,7 @@ impl<'a> Context<'a> {
         format!("{figure}, condition {}", self.result.condition.id())
     }
 
-    /// Returns the mismatch of the two representatives.
+    /// Returns the two representatives' mismatch.
     pub(super) fn mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
         self.result
             .comparison
@@ -55,7 +55,7 @@ impl<'a> Context<'a> {
             .as_ref()
     }
 
-    /// Returns the mismatch after the leads of the channels, where there are any (M15.5).
+    /// Returns the mismatch after the channels' leads, where there are any (M15.5).
     pub(super) fn compensated_mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
         match &self.result.compensated {
             Some(compensated) => compensated.mismatch.get(pair)?.as_ref(),

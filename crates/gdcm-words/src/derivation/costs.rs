@@ -13,7 +13,7 @@ use super::sample_words::median_words;
 use super::{Context, Derivation};
 use crate::assessment::correction_source;
 
-/// Greatest number of terms of a sum that are written out.
+/// Most terms that are written out in a sum.
 const MOST_TERMS: usize = 8;
 
 /// Section of J in the method's description.
@@ -58,7 +58,7 @@ fn model_words(model: &Model) -> Vec<String> {
     words
 }
 
-/// Derives the score of a model: its mean distance to the other kept models.
+/// Derives a model's score: its mean distance to the other kept models.
 pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
     let result = context.result;
     let kind = model.bundle;

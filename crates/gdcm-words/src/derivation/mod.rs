@@ -36,7 +36,7 @@ pub struct Derivation {
 }
 
 impl Derivation {
-    /// Returns the symbols of the equation with their meanings, in order of appearance.
+    /// Returns the equation's symbols with their meanings, in order of appearance.
     pub fn terms(&self) -> Vec<(&'static str, &'static str)> {
         terms::terms_of(&self.equation)
     }

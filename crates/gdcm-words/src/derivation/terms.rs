@@ -53,7 +53,7 @@ const TERMS: [(&str, &str); 30] = [
     ("V", "airspeed [kt]"),
 ];
 
-/// Returns the symbols of an equation with their meanings, in order of appearance.
+/// Returns an equation's symbols with their meanings, in order of appearance.
 pub(super) fn terms_of(equation: &str) -> Vec<(&'static str, &'static str)> {
     let mut found: Vec<(usize, (&str, &str))> = Vec::new();
     for (symbol, meaning) in TERMS {
@@ -65,7 +65,7 @@ pub(super) fn terms_of(equation: &str) -> Vec<(&'static str, &'static str)> {
     found.into_iter().map(|(_, term)| term).collect()
 }
 
-/// Returns the position of a symbol in an equation, where it is not a part of another symbol.
+/// Returns a symbol's position in an equation, where it is not a part of another symbol.
 fn place_of(symbol: &str, equation: &str) -> Option<usize> {
     for (place, _) in equation.match_indices(symbol) {
         let before = equation[..place].chars().next_back();

@@ -121,7 +121,7 @@ impl<K, V> Default for Memo<K, V> {
 
 impl<K: PartialEq, V: Clone> Memo<K, V> {
     /// Creates a cache with a value computed elsewhere.
-    pub(crate) fn of(key: K, value: V) -> Self {
+    pub(crate) fn with(key: K, value: V) -> Self {
         Self {
             kept: Some((key, value)),
         }

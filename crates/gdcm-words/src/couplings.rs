@@ -189,12 +189,12 @@ fn farthest_pole_words(assessment: &CouplingsAssessment) -> Option<String> {
     let mut farthest: Option<(ConditionId, &PoleShift, f64)> = None;
     for (id, condition) in &assessment.conditions {
         for shift in condition.poles.iter().flatten() {
-            let is_in_band = shift
-                .before
-                .is_some_and(|before| band.contains(&before.norm()));
-            let Some(distance) = shift.distance_rad_s().filter(|_| is_in_band) else {
+            let (Some(before), Some(distance)) = (shift.before, shift.distance_rad_s()) else {
                 continue;
             };
+            if !band.contains(&before.norm()) {
+                continue;
+            }
             if farthest.is_none_or(|(.., known)| distance.total_cmp(&known).is_ge()) {
                 farthest = Some((*id, shift, distance));
             }

@@ -95,7 +95,7 @@ impl SolvedProblems {
     /// Replaces the cached gains of the same problem.
     pub(crate) fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
         if self.gains.holds(problem) {
-            self.gains = Memo::of(Arc::clone(problem), Ok(Arc::clone(solution)));
+            self.gains = Memo::with(Arc::clone(problem), Ok(Arc::clone(solution)));
         }
     }
 

@@ -25,7 +25,7 @@ fn the_assessment_of_the_paper_is_that_of_the_analysis() {
     assert_eq!(table.left_out.len(), 1);
     assert_eq!(
         (table.left_out[0].condition, table.left_out[0].why.code()),
-        (ConditionId(10), "the nominal model is rejected")
+        (ConditionId(10), "nominal-rejected")
     );
     assert_eq!(table.conditions.len(), 10);
     for assessed in &table.conditions {

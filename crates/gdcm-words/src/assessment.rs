@@ -1,5 +1,5 @@
-//! Sentences about assessments: benefit of a correction, origin of the correction, and why a
-//! condition or a response is left out (M12).
+//! Sentences about assessments: what a correction gains, where it comes from, and why a condition
+//! or a response is left out (M12).
 
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::units::{number, signed};
@@ -9,7 +9,7 @@ use gdcm_study::{Analysis, AssessedCorrection, AssessmentTable};
 
 use crate::caution::{failure_text, undefined_text};
 
-/// Returns the origin of an assessed correction in words.
+/// Returns an assessed correction's origin in words.
 pub(crate) fn correction_source(correction: AssessedCorrection, airspeed_kt: f64) -> String {
     let at = format!("at {} kt", number(airspeed_kt));
     match correction {
@@ -24,7 +24,7 @@ pub(crate) fn correction_source(correction: AssessedCorrection, airspeed_kt: f64
     }
 }
 
-/// Returns why a condition is left out of an assessment.
+/// Returns why an assessment leaves a condition out.
 pub fn not_assessed_text(why: &NotAssessed, dataset: &Dataset) -> String {
     match why {
         NotAssessed::NotAnalysed => "it was not analysed".to_owned(),
@@ -83,7 +83,7 @@ pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option
     ))
 }
 
-/// Describes the change of J over the on-axis responses of the selected conditions.
+/// Describes how J changes over the selected conditions' on-axis responses.
 fn change_words(
     analysis: &Analysis,
     table: &AssessmentTable,

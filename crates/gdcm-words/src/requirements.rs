@@ -1,5 +1,5 @@
-//! Requirements as tables (M17). One table compares the corrected model of every condition with the
-//! identified one, requirement by requirement:
+//! Requirements as tables (M17). [`RequirementsOverview`] compares every condition's corrected
+//! model with the identified model, requirement by requirement:
 //!
 //! ```text
 //! bandwidth     100 (omega_BW / omega_BW of the identified model - 1) [%]
@@ -22,11 +22,10 @@ use gdcm_study::results::time_histories::TimeHistories;
 use crate::table::Table;
 use crate::time_histories::{cost_cells, cost_heads, output_weights_text, percent_rounded_down};
 
-/// Heading of a pole's modulus.
+/// A modulus's heading.
 const MODULUS: &str = "|\u{3bb}| [rad/s]";
 
-/// Tabulates bandwidth and phase delay of every on-axis response of every condition and model, with
-/// cautions.
+/// Tabulates every on-axis bandwidth and phase delay, with cautions.
 pub fn bandwidth_table(requirements: &Requirements, dataset: &Dataset) -> Table {
     let columns = [
         "condition",
@@ -89,8 +88,8 @@ fn bandwidth_remark(finding: &BandwidthFinding) -> String {
     words.join("; ")
 }
 
-/// Tabulates a condition's modes: identified, of the physics representative, and with the study's
-/// couplings where there are any.
+/// Tabulates a condition's modes: identified, physics, and physics with the study's couplings where
+/// there are any.
 pub fn mode_table(requirements: &Requirements, condition: ConditionId) -> Table {
     let modes: Vec<&ModeFinding> = requirements
         .modes
@@ -113,7 +112,7 @@ pub fn mode_table(requirements: &Requirements, condition: ConditionId) -> Table 
     table
 }
 
-/// Returns the headings of [`mode_row`].
+/// Returns the headings above [`mode_row`].
 fn mode_columns(is_coupled: bool) -> Vec<String> {
     let heads = |model: &str| {
         [MODULUS, "\u{3b6}", "period [s]"].map(|quantity| format!("{model} {quantity}"))
@@ -153,7 +152,7 @@ fn mode_row(mode: &ModeFinding) -> Vec<String> {
     cells
 }
 
-/// Formats modulus, damping ratio and period of a mode; dashes where there is none.
+/// Formats a mode's modulus, damping ratio and period; dashes where there is none.
 fn mode_cells(mode: Option<&ModeNumbers>) -> [String; 3] {
     [
         decimals_or_dash(
@@ -177,9 +176,8 @@ pub fn mode_verdict_words(verdict: ModeVerdict) -> &'static str {
     }
 }
 
-/// Tabulates mean J, and the share of the band inside the envelopes of unnoticeable added dynamics,
-/// of every condition and model; with the responses to flight records, also `J_rms` and Theil's
-/// coefficients.
+/// Tabulates, for every condition and model, mean J and the share of the band inside the
+/// unnoticeable envelopes; with flight records, also `J_rms` and Theil's coefficients.
 pub fn summary_table(requirements: &Requirements, histories: Option<&TimeHistories>) -> Table {
     let histories = histories.filter(|histories| !histories.records.is_empty());
     let mut columns = [
@@ -231,7 +229,7 @@ fn summary_cells(finding: &SummaryFinding) -> Vec<String> {
     ]
 }
 
-/// Adds the identified models, the reference of the others, about which time histories alone say
+/// Adds the identified models, the others' reference, about which time histories alone say
 /// anything.
 fn add_identified_rows(table: &mut Table, histories: &TimeHistories) {
     let role = RequirementRole::Identified;
@@ -252,8 +250,8 @@ fn add_identified_rows(table: &mut Table, histories: &TimeHistories) {
     }
 }
 
-/// Returns the summary of a row of [`summary_table`]; `None` for the identified model, the
-/// reference of the others.
+/// Returns the summary in a row of [`summary_table`]; `None` for the identified model, the others'
+/// reference.
 pub fn summary_of_row<'a>(
     requirements: &'a Requirements,
     row: &[String],
@@ -267,7 +265,7 @@ pub fn summary_of_row<'a>(
         .find(|finding| finding.condition.to_string() == *condition && finding.role.name() == role)
 }
 
-/// The corrected model of every condition against the identified one.
+/// Every condition's corrected model against the identified model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementsOverview {
     /// A row for each requirement with its limit, a column for each condition; a dash where there
@@ -287,18 +285,18 @@ struct OverviewRow {
     limit: String,
 }
 
-/// A value of a cell, and whether it is beyond its limit.
+/// A cell's value, and whether it is beyond its limit.
 struct Judged {
     text: String,
     is_outside: bool,
 }
 
 impl RequirementsOverview {
-    /// Number of columns before the first condition.
+    /// How many columns precede the first condition.
     pub const HEADS: usize = HEADS.len();
 
-    /// Compares the corrected model of every condition with the identified one; with the responses
-    /// to flight records, also their shares inside.
+    /// Compares every condition's corrected model with the identified model; with flight records,
+    /// also their shares inside.
     pub fn new(
         requirements: &Requirements,
         dataset: &Dataset,
@@ -339,7 +337,7 @@ impl RequirementsOverview {
         overview
     }
 
-    /// Adds bandwidth and phase delay of a response.
+    /// Adds a response's bandwidth and phase delay.
     fn add_bandwidth(
         &mut self,
         requirements: &Requirements,
@@ -385,7 +383,7 @@ impl RequirementsOverview {
         });
     }
 
-    /// Adds the share of time inside the tolerance of each measured quantity, not of integrals.
+    /// Adds the share inside each measured quantity's tolerance, except integrals.
     fn add_histories(
         &mut self,
         histories: &TimeHistories,
@@ -443,7 +441,7 @@ impl RequirementsOverview {
     }
 }
 
-/// Returns whether any model has a bandwidth or a phase delay of a response.
+/// Returns whether any model has a bandwidth or a phase delay in a response.
 fn has_bandwidth(requirements: &Requirements, pair: Pair) -> bool {
     requirements.bandwidth.iter().any(|finding| {
         finding.pair == pair
@@ -451,8 +449,8 @@ fn has_bandwidth(requirements: &Requirements, pair: Pair) -> bool {
     })
 }
 
-/// Counts the modes of the corrected model beyond their tolerance; `None` where no mode with a
-/// tolerance is determined.
+/// Counts the corrected model's modes beyond their tolerance; `None` where no mode with a tolerance
+/// is determined.
 fn modes_outside(requirements: &Requirements, id: ConditionId) -> Option<Judged> {
     let mut within = 0;
     let mut outside = 0;

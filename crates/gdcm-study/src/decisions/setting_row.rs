@@ -18,35 +18,35 @@ use super::study::Study;
 /// One setting: a row of [`SETTINGS`](super::setting::SETTINGS).
 #[derive(Debug)]
 pub struct Setting {
-    /// Its name in running text: "α of the gains".
+    /// Name in running text: "α of the gains".
     pub name: &'static str,
-    /// Its key in the settings of files; a dot separates the key of a nested object: "lead.n".
+    /// Key in files; a dot separates a nested object's key: "lead.n".
     pub key: &'static str,
-    /// Its option of the command line: "--alpha".
+    /// Command-line option: "--alpha".
     pub option: &'static str,
-    /// Value of the option without an argument; `None` where an argument is required.
+    /// The option's value without an argument; `None` where an argument is required.
     pub bare: Option<&'static str>,
     /// Description in one sentence.
     pub help: &'static str,
     pub unit: Unit,
-    /// Type and range of the value.
+    /// The value's type and range.
     pub kind: Kind,
     /// Its control in the window.
     pub control: Control,
 }
 
-/// Unit of a setting in files and on a command line, and the displayed unit.
+/// A setting's unit in files and on a command line, and the displayed unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Unit {
     /// Unit in files.
     pub file: &'static str,
     /// Displayed unit.
     pub shown: &'static str,
-    /// Number of displayed units in one file unit.
+    /// How many displayed units make a file unit.
     pub scale: f64,
 }
 
-/// Type and range of a setting, with access to its field of [`Settings`].
+/// A setting's type and range, with access to its field in [`Settings`].
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
     Number {
@@ -88,13 +88,13 @@ pub enum Kind {
     },
 }
 
-/// Control of a setting in the window.
+/// A setting's control in the window.
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
     pub place: Place,
     pub caption: &'static str,
     pub label: &'static str,
-    /// Change of the displayed value per point of dragging.
+    /// Change in the displayed value for each dragged point.
     pub step: f64,
     pub digits: Digits,
     /// Whether the setting has an effect.
@@ -106,13 +106,13 @@ pub struct Control {
 pub enum Digits {
     /// Three significant digits.
     Significant,
-    /// A fixed number of decimals.
+    /// Fixed decimals.
     Decimals(usize),
-    /// Format of a gain: three decimals, two where the third is zero.
+    /// A gain: three decimals, two where the third is zero.
     Gain,
 }
 
-/// Place of the control of a setting.
+/// Where a setting's control is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// Above the settings table, with a slider.
@@ -121,16 +121,16 @@ pub enum Place {
     Top,
     /// On its own line.
     Line,
-    /// On the line of the setting before it.
+    /// On the previous setting's line.
     Beside,
     /// In its subject's view.
     Elsewhere,
 }
 
-/// The value of a setting.
+/// A setting's value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
-    /// A number in the unit of files.
+    /// A number in the file unit.
     Number(f64),
     /// No value, where that is allowed.
     Nothing,
@@ -139,9 +139,9 @@ pub enum Value {
     Choice(usize),
 }
 
-/// A type with one value for each choice of a setting.
+/// A type whose values are a setting's choices.
 pub trait Choice: Copy + PartialEq + 'static {
-    /// All values, in the order of the setting's words.
+    /// All values, ordered as the setting's words.
     const ALL: &'static [Self];
 
     /// Returns its index among all values.
@@ -379,7 +379,7 @@ impl Setting {
         }
     }
 
-    /// Returns the syntax of the option's argument: "none|delay|lead", "off|on|NUMBER".
+    /// Returns the option argument's syntax: "none|delay|lead", "off|on|NUMBER".
     pub fn syntax(&self) -> String {
         match self.kind {
             Kind::Number { .. } => "NUMBER".to_owned(),

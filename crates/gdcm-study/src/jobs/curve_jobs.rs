@@ -1,4 +1,4 @@
-//! Jobs for drawing: responses of a condition's models, responses over the conditions, modes.
+//! Jobs for drawing: a condition's responses, responses over the conditions, modes.
 
 use std::sync::Arc;
 
@@ -18,12 +18,12 @@ use crate::shared::Shared;
 use crate::stages::condition_curves::ConditionCurves;
 use crate::stages::engine::Engine;
 
-/// The frequency responses of every model of a condition, for drawing.
+/// A condition's frequency responses, for drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvesJob {
     pub dataset: Shared<Dataset>,
     pub condition: ConditionId,
-    /// Band, and the number of frequencies in it.
+    /// Band, and how many frequencies it has.
     pub grid: (Band, usize),
 }
 
@@ -38,7 +38,7 @@ impl Job for CurvesJob {
     }
 }
 
-/// The modes of every model of a condition.
+/// A condition's modes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModesJob {
     pub condition: Shared<Condition>,
@@ -53,7 +53,7 @@ impl Job for ModesJob {
     }
 }
 
-/// The responses of selected models, from any condition of the dataset, on a grid.
+/// Selected models' responses, from any condition, on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossJob {
     pub dataset: Shared<Dataset>,
@@ -61,11 +61,11 @@ pub struct AcrossJob {
     pub models: Vec<ModelId>,
     /// The couplings put on those models; `None` for models without couplings.
     pub couplings: Option<Arc<FittedCouplings>>,
-    /// Band, and the number of frequencies in it.
+    /// Band, and how many frequencies it has.
     pub grid: (Band, usize),
 }
 
-/// Responses of models of several conditions.
+/// Responses from several conditions' models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossCurves {
     pub grid: FrequencyGrid,
@@ -120,7 +120,7 @@ impl Job for AcrossJob {
     }
 }
 
-/// The model of each condition drawn in the overlay of conditions.
+/// Each condition's model in the overlay of conditions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AcrossRole {
     /// The physics model at the condition's own trim.
@@ -187,7 +187,7 @@ impl AcrossRole {
 /// A model's modes; an error for a measured response.
 pub type ModelModes = Result<Vec<Mode>, ModesError>;
 
-/// The modes of every model of a condition, in file order.
+/// A condition's modes, model by model in file order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionModes {
     /// The condition; it names the models.
@@ -220,7 +220,7 @@ impl ConditionModes {
         kind.pick(&self.physics, &self.identified)
     }
 
-    /// Follows each mode of the model with index `reference` through its bundle. A model without
+    /// Follows each mode from the model with index `reference` through its bundle. A model without
     /// modes leaves gaps.
     pub fn tracks(&self, kind: BundleKind, reference: usize) -> Vec<ModeTrack> {
         let modes = self

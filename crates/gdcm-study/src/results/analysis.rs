@@ -1,4 +1,4 @@
-//! The result of a whole study.
+//! A study's whole result.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -22,14 +22,14 @@ use super::uncertainty::Uncertainty;
 use crate::decisions::requirement_settings::RequirementSettings;
 use crate::decisions::study::Study;
 
-/// Result of each condition, or why it has none.
+/// Each condition's result, or why it has none.
 pub(crate) type Outcomes = BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>;
 
-/// J of every response of a condition's nominal model before and after the scheduled correction
-/// (M12), or why the condition is left out.
+/// The nominal model's J by response, before and after the scheduled correction (M12), or why the
+/// condition is left out.
 pub type Assessed = Result<PairTable<Option<CostChange>>, NotAssessed>;
 
-/// Why a condition is left out of an assessment.
+/// Why an assessment leaves a condition out.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NotAssessed {
     NotAnalysed,
@@ -50,26 +50,26 @@ impl NotAssessed {
     }
 }
 
-/// Complete result of a study.
+/// A study's complete result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
     pub study: Study,
     /// Comparison frequencies \[rad/s\].
     pub omega: Arc<[f64]>,
-    /// Result of each condition, or why it has none.
+    /// Each condition's result, or why it has none.
     pub conditions: BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>,
     /// Couplings put on every physics model, or why there are none; `None` where none are requested
     /// (M16).
     pub couplings: Option<Result<Arc<FittedCouplings>, CouplingError>>,
-    /// Benefit and cost of the couplings, once assessed
+    /// The couplings' benefit and cost, once assessed
     /// ([`Engine::assess_couplings`](crate::stages::engine::Engine::assess_couplings)).
     pub coupling_assessment: Option<Arc<CouplingsAssessment>>,
     /// Channels with an apparent sign or unit difference between the two sides; reported first.
     pub doubts: Vec<ConventionDoubt>,
-    /// Schedule of the chosen conditions.
+    /// Schedule for the chosen conditions.
     pub schedule: Result<Schedule, ScheduleError>,
     pub assessment: BTreeMap<ConditionId, Assessed>,
-    /// Uncertainty of the figures, once computed
+    /// The figures' uncertainty, once computed
     /// ([`Engine::uncertainty`](crate::stages::engine::Engine::uncertainty)).
     pub uncertainty: Option<Arc<Uncertainty>>,
 }
@@ -117,21 +117,21 @@ impl Analysis {
     }
 }
 
-/// Result of a condition.
+/// A condition's result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionAnalysis {
     /// The analysed condition; its models define the order of the figures below.
     pub condition: Arc<Condition>,
-    /// Distances and discontinuity ratios of the bundles.
+    /// The bundles' distances and discontinuity ratios.
     pub figures: Arc<BundleMetrics>,
     /// Changes due to the couplings; `None` without couplings.
     pub coupled: Option<CoupledCondition>,
     /// Representatives, G and D, with the couplings on the physics models where there are any
     /// (M16.3).
     pub comparison: Arc<Comparison>,
-    /// Problem of the gains.
+    /// The gain problem.
     pub gain_problem: Arc<Problem>,
-    /// Problem of the delays, or of the signed delays.
+    /// The delay problem, with signed delays if requested.
     pub delay_problem: Arc<Problem>,
     /// Optimal gains, eq. (7).
     pub gains: Arc<Solution>,
@@ -139,11 +139,12 @@ pub struct ConditionAnalysis {
     pub delays: Arc<Solution>,
     /// Difference left after the leads, where leads are requested (M15.5).
     pub compensated: Option<Arc<LeadCompensated>>,
-    /// Benefit of leads, where all constrained responses want lead and leads are not requested.
+    /// What leads would gain, where all constrained responses want lead and leads are not
+    /// requested.
     pub offer: Option<LeadOffer>,
     /// Gains and delays as one correction.
     pub correction: ChannelCorrection,
-    /// J of the physics representative before and after this correction.
+    /// The physics representative's J before and after this correction.
     pub cost: Arc<PairTable<Option<CostChange>>>,
     /// Channels with an apparent sign or unit difference in this condition.
     pub doubts: Vec<ConventionDoubt>,
@@ -169,13 +170,13 @@ impl ConditionAnalysis {
         self.gain_problem.delta[pair]
     }
 
-    /// Returns the D used in the delay problem \[s\]: of eq. (9), or of M15.2.
+    /// Returns the D used in the delay problem \[s\], by eq. (9) or M15.2.
     pub fn wanted_delay_s(&self, pair: Pair) -> Option<f64> {
         self.delay_problem.delta[pair]
     }
 
-    /// Returns whether the delays are fitted to the D of M15.2 (always so for leads) instead of the
-    /// D of eq. (9).
+    /// Returns whether the delays are fitted to D by M15.2 (always so for leads) instead of eq.
+    /// (9).
     pub fn asks_band_delays(&self) -> bool {
         let asked = &self.delay_problem.delta;
         let delta = &self.comparison.delta;
@@ -196,7 +197,7 @@ impl ConditionAnalysis {
         self.gain_problem.bounds
     }
 
-    /// Returns the least and greatest delay of every channel \[s\]; leads are negative (M15.4).
+    /// Returns every channel's least and greatest delay \[s\]; leads are negative (M15.4).
     pub fn delay_bounds_s(&self) -> [f64; 2] {
         // Adding zero turns minus zero into zero.
         [
@@ -210,7 +211,7 @@ impl ConditionAnalysis {
         self.delay_problem.bounds.upper
     }
 
-    /// Returns the names of the physics models suggested as outliers, including rejected models.
+    /// Returns the physics models suggested as outliers, including rejected models.
     pub fn suggested(&self) -> Vec<String> {
         let suggested = self
             .figures
@@ -225,7 +226,7 @@ impl ConditionAnalysis {
             .collect()
     }
 
-    /// Returns a bundle's representative, with its models' scores in the order of
+    /// Returns a bundle's representative, with its models' scores ordered as in
     /// [`ConditionAnalysis::condition`].
     pub fn representative(&self, kind: BundleKind) -> &Representative {
         kind.pick(&self.comparison.physics, &self.comparison.identified)
@@ -236,17 +237,17 @@ impl ConditionAnalysis {
         &self.condition.bundle(kind)[self.representative(kind).model]
     }
 
-    /// Returns the name of the model that represents a bundle.
+    /// Returns the representative's name in a bundle.
     pub fn representative_name(&self, kind: BundleKind) -> &str {
         &self.representative_model(kind).name
     }
 
-    /// Returns the mean distance of a model to the other kept models, where it has one.
+    /// Returns a model's mean distance to the other kept models, if defined.
     pub fn score(&self, kind: BundleKind, name: &str) -> Option<f64> {
         self.representative(kind).scores[self.condition.position(kind, name)?]
     }
 
-    /// Returns the discontinuity ratio of a physics model, where it has one.
+    /// Returns a physics model's discontinuity ratio, if defined.
     pub fn discontinuity_ratio(&self, name: &str) -> Option<f64> {
         let ratios = &self.figures.discontinuity.as_ref().ok()?.ratios;
         ratios[self.condition.position(BundleKind::Physics, name)?]
@@ -285,7 +286,7 @@ pub enum ConditionFailure {
 }
 
 impl ConditionFailure {
-    /// Returns the stable code of the reason, for programs and tests.
+    /// Returns the reason's stable code, for programs and tests.
     pub fn code(&self) -> &'static str {
         match self {
             Self::NoReference => "no-reference",

@@ -29,7 +29,7 @@ pub struct QuantityHistory {
     pub tolerance: Tolerance,
     /// Index of the output that it is computed from.
     pub output: usize,
-    /// Unit of the compared quantity.
+    /// The compared quantity's unit.
     pub unit: String,
     /// Whether the output is on-axis to the input that moved most; `None` where that input is
     /// unknown.

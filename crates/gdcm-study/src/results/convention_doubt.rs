@@ -21,7 +21,7 @@ pub struct ConventionDoubt {
     pub channel: Channel,
     /// The measuring responses with the difference.
     pub pairs: Vec<Pair>,
-    /// Whether all responses of the channel show it.
+    /// Whether all the channel's responses show it.
     pub all_responses: bool,
     /// The conditions with the difference, in file order.
     pub conditions: Vec<ConditionId>,

@@ -1,5 +1,6 @@
-//! Benefit and cost of couplings: the uncertainty of their entries, J without and with them and with
-//! conditions left out, moved poles, stability margin of the loop, effect above the band (M16.4).
+//! What couplings gain and cost: error bars on their entries, J without and with them and with
+//! conditions left out, moved poles, the loop's stability margin, the effect above the band
+//! (M16.4).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -14,14 +15,14 @@ use gdcm_model::dataset::{Band, ConditionId, Pair, PairTable};
 use super::fitted_couplings::FittedCouplings;
 use crate::decisions::settings::CouplingCorrection;
 
-/// Result of an assessment; without couplings, the fit's error.
+/// An assessment's result; without couplings, the fit's error.
 pub type AssessedCouplings = Result<Arc<CouplingsAssessment>, CouplingError>;
 
-/// An entry of `M~` or of `K`.
+/// An entry in `M~` or `K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplingEntry {
     pub value: f64,
-    /// Half-width of its error bar; `None` with fewer than three conditions.
+    /// Its error bar's half-width; `None` with fewer than three conditions.
     pub half_width: Option<f64>,
     /// Jackknife standard deviation.
     pub deviation: Option<f64>,
@@ -29,27 +30,27 @@ pub struct CouplingEntry {
     pub is_within_bar: bool,
 }
 
-/// Effect of the couplings on a condition.
+/// The couplings' effect on a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionCouplings {
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// Poles of the physics representative before and after, or why they are unknown.
+    /// The physics representative's poles before and after, or why they are unknown.
     pub poles: Result<Vec<PoleShift>, String>,
     /// The least singular value of `I - K H` at [`CouplingsAssessment::omega`].
     pub singular_values: Vec<f64>,
-    /// Least singular value from the lower end of the band to ten times its top.
+    /// Least singular value from the band's lower end to ten times its top.
     pub margin: Option<LoopMargin>,
-    /// `20 log10 |H~ - H| / |H|` of each response at ten times the band.
+    /// `20 log10 |H~ - H| / |H|` at ten times the band, response by response.
     pub above_band_db: PairTable<Option<f64>>,
-    /// J of the condition when left out, on-axis and off-axis; `None` where it is in no fit.
+    /// J when the condition is left out, on-axis and off-axis; `None` where it is in no fit.
     pub left_out: Option<CouplingCost>,
     /// Kept physics models with matrices, other than the representative, whose loop cannot be
     /// closed, with the reason.
     pub refused: Vec<(String, String)>,
 }
 
-/// A pole of a kept physics model with a positive real part that is absent without the couplings.
+/// A kept physics model's pole with a positive real part that is absent without the couplings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnstablePole {
     pub condition: ConditionId,
@@ -62,32 +63,32 @@ pub struct UnstablePole {
     pub is_in_band: bool,
 }
 
-/// Benefit and cost of couplings (M16.4).
+/// What couplings gain and cost (M16.4).
 #[derive(Clone, Debug, PartialEq)]
 pub struct CouplingsAssessment {
     pub couplings: CouplingCorrection,
     pub fitted: Arc<FittedCouplings>,
-    /// Level of the error bars.
+    /// The error bars' level.
     pub level: f64,
     pub band: Band,
     /// The fits without each condition in turn; empty with fewer than three conditions.
     pub left_out_fits: Vec<LeftOutFit>,
     /// J without and with the couplings.
     pub costs: CouplingCosts,
-    /// Frequencies of the singular values \[rad/s\]: from a tenth of the band to ten times it.
+    /// Frequencies for the singular values \[rad/s\]: from a tenth to ten times the band.
     pub omega: Arc<[f64]>,
     /// Each analysed condition.
     pub conditions: BTreeMap<ConditionId, ConditionCouplings>,
-    /// Newly unstable poles of every kept physics model.
+    /// Every kept physics model's newly unstable poles.
     pub unstable: Vec<UnstablePole>,
-    /// Number of conditions where all constrained responses want lead that no channel provides: a
+    /// In how many conditions all constrained responses want lead that no channel provides: a
     /// feedback then acts as a substitute.
     pub want_leads: usize,
 }
 
 impl CouplingsAssessment {
-    /// Returns the mean airspeed of the conditions \[kt\], at which the mixing is reported where a
-    /// single airspeed is needed.
+    /// Returns the conditions' mean airspeed \[kt\], at which the mixing is reported where a single
+    /// airspeed is needed.
     pub fn mean_airspeed_kt(&self) -> f64 {
         self.fitted.matrices().airspeeds().mean_kt
     }
@@ -123,14 +124,14 @@ impl CouplingsAssessment {
         self.unstable.iter().filter(|pole| pole.is_in_band).count()
     }
 
-    /// Returns the decisive costs: J of conditions left out, or of the schedule where none is left
+    /// Returns the decisive costs: with conditions left out, or by the schedule where none is left
     /// out.
     pub fn deciding_cost(&self) -> CouplingCost {
         self.costs.left_out.unwrap_or(self.costs.scheduled)
     }
 }
 
-/// Error bars of a matrix's entries.
+/// Error bars on a matrix's entries.
 struct MatrixBars<'a> {
     half_widths: &'a DMatrix<f64>,
     /// Student's quantile: half-width over standard deviation.
@@ -189,7 +190,7 @@ pub struct CouplingCost {
     pub with: AxisCost,
 }
 
-/// Mean J over the conditions, of each response that can be compared both without and with
+/// Mean J over the conditions, for each response that can be compared both without and with
 /// couplings (M16.4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CouplingCosts {

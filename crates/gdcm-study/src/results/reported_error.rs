@@ -1,5 +1,5 @@
-//! Errors that the identified representative reports of itself: by its coherence, or by bands of
-//! standard deviations (M13.2).
+//! Errors that the identified representative reports about itself: by its coherence, or by standard
+//! deviations (M13.2).
 
 use gdcm_method::uncertainty::spread::{CoherenceError, ReportedUncertainty};
 use gdcm_method::uncertainty::{IdentificationSource, Scalar, VarianceComponent};
@@ -9,24 +9,24 @@ use gdcm_model::response::median;
 
 use super::analysis::{Analysis, ConditionAnalysis};
 
-/// Natural logarithm of a ratio of 1 dB.
+/// 1 dB as a natural logarithm.
 pub(crate) const LN_DB: f64 = std::f64::consts::LN_10 / 20.0;
 
-/// An error of a response, with its degrees of freedom.
+/// A response's error, with its degrees of freedom.
 #[derive(Clone, Copy)]
 struct ReportedError {
     error: CoherenceError,
     degrees_of_freedom: f64,
 }
 
-/// The errors of every response of an identified representative, from each source.
+/// An identified representative's errors by response, from each source.
 pub(crate) struct ReportedErrors {
     by_coherence: Option<PairTable<Option<ReportedError>>>,
     by_bands: Option<PairTable<Option<ReportedError>>>,
 }
 
 impl ReportedErrors {
-    /// Collects the errors of the identified representative of a condition.
+    /// Collects the identified representative's errors in a condition.
     pub(crate) fn new(analysis: &Analysis, result: &ConditionAnalysis) -> Self {
         Self {
             by_coherence: errors_by_coherence(analysis, result),
@@ -72,8 +72,8 @@ impl ReportedErrors {
 
 /// Returns whether the error that the identified representative reports applies to a value: to G, D
 /// and the constrained, matched net gains, which equal G (M13.2). The other net gains and the
-/// channels rely on the spread of the models alone: the effect of a single response's error on them
-/// is unknown without the errors of all responses together.
+/// channels rely on the models' spread alone: how a single response's error affects them is unknown
+/// without the errors in all responses together.
 pub fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -> bool {
     match scalar {
         Scalar::Gain(_) | Scalar::Delay(_) | Scalar::BandDelay(_) => true,
@@ -84,13 +84,13 @@ pub fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -> bool 
     }
 }
 
-/// Returns whether the identified representative of a condition reports an error of its own.
+/// Returns whether a condition's identified representative reports its own error.
 pub fn reports_error(analysis: &Analysis, result: &ConditionAnalysis) -> bool {
     errors_by_bands(analysis, result).is_some() || errors_by_coherence(analysis, result).is_some()
 }
 
-/// Returns the error of each response of the identified representative from its coherence; `None`
-/// where it was measured without coherence, or coherence is not used.
+/// Returns the identified representative's errors from its coherence; `None` where it was measured
+/// without coherence, or coherence is not used.
 fn errors_by_coherence(
     analysis: &Analysis,
     result: &ConditionAnalysis,
@@ -115,8 +115,8 @@ fn errors_by_coherence(
     }))
 }
 
-/// Returns the error of each response of the identified representative from its own bands: medians
-/// over the comparison band. Its deviations are taken as known.
+/// Returns the identified representative's errors from its own bands: medians over the comparison
+/// band. Its deviations are taken as known.
 fn errors_by_bands(
     analysis: &Analysis,
     result: &ConditionAnalysis,

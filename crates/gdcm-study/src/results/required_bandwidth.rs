@@ -30,11 +30,11 @@ use super::asked_condition::AskedCondition;
 use super::model_swap::ModelSwap;
 use super::requirement_role::RequirementRole;
 
-/// Bandwidth and phase delay of a response of a model of a condition.
+/// A model's bandwidth and phase delay in a response.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BandwidthFinding {
     pub condition: ConditionId,
-    /// True airspeed of the condition \[kt\].
+    /// The condition's true airspeed \[kt\].
     pub airspeed_kt: f64,
     #[serde(skip)]
     pub pair: Pair,
@@ -44,11 +44,11 @@ pub struct BandwidthFinding {
     pub model: String,
     /// The bandwidth \[rad/s\].
     pub omega_bw_rad_s: Option<f64>,
-    /// Frequency with a phase of -135 deg \[rad/s\].
+    /// Frequency where the phase is -135 deg \[rad/s\].
     pub omega_phase_rad_s: Option<f64>,
-    /// Frequency with 6 dB of gain margin \[rad/s\].
+    /// Frequency with 6 dB gain margin \[rad/s\].
     pub omega_gain_rad_s: Option<f64>,
-    /// Frequency with a phase of -180 deg \[rad/s\].
+    /// Frequency where the phase is -180 deg \[rad/s\].
     pub omega_180_rad_s: Option<f64>,
     /// Phase delay \[s\].
     pub phase_delay_s: Option<f64>,
@@ -56,23 +56,23 @@ pub struct BandwidthFinding {
     pub rule: Option<BandwidthRule>,
     /// Whether the gain margin is reached before the phase margin: the standard warns against it.
     pub gain_limited: bool,
-    /// Largest deviation of the phase from a straight line between `omega_180` and `2 omega_180`
-    /// \[deg\].
+    /// How far the phase deviates at most from a straight line between `omega_180` and `2
+    /// omega_180` \[deg\].
     pub phase_departure_deg: Option<f64>,
     /// Whether the phase delay is computed from the least-squares line, because the phase is not
     /// straight.
     pub phase_delay_of_line: bool,
-    /// Names of the numbers that depend on the response above the band.
+    /// The numbers that depend on the response above the band.
     pub rests_above_band: Vec<&'static str>,
-    /// Names of the numbers that depend on the response below the band.
+    /// The numbers that depend on the response below the band.
     pub rests_below_band: Vec<&'static str>,
-    /// Interval of each number, by name, where there is one.
+    /// Intervals by the number's name, where known.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub interval: BTreeMap<&'static str, [f64; 2]>,
-    /// Number of swaps without a value, excluded from the interval, by name.
+    /// How many swaps have no value, by the number's name; the interval excludes them.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub swaps_left_out: BTreeMap<&'static str, usize>,
-    /// Phase \[deg\] at the lowest frequency of the band, where it indicates a reversed channel.
+    /// Phase \[deg\] at the band's lowest frequency, where it indicates a reversed channel.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reversed_phase_deg: Option<f64>,
     /// Why a number, or every interval ("interval"), is absent, by its name.
@@ -80,7 +80,7 @@ pub struct BandwidthFinding {
     pub absent: BTreeMap<&'static str, String>,
 }
 
-/// Names of the numbers computed from a response, in the order of [`metrics`].
+/// Names of the numbers that [`metrics`] returns.
 const METRICS: [&str; 5] = [
     "omega_bw_rad_s",
     "omega_phase_rad_s",
@@ -88,13 +88,13 @@ const METRICS: [&str; 5] = [
     "omega_180_rad_s",
     "phase_delay_s",
 ];
-/// Name of the phase's deviation from a straight line.
+/// The phase's deviation from a straight line.
 const DEPARTURE: &str = "phase_departure_deg";
 
-/// Values of a response's numbers, where they exist, in the order of [`METRICS`].
+/// A response's numbers, where they exist, ordered as in [`METRICS`].
 type MetricValues = [Option<f64>; 5];
 
-/// Returns a response's numbers, in the order of [`METRICS`].
+/// Returns a response's numbers, ordered as in [`METRICS`].
 fn metrics(bandwidth: &Bandwidth) -> [Result<Metric, NoMetric>; 5] {
     [
         bandwidth.omega_bw,
@@ -105,7 +105,7 @@ fn metrics(bandwidth: &Bandwidth) -> [Result<Metric, NoMetric>; 5] {
     ]
 }
 
-/// Returns the values of a response's numbers, in the order of [`METRICS`].
+/// Returns a response's numbers, ordered as in [`METRICS`].
 fn metric_values(bandwidth: &Bandwidth) -> MetricValues {
     metrics(bandwidth).map(|metric| Some(metric.ok()?.value))
 }
@@ -182,8 +182,8 @@ impl BandwidthFinding {
     }
 }
 
-/// Computes the bandwidths of every on-axis response of a condition, role by role; for responses
-/// without a bandwidth, the reason.
+/// Computes a condition's on-axis bandwidths, role by role; for responses without a bandwidth, the
+/// reason.
 pub(crate) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFinding> {
     let models = ConditionBandwidths::new(asked);
     let mut findings = Vec::new();
@@ -198,7 +198,7 @@ pub(crate) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFin
 /// A model prepared for its response's evaluation.
 struct EvaluatedModel<'a> {
     dynamics: Cow<'a, Dynamics>,
-    /// Uncertainty of its response, where the model contains it.
+    /// The uncertainty that the model carries, if any.
     bands: Option<&'a ModelBands>,
     sampled: SampledModel,
 }
@@ -214,7 +214,7 @@ impl<'a> EvaluatedModel<'a> {
     }
 }
 
-/// Evaluation of a model between the grid frequencies of the search.
+/// Evaluates a model between the grid frequencies.
 #[derive(Clone, Copy, PartialEq)]
 enum Evaluation {
     Exact,
@@ -222,7 +222,7 @@ enum Evaluation {
     Interpolated,
 }
 
-/// Effect of a correction on a response.
+/// A correction's effect on a response.
 #[derive(Clone, Copy)]
 struct PairCorrection {
     multiplier: GainDelay,
@@ -247,7 +247,7 @@ impl PairCorrection {
         })
     }
 
-    /// Returns the effect for a swap's figures; `None` where one of them does not exist.
+    /// Returns the effect for a swap's figures; `None` where a figure is missing.
     fn from_figures(figures: &Figures, pair: Pair, leads: Option<&ChannelLeads>) -> Option<Self> {
         let gain = figures[Scalar::NetGain(pair)]?.exp();
         let [output, input] = Channel::of(pair);
@@ -265,7 +265,7 @@ impl PairCorrection {
     }
 }
 
-/// Bandwidth of a response, and its phase \[deg\] where that indicates a reversed channel.
+/// A response's bandwidth, and its phase \[deg\] where that indicates a reversed channel.
 struct MeasuredBandwidth {
     bandwidth: Bandwidth,
     reversed_phase_deg: Option<f64>,
@@ -274,7 +274,7 @@ struct MeasuredBandwidth {
 /// A condition's models, prepared for bandwidths.
 struct ConditionBandwidths<'a> {
     asked: &'a AskedCondition<'a>,
-    /// Index of the physics representative.
+    /// The physics representative's index.
     physics: usize,
     /// The physics representative and its substitutes.
     plain: BTreeMap<usize, EvaluatedModel<'a>>,
@@ -351,7 +351,7 @@ impl<'a> ConditionBandwidths<'a> {
         finding
     }
 
-    /// Returns the bandwidth of a role's model, or why it has none.
+    /// Returns a role's bandwidth, or why it has none.
     fn bandwidth(&self, pair: Pair, role: RequirementRole) -> Result<MeasuredBandwidth, String> {
         let correction = match self.asked.correction(role) {
             None => PairCorrection::NONE,
@@ -380,7 +380,7 @@ impl<'a> ConditionBandwidths<'a> {
             .ok_or("the physics model has no matrices that couplings can be put into")
     }
 
-    /// Computes bandwidth and phase delay of a response of a model under a correction.
+    /// Computes a response's bandwidth and phase delay under a correction.
     fn measure(
         &self,
         model: &EvaluatedModel<'_>,
@@ -475,7 +475,7 @@ impl<'a> ConditionBandwidths<'a> {
         }
     }
 
-    /// Computes a response's numbers after each swap of a model of a bundle.
+    /// Computes a response's numbers after each swap in a bundle.
     fn swapped_values(&self, finding: &BandwidthFinding, bundle: BundleKind) -> Vec<MetricValues> {
         let mut values = Vec::new();
         for swap in self.swaps {
@@ -508,7 +508,7 @@ impl<'a> ConditionBandwidths<'a> {
     }
 }
 
-/// Returns the swaps of a condition's models; empty without error bars.
+/// Returns a condition's swaps; empty without error bars.
 fn swaps_of<'a>(asked: &AskedCondition<'a>) -> &'a [ModelSwap] {
     let Some(uncertainty) = asked.analysis.uncertainty.as_deref() else {
         return &[];

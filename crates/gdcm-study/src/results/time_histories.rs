@@ -1,5 +1,4 @@
-//! Time histories of the models of every condition within tolerances about its flight records
-//! (M17.2).
+//! Every condition's models, simulated within tolerances about its flight records (M17.2).
 //!
 //! ```text
 //! 1  a record is prepared as an identification prepares it, with pieces of 2 s and more
@@ -36,10 +35,10 @@ use super::requirements::MissingFinding;
 use crate::execution::Execution;
 use crate::shared::Shared;
 
-/// Category of the reasons for an absent time history.
+/// Why a time history is absent.
 const WHAT: &str = "time histories";
 
-/// A flight record for the comparison of models.
+/// A flight record to compare models with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HistoryRecord {
     pub flight: Shared<FlightRecord>,
@@ -47,7 +46,7 @@ pub struct HistoryRecord {
     pub held_out: bool,
 }
 
-/// The flight records of a condition, and their preparation.
+/// A condition's flight records, and their preparation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HistoryRecords {
     pub condition: ConditionId,
@@ -56,7 +55,7 @@ pub struct HistoryRecords {
 }
 
 impl HistoryRecords {
-    /// Collects those of the `records` that are used.
+    /// Collects the `records` in use.
     pub fn of<'r>(
         condition: ConditionId,
         records: impl IntoIterator<Item = &'r LaidOutRecord>,
@@ -85,24 +84,24 @@ impl HistoryRecords {
     }
 }
 
-/// Result of a model and a record for a table row.
+/// A model's result on a record, for a table row.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ToleranceFinding {
-    /// Name of the compared quantity ("bank angle").
+    /// The compared quantity's name ("bank angle").
     pub quantity: String,
     /// The output that it is computed from.
     pub output: String,
-    /// Whether it is the integral of that output from each window's start.
+    /// Whether that output is integrated from each window's start.
     pub integrated: bool,
-    /// Unit of the compared quantity.
+    /// The compared quantity's unit.
     pub unit: String,
-    /// Share of the samples inside, 0 to 1.
+    /// Share inside, 0 to 1.
     pub share_inside: f64,
     /// The largest distance beyond the corridor, in `unit`; negative where all samples are inside.
     pub largest_excess: f64,
-    /// Time of the largest excess, on the record's clock \[s\].
+    /// When the excess is largest, on the record's clock \[s\].
     pub largest_excess_at_s: f64,
-    /// Correlation of simulated and measured signal about their means; `None` where one of them is
+    /// Correlation between simulated and measured signal about their means; `None` where either is
     /// constant.
     pub correlation: Option<f64>,
     /// Whether the output is on-axis to the input that moved most; `None` where that input is
@@ -125,7 +124,7 @@ impl ToleranceFinding {
     }
 }
 
-/// Result of a model and a record.
+/// A model's result on a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HistoryFinding {
     pub condition: ConditionId,
@@ -140,24 +139,23 @@ pub struct HistoryFinding {
     pub moved_input: Option<String>,
     /// Compared sample count.
     pub samples: usize,
-    /// Number of windows with these samples.
+    /// How many windows have these samples.
     pub windows: usize,
     /// Longest window \[s\].
     pub window_s: f64,
     /// Weighted rms error (M17.4) \[deg, deg/s, ft/s, ft/s^2\]; `None` where no output has such a
     /// unit.
     pub j_rms: Option<f64>,
-    /// Names of the outputs excluded from it: their units are not those of angles, speeds and
-    /// accelerations.
+    /// Outputs excluded from it, because they are no angle, speed or acceleration.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub j_rms_left_out: Vec<String>,
-    /// Theil's coefficient of each output that varies, by its name: 0 to 1.
+    /// Theil's coefficient by output name, 0 to 1; constant outputs have none.
     pub theil: BTreeMap<String, f64>,
     /// Each applicable table row.
     pub tolerances: Vec<ToleranceFinding>,
 }
 
-/// Time histories of the models of every condition that has records, in the export's format.
+/// Simulations with every condition's records, in the export's format.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TimeHistories {
     pub tolerance_table: ToleranceTable,
@@ -167,7 +165,7 @@ pub struct TimeHistories {
 }
 
 impl TimeHistories {
-    /// Returns the conditions with records, and the number of records of each.
+    /// Returns the conditions with records, and how many each has.
     pub fn conditions(&self) -> Vec<(ConditionId, usize)> {
         let mut conditions = Vec::new();
         for findings in self.records.chunk_by(|a, b| a.condition == b.condition) {
@@ -182,7 +180,7 @@ impl TimeHistories {
         conditions
     }
 
-    /// Returns the findings of a condition and a role.
+    /// Returns a role's findings in a condition.
     pub fn of_role(
         &self,
         condition: ConditionId,
@@ -193,7 +191,7 @@ impl TimeHistories {
             .filter(move |finding| finding.condition == condition && finding.role == role)
     }
 
-    /// Returns the share of samples inside a tolerance over all records of a condition, 0 to 1.
+    /// Returns the share inside a tolerance over all a condition's records, 0 to 1.
     pub fn share_inside(
         &self,
         condition: ConditionId,
@@ -209,14 +207,14 @@ impl TimeHistories {
         })
     }
 
-    /// Returns `J_rms` over all records of a condition: the root mean square over their samples.
+    /// Returns `J_rms` over all a condition's records: the root mean square over their samples.
     pub fn j_rms(&self, condition: ConditionId, role: RequirementRole) -> Option<f64> {
         self.mean(condition, role, |finding| Some(finding.j_rms?.powi(2)))
             .map(f64::sqrt)
     }
 
-    /// Returns Theil's coefficient of an output over all records of a condition: the mean weighted
-    /// by samples.
+    /// Returns an output's Theil coefficient over all a condition's records: the mean weighted by
+    /// samples.
     pub fn theil(
         &self,
         condition: ConditionId,
@@ -228,7 +226,7 @@ impl TimeHistories {
         })
     }
 
-    /// Averages a quantity over the records of a condition that have it, weighted by samples.
+    /// Averages a quantity over a condition's records that have it, weighted by samples.
     fn mean(
         &self,
         condition: ConditionId,
@@ -259,7 +257,7 @@ impl TimeHistories {
             .collect()
     }
 
-    /// Returns the applied rows of the tolerance table, in its order.
+    /// Returns the applied tolerance rows, in the table's order.
     pub fn quantities(&self) -> impl Iterator<Item = &str> {
         self.applied_rows().map(|row| row.quantity.as_str())
     }
@@ -291,7 +289,7 @@ struct PreparedRecord<'a> {
     segments: Vec<Segment>,
 }
 
-/// A model of a role, to be simulated with a record.
+/// A role's model, to be simulated with a record.
 struct Simulation<'a> {
     prepared: &'a PreparedRecord<'a>,
     role: RequirementRole,
@@ -374,7 +372,8 @@ fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<Missi
     missing
 }
 
-/// Prepares every record of a condition with a result; the reasons for the others go to `missing`.
+/// Prepares the records where the condition has a result; the reasons for the others go to
+/// `missing`.
 fn prepare_records<'a>(
     analysis: &'a Analysis,
     records: &'a [HistoryRecords],
@@ -416,7 +415,7 @@ fn prepare_records<'a>(
 /// Each condition's models with their roles.
 type RoleModels = BTreeMap<ConditionId, Vec<(RequirementRole, StateSpace)>>;
 
-/// Builds the models of each condition that has a record.
+/// Builds the models wherever a condition has a record.
 fn role_models(
     analysis: &Analysis,
     prepared: &[PreparedRecord<'_>],
@@ -445,7 +444,7 @@ fn role_models(
     models
 }
 
-/// Lists every record's simulations with every model of its condition, in common windows.
+/// Lists every record's simulations with its condition's models, in common windows.
 fn simulations<'a>(
     prepared: &'a [PreparedRecord<'a>],
     models: &'a RoleModels,
@@ -529,7 +528,7 @@ fn finding(
     })
 }
 
-/// Evaluates one table row over all windows of a record.
+/// Evaluates a table row over all a record's windows.
 fn tolerance_finding(
     comparison: &RecordComparison<'_>,
     row: &AppliedTolerance<'_>,

@@ -1,5 +1,5 @@
-//! Uncertainty of an analysis's figures, components of their scatter over the conditions, and
-//! conclusions for the schedule (M13).
+//! How uncertain an analysis's figures are, what their scatter over the conditions consists in, and
+//! what follows for the schedule (M13).
 
 use std::collections::BTreeMap;
 
@@ -13,33 +13,31 @@ use gdcm_model::dataset::{ConditionId, Pair, PairTable};
 
 use super::model_swap::ConditionSubstitutions;
 
-/// Greatest difference of airspeeds that count as equal \[kt\] (M13.4).
+/// Airspeeds that differ by no more count as equal \[kt\] (M13.4).
 pub(crate) const EQUAL_AIRSPEED_KT: f64 = 1.0;
 
-/// Uncertainty of an analysis's figures.
+/// How uncertain an analysis's figures are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
-    /// Level of all error bars, interval and test.
+    /// Level for all error bars, intervals and tests.
     pub level: f64,
     /// Each analysed condition.
     pub conditions: BTreeMap<ConditionId, ConditionUncertainty>,
-    /// Differences of the on-axis net gains between every two conditions at equal airspeed,
-    /// response by response.
+    /// Differences in on-axis net gain between every two conditions at equal airspeed.
     pub differences: Vec<AirspeedDifference>,
-    /// Number of differences where they are too many to compare; none is stored then.
+    /// How many differences there are, where that is too many to compare; none is stored then.
     pub too_many_differences: Option<usize>,
-    /// Scatter components of each on-axis net gain.
+    /// Scatter components, for each on-axis net gain.
     pub scatter: Vec<PairScatter>,
-    /// Confidence bands of the schedule, where it is a schedule of `ln k` with degrees of freedom
-    /// left.
+    /// The schedule's confidence bands, where it schedules `ln k` and has degrees of freedom left.
     pub bands: Option<ScheduleBands>,
     /// Test for a second scheduling variable, for each on-axis response and each variable.
     pub second_variables: Vec<SecondVariableTest>,
 }
 
 impl Uncertainty {
-    /// Returns, for each airspeed, the difference of a net gain that is the largest multiple of the
-    /// expected difference; empty where the differences have no spread.
+    /// Returns, for each airspeed, a net gain's largest difference relative to the expected
+    /// difference; empty where the differences have no spread.
     pub fn greatest_differences(&self, pair: Pair) -> Vec<&AirspeedDifference> {
         let mut greatest: Vec<&AirspeedDifference> = Vec::new();
         for found in &self.differences {
@@ -60,25 +58,25 @@ impl Uncertainty {
         greatest
     }
 
-    /// Returns the error bar of a figure of a condition.
+    /// Returns a figure's error bar in a condition.
     pub fn bar(&self, condition: ConditionId, figure: Scalar) -> Option<&Bar> {
         self.conditions.get(&condition)?.bars[figure].as_ref()
     }
 }
 
-/// Uncertainty of a condition's figures.
+/// How uncertain a condition's figures are.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionUncertainty {
-    /// Error bar of each figure that exists.
+    /// Error bars, for each figure that exists.
     pub bars: ScalarTable<Option<Bar>>,
-    /// `(Q84 - Q16) / 2` over the band of `ln |H_ref| / |H_sim|` of the representatives: the
+    /// `(Q84 - Q16) / 2` over the band, for the representatives' `ln |H_ref| / |H_sim|`: the
     /// mismatch that a single gain leaves.
     pub left_in_band: PairTable<Option<f64>>,
     /// Swaps behind the error bars.
     pub substitutions: ConditionSubstitutions,
 }
 
-/// Scatter components of an on-axis net gain (M13.5).
+/// An on-axis net gain's scatter components (M13.5).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairScatter {
     pub pair: Pair,
@@ -88,20 +86,20 @@ pub struct PairScatter {
     pub about_schedule: Option<VarianceDecomposition>,
 }
 
-/// Test for a second scheduling variable of an on-axis net gain (M13.7).
+/// Tests whether an on-axis net gain depends on a second variable (M13.7).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondVariableTest {
     pub pair: Pair,
     pub variable: SecondVariable,
     /// Its effect, or why it cannot be determined.
     pub effect: Result<SecondVariableEffect, SecondVariableError>,
-    /// Probability of an effect at least as large under the null hypothesis, after Holm's
+    /// Probability that the effect is at least as large under the null hypothesis, after Holm's
     /// correction over all responses and variables.
     pub p_holm: Option<f64>,
     pub needed: bool,
 }
 
-/// Confidence bands of a schedule of `ln k` (M13.6).
+/// Confidence bands where `ln k` is scheduled (M13.6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduleBands {
     /// Each scheduled figure's band.
@@ -109,8 +107,8 @@ pub struct ScheduleBands {
 }
 
 impl ScheduleBands {
-    /// Returns the half-widths about the scheduled figure, the logarithm of a channel's gain or of
-    /// a net gain, at an airspeed \[kt\].
+    /// Returns the half-widths about the scheduled figure, a channel's `ln k` or a net gain's, at
+    /// an airspeed \[kt\].
     pub fn at(&self, schedule: &Schedule, figure: Scalar, airspeed_kt: f64) -> Option<BandWidths> {
         let (_, band) = self.bands.iter().find(|(scalar, _)| *scalar == figure)?;
         let widths = band.at(&schedule.design_row(airspeed_kt));
@@ -122,17 +120,17 @@ impl ScheduleBands {
     }
 }
 
-/// The difference of an on-axis net gain between two conditions at equal airspeed (M13.4).
+/// An on-axis net gain's difference between two conditions at equal airspeed (M13.4).
 #[derive(Clone, Debug, PartialEq)]
 pub struct AirspeedDifference {
     pub pair: Pair,
     pub conditions: [ConditionId; 2],
-    /// Mean airspeed of the two conditions \[kt\].
+    /// The two conditions' mean airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// The difference of `ln k_o k_i`.
+    /// The difference in `ln k_o k_i`.
     pub difference: Difference,
-    /// Probability of such a difference under the null hypothesis, after Holm's correction over all
-    /// displayed differences; `None` where the bundles have no spread.
+    /// Probability that a difference is at least as large under the null hypothesis, after Holm's
+    /// correction over all displayed differences; `None` where the bundles have no spread.
     pub p_holm: Option<f64>,
 }
 

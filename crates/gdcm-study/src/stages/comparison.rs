@@ -1,5 +1,4 @@
-//! Comparison of a condition's representatives (M5, M6), which does not depend on constraints,
-//! alpha or bounds.
+//! Compares a condition's representatives (M5, M6), independent of constraints, alpha and bounds.
 //!
 //! ```text
 //! 1  cautions about the kept models of both bundles
@@ -24,7 +23,7 @@ use crate::results::analysis::ConditionFailure;
 use crate::results::caution::{BundleModel, Caution, GainOutOfRange, Undefined};
 use crate::results::comparison::{BundleMetrics, Comparison, ModelMismatch};
 
-/// Inputs of a condition's comparison.
+/// What a condition's comparison depends on.
 #[derive(Clone, Copy)]
 pub(crate) struct ComparisonInput<'a> {
     pub(crate) condition: &'a Condition,
@@ -45,7 +44,7 @@ impl ComparisonInput<'_> {
         ComparedModel::new(self.condition, self.responses, kind, index, self.grid)
     }
 
-    /// Returns the cautions about the kept models of both bundles.
+    /// Returns the cautions about both bundles' kept models.
     fn model_cautions(&self) -> Vec<Caution> {
         let omega = self.grid.grid.omega();
         let mut cautions = Vec::new();
@@ -141,7 +140,7 @@ impl ComparisonInput<'_> {
         })
     }
 
-    /// Returns the cautions about numerically zero responses of the representatives (M6a).
+    /// Returns the cautions about the representatives' numerically zero responses (M6a).
     fn nothing_cautions(&self, compared: &ComparedPair<'_>) -> Vec<Caution> {
         let mut cautions = Vec::new();
         for (kind, index, model) in [
@@ -228,8 +227,8 @@ impl Comparison {
         })
     }
 
-    /// Returns the same comparison, with G of each response the mean (of its logarithm) over all
-    /// pairs of a kept physics and a kept identified model that have the response.
+    /// Returns the same comparison, where each G is the mean (of its logarithm) over all pairs
+    /// between a kept physics and a kept identified model that have the response.
     pub(crate) fn with_mean_gains(mut self, input: &ComparisonInput<'_>) -> Self {
         let physics = kept_models(input, BundleKind::Physics, &self.physics);
         let identified = kept_models(input, BundleKind::Identified, &self.identified);
@@ -252,7 +251,7 @@ impl Comparison {
     }
 }
 
-/// Prepares the kept models of a bundle.
+/// Prepares a bundle's kept models.
 fn kept_models(
     input: &ComparisonInput<'_>,
     kind: BundleKind,
@@ -267,7 +266,7 @@ fn kept_models(
     models
 }
 
-/// Geometric mean of gains.
+/// The gains' geometric mean.
 #[derive(Default)]
 struct MeanLogarithm {
     sum: f64,

@@ -1,4 +1,4 @@
-//! Frequency responses of every model of a condition, each cached by its inputs.
+//! A condition's frequency responses, each cached by its inputs.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
@@ -11,32 +11,31 @@ use gdcm_model::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 use crate::execution::{Execution, Memo};
 use crate::results::fitted_couplings::FittedCouplings;
 
-/// Dependencies of a response besides its model's numbers: the band and the number of frequencies
-/// in it.
+/// What a response depends on besides its model's numbers: the band, and how many frequencies it
+/// has.
 pub type GridKey = (Band, usize);
 
-/// Purpose of a response. The last response for each purpose is cached.
+/// What a response is for. The last response for each purpose is cached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// Comparison of models, in the comparison band.
+    /// Comparing models, in the comparison band.
     Comparison,
     /// Drawing, in a wider band.
     Drawing,
 }
 
-/// Responses of every model of a condition on a grid.
+/// A condition's responses on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionResponses {
-    /// Responses of the physics models, in file order.
+    /// The physics models' responses, in file order.
     pub physics: Vec<Arc<FrequencyResponse>>,
-    /// Responses of the identified models, in file order.
+    /// The identified models' responses, in file order.
     pub identified: Vec<Arc<FrequencyResponse>>,
-    /// Responses of the physics models with couplings, where there are any.
+    /// The physics models' responses with couplings, where there are any.
     coupled: Option<CoupledResponses>,
 }
 
-/// Responses of the physics models of a condition with mixing and feedback (M16.3), each computed
-/// on first use.
+/// A condition's physics responses with mixing and feedback (M16.3), each computed on first use.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CoupledResponses {
     couplings: Arc<FittedCouplings>,
@@ -55,7 +54,7 @@ impl CoupledResponses {
         }
     }
 
-    /// Returns `H~` of a model with the response `physics`.
+    /// Returns `H~` for a model with the response `physics`.
     fn response(&self, model: usize, physics: &FrequencyResponse) -> Arc<FrequencyResponse> {
         let coupled = self.made[model].get_or_init(|| {
             let matrices = self.couplings.matrices();
@@ -66,8 +65,8 @@ impl CoupledResponses {
 }
 
 impl ConditionResponses {
-    /// Returns a model's response for comparison and correction: `H` of an identified model, `H~`
-    /// of a physics model, equal to `H` without couplings (M16.3).
+    /// Returns a model's response for comparison and correction: `H` if identified, `H~` if
+    /// physics, equal to `H` without couplings (M16.3).
     pub(crate) fn compared(&self, kind: BundleKind, model: usize) -> Arc<FrequencyResponse> {
         let response = &self.bundle(kind)[model];
         match &self.coupled {
@@ -84,8 +83,7 @@ impl ConditionResponses {
         }
     }
 
-    /// Computes the responses of every model of `condition` in the band, on its number of
-    /// frequencies.
+    /// Computes the responses of every model in the band.
     pub fn of(
         condition: &Arc<Condition>,
         key: GridKey,
@@ -102,7 +100,7 @@ impl ConditionResponses {
     }
 }
 
-/// The last responses of a model, and the model prepared for them.
+/// A model's last responses, and the model prepared for them.
 #[derive(Debug, Default)]
 struct ModelResponses {
     prepared: OnceLock<PreparedModel>,
@@ -133,10 +131,9 @@ impl ModelResponses {
     }
 }
 
-/// The models used by some condition of some engine, keyed by their numbers: a model that stays, or
-/// returns under another name or in another place, keeps its responses. Engines of a study that
-/// share them ([`Engine::sharing`](super::engine::Engine::sharing)) compute and store each only
-/// once.
+/// All engines' models, keyed by their numbers: a model that stays, or returns under another name
+/// or in another place, keeps its responses. A study's engines that share them
+/// ([`Engine::sharing`](super::engine::Engine::sharing)) compute and store each only once.
 #[derive(Clone, Debug, Default)]
 pub struct KnownModels {
     by_content: Arc<Mutex<HashMap<ContentHash, Weak<ModelResponses>>>>,
@@ -170,11 +167,11 @@ impl KnownModels {
 #[derive(Clone, Debug)]
 pub(crate) struct ConditionModels {
     condition: Arc<Condition>,
-    /// The models of both bundles, the physics models first.
+    /// Both bundles' models, the physics models first.
     models: Vec<HashedModel>,
 }
 
-/// The hash of a model's numbers, and its responses.
+/// A model's hash, and its responses.
 #[derive(Clone, Debug)]
 struct HashedModel {
     content: ContentHash,
@@ -182,7 +179,7 @@ struct HashedModel {
 }
 
 impl ConditionModels {
-    /// Collects the models of `condition`; known models bring their responses.
+    /// Collects a condition's models; known models bring their responses.
     pub(crate) fn new(condition: &Arc<Condition>, known: &KnownModels) -> Self {
         let models = models_of(condition)
             .map(|model| {
@@ -204,7 +201,7 @@ impl ConditionModels {
         &self.condition
     }
 
-    /// Returns the hash of a model's numbers.
+    /// Hashes a model's numbers.
     pub(crate) fn content(&self, kind: BundleKind, model: usize) -> ContentHash {
         let before = if kind == BundleKind::Physics {
             0

@@ -17,24 +17,24 @@ use crate::execution::Execution;
 use crate::results::comparison::Mismatches;
 use crate::results::convention_doubt::{Convention, ConventionDoubt};
 
-/// A phase difference within this \[rad\] of half a turn indicates a reversed sign.
+/// A phase difference this near to half a turn \[rad\] indicates a reversed sign.
 const NEAR_HALF_A_TURN: f64 = 20.0 / 180.0 * PI;
-/// Usual limit of scale factors of channels, up or down; beyond it, a unit is suspected.
+/// Scale factors usually stay within this, up or down; beyond it, a unit is suspected.
 const USUAL_FACTOR: f64 = 5.0;
-/// Greatest ratio of the factors of single responses to their median: models differ by that much
+/// Greatest ratio between a single response's factor and the median: models differ by that much
 /// besides a unit.
 const MOST_SPREAD: f64 = 2.0;
 
-/// The mismatches of a condition's models.
+/// A condition's mismatches.
 struct Sample<'a> {
     condition: ConditionId,
     mismatch: &'a Mismatches,
-    /// G of each response.
+    /// G, response by response.
     gains: PairTable<Option<f64>>,
 }
 
 impl Sample<'_> {
-    /// Returns the responses of a channel that have a mismatch.
+    /// Returns a channel's responses that have a mismatch.
     fn of_channel(&self, channel: Channel) -> impl Iterator<Item = (Pair, &Mismatch)> {
         self.mismatch
             .iter()
@@ -42,7 +42,7 @@ impl Sample<'_> {
             .filter_map(|(pair, mismatch)| Some((pair, mismatch.as_ref()?)))
     }
 
-    /// Returns the share of a channel's responses that the opposite sign would bring nearer.
+    /// Returns which share of a channel's responses the opposite sign would bring nearer.
     fn opposed_share(&self, channel: Channel) -> f64 {
         let mut responses = 0;
         let mut opposed = 0;
@@ -55,24 +55,23 @@ impl Sample<'_> {
         f64::from(opposed) / f64::from(responses.max(1))
     }
 
-    /// Returns the natural logarithms of G of a channel's responses.
+    /// Returns `ln G` for a channel's responses.
     fn ln_gains(&self, channel: Channel) -> Vec<f64> {
         self.of_channel(channel)
             .filter_map(|(pair, _)| Some(self.gains[pair]?.ln()))
             .collect()
     }
 
-    /// Returns whether a sign is reversed in this channel rather than in the other channel of the
-    /// response: in the channel with more opposed responses; in the output where both are alike.
+    /// Returns whether a sign is reversed in this channel rather than in the response's other
+    /// channel: in the channel with more opposed responses; in the output where both are alike.
     fn blames_sign_on(&self, channel: Channel, pair: Pair) -> bool {
         let here = self.opposed_share(channel);
         let there = self.opposed_share(other_channel(channel, pair));
         here > there || (here == there && matches!(channel, Channel::Output(_)))
     }
 
-    /// Returns whether a unit differs in this channel rather than in the other channel of the
-    /// response: in the channel whose responses have the nearer factor; in the output where both
-    /// are alike.
+    /// Returns whether a unit differs in this channel rather than in the response's other channel:
+    /// in the channel whose responses have the nearer factor; in the output where both are alike.
     fn blames_factor_on(&self, channel: Channel, pair: Pair, ln_gain: f64) -> bool {
         let distance = |channel| (median(&mut self.ln_gains(channel)) - ln_gain).abs();
         let here = distance(channel);
@@ -81,13 +80,13 @@ impl Sample<'_> {
     }
 }
 
-/// Returns the other channel of a response.
+/// Returns a response's other channel.
 fn other_channel(channel: Channel, pair: Pair) -> Channel {
     let [output, input] = Channel::of(pair);
     if channel == output { input } else { output }
 }
 
-/// Sums a function of the phase difference over frequency with the weights of J (M4a).
+/// Sums a phase difference's function over frequency, weighted as in J (M4a).
 fn weighted_sum(mismatch: &Mismatch, function: impl Fn(f64) -> f64) -> f64 {
     let weights = mismatch.weights();
     mismatch
@@ -104,7 +103,7 @@ fn weighted_sum(mismatch: &Mismatch, function: impl Fn(f64) -> f64) -> f64 {
         .sum()
 }
 
-/// Returns whether the phase difference is near half a turn over most of the band.
+/// Returns whether the phase difference is near half a turn over most frequencies.
 fn is_turned(mismatch: &Mismatch) -> bool {
     let near = weighted_sum(mismatch, |phase| {
         if PI - phase.abs() <= NEAR_HALF_A_TURN {
@@ -121,12 +120,11 @@ struct Evidence {
     condition: ConditionId,
     /// The responses that show the difference.
     pairs: Vec<Pair>,
-    /// Whether all responses of the channel show it.
+    /// Whether all the channel's responses show it.
     is_everywhere: bool,
 }
 
-/// Collects the suspected sign and unit differences of each condition's representatives; signs
-/// first.
+/// Collects the sign and unit differences suspected in each condition; signs first.
 pub(crate) fn convention_doubts(
     conditions: &[(ConditionId, &Mismatches)],
     measuring: &PairTable<bool>,
@@ -213,8 +211,7 @@ fn is_unusual(ln_gain: f64) -> bool {
     ln_gain.abs() > USUAL_FACTOR.ln()
 }
 
-/// Returns the suspected difference from the evidence of several conditions; `None` without
-/// evidence.
+/// Returns the difference that several conditions' evidence suggests; `None` without evidence.
 fn doubt_from(
     convention: Convention,
     channel: Channel,

@@ -1,5 +1,5 @@
-//! Assessment of couplings: the study is analysed without and with them, and without each condition
-//! in turn (M16.4).
+//! Assesses couplings: analyses the study without and with them, and without each condition in turn
+//! (M16.4).
 //!
 //! ```text
 //! 1  analysis without couplings, and with them
@@ -37,11 +37,11 @@ use crate::results::couplings_assessment::{
 };
 use crate::results::fitted_couplings::{CoupledCondition, FittedCouplings};
 
-/// Name of the step in progress reports.
+/// The step's name in progress reports.
 const LEAVING_OUT: &str = "couplings without each condition";
 
-/// Number of frequencies of the singular values below the band, and from its lower end to ten times
-/// its top: 2 % apart over the example's band.
+/// How many frequencies the singular values have below the band, and from its lower end to ten
+/// times its top: 2 % apart over the example's band.
 const MARGIN_POINTS: [usize; 2] = [60, 300];
 
 impl Engine {
@@ -155,13 +155,13 @@ pub(crate) fn with_couplings(study: &Study, couplings: CouplingCorrection) -> St
     study
 }
 
-/// A condition left out of the fit and of the schedule.
+/// A condition left out from fit and schedule.
 struct LeftOutCondition {
     fit: LeftOutFit,
     cost: CouplingCost,
-    /// J of each response without couplings.
+    /// J without couplings, response by response.
     without: PairTable<Option<CostChange>>,
-    /// J of each response with couplings.
+    /// J with couplings, response by response.
     with: PairTable<Option<CostChange>>,
 }
 
@@ -186,7 +186,7 @@ impl LeftOutCondition {
     }
 }
 
-/// Returns J of a condition's representative before and after a correction.
+/// Returns the representative's J before and after a correction.
 fn changes(
     analysis: &Analysis,
     condition: ConditionId,
@@ -224,7 +224,7 @@ fn coupling_costs(
     }
 }
 
-/// Sums J of a correction over the conditions that can be assessed both without and with couplings.
+/// Sums a correction's J over the conditions that can be assessed both without and with couplings.
 fn cost_sums<'a>(
     without: &'a Analysis,
     with: &Analysis,
@@ -241,8 +241,7 @@ fn cost_sums<'a>(
     sums
 }
 
-/// Returns the grid from a tenth of the band to ten times it, with both ends of the lower part of
-/// the band included.
+/// Returns the grid from a tenth to ten times the band, with the ends of its lower part included.
 fn margin_grid(band: Band) -> FrequencyGrid {
     let [below, above] = MARGIN_POINTS;
     let mut omega = log_spaced(band.min() / ABOVE_BAND, band.min(), below);
@@ -251,7 +250,7 @@ fn margin_grid(band: Band) -> FrequencyGrid {
     FrequencyGrid::at(omega)
 }
 
-/// Effect of the couplings on a condition, and the newly unstable poles of its kept physics models.
+/// The couplings' effect on a condition, and the poles that they make unstable.
 struct ConditionEffect {
     couplings: ConditionCouplings,
     unstable: Vec<UnstablePole>,
@@ -294,17 +293,17 @@ fn condition_effect(
     })
 }
 
-/// Poles of the kept physics models of a condition without and with couplings.
+/// A condition's poles without and with couplings, over its kept physics models.
 struct ConditionPoles {
-    /// Poles of the representative, or why they are unknown.
+    /// The representative's poles, or why they are unknown.
     representative: Result<Vec<PoleShift>, String>,
-    /// Newly unstable poles of every kept model.
+    /// Every kept model's newly unstable poles.
     unstable: Vec<UnstablePole>,
     /// Other kept models with matrices whose loop cannot be closed, with the reason.
     refused: Vec<(String, String)>,
 }
 
-/// Computes the poles of the kept physics models, one after the other.
+/// Computes the kept physics models' poles.
 fn condition_poles(
     study: &Study,
     result: &ConditionAnalysis,
@@ -368,7 +367,7 @@ fn pole_shifts(
         .map_err(|error| error.to_string())
 }
 
-/// Sum of J over some responses.
+/// Sums J over responses.
 #[derive(Clone, Copy, Default)]
 struct CostSum {
     count: usize,
@@ -385,7 +384,7 @@ impl CostSum {
         self.with += with.corrected.total();
     }
 
-    /// Returns the mean of one of the sums; `None` over no response.
+    /// Returns a sum's mean; `None` over no response.
     fn mean(&self, sum: f64) -> Option<f64> {
         if self.count > 0 {
             Some(sum / self.count as f64)
@@ -395,7 +394,7 @@ impl CostSum {
     }
 }
 
-/// Sums of J over the responses of many conditions.
+/// Sums J over many conditions' responses.
 struct CostSums<'a> {
     is_on_axis: &'a PairTable<bool>,
     on_axis: CostSum,
@@ -411,7 +410,7 @@ impl<'a> CostSums<'a> {
         }
     }
 
-    /// Adds the responses of a condition that can be compared both without and with couplings.
+    /// Adds a condition's responses that can be compared both without and with couplings.
     fn add(
         &mut self,
         without: &PairTable<Option<CostChange>>,
@@ -433,7 +432,7 @@ impl<'a> CostSums<'a> {
         }
     }
 
-    /// Returns the means of one of the sums.
+    /// Returns a sum's means.
     fn means(&self, sum: fn(&CostSum) -> f64) -> AxisCost {
         AxisCost {
             on_axis: self.on_axis.mean(sum(&self.on_axis)),
@@ -441,12 +440,12 @@ impl<'a> CostSums<'a> {
         }
     }
 
-    /// Returns the mean of J before any correction.
+    /// Returns the mean J before any correction.
     fn uncorrected(&self) -> AxisCost {
         self.means(|sum| sum.uncorrected)
     }
 
-    /// Returns the means of J without and with couplings.
+    /// Returns the mean J without and with couplings.
     fn corrected(&self) -> CouplingCost {
         CouplingCost {
             without: self.means(|sum| sum.without),

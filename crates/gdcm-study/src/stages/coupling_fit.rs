@@ -1,4 +1,4 @@
-//! Fit of a study's couplings (M16.1, M16.2).
+//! Fits a study's couplings (M16.1, M16.2).
 
 use std::sync::Arc;
 
@@ -26,18 +26,18 @@ use crate::results::fitted_couplings::FittedCouplings;
 /// The requested couplings, or why there are none.
 pub(crate) type CouplingOutcome = Result<Arc<FittedCouplings>, CouplingError>;
 
-/// Contribution of a condition to the fit: its representatives, and its channel delays without
+/// A condition's contribution to the fit: its representatives, and its channel delays without
 /// couplings.
 pub(crate) struct CouplingSource {
     pub(crate) condition: Arc<Condition>,
     pub(crate) comparison: Arc<Comparison>,
-    /// Signed delays of the channels \[s\] (M9, M15).
+    /// The channels' signed delays \[s\] (M9, M15).
     pub(crate) delays_s: Channels<f64>,
-    /// Hashes of the physics and of the identified representative.
+    /// The representatives' hashes, physics first.
     pub(crate) contents: [ContentHash; 2],
-    /// Response of the physics representative.
+    /// The physics representative's response.
     pub(crate) physics: Arc<FrequencyResponse>,
-    /// Response of the identified representative.
+    /// The identified representative's response.
     pub(crate) flight: Arc<FrequencyResponse>,
 }
 
@@ -58,28 +58,28 @@ impl CouplingSource {
     }
 }
 
-/// Dependencies of a fit in a condition.
+/// What a fit depends on in a condition.
 #[derive(Clone, Debug, PartialEq)]
 struct ConditionKey {
     id: ConditionId,
     airspeed_kt: f64,
-    /// Hashes of the physics and of the identified representative.
+    /// The representatives' hashes, physics first.
     contents: [ContentHash; 2],
     usable: PairTable<bool>,
     bands: Option<Arc<ModelBands>>,
 }
 
-/// Averages of measured responses that do not state them.
+/// Averages that measured responses are taken to have where they do not state them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Averaging {
     averages: Option<f64>,
-    /// Length of a window \[s\].
+    /// A window's length \[s\].
     window_s: Option<f64>,
     /// Whether the windows overlap by half.
     half_overlap: bool,
 }
 
-/// All dependencies of a fit: neither the weight of the gains nor their bounds are among them.
+/// Everything that a fit depends on: neither the gains' weight nor their bounds.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CouplingFitKey {
     kind: CouplingKind,
@@ -129,7 +129,7 @@ impl CouplingFitKey {
         }
     }
 
-    /// Builds the problem of these sources (M16.1).
+    /// Builds these sources' problem (M16.1).
     fn problem(
         &self,
         study: &Study,
@@ -171,7 +171,7 @@ impl CouplingFitKey {
         }
     }
 
-    /// Fits the couplings of these sources, or returns why there are none.
+    /// Fits couplings to these sources, or returns why there are none.
     pub(crate) fn fit(
         &self,
         study: &Study,
@@ -189,7 +189,7 @@ impl CouplingFitKey {
     }
 }
 
-/// Returns the standard deviation of `ln H` from an identified model's bands, or from its coherence
+/// Returns the standard deviation in `ln H` from an identified model's bands, or from its coherence
 /// where that is used (M16.2).
 fn deviation(study: &Study, identified: &Model, omega: &[f64]) -> Option<PairTable<Vec<f64>>> {
     if let Some(bands) = &identified.bands {

@@ -1,4 +1,4 @@
-//! Computation of an analysis's uncertainty from its models' swaps (M13).
+//! Computes an analysis's uncertainty from its models' swaps (M13).
 //!
 //! ```text
 //! 1  error bar of every figure of a condition, from its swaps and reported errors        (M13.2, M13.3)
@@ -35,7 +35,7 @@ use crate::results::uncertainty::{
 const MOST_DIFFERENCES: usize = 20_000;
 
 impl Uncertainty {
-    /// Computes the uncertainty from the swaps of an analysis's conditions.
+    /// Computes the uncertainty from the conditions' swaps.
     pub(crate) fn new(
         analysis: &Analysis,
         substitutions: &[(ConditionId, ConditionSubstitutions)],
@@ -62,7 +62,7 @@ impl Uncertainty {
     }
 }
 
-/// Computes the error bars of every condition with swaps.
+/// Computes the error bars in every condition with swaps.
 fn condition_bars(
     analysis: &Analysis,
     substitutions: &[(ConditionId, ConditionSubstitutions)],
@@ -90,8 +90,8 @@ fn condition_bars(
     conditions
 }
 
-/// Collects a condition's figures with the spread of its swaps and the errors reported by its
-/// identified representative.
+/// Collects a condition's figures with the spread over its swaps and the errors that its identified
+/// representative reports.
 fn bar_source<'a>(
     analysis: &Analysis,
     result: &ConditionAnalysis,
@@ -121,7 +121,7 @@ fn left_in_band(result: &ConditionAnalysis) -> PairTable<Option<f64>> {
     })
 }
 
-/// The schedule with the error bars of its conditions.
+/// The schedule with its conditions' error bars.
 struct ScheduleEvidence<'a> {
     /// `None` where there is no schedule, or a scheduled condition has no error bars.
     schedule: Option<&'a Schedule>,
@@ -154,7 +154,7 @@ impl<'a> ScheduleEvidence<'a> {
         }
     }
 
-    /// Returns the error bars of a figure in the scheduled conditions; `None` where a condition has
+    /// Returns a figure's error bars in the scheduled conditions; `None` where a condition has
     /// none.
     fn bars(&self, scalar: Scalar) -> Option<Vec<Bar>> {
         self.conditions
@@ -188,7 +188,7 @@ impl<'a> ScheduleEvidence<'a> {
             .collect()
     }
 
-    /// Computes the confidence bands of a schedule of `ln k`.
+    /// Computes confidence bands where `ln k` is scheduled.
     fn bands(&self, level: f64) -> Option<ScheduleBands> {
         let schedule = self.schedule?;
         if schedule.settings.quantity != ScheduledQuantity::LnGain {
@@ -261,7 +261,7 @@ fn judge_together(tests: &mut [SecondVariableTest], level: f64) {
     }
 }
 
-/// Computes the differences of these net gains between every two conditions at equal airspeed.
+/// Computes how these net gains differ between every two conditions at equal airspeed.
 ///
 /// # Errors
 /// The number of differences, where they are too many to compare.
@@ -317,7 +317,7 @@ fn airspeed_differences(
     Ok(found)
 }
 
-/// Counts the pairs of conditions at equal airspeed.
+/// Counts the condition pairs at equal airspeed.
 fn pairs_at_equal_airspeed(mut airspeeds_kt: Vec<f64>) -> usize {
     airspeeds_kt.sort_by(f64::total_cmp);
     airspeeds_kt

@@ -1,4 +1,4 @@
-//! Swaps: other models of the bundles in place of the representatives, one at a time (M13.1).
+//! Swaps: another model in a representative's place (M13.1).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ struct ModelPair {
 }
 
 impl ModelPair {
-    /// Returns the pair with another model of a bundle.
+    /// Returns the pair with another model in a bundle's place.
     fn with(self, kind: BundleKind, model: usize) -> Self {
         match kind {
             BundleKind::Physics => Self {
@@ -42,7 +42,7 @@ impl ModelPair {
     }
 }
 
-/// Inputs of swaps.
+/// What swaps depend on.
 #[derive(Clone, Copy)]
 pub(crate) struct SwapInput<'a> {
     pub(crate) run: Run<'a>,
@@ -51,7 +51,7 @@ pub(crate) struct SwapInput<'a> {
     pub(crate) couplings: Option<&'a Arc<FittedCouplings>>,
 }
 
-/// Correction of a pair of models, with its G and both D \[s\].
+/// A model pair's correction, with its G and both D \[s\].
 #[derive(Clone, Debug)]
 pub(crate) struct SwapOptimum {
     pub(crate) correction: ChannelCorrection,
@@ -60,7 +60,7 @@ pub(crate) struct SwapOptimum {
 }
 
 impl SwapOptimum {
-    /// Returns the logarithms of gains, and delays \[s\]; `None` where a figure is not defined.
+    /// Returns logarithmic gains, and delays \[s\]; `None` where a figure is not defined.
     fn figures(&self) -> Figures {
         let correction = &self.correction;
         let delta = &self.delta;
@@ -82,7 +82,7 @@ impl SwapOptimum {
     }
 }
 
-/// Returns the figures of the representatives themselves.
+/// Returns the representatives' own figures.
 pub(crate) fn representative_figures(analysis: &ConditionAnalysis) -> Figures {
     let optimum = SwapOptimum {
         correction: analysis.correction.clone(),
@@ -94,18 +94,18 @@ pub(crate) fn representative_figures(analysis: &ConditionAnalysis) -> Figures {
     optimum.figures()
 }
 
-/// Dependencies of a swap besides the two models.
+/// What a swap depends on besides the two models.
 #[derive(Clone, Debug, PartialEq)]
 struct SwapKey {
     /// The analysis's settings, without those that no swap depends on.
     settings: Settings,
     measuring: PairTable<bool>,
-    /// The reference of phase branches.
+    /// The reference for phase branches.
     representatives: ModelPair,
     couplings: Option<Arc<FittedCouplings>>,
 }
 
-/// The last swaps, by their models: rejecting or restoring a model keeps those of the others.
+/// The last swaps, by their models: rejecting or restoring a model keeps the others' swaps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SwapMemo {
     key: Option<SwapKey>,
@@ -120,8 +120,8 @@ impl SwapInput<'_> {
         }
     }
 
-    /// Returns the other kept models of a bundle, in file order, without models set aside (M5b).
-    /// Duplicate models count once, because they add no information; copies of the representative
+    /// Returns a bundle's other kept models, in file order, without models set aside (M5b).
+    /// Duplicate models count once, because they add no information; the representative's copies
     /// count where there are no others.
     fn others(&self, kind: BundleKind) -> Vec<usize> {
         let representative = self.analysis.representative(kind);
@@ -197,8 +197,8 @@ impl SwapMemo {
             }
         }
         let representatives = input.representatives();
-        // The mean over all pairs is not a figure of the representatives: the reference of the
-        // changes is computed too.
+        // The mean over all pairs is not the representatives' figure: the changes' reference is
+        // computed too.
         let is_mean = input.run.study.settings.gain_source == GainSource::MeanOfPairs;
         let mut wanted: Vec<ModelPair> = swaps
             .iter()
@@ -232,8 +232,8 @@ impl SwapMemo {
         })
     }
 
-    /// Computes the figures of the pairs that are not cached; `swaps` counts the pairs that are
-    /// steps of the execution.
+    /// Computes the figures of the pairs that are not cached; `swaps` counts the pairs that count
+    /// as steps.
     fn compute_missing(
         &mut self,
         input: &SwapInput<'_>,
@@ -248,13 +248,13 @@ impl SwapMemo {
         Ok(())
     }
 
-    /// Returns the cached figures of a pair.
+    /// Returns a pair's cached figures.
     fn figures(&self, pair: ModelPair) -> Option<Arc<Figures>> {
         self.kept.get(&pair).cloned().flatten()
     }
 }
 
-/// Returns the figures of the swaps of a bundle's models.
+/// Returns the figures after each swap in a bundle.
 fn bundle_figures(swaps: &[ModelSwap], bundle: BundleKind) -> Vec<Option<&Figures>> {
     swaps
         .iter()
@@ -263,7 +263,7 @@ fn bundle_figures(swaps: &[ModelSwap], bundle: BundleKind) -> Vec<Option<&Figure
         .collect()
 }
 
-/// Computes the figures of each of these pairs of models.
+/// Computes each model pair's figures.
 fn swap_figures(
     input: &SwapInput<'_>,
     pairs: &[ModelPair],
@@ -291,8 +291,8 @@ fn swap_figures(
             let other = input.compared(BundleKind::Identified, pair.identified);
             physics.mismatches(&other)
         };
-        // As with the pair pinned: each phase difference is on the branch nearest to that of the
-        // representatives (M13.1).
+        // As with the pair pinned: each phase difference is on the branch nearest to the
+        // representatives' (M13.1).
         for (pair, entry) in mismatch.iter_mut() {
             if let Some(median_phase) = median_phases[pair] {
                 *entry = entry

@@ -1,4 +1,4 @@
-//! Derivations of J (M4), of scores and of discontinuity ratios (M5).
+//! Derives J (M4), scores and discontinuity ratios (M5).
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::fidelity::{Cost, CostAverage, SUGGESTION_RATIO};
@@ -16,7 +16,7 @@ use crate::assessment::correction_source;
 /// Most terms that are written out in a sum.
 const MOST_TERMS: usize = 8;
 
-/// Section of J in the method's description.
+/// The method's section about J.
 const COST_SECTION: &str = "M4, eq. (14) to (19)";
 
 /// Writes a sum: "a + b + c + … (20 terms)".
@@ -34,7 +34,7 @@ fn sum_words(terms: &[f64]) -> String {
     }
 }
 
-/// Describes a model: origin, number of states, sampling, and source.
+/// Describes a model: origin, states, sampling, and source.
 fn model_words(model: &Model) -> Vec<String> {
     let mut words = Vec::new();
     if let Origin::Identified {
@@ -103,8 +103,7 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
     })
 }
 
-/// Derives the discontinuity ratio of a physics model: its distances over those that the trims
-/// explain.
+/// Derives a physics model's discontinuity ratio: its distances over those that the trims explain.
 pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
     const EQUATION: &str = "r_a = median over b of d(a, b) / √(Σ_k w_k (p_ak − p_bk)²); each p divided by its largest, w_k ≥ 0 by \
                             least absolute deviations";
@@ -165,7 +164,7 @@ pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation
     })
 }
 
-/// Returns the notation of the average over frequency.
+/// Returns how the average over frequency is written.
 fn average_word(average: CostAverage) -> &'static str {
     match average {
         CostAverage::Median => "median",
@@ -179,7 +178,7 @@ fn cost_equation(average: CostAverage) -> String {
     format!("J = {per_db} · {word}_ω(ΔdB²) + {per_deg} · {word}_ω(Δφ²), dB and degrees")
 }
 
-/// Writes J of a mismatch as two steps and their sum.
+/// Writes a mismatch's J as two steps and their sum.
 fn cost_steps(symbol: &str, cost: Cost, average: CostAverage) -> [String; 3] {
     let word = average_word(average);
     let [per_db, per_deg] = Cost::factors();
@@ -196,7 +195,7 @@ fn cost_steps(symbol: &str, cost: Cost, average: CostAverage) -> [String; 3] {
     ]
 }
 
-/// Writes net gain and net delay of a correction.
+/// Writes a correction's net gain and net delay.
 fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorrection) -> String {
     let [output, input] = Channel::of(pair).map(|channel| context.channel(channel));
     format!(
@@ -206,7 +205,7 @@ fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorre
     )
 }
 
-/// Derives J of a response before the correction.
+/// Derives a response's J before the correction.
 pub(super) fn cost_before(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let cost = context.result.cost[pair]?.uncorrected;
     let average = context.settings().cost_average;
@@ -223,7 +222,7 @@ pub(super) fn cost_before(context: &Context<'_>, pair: Pair) -> Option<Derivatio
     })
 }
 
-/// Derives J of a response after the condition's own correction.
+/// Derives a response's J after the condition's own correction.
 pub(super) fn cost_after(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let cost = context.result.cost[pair]?.corrected;
     let average = context.settings().cost_average;
@@ -242,7 +241,7 @@ pub(super) fn cost_after(context: &Context<'_>, pair: Pair) -> Option<Derivation
     })
 }
 
-/// Derives the change of J of a response in an assessment.
+/// Derives how a response's J changes in an assessment.
 pub(super) fn change(
     context: &Context<'_>,
     pair: Pair,

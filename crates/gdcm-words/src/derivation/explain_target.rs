@@ -4,12 +4,12 @@ use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use gdcm_study::results::assessment_table::AssessmentChoice;
 
-/// A figure of an analysis to be explained.
+/// An analysis's figure to be explained.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExplainTarget {
-    /// Delta gain `G` of a response.
+    /// A response's delta gain `G`.
     DeltaGain(ConditionId, Pair),
-    /// Delta delay `D` of a response.
+    /// A response's delta delay `D`.
     DeltaDelay(ConditionId, Pair),
     NetGain(ConditionId, Pair),
     NetDelay(ConditionId, Pair),
@@ -17,16 +17,16 @@ pub enum ExplainTarget {
     Delay(ConditionId, Channel),
     GainBounds(ConditionId),
     DelayBound(ConditionId),
-    /// J of a response of the uncorrected physics representative.
+    /// The uncorrected physics representative's J in a response.
     CostBefore(ConditionId, Pair),
-    /// J of a response of the physics representative, under the condition's own correction.
+    /// The physics representative's J in a response, under the condition's own correction.
     CostAfter(ConditionId, Pair),
-    /// Change of J of a response in an assessment.
+    /// How a response's J changes in an assessment.
     CostChange(ConditionId, Pair, AssessmentChoice),
     DiscontinuityRatio(ModelId),
     Score(ModelId),
     GainObjective(ConditionId),
     DelayObjective(ConditionId),
-    /// Scheduled gain of a channel at an airspeed \[kt\].
+    /// A channel's scheduled gain at an airspeed \[kt\].
     ScheduledGain(Channel, f64),
 }

@@ -1,18 +1,18 @@
-//! Sentences of cautions, and of conditions without a result.
+//! Sentences about cautions, and about conditions without a result.
 
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_model::units::number;
 use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_study::results::caution::{Caution, NotFinite, USUAL_GAINS, Undefined};
 
-/// The computable range of gains in words.
+/// The computable gains in words.
 const GAIN_RANGE: &str = "gains are computed with from 1e-50 to 1e50";
 
-/// Definition of "numerically nothing" (M6a).
+/// What "numerically nothing" means (M6a).
 const NOTHING: &str =
     "over the band less than 1e-6 of the greatest response of its output and of its input";
 
-/// Number of models or responses listed by name.
+/// How many models or responses are listed by name.
 const LISTED: usize = 3;
 
 /// Returns why a condition has no result, with the cautions that explain it.

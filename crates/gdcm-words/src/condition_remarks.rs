@@ -14,12 +14,12 @@ use crate::leads::lead_remarks;
 use crate::missed_targets::missed_target_texts;
 use crate::remark::{Remark, Repeated};
 
-/// Increase of J up to which a constrained response does not count as worse; with leads every
+/// Increase in J up to which a constrained response does not count as worse; with leads every
 /// increase counts (M15.6).
 const NEGLIGIBLE_INCREASE: f64 = 0.5;
 
 /// Collects the remarks: which constrained gains and delays were matched, which were not and why,
-/// and the cautions of the condition and of the schedule.
+/// and the cautions about condition and schedule.
 pub fn remarks(
     study: &Study,
     result: &ConditionAnalysis,
@@ -54,7 +54,7 @@ pub fn remarks(
     remarks
 }
 
-/// Repeats the cautions of the schedule that concern the condition.
+/// Repeats the schedule's cautions that concern the condition.
 fn schedule_remarks(study: &Study, result: &ConditionAnalysis, schedule: &Schedule) -> Vec<Remark> {
     let (inputs, outputs) = study.dataset.names_of_channels();
     let mut remarks = Vec::new();
@@ -125,7 +125,7 @@ fn matched_gains_remark(study: &Study, result: &ConditionAnalysis) -> Remark {
     Remark::good("gains-matched", text)
 }
 
-/// Reports the loops of constrained responses within the agreement tolerance.
+/// Reports the loops that agree within the tolerance.
 fn agreement_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let (inputs, outputs) = study.dataset.names_of_channels();
     let loops = result.gains.agreeing.iter().chain(&result.delays.agreeing);
@@ -201,7 +201,7 @@ fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     Some(Remark::caution("held-farther", text).repeated(Repeated::Farther(pairs)))
 }
 
-/// Reports the number of unconstrained responses that leads move away from flight (M15.6).
+/// Reports how many unconstrained responses the leads move away from flight (M15.6).
 fn others_worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     if study.settings.phase != PhaseCorrection::Lead {
         return None;
@@ -284,10 +284,10 @@ fn needed_lead_remark(study: &Study, result: &ConditionAnalysis, held: usize) ->
     Some(Remark::caution("needs-lead", text).repeated(Repeated::NeedsLead(needed)))
 }
 
-/// Lists the solution's details: other minima, the error at the top of the band due to each missed
-/// delay, and the cost of the constrained responses and the active bounds.
+/// Lists the solution's details: other minima, the error that each missed delay causes at the
+/// band's top, and what constraints and active bounds cost.
 pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
-    /// Share of the objective below which a constraint's cost is negligible.
+    /// A constraint that costs a smaller share than this is negligible.
     const NOTABLE: f64 = 1e-3;
     let (inputs, outputs) = study.dataset.names_of_channels();
     let mut details = vec![result.gains.proof.outcome.words()];

@@ -19,7 +19,7 @@ const KNOWN_FACTORS: [(f64, &str); 6] = [
     (1000.0, "a unit and its thousandth"),
 ];
 
-/// Describes a suspected difference of sign or unit, and how to settle it.
+/// Describes a suspected difference in sign or unit, and how to settle it.
 pub fn doubt_text(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
     let channel = doubt.channel.name_in(dataset);
     let pairs: Vec<String> = doubt

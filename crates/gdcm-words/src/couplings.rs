@@ -20,7 +20,7 @@ use gdcm_study::{Analysis, CouplingCorrection};
 use crate::remark::{Remark, RemarkKind};
 use crate::table::Table;
 
-/// Number of entries reported of each matrix, largest first.
+/// How many entries are reported from each matrix, largest first.
 const MOST_REPORTED: usize = 3;
 /// Shares below this are negligible.
 const NOTHING: f64 = 0.005;
@@ -44,7 +44,7 @@ pub fn no_couplings(why: &str) -> Remark {
     )
 }
 
-/// Returns all remarks: the diagnosis, the benefit of couplings, and the cautions.
+/// Returns all remarks: the diagnosis, what couplings gain, and the cautions.
 pub fn coupling_remarks(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     let mut remarks: Vec<Remark> = diagnosis(assessment, dataset)
         .into_iter()
@@ -99,7 +99,7 @@ fn cost_source(assessment: &CouplingsAssessment) -> &'static str {
     }
 }
 
-/// Judges from J of conditions left out whether couplings are worthwhile.
+/// Judges from the conditions left out whether couplings are worthwhile.
 fn verdict(assessment: &CouplingsAssessment) -> Vec<Remark> {
     let cost = assessment.deciding_cost();
     let (Some(with), Some(without)) = (cost.with.others, cost.without.others) else {
@@ -147,7 +147,7 @@ pub fn coupling_offer(assessment: &CouplingsAssessment) -> Option<String> {
     ))
 }
 
-/// Describes the effect of the couplings above the band, the pole shifts in it, and the error bars'
+/// Describes the couplings' effect above the band, the pole shifts in it, and the error bars'
 /// meaning.
 fn price(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     let mut remarks = Vec::new();
@@ -164,7 +164,7 @@ fn price(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     remarks
 }
 
-/// Describes the largest change of an on-axis response above the band.
+/// Describes the largest on-axis change above the band.
 fn above_band_words(assessment: &CouplingsAssessment, dataset: &Dataset) -> Option<String> {
     let changes = assessment.conditions.iter().filter_map(|(id, condition)| {
         let (pair, change_db) = condition.most_changed_above_band(dataset.on_axis())?;
@@ -183,7 +183,7 @@ fn above_band_words(assessment: &CouplingsAssessment, dataset: &Dataset) -> Opti
     ))
 }
 
-/// Describes the pole of the band that moves farthest.
+/// Describes the pole in the band that moves farthest.
 fn farthest_pole_words(assessment: &CouplingsAssessment) -> Option<String> {
     let band = assessment.band.min()..=assessment.band.max();
     let mut farthest: Option<(ConditionId, &PoleShift, f64)> = None;
@@ -277,7 +277,7 @@ pub fn coupling_cautions(assessment: &CouplingsAssessment, dataset: &Dataset) ->
     remarks
 }
 
-/// Lists the newly unstable poles of the representatives, then of the other kept models.
+/// Lists the representatives' newly unstable poles, then the other kept models'.
 fn unstable_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     let mut remarks = Vec::new();
     for is_representative in [true, false] {
@@ -313,7 +313,7 @@ fn unstable_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     remarks
 }
 
-/// Reports the number of conditions that can be left out, where it is not all of them.
+/// Reports how many conditions can be left out, where some cannot.
 fn partly_left_out_words(assessment: &CouplingsAssessment) -> Option<String> {
     let all = assessment.fitted.problem.conditions.len();
     let known = assessment.left_out_fits.len();
@@ -326,7 +326,7 @@ fn partly_left_out_words(assessment: &CouplingsAssessment) -> Option<String> {
     ))
 }
 
-/// Reports the smallest stability margin of the loop, where it is close to ringing.
+/// Reports the loop's smallest stability margin, where it is close to ringing.
 fn ringing_words(assessment: &CouplingsAssessment) -> Option<String> {
     let margins = assessment
         .conditions
@@ -422,7 +422,7 @@ fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare) -> String {
     )
 }
 
-/// Names the physical meaning of a feedback entry, by its output's unit.
+/// Names a feedback entry's physical meaning, by its output's unit.
 fn feedback_meaning(dataset: &Dataset, feedback: &FeedbackShare) -> &'static str {
     let is_on_axis = |output: usize| dataset.on_axis()[Pair::new(output, feedback.input)];
     if !is_on_axis(feedback.output) {
@@ -471,7 +471,7 @@ fn unstable_places(poles: &[&UnstablePole]) -> String {
     places.join("; ")
 }
 
-/// Locates the unstable poles of a condition: "condition 1, 8 models at 0.143 to 0.149 rad/s".
+/// Locates a condition's unstable poles: "condition 1, 8 models at 0.143 to 0.149 rad/s".
 fn unstable_place(condition: ConditionId, poles: &[&UnstablePole]) -> String {
     let moduli: Vec<f64> = poles.iter().map(|pole| pole.pole.norm()).collect();
     let least = telling(moduli.iter().copied().fold(f64::INFINITY, f64::min), 3);
@@ -570,8 +570,8 @@ fn cost_cells(name: &str, cost: CouplingCost) -> [String; 5] {
     ]
 }
 
-/// Tabulates the mixing at the mean airspeed, and the feedback where there is one: for each input
-/// (row), the share of each input and output. An entry within its error bar is in brackets.
+/// Tabulates the mixing at the mean airspeed, and the feedback where there is one: each input (row)
+/// with its shares from inputs and outputs. An entry within its error bar is in brackets.
 pub fn coupling_matrix_tables(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Table> {
     let airspeed_kt = assessment.mean_airspeed_kt();
     let (inputs, outputs) = dataset.names_of_channels();
@@ -640,8 +640,7 @@ fn entry_words(entry: &CouplingEntry) -> String {
     }
 }
 
-/// Tabulates the poles of each condition's physics representative before and after, largest shift
-/// first.
+/// Tabulates each physics representative's poles before and after, largest shift first.
 pub fn pole_table(assessment: &CouplingsAssessment) -> Table {
     let columns = [
         "condition",

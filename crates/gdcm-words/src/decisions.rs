@@ -1,5 +1,5 @@
-//! Decisions in words: differences between two sets of decisions about a dataset, and between two
-//! states of a dataset.
+//! Decisions in words: differences between two sets of decisions, and between two states of a
+//! dataset.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -14,7 +14,7 @@ use gdcm_study::decisions::setting::SETTINGS;
 /// One changed decision.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecisionDifference {
-    /// Subject of the decision: "α of the gains", "LON → Q", "nominal (condition 10)".
+    /// What the decision is about: "α of the gains", "LON → Q", "nominal (condition 10)".
     pub what: String,
     /// Decision before: "1", "held", "rejected".
     pub before: String,
@@ -38,7 +38,7 @@ impl fmt::Display for DecisionDifference {
     }
 }
 
-/// Words of a decision that is made or not.
+/// Words for a decision that is made or not.
 struct YesNo {
     yes: &'static str,
     no: &'static str,
@@ -50,7 +50,7 @@ impl YesNo {
     }
 }
 
-/// Lists every decision in which `after` differs from `before`, a study of the same dataset:
+/// Lists every decision in which `after` differs from `before`, a study with the same dataset:
 /// settings, responses, then condition by condition. Variants are not compared.
 pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
     let mut differences = setting_differences(before, after);

@@ -12,7 +12,7 @@ use gdcm_study::{ConditionAnalysis, PhaseCorrection, Study};
 use crate::missed_targets::missed_target_texts;
 use crate::remark::{Remark, RemarkKind, Repeated};
 
-/// Difference \[s\] between the two figures of D beyond which they do not describe a delay.
+/// Where both figures for D differ by more \[s\], they do not describe a delay.
 const APART_S: f64 = 0.02;
 /// Signed delays below this \[s\] need no correction.
 const NOTHING_S: f64 = 2e-3;
@@ -101,7 +101,7 @@ fn whole_ms(tau_s: f64) -> String {
     telling(s_to_ms(tau_s.abs()), 0)
 }
 
-/// Formats the error bar of the band delay \[ms\]: " ± 4".
+/// Formats the band delay's error bar \[ms\]: " ± 4".
 fn half_width_words(
     result: &ConditionAnalysis,
     uncertainty: Option<&Uncertainty>,
@@ -114,8 +114,7 @@ fn half_width_words(
     Some(format!(" ± {}", telling(s_to_ms(half_width_s), 0)))
 }
 
-/// Describes the number of states that the leads add, and the upper frequency limit of the
-/// corrected model's validity.
+/// Describes how many states the leads add, and up to which frequency the corrected model is valid.
 pub fn lead_limit_words(result: &ConditionAnalysis) -> Option<String> {
     let leads = &result.compensated.as_ref()?.leads;
     let limit = number(LeadPrice::of(leads)?.limit_rad_s);
@@ -256,7 +255,7 @@ fn raised_gain(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     Some(Remark::caution("gain-raised", text).repeated(Repeated::RaisedGain(most_db, pair)))
 }
 
-/// Reports the constrained responses whose two figures of D are far apart, except those with a
+/// Reports the constrained responses whose two figures for D are far apart, except those with a
 /// suspected sign: half a turn is no zero and no mode.
 fn not_of_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let delta = &result.comparison.delta;

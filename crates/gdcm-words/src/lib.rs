@@ -9,7 +9,7 @@
 //! Sentences: [`remark`] and [`condition_remarks`], with [`leads`] and [`missed_targets`], for a
 //! condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for suspected faults;
 //! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`decisions`] for its
-//! decisions. Tables: [`table`], [`requirements`], [`time_histories`]. Explanations of a figure:
+//! decisions. Tables: [`table`], [`requirements`], [`time_histories`]. Explained figures:
 //! [`derivation`].
 //!
 //! # Example

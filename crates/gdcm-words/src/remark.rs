@@ -5,7 +5,7 @@ use gdcm_model::dataset::Pair;
 use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::signs::SignRole;
 
-/// Kind of a remark.
+/// A remark's kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RemarkKind {
     /// The request was fulfilled.
@@ -19,14 +19,14 @@ pub enum RemarkKind {
 /// A remark on a result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Remark {
-    /// Stable code of the remark, for programs and tests.
+    /// The remark's stable code, for programs and tests.
     pub code: &'static str,
     pub kind: RemarkKind,
     /// One or two sentences.
     pub text: String,
     /// The response to consider ignoring in the objective.
     pub ignore: Option<Pair>,
-    /// The phase correction to consider instead of the present one.
+    /// The phase correction to consider instead.
     pub phase: Option<PhaseCorrection>,
     /// The channel whose sign can be reversed, or restored (`None` as the role), at once.
     pub turn: Option<(Channel, Option<SignRole>)>,
@@ -34,11 +34,10 @@ pub struct Remark {
     pub repeated: Option<Repeated>,
 }
 
-/// A remark that most conditions of a study share, with its numbers, so that many of them form one
-/// table.
+/// A remark that most conditions share, with its numbers, so that many of them form a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Repeated {
-    /// Constrained responses need lead, with the lead of each \[ms\].
+    /// Constrained responses need lead, with each response's lead \[ms\].
     NeedsLead(Vec<(Pair, String)>),
     /// All constrained responses need about the same lead \[ms\].
     CommonLead(String),

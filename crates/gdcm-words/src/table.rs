@@ -1,9 +1,9 @@
-//! Tables of results to read, copy and save, with the same text in every format.
+//! Tables to read, copy and save, with the same text in every format.
 
 use gdcm_model::units::without_sign_of_zero;
 
-/// Rows of texts under headings. Headings name quantity and unit (`airspeed [kt]`), so that a table
-/// is self-contained.
+/// Rows with texts under headings. Headings name quantity and unit (`airspeed [kt]`), so that a
+/// table is self-contained.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
     /// Title in words.
@@ -73,7 +73,7 @@ impl Table {
             .unwrap_or(0)
     }
 
-    /// Returns whether every nonempty cell of a column is a number, and there is at least one.
+    /// Returns whether a column has nonempty cells, and all are numbers.
     pub fn has_numbers(&self, column: usize) -> bool {
         let cells: Vec<&str> = self
             .rows
@@ -85,7 +85,7 @@ impl Table {
     }
 }
 
-/// A column of a table formatted as text.
+/// A table's column formatted as text.
 struct TextColumn {
     /// Width in characters.
     width: usize,
@@ -106,7 +106,7 @@ impl TextColumn {
     }
 }
 
-/// Returns the cell, with the sign of a zero removed.
+/// Returns the cell, with a zero's sign removed.
 fn unsigned_zero(cell: String) -> String {
     let unsigned = without_sign_of_zero(&cell);
     if unsigned.len() == cell.len() {

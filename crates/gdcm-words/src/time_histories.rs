@@ -12,8 +12,7 @@ use gdcm_study::results::time_histories::{HistoryFinding, TimeHistories, Toleran
 
 use crate::table::Table;
 
-/// Tabulates the share of time inside each tolerance over all records of each condition, model by
-/// model.
+/// Tabulates the share inside each tolerance over each condition's records, model by model.
 pub fn share_table(histories: &TimeHistories) -> Table {
     let mut columns = ["condition", "records", "quantity"]
         .map(str::to_owned)
@@ -38,7 +37,7 @@ pub fn share_table(histories: &TimeHistories) -> Table {
     table
 }
 
-/// Returns the headings of [`cost_cells`].
+/// Returns the headings above [`cost_cells`].
 pub(crate) fn cost_heads(histories: &TimeHistories) -> Vec<String> {
     let mut heads = vec!["J_rms".to_owned()];
     for output in histories.moved_outputs() {
@@ -47,7 +46,7 @@ pub(crate) fn cost_heads(histories: &TimeHistories) -> Vec<String> {
     heads
 }
 
-/// Formats `J_rms` of a condition's model, and Theil's coefficient of every output.
+/// Formats a model's `J_rms`, and Theil's coefficient for every output.
 pub(crate) fn cost_cells(
     histories: &TimeHistories,
     condition: ConditionId,
@@ -63,7 +62,7 @@ pub(crate) fn cost_cells(
     cells
 }
 
-/// Tabulates `J_rms` and Theil's coefficients over all records of each condition and model.
+/// Tabulates `J_rms` and Theil's coefficients over all records, by condition and model.
 pub fn history_cost_table(histories: &TimeHistories) -> Table {
     let mut columns = ["condition", "records", "model"]
         .map(str::to_owned)
@@ -88,7 +87,7 @@ pub fn history_cost_table(histories: &TimeHistories) -> Table {
     table
 }
 
-/// Tabulates a condition's records against every tolerance: largest excess of each model, and its
+/// Tabulates a condition's records against every tolerance: each model's largest excess, and its
 /// time. Rows where every model is inside throughout, and off-axis has the correct trend, are
 /// omitted and counted.
 pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table {
@@ -137,7 +136,7 @@ pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table 
     table
 }
 
-/// Returns the finding of a role's model in a row of the tolerances.
+/// Returns the finding about a role's model in a tolerance row.
 fn finding_of_role<'a>(
     models: &[&'a HistoryFinding],
     role: RequirementRole,
@@ -168,8 +167,8 @@ pub fn output_weights_text(histories: &TimeHistories) -> String {
     format!("deg, deg/s, ft/s and ft/s\u{b2} weighing the same{without}")
 }
 
-/// Formats a result: "85.2; 0.84 deg/s at 12.3 s; opposite trend": share of time inside, largest
-/// excess, and an incorrect trend.
+/// Formats a result: "85.2; 0.84 deg/s at 12.3 s; opposite trend": share inside, largest excess,
+/// and an incorrect trend.
 fn excess_words(finding: &ToleranceFinding) -> String {
     let mut words = vec![percent_rounded_down(Some(finding.share_inside))];
     if finding.largest_excess > 0.0 {
@@ -186,8 +185,8 @@ fn excess_words(finding: &ToleranceFinding) -> String {
     words.join("; ")
 }
 
-/// Tabulates a record: share of time inside, largest excess and its time, for each quantity and
-/// model; off-axis, also whether the trend is correct.
+/// Tabulates a record: share inside, largest excess and its time, for each quantity and model;
+/// off-axis, also whether the trend is correct.
 pub fn record_history_table(history: &RecordHistory) -> Table {
     let columns = [
         "quantity",

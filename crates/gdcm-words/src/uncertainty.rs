@@ -11,7 +11,7 @@ use crate::table::Table;
 /// Placeholder for a missing figure.
 const NONE: &str = "–";
 
-/// Returns the verdict on a difference at equal airspeed, at a level of confidence.
+/// Returns the verdict on a difference at equal airspeed, at a confidence level.
 pub fn difference_verdict(difference: &AirspeedDifference, level: f64) -> &'static str {
     if difference.p_holm.is_none() {
         "no spread"
@@ -84,7 +84,7 @@ fn need(test: &SecondVariableTest) -> &'static str {
     if test.needed { "needed" } else { "not needed" }
 }
 
-/// Formats a figure with a fixed number of decimals, or the placeholder.
+/// Formats a figure with fixed decimals, or the placeholder.
 fn cell(figure: Option<f64>, decimals: usize) -> String {
     match figure {
         Some(figure) => format!("{figure:.decimals$}"),
@@ -92,7 +92,7 @@ fn cell(figure: Option<f64>, decimals: usize) -> String {
     }
 }
 
-/// Formats a standard deviation of a logarithm in percent.
+/// Formats a logarithm's standard deviation in percent.
 fn percent(deviation: Option<f64>) -> String {
     cell(deviation.map(|deviation| 100.0 * deviation), 1)
 }
@@ -105,8 +105,8 @@ fn probability(p: Option<f64>) -> String {
     }
 }
 
-/// Tabulates the differences of net gains at equal airspeed, largest multiple of the expected
-/// difference first, with each row's difference.
+/// Tabulates how net gains differ at equal airspeed, largest in relation to the expected difference
+/// first, with each row's difference.
 pub fn difference_table(
     dataset: &Dataset,
     uncertainty: &Uncertainty,
@@ -176,7 +176,7 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
     table
 }
 
-/// Tabulates the scatter components of each on-axis net gain.
+/// Tabulates each on-axis net gain's scatter components.
 pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
     let columns = [
         "response",
@@ -213,7 +213,7 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
     table
 }
 
-/// Formats the interval of the unexplained component: "1.2 to 5.6".
+/// Formats the unexplained component's interval: "1.2 to 5.6".
 fn interval(decomposition: &VarianceDecomposition, level: f64) -> String {
     match decomposition.unexplained_interval(level) {
         Some([low, high]) => format!("{} to {}", percent(Some(low)), percent(Some(high))),
@@ -221,7 +221,7 @@ fn interval(decomposition: &VarianceDecomposition, level: f64) -> String {
     }
 }
 
-/// Tabulates the on-axis net gains of every condition with their error bars.
+/// Tabulates every condition's on-axis net gains with their error bars.
 pub fn bar_table(analysis: &Analysis, uncertainty: &Uncertainty) -> Table {
     let level = format!("± [%] of {:.0} %", 100.0 * uncertainty.level);
     let columns = [

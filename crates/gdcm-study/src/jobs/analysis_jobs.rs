@@ -21,8 +21,7 @@ use crate::stages::coupling_costs::with_couplings;
 use crate::stages::engine::Engine;
 use crate::stages::optima::solved;
 
-/// The complete proof of equation (7) for a condition, where the live answer's budget was too
-/// small.
+/// Equation (7)'s complete proof for a condition, where the live answer's budget was too small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProofJob {
     pub problem: Arc<Problem>,
@@ -37,7 +36,7 @@ impl Job for ProofJob {
     }
 }
 
-/// Cost of constraining or releasing each response of a condition.
+/// What constraining or releasing each response in a condition costs.
 #[derive(Clone, Debug)]
 pub struct TogglesJob {
     pub condition: ConditionAnalysis,
@@ -92,7 +91,7 @@ impl Job for TogglesJob {
     }
 }
 
-/// Cost of every single toggle of a condition.
+/// What every single toggle in a condition costs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Toggles {
     pub gains: Vec<Toggle>,
@@ -100,7 +99,7 @@ pub struct Toggles {
 }
 
 impl Toggles {
-    /// Returns a response's toggles: of its gain and of its delay.
+    /// Returns a response's toggles, in gain and in delay.
     pub fn of_pair(&self, pair: Pair) -> (Option<&Toggle>, Option<&Toggle>) {
         let gain = self.gains.iter().find(|toggle| toggle.pair == pair);
         (gain, self.delays.iter().find(|toggle| toggle.pair == pair))
@@ -114,7 +113,7 @@ pub struct VariantJob {
 }
 
 impl PartialEq for VariantJob {
-    /// Compares the dataset and the decisions; the reasons of rejections are ignored.
+    /// Compares the dataset and the decisions; rejections' reasons are ignored.
     fn eq(&self, other: &Self) -> bool {
         let a = &self.study;
         let b = &other.study;
@@ -137,7 +136,7 @@ impl Job for VariantJob {
     }
 }
 
-/// Error bars of an analysis, and the conclusions from them.
+/// An analysis's error bars, and the conclusions from them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UncertaintyJob {
     pub analysis: Shared<Analysis>,
@@ -177,7 +176,7 @@ impl Job for AssessmentJob {
 /// Job that assesses couplings for a study, beside the live answer.
 #[derive(Clone, Debug)]
 pub struct CouplingsJob {
-    /// The study; its own setting of couplings is ignored.
+    /// The study; its own choice about couplings is ignored.
     pub study: Study,
     pub couplings: CouplingCorrection,
 }

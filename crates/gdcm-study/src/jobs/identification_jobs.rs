@@ -183,7 +183,7 @@ impl Job for IdentifyJob {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationJob {
     pub record: Shared<FlightRecord>,
-    /// Preparation of its channels.
+    /// How its channels are prepared.
     pub preparation: Preparation,
     pub model: StateSpace,
 }

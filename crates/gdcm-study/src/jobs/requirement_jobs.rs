@@ -1,4 +1,4 @@
-//! Jobs for requirements: findings without records, time histories, answers of single models.
+//! Jobs for requirements: findings without records, time histories, single models' answers.
 
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ use crate::shared::Shared;
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementsJob {
     pub analysis: Shared<Analysis>,
-    /// Error bars of its values.
+    /// Its values' error bars.
     pub uncertainty: Option<Shared<Uncertainty>>,
     /// Requirement settings, on which the analysis does not depend.
     pub settings: Arc<RequirementSettings>,
@@ -52,7 +52,7 @@ impl Job for RequirementsJob {
     }
 }
 
-/// Comparison of records with an analysis's models.
+/// Compares records with an analysis's models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeHistoriesJob {
     pub analysis: Shared<Analysis>,
@@ -78,13 +78,13 @@ impl Job for TimeHistoriesJob {
     }
 }
 
-/// Comparison of a record of a condition with the study's tolerances.
+/// Compares a condition's record with the study's tolerances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordHistoryJob {
     pub analysis: Shared<Analysis>,
     pub condition: ConditionId,
     pub record: HistoryRecord,
-    /// Preparation of its channels.
+    /// How its channels are prepared.
     pub preparation: Preparation,
     pub tolerances: ToleranceTable,
 }
@@ -114,13 +114,13 @@ impl Job for RecordHistoryJob {
     }
 }
 
-/// Simulation of a condition's models with the study's test input.
+/// Simulates a condition's models with the study's test input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestAnswersJob {
     pub analysis: Shared<Analysis>,
     pub condition: ConditionId,
     pub input: usize,
-    /// Shape of the input.
+    /// The input's shape.
     pub test: TestInput,
 }
 

@@ -1,4 +1,4 @@
-//! Benefit of a correction, response by response and condition by condition, for the chosen model
+//! What a correction gains, response by response and condition by condition, for the chosen model
 //! and correction (M12, Figures 8 to 19).
 
 use gdcm_method::correction::ChannelCorrection;
@@ -28,7 +28,7 @@ pub enum AssessedCorrection {
     /// The schedule at the condition's airspeed (the paper).
     #[default]
     Scheduled,
-    /// The schedule without the lead filters of its signed delays (M15).
+    /// The schedule without its signed delays' lead filters (M15).
     ScheduledWithoutLeads,
     /// The other conditions' schedule at the condition's airspeed: a prediction for a flight not
     /// used in the fit.
@@ -67,12 +67,12 @@ impl AssessedCorrection {
     }
 }
 
-/// Choices of an assessment: model, correction and average.
+/// An assessment's choices: model, correction and average.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct AssessmentChoice {
     pub model: AssessedModel,
     pub correction: AssessedCorrection,
-    /// Average of squared errors over frequency in J.
+    /// How J averages squared errors over frequency.
     pub average: CostAverage,
 }
 
@@ -87,14 +87,14 @@ impl AssessmentChoice {
     }
 }
 
-/// Assessment of a condition.
+/// A condition's assessment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessedCondition {
     pub condition: ConditionId,
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
     pub model: String,
-    /// J of each response before and after, against the identified representative.
+    /// J before and after against the identified representative, response by response.
     pub changes: PairTable<Option<CostChange>>,
     /// Why a response has no J.
     pub missing: Vec<(Pair, MissingCost)>,
@@ -122,14 +122,14 @@ impl MissingCost {
     }
 }
 
-/// A condition left out of an assessment, and why.
+/// A condition that an assessment leaves out, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeftOut {
     pub condition: ConditionId,
     pub why: NotAssessed,
 }
 
-/// J before and after of every response of every condition (M12).
+/// J before and after, for every condition and response (M12).
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentTable {
     pub choice: AssessmentChoice,
@@ -137,14 +137,14 @@ pub struct AssessmentTable {
     pub left_out: Vec<LeftOut>,
 }
 
-/// Summary of an assessment: how many responses come closer, and which moves farthest away.
+/// An assessment's summary: how many responses come closer, and which moves farthest away.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentSummary {
-    /// Number of responses whose J decreases.
+    /// How many responses have a lower J.
     pub better: usize,
-    /// Number of responses compared, counted in each condition.
+    /// How many responses are compared, counted in each condition.
     pub compared: usize,
-    /// The response with the greatest change of J, and the change.
+    /// The response whose J rises most, and by how much.
     pub worst: Option<(ConditionId, Pair, f64)>,
 }
 
@@ -176,7 +176,7 @@ impl AssessmentTable {
         }
     }
 
-    /// Returns J before and after of a response in a condition.
+    /// Returns a response's J before and after in a condition.
     pub fn change(&self, condition: ConditionId, pair: Pair) -> Option<CostChange> {
         self.conditions
             .iter()
@@ -184,7 +184,7 @@ impl AssessmentTable {
             .changes[pair]
     }
 
-    /// Summarises the assessment of the marked responses.
+    /// Summarises the marked responses' assessment.
     pub fn summary(&self, marked: &PairTable<bool>) -> AssessmentSummary {
         let mut summary = AssessmentSummary {
             better: 0,
@@ -261,7 +261,7 @@ pub fn assessed(
     })
 }
 
-/// Computes J of every response of a model before and after a correction.
+/// Computes a model's J before and after a correction, response by response.
 fn changes(
     analysis: &Analysis,
     models: &ModelMismatch,

@@ -1,4 +1,4 @@
-//! Comparison of a condition's models: distances within each bundle, the two representatives and
+//! What a condition's models differ in: distances within each bundle, the two representatives and
 //! their differences, which do not depend on constraints, alpha or bounds.
 
 use gdcm_method::correction::delta::Delta;
@@ -8,16 +8,16 @@ use gdcm_model::dataset::{BundleKind, PairTable};
 
 use super::caution::{Caution, Undefined};
 
-/// Difference of every response that two models have.
+/// How two models differ in every response that both have.
 pub type Mismatches = PairTable<Option<Mismatch>>;
 
-/// Distances within each bundle and discontinuity ratios of the physics bundle, independent of
+/// Distances within each bundle and the physics bundle's discontinuity ratios, independent from
 /// rejections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BundleMetrics {
     pub physics: BundleDistance,
     pub identified: BundleDistance,
-    /// Discontinuity ratios of the physics models, or why there are none.
+    /// The physics models' discontinuity ratios, or why there are none.
     pub discontinuity: Result<Discontinuity, DiscontinuityError>,
 }
 
@@ -28,12 +28,12 @@ impl BundleMetrics {
     }
 }
 
-/// Mismatch of a physics model and the identified representative, with the resulting J.
+/// Mismatch between a physics model and the identified representative, with the resulting J.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelMismatch {
-    /// Difference of every response that both models have.
+    /// How the models differ in every response that both have.
     pub mismatch: Mismatches,
-    /// J of the uncorrected physics model.
+    /// The uncorrected physics model's J.
     pub cost: PairTable<Option<Cost>>,
 }
 
@@ -46,10 +46,10 @@ pub struct Comparison {
     pub representative: ModelMismatch,
     /// The nominal physics model against the identified representative.
     pub nominal: ModelMismatch,
-    /// G and D of the representatives.
+    /// The representatives' G and D.
     pub delta: Delta,
     /// Why a response has no G and no D, where it has none.
     pub undefined: PairTable<Option<Undefined>>,
-    /// Cautions about the models, independent of the constraints.
+    /// Cautions about the models, whatever the constraints.
     pub cautions: Vec<Caution>,
 }

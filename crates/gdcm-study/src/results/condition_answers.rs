@@ -131,7 +131,7 @@ impl RecordHistory {
 pub struct TestAnswers {
     pub condition: ConditionId,
     pub input: usize,
-    /// Shape of the input.
+    /// The input's shape.
     pub test: TestInput,
     /// Sample time \[s\]; the first sample is at 0 s.
     pub sample_time_s: f64,

@@ -18,8 +18,7 @@ impl ConditionAnalysis {
         self.condition.flight_state().airspeed_kt
     }
 
-    /// Returns `H~ = (I - H K)^-1 H M~` of a response of one of its physics models; the response
-    /// itself without couplings.
+    /// Returns a physics model's `H~ = (I - H K)^-1 H M~`; the response itself without couplings.
     #[must_use]
     pub fn coupled_response<'a>(
         &self,
@@ -51,9 +50,9 @@ impl ConditionAnalysis {
             .unwrap_or_default()
     }
 
-    /// Returns the matrices of one of its physics models with the couplings; the model itself
-    /// without couplings. Delays of its own channels, which lie inside the loop, become states:
-    /// `pade` approximants, or whole samples.
+    /// Returns a physics model's matrices with the couplings; the model itself without couplings.
+    /// Delays in its own channels, which lie inside the loop, become states: `pade` approximants,
+    /// or whole samples.
     ///
     /// # Errors
     /// [`CoupledModelError`] where the loop through the feed-through is singular or
@@ -67,8 +66,7 @@ impl ConditionAnalysis {
         coupled_model(fitted, physics, self.airspeed_kt(), pade)
     }
 
-    /// Returns `M_O H~ M_I`: a physics model with the couplings, then with a correction of its
-    /// channels.
+    /// Returns `M_O H~ M_I`: a physics model with the couplings, then with its channels corrected.
     ///
     /// # Errors
     /// As [`ConditionAnalysis::coupled_model`], and where the correction's delays or leads cannot
@@ -85,8 +83,7 @@ impl ConditionAnalysis {
 }
 
 impl Analysis {
-    /// Returns `M_O H~ M_I` of a physics model of any condition, also of a condition without a
-    /// result.
+    /// Returns `M_O H~ M_I` for a physics model in any condition, also without a result.
     ///
     /// # Errors
     /// As [`ConditionAnalysis::corrected_model`].

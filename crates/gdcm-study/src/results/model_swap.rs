@@ -1,4 +1,4 @@
-//! Figures of a condition after swapping a representative for another model of its bundle (M13.1).
+//! A condition's figures after swapping a representative for another model in its bundle (M13.1).
 
 use std::sync::Arc;
 
@@ -9,16 +9,16 @@ use gdcm_model::dataset::BundleKind;
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelSwap {
     pub bundle: BundleKind,
-    /// Index of the model in its bundle.
+    /// The model's index in its bundle.
     pub model: usize,
-    /// `None` where the pair of models could not be analysed.
+    /// `None` where the two models could not be analysed.
     pub figures: Option<Arc<Figures>>,
 }
 
-/// Results of a condition's swaps.
+/// A condition's swaps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionSubstitutions {
-    /// Spread of the figures.
+    /// The figures' spread.
     pub spread: ConditionSpread,
     pub substitutions: Vec<ModelSwap>,
 }

@@ -1,4 +1,4 @@
-//! Comparison of a model's responses with one flight record, row by row of the tolerances (M17.2).
+//! Compares a model's responses with a flight record, tolerance by tolerance (M17.2).
 
 use serde::Serialize;
 
@@ -8,8 +8,7 @@ use gdcm_model::dataset::{Channel, Dataset, Pair, PairTable, StateSpace};
 use gdcm_model::simulation::{Segment, ValidationSettings};
 use gdcm_sysid::identification::Preparation;
 
-/// Shortest piece of a record that is compared \[s\]: qualification tests are short steps and
-/// doublets.
+/// Shorter pieces are not compared \[s\]: qualification tests are short steps and doublets.
 const LEAST_PIECE_S: f64 = 2.0;
 
 /// Returns a record's preparation for comparison: shorter pieces than for identification.
@@ -20,8 +19,8 @@ pub(crate) fn comparison_preparation(preparation: &Preparation) -> Preparation {
     }
 }
 
-/// Returns the settings for simulating every model of a condition with a record: unfiltered
-/// signals, and the same windows.
+/// Returns the settings for simulating a condition's models with a record: unfiltered signals, and
+/// the same windows.
 pub(crate) fn common_windows<'m>(
     models: impl IntoIterator<Item = &'m StateSpace>,
     segments: &[Segment],
@@ -33,15 +32,15 @@ pub(crate) fn common_windows<'m>(
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Trend {
-    /// The correlation of simulated and measured output is positive.
+    /// Simulated and measured output correlate positively.
     Correct,
     /// The correlation is not positive.
     Opposite,
 }
 
 impl Trend {
-    /// Returns the trend of an output off-axis to the input that moved most, from the correlation
-    /// of simulated and measured output; `None` on-axis.
+    /// Returns an output's trend off-axis to the input that moved most, from how simulated and
+    /// measured output correlate; `None` on-axis.
     pub fn from_correlation(correlation: Option<f64>, on_axis: Option<bool>) -> Option<Self> {
         let correlation = correlation?;
         if on_axis != Some(false) {
@@ -62,18 +61,18 @@ impl Trend {
     }
 }
 
-/// A row of the tolerance table, with its tolerance in the dataset's unit.
+/// A tolerance row, with its tolerance in the dataset's unit.
 pub(crate) struct AppliedTolerance<'a> {
     pub(crate) tolerance: &'a Tolerance,
     pub(crate) channel: ChannelTolerance,
 }
 
-/// Common data of the comparisons of all records.
+/// What the comparisons with all records share.
 pub(crate) struct RecordComparison<'a> {
     pub(crate) inputs: &'a [Channel],
     pub(crate) outputs: &'a [Channel],
     on_axis: PairTable<bool>,
-    /// The applicable rows of the tolerance table.
+    /// The applicable tolerance rows.
     pub(crate) rows: Vec<AppliedTolerance<'a>>,
     /// Why the other rows are not applicable.
     pub(crate) not_applied: Vec<ToleranceError>,
@@ -116,7 +115,7 @@ impl<'a> RecordComparison<'a> {
     }
 }
 
-/// Returns the sum of squares of an input about its mean in each segment.
+/// Sums an input's squares about its mean, segment by segment.
 fn variation(segments: &[Segment], input: usize) -> f64 {
     segments
         .iter()

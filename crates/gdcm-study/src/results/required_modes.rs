@@ -1,5 +1,5 @@
-//! The physics representative's modes, without and with the study's couplings, against those of the
-//! identified representative, where the matrices of both are known (M17.3).
+//! The physics representative's modes, without and with the study's couplings, against the
+//! identified representative's, where both models' matrices are known (M17.3).
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use gdcm_model::response::pole_estimate::PoleEstimate;
 
 use super::asked_condition::AskedCondition;
 
-/// Identified poles of conditions with their uncertainty, which a dataset does not store.
+/// Identified poles with their uncertainty, which a dataset does not store.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KnownPoles(BTreeMap<ConditionId, Vec<PoleEstimate>>);
 
@@ -37,13 +37,13 @@ impl KnownPoles {
     }
 }
 
-/// A mode of a model.
+/// A model's mode.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModeNumbers {
     pub model: String,
-    /// Real part of its pole \[rad/s\].
+    /// Its pole's real part \[rad/s\].
     pub pole_real_rad_s: f64,
-    /// Imaginary part of its pole \[rad/s\], not negative.
+    /// Its pole's imaginary part \[rad/s\], not negative.
     pub pole_imaginary_rad_s: f64,
     #[serde(flatten)]
     pub values: ModeValues,
@@ -85,25 +85,25 @@ impl ModeNumbers {
     }
 }
 
-/// A mode of the identified representative, and the matching modes of the physics representative.
+/// An identified mode, and the physics modes that match it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModeFinding {
     pub condition: ConditionId,
     /// Its true airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// Number of the mode in this condition, from 1, by rising frequency.
+    /// The mode's number in this condition, from 1, by rising frequency.
     pub number: usize,
     /// Its name; `None` where neither states nor frequency determine it.
     pub name: Option<ModeName>,
-    /// Basis of the name; a name by frequency and damping alone is a guess.
+    /// What the name is based on; a name by frequency and damping alone is a guess.
     pub named_by: NamedBy,
     /// Verdict on the physics mode.
     pub verdict: ModeVerdict,
     pub identified: ModeNumbers,
-    /// Standard deviations of its numbers; `None` where the source identification is unknown.
+    /// Its numbers' standard deviations; `None` where the source identification is unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub identified_deviation: Option<ModeValues>,
-    /// The matching mode of the physics representative, where there is one.
+    /// The physics representative's matching mode, if any.
     pub physics: Option<ModeNumbers>,
     /// Verdict with the study's couplings; `None` without couplings, because gains and delays move
     /// no pole.

@@ -1,4 +1,4 @@
-//! Frequency responses of every model of a condition for drawing.
+//! A condition's frequency responses for drawing.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -11,7 +11,7 @@ use crate::decisions::settings::{PhaseCorrection, Settings};
 use crate::results::analysis::ConditionAnalysis;
 use crate::results::fitted_couplings::FittedCouplings;
 
-/// Responses of every model of a condition on a grid for drawing.
+/// A condition's responses on a grid for drawing.
 #[derive(Debug)]
 pub struct ConditionCurves {
     /// The condition; its models define the order of the responses.
@@ -51,7 +51,7 @@ impl ConditionCurves {
         }
     }
 
-    /// Returns `H~` of a physics model under a result's couplings; `H` without couplings.
+    /// Returns a physics model's `H~` under a result's couplings; `H` without couplings.
     pub fn with_couplings(
         &self,
         result: &ConditionAnalysis,
@@ -86,16 +86,16 @@ impl ConditionCurves {
     }
 }
 
-/// Number of frequencies of drawn curves.
+/// How many frequencies drawn curves have.
 pub const CURVE_POINTS: usize = 500;
 
-/// Returns the band drawn around a comparison band: wider by a factor of 1.7 on either side.
+/// Returns the band drawn around a comparison band: wider by the factor 1.7 on either side.
 pub fn display_band(band: Band) -> Band {
     const MARGIN: f64 = 1.7;
     Band::beyond(band.min() / MARGIN, band.max() * MARGIN).unwrap_or(band)
 }
 
-/// Returns the band of a condition's curves: [`display_band`], and up to ten times the band where
+/// Returns the band for a condition's curves: [`display_band`], and up to ten times the band where
 /// leads are requested, to show their effect above it (M15.6).
 pub fn curves_band(settings: &Settings) -> Band {
     let usual = display_band(settings.band);

@@ -138,7 +138,7 @@ impl ConditionStages {
         &self.models
     }
 
-    /// Replaces the cached gains of the same problem.
+    /// Replaces the cached gains for the same problem.
     pub(crate) fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
         self.plain.problems.take_gains(problem, solution);
         self.coupled.problems.take_gains(problem, solution);

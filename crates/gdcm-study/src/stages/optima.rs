@@ -1,4 +1,4 @@
-//! The optimal gains and delays of a condition (M8, M9, M15).
+//! A condition's optimal gains and delays (M8, M9, M15).
 //!
 //! ```text
 //! 1  delays, or signed delays for leads, from D                     eq. (11), M15.4
@@ -26,7 +26,7 @@ use crate::results::analysis::ConditionFailure;
 use crate::results::comparison::Mismatches;
 use crate::results::lead_compensation::{LeadCompensated, LeadOffer};
 
-/// Outcome of a problem.
+/// A problem's outcome.
 pub(crate) type Solved = Result<Arc<Solution>, ProblemError>;
 
 /// Solves a problem, with the proof within a budget.
@@ -44,7 +44,7 @@ pub(crate) fn solved(
     }
 }
 
-/// The two optima of a condition with their problems.
+/// A condition's two optima with their problems.
 pub(crate) struct Optima {
     pub(crate) gain_problem: Arc<Problem>,
     pub(crate) delay_problem: Arc<Problem>,
@@ -83,7 +83,7 @@ impl From<ConditionFailure> for NoOptima {
     }
 }
 
-/// The last solution of each problem of a condition.
+/// The last solution to each problem in a condition.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SolvedProblems {
     offer: Memo<Arc<Problem>, Solved>,
@@ -92,7 +92,7 @@ pub(crate) struct SolvedProblems {
 }
 
 impl SolvedProblems {
-    /// Replaces the cached gains of the same problem.
+    /// Replaces the cached gains for the same problem.
     pub(crate) fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
         if self.gains.holds(problem) {
             self.gains = Memo::with(Arc::clone(problem), Ok(Arc::clone(solution)));
@@ -138,7 +138,7 @@ impl SolvedProblems {
             .get_or_fail(Arc::clone(problem), |problem| input.solved(problem))
     }
 
-    /// Estimates the benefit of leads, where they are not requested and all constrained responses
+    /// Estimates what leads would gain, where they are not requested and all constrained responses
     /// want them. `now` is J under the present correction.
     pub(crate) fn offer(
         &mut self,
@@ -158,8 +158,8 @@ impl SolvedProblems {
                 lower: design.lower_s(),
                 upper: input.delay_upper_s,
             },
-            // The weight decides on shares, not on the constraints: it is 1 for any weight of the
-            // delays.
+            // The weight decides on shares, not on the constraints: it is 1 whatever the delays'
+            // weight.
             alpha: 1.0,
             ..input.delay_problem(Some(&design))
         };
@@ -191,7 +191,7 @@ fn delay_failure(error: &ProblemError) -> ConditionFailure {
     ConditionFailure::Delays(error.clone())
 }
 
-/// Inputs of a condition's optimisation problems.
+/// What a condition's optimisation problems depend on.
 pub(crate) struct SolveInput<'a> {
     run: Run<'a>,
     /// The responses that measure the bounds.
@@ -227,7 +227,7 @@ impl<'a> SolveInput<'a> {
         &self.run.study.settings
     }
 
-    /// Solves a problem, with the proof as far as the budget of the run allows.
+    /// Solves a problem, with the proof as far as the run's budget allows.
     fn solved(&self, problem: &Problem) -> Result<Solved, Cancelled> {
         solved(problem, self.run.proofs, self.run.execution.progress())
     }
@@ -241,7 +241,7 @@ impl<'a> SolveInput<'a> {
             })
     }
 
-    /// Returns the common design of the lead filters, where leads are requested.
+    /// Returns the lead filters' common design, where leads are requested.
     pub(crate) fn lead_design(&self) -> Option<Arc<LeadDesign>> {
         if self.settings().phase != PhaseCorrection::Lead {
             return None;
@@ -273,7 +273,7 @@ impl<'a> SolveInput<'a> {
         }
     }
 
-    /// Builds the problem of delays for the chosen D, or of signed delays for the band delay; an
+    /// Builds the delay problem for the chosen D, or with signed delays for the band delay; an
     /// empty problem where the phase is not corrected.
     pub(crate) fn delay_problem(&self, design: Option<&LeadDesign>) -> Problem {
         let settings = self.settings();

@@ -1,4 +1,4 @@
-//! Derivations of the bounds of gains and delays (M7).
+//! Derives the bounds on gains and delays (M7).
 
 use gdcm_method::fidelity::Mismatch;
 use gdcm_model::dataset::Pair;
@@ -9,8 +9,8 @@ use super::deltas::{delays_ms, gain_ratios};
 use super::sample_words::spread;
 use super::{Context, Derivation};
 
-/// Returns the pooled mismatches: of the measuring responses, or of all responses where no
-/// measuring response is defined.
+/// Returns the pooled mismatches in the measuring responses, or in all responses where no measuring
+/// response is defined.
 fn pooled<'a>(
     context: &Context<'a>,
     mismatch: impl Fn(Pair) -> Option<&'a Mismatch>,
@@ -74,7 +74,7 @@ pub(super) fn gain_bounds(context: &Context<'_>) -> Derivation {
     }
 }
 
-/// Derives the upper bound of the channel delays.
+/// Derives the upper bound on the channel delays.
 pub(super) fn delay_bound(context: &Context<'_>) -> Derivation {
     let value = s_to_ms(context.result.delay_upper_s());
     let upper = five_digits(value);

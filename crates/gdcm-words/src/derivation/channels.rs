@@ -1,4 +1,4 @@
-//! Derivations of channel gains and delays, net gains and delays, and objectives (M8, M9, M11).
+//! Derives channel gains and delays, net gains and delays, and objectives (M8, M9, M11).
 
 use gdcm_method::correction::{Channel, GainObjective, Problem, Quantity, Solution};
 use gdcm_model::dataset::Pair;
@@ -11,7 +11,7 @@ use crate::leads::servo_words;
 /// An objective as an equation.
 struct Objective {
     equation: &'static str,
-    /// Unit of its value, with a leading space.
+    /// Its value's unit, with a leading space.
     unit: &'static str,
     /// Factor from the stored value to the unit.
     scale: f64,
@@ -50,7 +50,7 @@ impl Objective {
     }
 }
 
-/// Derives the net gain of a response.
+/// Derives a response's net gain.
 pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
     let result = context.result;
     let [output, input] = Channel::of(pair);
@@ -74,7 +74,7 @@ pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
     }
 }
 
-/// Derives the net delay of a response.
+/// Derives a response's net delay.
 pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
     let result = context.result;
     let [output, input] = Channel::of(pair);
@@ -143,7 +143,7 @@ pub(super) fn gain(context: &Context<'_>, channel: Channel) -> Option<Derivation
     })
 }
 
-/// Derives the delay or signed delay of a channel.
+/// Derives a channel's delay or signed delay.
 pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivation> {
     let result = context.result;
     let value = s_to_ms(*result.delays.channels().get(channel)?);
@@ -200,7 +200,7 @@ pub(super) fn delay_objective(context: &Context<'_>) -> Derivation {
     optimum.objective(&Objective::of_delays(problem))
 }
 
-/// A problem of a condition with its solution.
+/// A condition's problem with its solution.
 struct Optimum<'a> {
     context: &'a Context<'a>,
     problem: &'a Problem,

@@ -1,4 +1,4 @@
-//! The condition of an explained figure, with descriptions of its models and choices.
+//! An explained figure's condition, with descriptions of its models and choices.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::Mismatch;
@@ -7,7 +7,7 @@ use gdcm_model::units::six_digits;
 use gdcm_study::decisions::settings::Settings;
 use gdcm_study::{Analysis, ConditionAnalysis};
 
-/// A condition of an analysis.
+/// An analysis's condition.
 pub(super) struct Context<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) result: &'a ConditionAnalysis,
@@ -119,7 +119,7 @@ impl<'a> Context<'a> {
     }
 }
 
-/// Describes the number of frequencies with weight and their weights, where coherence is used.
+/// Describes how many frequencies have weight, and their weights, where coherence is used.
 pub(super) fn weight_words(mismatch: &Mismatch) -> Option<String> {
     let count = mismatch.weights()?.len();
     Some(format!(

@@ -1,4 +1,4 @@
-//! Error bars of explained figures, and the figures after each swap of models (M13).
+//! Error bars on explained figures, and the figures after each swap (M13).
 
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
 use gdcm_model::dataset::ConditionId;
@@ -9,13 +9,13 @@ use gdcm_study::{Analysis, ConditionAnalysis};
 
 use super::explain_target::ExplainTarget;
 
-/// For a net gain that is not constrained and for a channel, where the identified models report an
-/// error of their own.
+/// For a net gain that is not constrained and for a channel, where the identified models report
+/// their own error.
 const SPREAD_ALONE: &str = "its identification part is the spread of the models alone, too small where they share their records: the error \
      that a model tells of itself counts for G, D and the net gains that are held (M13.2)";
 
-/// Describes the error bar of a figure with its parts, and the figure after every swap; empty where
-/// it has no error bar, or where that was not computed.
+/// Describes a figure's error bar with its parts, and the figure after every swap; empty where it
+/// has no error bar, or where that was not computed.
 pub(super) fn error_bar_lines(analysis: &Analysis, target: &ExplainTarget) -> Vec<String> {
     lines_of(analysis, target).unwrap_or_default()
 }
@@ -86,7 +86,7 @@ fn part_words(name: &str, scalar: Scalar, part: Option<VarianceComponent>) -> St
     }
 }
 
-/// Formats a deviation: of a delay in ms, of a gain in percent.
+/// Formats a deviation: delays in ms, gains in percent.
 fn deviation_words(scalar: Scalar, deviation: f64) -> String {
     if scalar.is_delay() {
         format!("{:.2} ms", s_to_ms(deviation))

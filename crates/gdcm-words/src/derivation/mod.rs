@@ -1,5 +1,5 @@
-//! Derivations of figures: the equation with its symbols explained, the equation with numbers, and
-//! the underlying models and choices.
+//! Derives figures: the equation with its symbols explained, the equation with numbers, and the
+//! underlying models and choices.
 
 mod bounds;
 mod channels;
@@ -18,10 +18,10 @@ use gdcm_study::Analysis;
 use context::Context;
 pub use explain_target::ExplainTarget;
 
-/// Derivation of a figure.
+/// A figure's derivation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derivation {
-    /// Name of the figure: "G of LON → Q, condition 3".
+    /// The figure's name: "G of LON → Q, condition 3".
     pub title: String,
     /// The equation, as in the method's description.
     pub equation: String,
@@ -36,13 +36,13 @@ pub struct Derivation {
 }
 
 impl Derivation {
-    /// Returns the equation's symbols with their meanings, in order of appearance.
+    /// Returns the equation's symbols with their meanings, as they appear.
     pub fn terms(&self) -> Vec<(&'static str, &'static str)> {
         terms::terms_of(&self.equation)
     }
 }
 
-/// Derives a figure of `analysis`; `None` where it has no such figure. Computes at most a few
+/// Derives a figure in `analysis`; `None` where it has no such figure. Computes at most a few
 /// medians over frequency.
 pub fn derivation(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivation> {
     let mut derivation = derivation_without_bar(analysis, target)?;

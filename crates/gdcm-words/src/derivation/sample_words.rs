@@ -1,8 +1,8 @@
-//! Descriptions of samples: range and median.
+//! Describes samples: range and median.
 
 use gdcm_model::number_format::five_digits;
 
-/// Describes the count and the range of some values.
+/// Describes how many values there are, and their range.
 pub(super) fn spread(values: &[f64]) -> String {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -18,7 +18,7 @@ pub(super) fn spread(values: &[f64]) -> String {
     }
 }
 
-/// Describes how the median of some values is found.
+/// Describes how values lead to their median.
 pub(super) fn median_words(values: &[f64]) -> String {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

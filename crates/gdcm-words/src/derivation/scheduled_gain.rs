@@ -1,4 +1,4 @@
-//! Derivation of the scheduled gain of a channel (M11).
+//! Derives a channel's scheduled gain (M11).
 
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::{Regression, Schedule, ScheduledQuantity};
@@ -8,10 +8,10 @@ use gdcm_study::Analysis;
 
 use super::Derivation;
 
-/// Powers of the scaled airspeed in a polynomial, up to the highest degree of a schedule.
+/// The scaled airspeed's powers in a polynomial, up to a schedule's highest degree.
 const POWERS: [&str; 4] = ["", " v", " v²", " v³"];
 
-/// Derives the scheduled gain of a channel at an airspeed \[kt\].
+/// Derives a channel's scheduled gain at an airspeed \[kt\].
 pub(super) fn scheduled_gain(
     analysis: &Analysis,
     channel: Channel,

@@ -1,4 +1,4 @@
-//! Symbols of the equations with their meanings.
+//! The equations' symbols with their meanings.
 
 /// Every symbol used in these equations, its meaning, and its unit where it has one
 /// (docs/method.md).
@@ -53,7 +53,7 @@ const TERMS: [(&str, &str); 30] = [
     ("V", "airspeed [kt]"),
 ];
 
-/// Returns an equation's symbols with their meanings, in order of appearance.
+/// Returns an equation's symbols with their meanings, as they appear.
 pub(super) fn terms_of(equation: &str) -> Vec<(&'static str, &'static str)> {
     let mut found: Vec<(usize, (&str, &str))> = Vec::new();
     for (symbol, meaning) in TERMS {

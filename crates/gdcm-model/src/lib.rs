@@ -10,7 +10,8 @@
 //! | [`statistics`] | mean, median, quantiles |
 //! | [`assembly`] | models from many files into one dataset: roles, channels, conversions |
 //! | [`names`] | channel aliases and signs, response names, patterns of file names |
-//! | [`units`] | physical units, conversions and number formatting |
+//! | [`units`] | physical units and conversions |
+//! | [`number_format`] | numbers as text: the only choice of digits, signs and exponents |
 //! | [`executor`], [`progress`] | parallel tasks, progress and cancellation |
 //! | [`message_text`], [`whole_number`] | sanitised text, and whole numbers in JSON |
 //!
@@ -33,6 +34,7 @@ pub mod dataset;
 pub mod executor;
 pub mod message_text;
 pub mod names;
+pub mod number_format;
 pub mod progress;
 pub mod response;
 pub mod simulation;

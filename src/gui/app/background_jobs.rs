@@ -10,9 +10,12 @@ use gdcm_method::correction::{Outcome, Problem, Solution};
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::executor::Executor;
 use gdcm_model::progress::{Cancelled, Progress};
-use gdcm_study::jobs::job::{CurvesJob, Job, ProofJob, TogglesJob, UncertaintyJob};
+use gdcm_study::jobs::analysis_jobs::{ProofJob, TogglesJob, UncertaintyJob};
+use gdcm_study::jobs::curve_jobs::CurvesJob;
+use gdcm_study::jobs::job::Job;
 use gdcm_study::results::analysis::ConditionFailure;
-use gdcm_study::stages::condition_responses::{CURVE_POINTS, KnownModels, curves_band};
+use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
+use gdcm_study::stages::condition_responses::KnownModels;
 use gdcm_study::stages::engine::WantedFirst;
 use gdcm_study::{Analysis, ConditionAnalysis, Engine, Study};
 

@@ -16,11 +16,12 @@ use gdcm_io::{Existing, FileError};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_plot::figure::{ColumnWidth, Figure, FigureFormat, FigureKind};
+use gdcm_study::decisions::requirement_settings::RequirementSettings;
 use gdcm_study::jobs::job::Job;
 use gdcm_study::results::required_modes::KnownPoles;
-use gdcm_study::results::requirements::RequirementSettings;
 use gdcm_study::results::time_histories::HistoryRecords;
-use gdcm_study::{Analysis, Edit, Engine, Table};
+use gdcm_study::{Analysis, Edit, Engine};
+use gdcm_words::Table;
 
 use super::GdcmApp;
 use super::files::study_name;

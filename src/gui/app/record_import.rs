@@ -15,8 +15,8 @@ use gdcm_model::dataset::{Band, ConditionId, Dataset};
 use gdcm_model::names::ChannelRule;
 use gdcm_model::simulation::Signal;
 use gdcm_study::Edit;
-use gdcm_study::decisions::changed_models::{AdoptedModels, OfferedModels};
-use gdcm_study::jobs::job::IdentifyJob;
+use gdcm_study::decisions::adopted_models::{AdoptedModels, OfferedModels};
+use gdcm_study::jobs::identification_jobs::IdentifyJob;
 use gdcm_sysid::identification::{Identification, IdentificationError};
 use gdcm_sysid::records::dataset_of_records::dataset_of_records;
 use gdcm_sysid::records::{

@@ -6,7 +6,7 @@ use gdcm_model::dataset::{BundleKind, ModelId, Pair};
 use gdcm_plot::figure::FigureFormat;
 use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_study::Edit;
-use gdcm_study::decisions::changed_models::OfferedModels;
+use gdcm_study::decisions::adopted_models::OfferedModels;
 use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::{Kind, Value};
 

@@ -3,7 +3,7 @@
 use egui::{Modifiers, Vec2};
 
 use gdcm_plot::figure::{Figure, MarkId};
-use gdcm_study::ExplainTarget;
+use gdcm_words::derivation::ExplainTarget;
 
 use super::questions::NamedFigure;
 

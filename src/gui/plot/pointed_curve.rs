@@ -2,7 +2,7 @@
 
 use gdcm_model::response::wrap;
 use gdcm_plot::figure::axis::FrequencyUnit;
-use gdcm_plot::figure::decimals;
+use gdcm_model::number_format::decimals;
 
 use super::bode_view::BodeView;
 use super::drawn_curves::{BodeCurve, Pane};

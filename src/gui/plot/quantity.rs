@@ -1,9 +1,10 @@
 //! Quantities and units in the two stacked panes.
 
+use gdcm_model::number_format::compact;
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::db_to_ratio;
-use gdcm_plot::figure::axis::compact;
+use gdcm_plot::figure::Range;
 pub use gdcm_plot::figure::axis::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
-use gdcm_plot::figure::{Range, decimals};
 
 use super::drawn_curves::Pane;
 use super::ticks::{Ticks, VERTICAL_TICK_GAP};

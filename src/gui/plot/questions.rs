@@ -2,7 +2,7 @@
 
 use egui::{Id, Response};
 
-use gdcm_study::ExplainTarget;
+use gdcm_words::derivation::ExplainTarget;
 
 use crate::gui::widgets::controls::QUESTION;
 

@@ -4,14 +4,16 @@
 use egui::{Align2, Pos2, Rect, Ui, vec2};
 
 use gdcm_model::dataset::Pair;
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::{number, ratio_to_db, s_to_ms};
+use gdcm_plot::figure::ConditionSource;
 use gdcm_plot::figure::error::{muad_about, noticed};
 use gdcm_plot::figure::responses::{airspeed_curves, uncertainty_bands};
-use gdcm_plot::figure::{ConditionSource, decimals};
 use gdcm_study::AcrossRole;
-use gdcm_study::jobs::job::AcrossJob;
+use gdcm_study::jobs::curve_jobs::AcrossJob;
 use gdcm_study::results::caution::Undefined;
-use gdcm_study::stages::condition_responses::display_band;
+use gdcm_study::stages::condition_curves::display_band;
+use gdcm_words::caution::undefined_text;
 
 use super::frequency::{
     bode_curves, bode_options, condition_source, error_curves, error_reference, frequency_plot_ui,
@@ -257,7 +259,7 @@ pub fn error_message(state: &State, pair: Pair) -> String {
             format!(
                 "{} is not compared: {}",
                 state.dataset().pair_name(pair),
-                Undefined::NotCoherent
+                undefined_text(Undefined::NotCoherent)
             )
         }
         Some(shown) if shown.comparison.undefined[pair].is_some() => {

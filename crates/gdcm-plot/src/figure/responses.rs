@@ -10,8 +10,8 @@ use gdcm_model::dataset::{
 use gdcm_model::response::frequency_response::{ResponseShape, wrapped_deg};
 use gdcm_model::response::{FrequencyResponse, GainDelay};
 use gdcm_model::units::signed;
-use gdcm_study::jobs::job::AcrossCurves;
-use gdcm_study::stages::condition_responses::{ConditionCurves, display_band};
+use gdcm_study::jobs::curve_jobs::AcrossCurves;
+use gdcm_study::stages::condition_curves::{ConditionCurves, display_band};
 use gdcm_study::{AcrossRole, Analysis};
 use gdcm_sysid::diagnostics::bands::TWO_SIDED_95;
 

@@ -68,7 +68,7 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
     } = page;
     let pair = state.display.selection.pair;
     let running = state.records.running(state.condition().id());
-    let first = running.and_then(|job| job.told().first_model);
+    let first = running.and_then(|job| job.news().first_model);
     let drawn = match (records.identification(), first) {
         (_, Some(first)) => {
             let job = running.map_or([0.1, 10.0], |job| job.request.options.band);

@@ -4,11 +4,15 @@ use std::sync::Arc;
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::form_comparison::SCHEDULE_KINDS;
-use gdcm_method::schedule::{DelayScheduling, ScheduleKind};
+use gdcm_method::schedule::DelayScheduling;
+use gdcm_method::schedule::ScheduleKind;
 use gdcm_study::jobs::job::Job;
-use gdcm_study::results::assessment_table::{
-    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentJob, AssessmentTable,
-};
+use gdcm_study::results::assessment_table::AssessedCorrection;
+use gdcm_study::results::assessment_table::AssessedModel;
+use gdcm_study::results::assessment_table::AssessmentChoice;
+use gdcm_study::jobs::analysis_jobs::AssessmentJob;
+use gdcm_study::results::assessment_table::AssessmentTable;
+use gdcm_words::assessment::summary_text;
 
 use super::*;
 
@@ -24,8 +28,8 @@ fn the_assessment_of_the_paper_is_that_of_the_analysis() {
     let table = AssessmentTable::of(analysis, PAPER);
     assert_eq!(table.left_out.len(), 1);
     assert_eq!(
-        (table.left_out[0].condition, table.left_out[0].why.as_str()),
-        (ConditionId(10), "the nominal model is rejected")
+        (table.left_out[0].condition, table.left_out[0].why.code()),
+        (ConditionId(10), "nominal-rejected")
     );
     assert_eq!(table.conditions.len(), 10);
     for assessed in &table.conditions {
@@ -120,7 +124,7 @@ fn a_sentence_sums_an_assessment_up() {
         changes().filter(|change| *change < 0.0).count(),
         summary.better
     );
-    let words = summary.words(dataset);
+    let words = summary_text(&summary, dataset);
     assert!(
         words.starts_with(&format!(
             "better in {} of 50, worst {}",
@@ -131,7 +135,7 @@ fn a_sentence_sums_an_assessment_up() {
     );
     let nothing = table.summary(&dataset.on_axis().map(|_, _| false));
     assert_eq!(
-        (nothing.compared, nothing.words(dataset).as_str()),
+        (nothing.compared, summary_text(&nothing, dataset).as_str()),
         (0, "nothing to assess")
     );
 }

@@ -4,8 +4,9 @@ use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::CostAverage;
 use gdcm_model::dataset::ModelId;
 use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
-use gdcm_study::results::derivation::{Derivation, derivation};
-use gdcm_study::{AssessedCorrection, AssessmentTable, ExplainTarget};
+use gdcm_study::{AssessedCorrection, AssessmentTable};
+use gdcm_words::ExplainTarget;
+use gdcm_words::derivation::{Derivation, derivation};
 
 use super::*;
 

@@ -8,6 +8,7 @@ use gdcm_plot::figure::bode::BodeOptions;
 use gdcm_plot::figure::drawing::{Area, Shape};
 use gdcm_plot::figure::gains::{Across, Measure};
 use gdcm_plot::figure::{Mark, Role};
+use gdcm_words::uncertainty::differences_summary;
 
 use super::*;
 
@@ -214,7 +215,7 @@ fn evidence_stacks_the_shares_of_each_split_and_shows_the_rest_with_its_interval
     assert!(
         figure
             .caption
-            .starts_with(&uncertainty.differences_in_words()),
+            .starts_with(&differences_summary(uncertainty)),
         "{}",
         figure.caption
     );

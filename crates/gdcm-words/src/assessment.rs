@@ -40,7 +40,8 @@ pub fn missing_cost_text(why: MissingCost) -> String {
         MissingCost::NetGainNotPositive => "the scheduled net gain is not positive".to_owned(),
         MissingCost::Undefined(why) => undefined_text(why),
         MissingCost::NominalUndefined => {
-            "the nominal model's response is zero, numerically nothing or not finite somewhere in the band"
+            "the nominal model's response is zero, numerically nothing or not finite somewhere in \
+             the band"
                 .to_owned()
         }
     }

@@ -64,7 +64,8 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
                 ""
             };
             format!(
-                "{model} is set aside: it has no {}, which another model of its bundle has ({why}){pin}",
+                "{model} is set aside: it has no {}, which another model of its bundle has \
+                 ({why}){pin}",
                 names(lacks)
             )
         }
@@ -78,8 +79,8 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             not_finite_text(why)
         ),
         Caution::MissingResponses { model, responses } => format!(
-            "{model} has no {}: every value in its file is zero, as where a response was not measured \
-             or its channels have other names; give the response, or reject the model",
+            "{model} has no {}: every value in its file is zero, as where a response was not \
+             measured or its channels have other names; give the response, or reject the model",
             names(responses)
         ),
         Caution::GainsOutOfRange {
@@ -92,13 +93,15 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
                 .map(|gain| format!("1e{} in {}", gain.power_of_ten, pair_name(gain.pair)))
                 .collect();
             format!(
-                "the gain between physics model \"{physics}\" and identified model \"{identified}\" is about {}, \
-                 and {GAIN_RANGE}: these responses are not compared; check the units and the matrices of both models",
+                "the gain between physics model \"{physics}\" and identified model \
+                 \"{identified}\" is about {}, and {GAIN_RANGE}: these responses are not compared; \
+                 check the units and the matrices of both models",
                 gains.join(", ")
             )
         }
         Caution::NumericallyNothing { model, responses } => format!(
-            "of {model}, {} are numerically nothing ({NOTHING}): they have no G and no D, as if they were zero",
+            "of {model}, {} are numerically nothing ({NOTHING}): they have no G and no D, as if \
+             they were zero",
             names(responses)
         ),
         Caution::NotCoherent {
@@ -107,24 +110,24 @@ pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> St
             left_out,
             points,
         } => format!(
-            "coherence weighs J, G and D of {weighed} responses; of {points} frequencies, {} are left out: \
-             their coherence is under {}, or they lie outside the valid band",
+            "coherence weighs J, G and D of {weighed} responses; of {points} frequencies, {} are \
+             left out: their coherence is under {}, or they lie outside the valid band",
             left_out_words(left_out, &pair_name),
             number(*threshold)
         ),
         Caution::CoherenceNotUsed => {
-            "the identified representative is measured with coherence, which is switched off: every frequency \
-             counts alike"
+            "the identified representative is measured with coherence, which is switched off: \
+             every frequency counts alike"
                 .to_owned()
         }
         Caution::ChannelsByPosition { bundle, models } => format!(
-            "the channels of {bundle} models were taken by their position, as their files have no names for \
-             them: check that their order is that of the dataset ({})",
+            "the channels of {bundle} models were taken by their position, as their files have no \
+             names for them: check that their order is that of the dataset ({})",
             first_names(models)
         ),
         Caution::UnusualGain { pair, gain } => format!(
-            "{} has a G of {}, outside {} to {}, and is fitted like the others: ignore it in the objective if \
-             it means nothing (in a study file: \"ignored\")",
+            "{} has a G of {}, outside {} to {}, and is fitted like the others: ignore it in the \
+             objective if it means nothing (in a study file: \"ignored\")",
             pair_name(*pair),
             gain_words(*gain),
             USUAL_GAINS.start(),
@@ -143,15 +146,17 @@ pub fn undefined_text(why: Undefined) -> String {
             format!("its response is zero at some frequency of the band in the {bundle} model")
         }
         Undefined::NotFinite(bundle) => {
-            format!("its response is not finite at some frequency of the band in the {bundle} model")
+            format!(
+                "its response is not finite at some frequency of the band in the {bundle} model"
+            )
         }
         Undefined::GainOutOfRange(power_of_ten) => format!(
-            "its response has a gain of about 1e{power_of_ten} between the physics and the identified model, \
-             and {GAIN_RANGE}: check the units and the matrices of both"
+            "its response has a gain of about 1e{power_of_ten} between the physics and the \
+             identified model, and {GAIN_RANGE}: check the units and the matrices of both"
         ),
         Undefined::NotCoherent => {
-            "its response was not measured: no frequency of the band is coherent enough, or lies in the valid \
-             band"
+            "its response was not measured: no frequency of the band is coherent enough, or lies \
+             in the valid band"
                 .to_owned()
         }
         Undefined::NotMeasured => {
@@ -176,13 +181,13 @@ fn not_finite_text(why: &NotFinite) -> String {
             sample_time_s,
             nyquist_rad_s,
         } => format!(
-            "it is of discrete time, T = {} s, and has no response from π/T = {nyquist_rad_s:.4} rad/s on: \
-             narrow the band, or reject the model",
+            "it is of discrete time, T = {} s, and has no response from π/T = {nyquist_rad_s:.4} \
+             rad/s on: narrow the band, or reject the model",
             number(*sample_time_s)
         ),
         NotFinite::Pole => {
-            "a pole lies on a frequency of the grid, or its numbers overflow: change the band \
-                            or the number of frequencies, or reject the model"
+            "a pole lies on a frequency of the grid, or its numbers overflow: change the band or \
+             the number of frequencies, or reject the model"
                 .to_owned()
         }
     }

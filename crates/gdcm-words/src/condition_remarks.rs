@@ -224,7 +224,8 @@ fn others_worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Rema
     Some(Remark::caution(
         "free-farther",
         format!(
-            "{worse} of the {compared} responses that are not held are farther from flight than without."
+            "{worse} of the {compared} responses that are not held are farther from flight than \
+             without."
         ),
     ))
 }
@@ -302,7 +303,8 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     if study.settings.phase == PhaseCorrection::Lead {
         let residual_s = kkt_residual(&result.delay_problem, &result.delays);
         details.push(format!(
-            "The program of delays and leads is convex: KKT residual {residual_s:.0e} s, which proves its optimum."
+            "The program of delays and leads is convex: KKT residual {residual_s:.0e} s, which \
+             proves its optimum."
         ));
     }
     let band_top = study.settings.band.max();

@@ -39,14 +39,15 @@ pub fn doubt_text(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
         Convention::Sign => {
             let differ = if is_single { "differs" } else { "differ" };
             format!(
-                "{names} {differ} by half a turn at all frequencies{alike} {place}: {channel} of the identified models has the other sign. \
-                 Turn it?"
+                "{names} {differ} by half a turn at all frequencies{alike} {place}: {channel} of \
+                 the identified models has the other sign. Turn it?"
             )
         }
         Convention::Factor(factor) => {
             let are = if is_single { "is" } else { "are" };
             format!(
-                "{names} of the identified models {are} {} times that of the physics model{alike} {place}{}. Check the unit of {channel}",
+                "{names} of the identified models {are} {} times that of the physics model{alike} \
+                 {place}{}. Check the unit of {channel}",
                 rounded_to_three_digits(factor),
                 known_units_text(factor)
             )

@@ -121,7 +121,8 @@ fn verdict(assessment: &CouplingsAssessment) -> Vec<Remark> {
         remarks.push(Remark::caution(
             "couplings-not-worthwhile",
             format!(
-                "Off the axis, J of {source} is not at least a tenth less with {couplings}: switch the couplings off."
+                "Off the axis, J of {source} is not at least a tenth less with {couplings}: switch \
+                 the couplings off."
             ),
         ));
     }
@@ -155,7 +156,8 @@ fn price(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     }
     remarks.push(Remark::good(
         "bars-under-couplings",
-        "Error bars of gains, delays and leads are those under these couplings: a swap of models does not fit them again.",
+        "Error bars of gains, delays and leads are those under these couplings: a swap of models \
+         does not fit them again.",
     ));
     remarks
 }
@@ -172,7 +174,8 @@ fn above_band_words(assessment: &CouplingsAssessment, dataset: &Dataset) -> Opti
     }
     let top = assessment.omega.last().copied().unwrap_or_default();
     Some(format!(
-        "Above the band, at {} rad/s, the couplings change {} most of the on-axis responses: by {} dB of it (condition {id}).",
+        "Above the band, at {} rad/s, the couplings change {} most of the on-axis responses: by {} \
+         dB of it (condition {id}).",
         number(top),
         dataset.pair_name(pair),
         signed(change_db, 0)
@@ -218,8 +221,9 @@ pub fn coupling_cautions(assessment: &CouplingsAssessment, dataset: &Dataset) ->
     let has_feedback = assessment.couplings == CouplingCorrection::MixingAndFeedback;
     if assessment.want_leads > 0 && has_feedback {
         remarks.push(Remark::caution("feedback-as-lead", format!(
-            "In {} all held responses want lead, which no channel gives: the feedback takes its place, with large entries and \
-             poles far from where they were. Correct the phase by leads first.",
+            "In {} all held responses want lead, which no channel gives: the feedback takes its \
+             place, with large entries and poles far from where they were. Correct the phase by \
+             leads first.",
             counted(assessment.want_leads)
         )));
     }
@@ -228,29 +232,45 @@ pub fn coupling_cautions(assessment: &CouplingsAssessment, dataset: &Dataset) ->
         remarks.push(Remark::caution(
             "few-conditions",
             format!(
-                "Couplings of {}: three are needed for error bars and for J of conditions left out.",
+                "Couplings of {}: three are needed for error bars and for J of conditions left \
+                 out.",
                 counted(conditions)
             ),
         ));
     }
     let fit = &assessment.fitted.fit;
-    if !fit.not_fed_back.is_empty() {
-        let names: Vec<&str> = fit
-            .not_fed_back
-            .iter()
-            .map(|&output| dataset.outputs()[output].name.as_str())
-            .collect();
-        remarks.push(Remark::caution(
-            "not-fed-back",
-            format!(
-                "{} cannot be fed back: some input has no response of it in any condition.",
-                names.join(", ")
-            ),
-        ));
+    if let Some(text) = not_fed_back_words(dataset, &fit.not_fed_back) {
+        remarks.push(Remark::caution("not-fed-back", text));
     }
     if let Some(text) = undetermined_words(dataset, &fit.undetermined) {
         remarks.push(Remark::caution("entries-undetermined", text));
     }
+    remarks.extend(unknown_pole_remarks(assessment));
+    if let Some(text) = partly_left_out_words(assessment) {
+        remarks.push(Remark::caution("partly-left-out", text));
+    }
+    remarks
+}
+
+/// Lists the outputs that cannot be fed back.
+fn not_fed_back_words(dataset: &Dataset, outputs: &[usize]) -> Option<String> {
+    if outputs.is_empty() {
+        return None;
+    }
+    let names: Vec<&str> = outputs
+        .iter()
+        .map(|&output| dataset.outputs()[output].name.as_str())
+        .collect();
+    Some(format!(
+        "{} cannot be fed back: some input has no response of it in any condition.",
+        names.join(", ")
+    ))
+}
+
+/// Lists the conditions without known poles, then the models that the couplings cannot be applied
+/// to.
+fn unknown_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
+    let mut remarks = Vec::new();
     for (id, condition) in &assessment.conditions {
         if let Err(why) = &condition.poles {
             let text = format!("Condition {id}: poles are not known: {why}.");
@@ -259,16 +279,11 @@ pub fn coupling_cautions(assessment: &CouplingsAssessment, dataset: &Dataset) ->
     }
     for (id, condition) in &assessment.conditions {
         for (model, why) in &condition.refused {
-            remarks.push(Remark::caution(
-                "model-refused",
-                format!(
-                    "Condition {id}, {model}: what the couplings do to it is not known: {why}."
-                ),
-            ));
+            let text = format!(
+                "Condition {id}, {model}: what the couplings do to it is not known: {why}."
+            );
+            remarks.push(Remark::caution("model-refused", text));
         }
-    }
-    if let Some(text) = partly_left_out_words(assessment) {
-        remarks.push(Remark::caution("partly-left-out", text));
     }
     remarks
 }
@@ -317,8 +332,8 @@ fn partly_left_out_words(assessment: &CouplingsAssessment) -> Option<String> {
         return None;
     }
     Some(format!(
-        "J of conditions left out and the bars of the couplings rest on {known} of {all} conditions: without each of the others \
-         no couplings or no schedule are found."
+        "J of conditions left out and the bars of the couplings rest on {known} of {all} \
+         conditions: without each of the others no couplings or no schedule are found."
     ))
 }
 
@@ -334,7 +349,8 @@ fn ringing_words(assessment: &CouplingsAssessment) -> Option<String> {
         return None;
     }
     Some(format!(
-        "The loop is close to ringing at {} rad/s: the least singular value of I − K H is {} (condition {id}).",
+        "The loop is close to ringing at {} rad/s: the least singular value of I − K H is {} \
+         (condition {id}).",
         telling(margin.omega_rad_s, 1),
         telling(margin.least, 2)
     ))
@@ -408,7 +424,8 @@ fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare) -> String {
         )
     };
     format!(
-        "{} follows {} by {} {} per {}, up to {share} at {} rad/s: {meaning} that the physics model does not have right.",
+        "{} follows {} by {} {} per {}, up to {share} at {} rad/s: {meaning} that the physics \
+         model does not have right.",
         input.name,
         output.name,
         with_minus_sign(&telling(feedback.entry, 3)),

@@ -64,8 +64,8 @@ fn an_unstable_pole_in_the_band_is_told_before_faster_ones_beyond_it() {
         .find(|of| of.text.contains("newly unstable"))
         .unwrap();
     assert_eq!(poles.kind, RemarkKind::Trouble);
-    let words = "2 poles of other kept physics models are newly unstable with the couplings: in the band condition 4, slow at 2.000 rad/s; \
-                 condition 4, fast at 90.000 rad/s.";
+    let words = "2 poles of other kept physics models are newly unstable with the couplings: in \
+                 the band condition 4, slow at 2.000 rad/s; condition 4, fast at 90.000 rad/s.";
     assert_eq!(poles.text, words);
     assert!(
         said.iter()

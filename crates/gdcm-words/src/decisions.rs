@@ -210,8 +210,8 @@ fn representative_words(choice: &BundleChoice) -> String {
 pub fn dataset_difference_text(difference: &Difference) -> String {
     match difference {
         Difference::AnotherFile { expected, found } => format!(
-            "the dataset has changed since the study was saved, and the study does not say what it held: expected \
-             SHA-256 {expected}, found {found}"
+            "the dataset has changed since the study was saved, and the study does not say what it \
+             held: expected SHA-256 {expected}, found {found}"
         ),
         Difference::ConditionAdded(id) => format!("condition {id} was added"),
         Difference::ConditionRemoved(id) => format!("condition {id} was removed"),

@@ -171,8 +171,8 @@ fn offered_leads(result: &ConditionAnalysis) -> Option<Remark> {
     let without = telling(offer.without, 0);
     let with = telling(offer.with, 0);
     let text = format!(
-        "All held responses want lead: with a delay or lead in each channel their J would be about {with} in the mean, in place \
-         of {without}."
+        "All held responses want lead: with a delay or lead in each channel their J would be about \
+         {with} in the mean, in place of {without}."
     );
     let remark =
         Remark::caution("leads-offered", text).repeated(Repeated::LeadsOffered([without, with]));
@@ -201,9 +201,9 @@ fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     }
     let lead_ms = telling(-s_to_ms(middle), 0);
     let text = format!(
-        "All held responses want about {lead_ms} ms of lead: check first the time alignment of the records, the simulation's \
-         integration and sampling delay, then servo and sensor models; a common lag is better taken out where it arises than \
-         corrected."
+        "All held responses want about {lead_ms} ms of lead: check first the time alignment of the \
+         records, the simulation's integration and sampling delay, then servo and sensor models; a \
+         common lag is better taken out where it arises than corrected."
     );
     Some(Remark::caution("common-lead", text).repeated(Repeated::CommonLead(lead_ms)))
 }
@@ -251,7 +251,8 @@ fn raised_gain(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let most_db = telling(rise_db.abs(), 1);
     let name = study.dataset.pair_name(pair);
     let text = format!(
-        "The lead filters raise the gain within the band, which the gains take back: by up to {most_db} dB ({name})."
+        "The lead filters raise the gain within the band, which the gains take back: by up to \
+         {most_db} dB ({name})."
     );
     Some(Remark::caution("gain-raised", text).repeated(Repeated::RaisedGain(most_db, pair)))
 }
@@ -287,7 +288,8 @@ fn not_of_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
         ""
     };
     let text = format!(
-        "The missing phase is not that of a delay, but of a zero or a mode in the band{remedy}: {}.",
+        "The missing phase is not that of a delay, but of a zero or a mode in the band{remedy}: \
+         {}.",
         apart.join("; ")
     );
     Some(Remark::caution("not-a-delay", text))

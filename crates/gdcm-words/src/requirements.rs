@@ -101,8 +101,8 @@ pub fn mode_table(requirements: &Requirements, condition: ConditionId) -> Table 
     let deviations = if has_deviations {
         "standard deviations of flown modes known"
     } else {
-        "standard deviations of flown modes not known (they are of a model identified in this session): not determined is what lies below \
-         the band"
+        "standard deviations of flown modes not known (they are of a model identified in this \
+         session): not determined is what lies below the band"
     };
     let title = format!("Modes of condition {condition}; {deviations}");
     let mut table = Table::new(title, mode_columns(is_coupled));
@@ -311,7 +311,8 @@ impl RequirementsOverview {
             .collect();
         let mut columns = HEADS.map(str::to_owned).to_vec();
         columns.extend(ids.iter().map(ToString::to_string));
-        let title = "Corrected against identified models, condition by condition; the limits are the program's, of no standard";
+        let title = "Corrected against identified models, condition by condition; the limits are \
+                     the program's, of no standard";
         let mut overview = Self {
             table: Table::new(title, columns),
             outside: Vec::new(),

@@ -20,10 +20,12 @@ pub fn delayed_channel_text(delayed: &DelayedChannel, dataset: &Dataset) -> Stri
     match delayed.delays.len() {
         1 => format!("delay of {side} {name}: {delay_ms:.1} ms in condition {condition}"),
         2 => format!(
-            "delay of {side} {name}: up to {delay_ms:.1} ms, in condition {condition} and in 1 other"
+            "delay of {side} {name}: up to {delay_ms:.1} ms, in condition {condition} and in 1 \
+             other"
         ),
         count => format!(
-            "delay of {side} {name}: up to {delay_ms:.1} ms, in condition {condition} and in {} others",
+            "delay of {side} {name}: up to {delay_ms:.1} ms, in condition {condition} and in {} \
+             others",
             count - 1
         ),
     }

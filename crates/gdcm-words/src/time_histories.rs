@@ -129,8 +129,8 @@ pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table 
         }
     }
     table.title = format!(
-        "Records of condition {condition}: share of time inside, largest excess beyond the corridor and when; {} of {all} rows, of which \
-         every model is always inside, are left out",
+        "Records of condition {condition}: share of time inside, largest excess beyond the \
+         corridor and when; {} of {all} rows, of which every model is always inside, are left out",
         all - table.rows.len()
     );
     table

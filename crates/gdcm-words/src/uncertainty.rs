@@ -53,10 +53,12 @@ pub fn differences_summary(uncertainty: &Uncertainty) -> String {
             format!("{count} differences at equal airspeed are too many to compare.")
         }
         (_, 0, _) => format!(
-            "None of the {all} pairs of conditions at equal airspeed has significantly different net gains."
+            "None of the {all} pairs of conditions at equal airspeed has significantly different \
+             net gains."
         ),
         (_, significant, _) => format!(
-            "{significant} of {all} pairs of conditions at equal airspeed have significantly different net gains."
+            "{significant} of {all} pairs of conditions at equal airspeed have significantly \
+             different net gains."
         ),
     }
 }
@@ -73,7 +75,8 @@ pub fn second_variable_text(test: &SecondVariableTest) -> String {
     let visible = 100.0 * effect.visible;
     let sign = if percent < 0.0 { "−" } else { "+" };
     format!(
-        "from the lowest to the highest {variable} {sign}{:.1} %: {}; an effect smaller than ± {visible:.1} % could not have been seen",
+        "from the lowest to the highest {variable} {sign}{:.1} %: {}; an effect smaller than ± \
+         {visible:.1} % could not have been seen",
         percent.abs(),
         need(test)
     )

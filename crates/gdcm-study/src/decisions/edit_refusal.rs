@@ -9,14 +9,16 @@ use gdcm_model::units::number;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EditRefusal {
     #[error(
-        "condition {condition}: \"{model}\" is the last model kept in its bundle; at least one must stay"
+        "condition {condition}: \"{model}\" is the last model kept in its bundle; at least one \
+         must stay"
     )]
     LastModel {
         condition: ConditionId,
         model: String,
     },
     #[error(
-        "condition {condition}: \"{model}\" is rejected; restore it before using it as representative"
+        "condition {condition}: \"{model}\" is rejected; restore it before using it as \
+         representative"
     )]
     PinRejected {
         condition: ConditionId,
@@ -59,7 +61,11 @@ pub enum EditRefusal {
     NoModel { model: ModelId },
     #[error("the dataset has no {}", channel.name(&[], &[]))]
     NoChannel { channel: Channel },
-    #[error("the dataset has no response of output number {} to input number {}", pair.output + 1, pair.input + 1)]
+    #[error(
+        "the dataset has no response of output number {} to input number {}",
+        pair.output + 1,
+        pair.input + 1
+    )]
     NoResponse { pair: Pair },
 }
 

@@ -258,14 +258,16 @@ impl ConditionAnalysis {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConditionFailure {
     #[error(
-        "no identified models yet, so there is no reference to compare the physics models with; identify them from the condition's \
-         flight records (gdcm identify RECORDS --into DATASET, or Identify from records in the window), or add identified models"
+        "no identified models yet, so there is no reference to compare the physics models with; \
+         identify them from the condition's flight records (gdcm identify RECORDS --into DATASET, \
+         or Identify from records in the window), or add identified models"
     )]
     NoReference,
     /// The two representatives have no response in common that is defined over the whole band.
     #[error(
-        "no response of \"{physics}\" can be compared with \"{identified}\" over the whole band: each is zero, not finite or out of \
-         the range of gains somewhere; choose another representative, or another band"
+        "no response of \"{physics}\" can be compared with \"{identified}\" over the whole band: \
+         each is zero, not finite or out of the range of gains somewhere; choose another \
+         representative, or another band"
     )]
     NothingToCompare {
         physics: String,
@@ -275,8 +277,8 @@ pub enum ConditionFailure {
     },
     /// Every kept model is set aside (M5b).
     #[error(
-        "no {bundle} model is left to compare: each one kept lacks a measuring response that another model of the bundle \
-         has; restore one that has them all, or narrow the band"
+        "no {bundle} model is left to compare: each one kept lacks a measuring response that \
+         another model of the bundle has; restore one that has them all, or narrow the band"
     )]
     AllSetAside { bundle: BundleKind },
     #[error("the gains could not be computed: {0}")]

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 use gdcm_method::requirements::{RecordCheck, TestInput, Tolerance, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::executor::{Executor, each};
-use gdcm_model::simulation::{FlightRecord, validate};
+use gdcm_model::simulation::{FlightRecord, Segment, Validation, validate};
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::spectra::preparation::segments_of;
 
@@ -96,34 +96,43 @@ impl RecordHistory {
         for why in &comparison.not_applied {
             missing.push(why.to_string());
         }
-        let moved = comparison.moved_input(&segments);
-        let mut quantities = Vec::new();
-        for row in &comparison.rows {
-            let mut models = Vec::new();
-            for (role, validation) in &validations {
-                if let Ok(checks) = RecordCheck::of_windows(&validation.windows, &row.channel)
-                    && let Some(check) = checks.into_iter().next()
-                {
-                    models.push((*role, check));
-                }
-            }
-            quantities.push(QuantityHistory {
-                tolerance: row.tolerance.clone(),
-                output: row.channel.output,
-                unit: row.channel.unit.clone(),
-                on_axis: comparison.is_on_axis(row.channel.output, moved),
-                models,
-            });
-        }
         Ok(Self {
             condition: compared.condition,
             record: record.flight.name.clone(),
             held_out: record.held_out,
             flight: record.flight.clone(),
-            quantities,
+            quantities: quantities(&comparison, &segments, &validations),
             missing,
         })
     }
+}
+
+/// Checks every tolerance row against each role's simulation.
+fn quantities(
+    comparison: &RecordComparison<'_>,
+    segments: &[Segment],
+    validations: &[(RequirementRole, Validation)],
+) -> Vec<QuantityHistory> {
+    let moved = comparison.moved_input(segments);
+    let mut quantities = Vec::new();
+    for row in &comparison.rows {
+        let mut models = Vec::new();
+        for (role, validation) in validations {
+            if let Ok(checks) = RecordCheck::of_windows(&validation.windows, &row.channel)
+                && let Some(check) = checks.into_iter().next()
+            {
+                models.push((*role, check));
+            }
+        }
+        quantities.push(QuantityHistory {
+            tolerance: row.tolerance.clone(),
+            output: row.channel.output,
+            unit: row.channel.unit.clone(),
+            on_axis: comparison.is_on_axis(row.channel.output, moved),
+            models,
+        });
+    }
+    quantities
 }
 
 /// Responses of a condition's models to a test input, starting from rest.

@@ -105,8 +105,8 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
 
 /// Derives a physics model's discontinuity ratio: its distances over those that the trims explain.
 pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
-    const EQUATION: &str = "r_a = median over b of d(a, b) / √(Σ_k w_k (p_ak − p_bk)²); each p divided by its largest, w_k ≥ 0 by \
-                            least absolute deviations";
+    const EQUATION: &str = "r_a = median over b of d(a, b) / √(Σ_k w_k (p_ak − p_bk)²); each p \
+                            divided by its largest, w_k ≥ 0 by least absolute deviations";
     let result = context.result;
     let value = result.discontinuity_ratio(&model.name)?;
     let fit = result.figures.discontinuity.as_ref().ok()?;

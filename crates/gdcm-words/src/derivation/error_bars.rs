@@ -11,8 +11,9 @@ use super::explain_target::ExplainTarget;
 
 /// For a net gain that is not constrained and for a channel, where the identified models report
 /// their own error.
-const SPREAD_ALONE: &str = "its identification part is the spread of the models alone, too small where they share their records: the error \
-     that a model tells of itself counts for G, D and the net gains that are held (M13.2)";
+const SPREAD_ALONE: &str = "its identification part is the spread of the models alone, too small \
+                            where they share their records: the error that a model tells of itself \
+                            counts for G, D and the net gains that are held (M13.2)";
 
 /// Describes a figure's error bar with its parts, and the figure after every swap; empty where it
 /// has no error bar, or where that was not computed.

@@ -74,7 +74,8 @@ fn equation(regression: &Regression, symbol: &str) -> String {
     match regression {
         Regression::Polynomial { .. } => {
             format!(
-                "{symbol} = c₀ + c₁ v + c₂ v² + …, by least squares; v = (V − mean V) / (half the range of V)"
+                "{symbol} = c₀ + c₁ v + c₂ v² + …, by least squares; v = (V − mean V) / (half the \
+                 range of V)"
             )
         }
         Regression::Table { .. } => {

@@ -17,7 +17,7 @@ mod summary;
 mod terminal;
 
 use std::error::Error;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -42,13 +42,13 @@ pub fn run(
     arguments: impl IntoIterator<Item = OsString>,
     open_window: impl FnOnce(Option<PathBuf>) -> ExitCode,
 ) -> ExitCode {
-    let arguments = joined(arguments);
+    let mut arguments = with_values_joined(arguments);
     // A command line that cannot be parsed is still reported in the requested format.
-    let asks = |option: &str| arguments.iter().any(|argument| argument == option);
     terminal::speak(Manner {
-        quiet: asks("--quiet"),
-        json: asks("--json"),
+        quiet: has_argument(&arguments, "--quiet"),
+        json: has_argument(&arguments, "--json"),
     });
+    let leading = take_leading_switches(&mut arguments);
     if let Some(misspelling) = misspelling::misspelt_command(&arguments) {
         return finish(Err(misspelling));
     }
@@ -59,12 +59,11 @@ pub fn run(
             json,
             ..
         }) => {
-            terminal::speak(Manner { quiet, json });
-            finish(
-                start_threads()
-                    .map_err(|reason| Failure::NoThreads { reason })
-                    .and_then(|()| carry_out(&command)),
-            )
+            terminal::speak(Manner {
+                quiet: quiet || leading.quiet,
+                json: json || leading.json,
+            });
+            finish(carry_out(&command))
         }
         Ok(Arguments {
             command: None,
@@ -79,36 +78,63 @@ pub fn run(
     }
 }
 
+fn has_argument(arguments: &[OsString], option: &str) -> bool {
+    arguments.iter().any(|argument| argument == option)
+}
+
+/// Removes `--json` and `--quiet` before the command and returns what they request: the parser
+/// refuses a command behind any option, as it must behind the file of the window. The first
+/// element of `arguments` is the program.
+fn take_leading_switches(arguments: &mut Vec<OsString>) -> Manner {
+    let mut manner = Manner::default();
+    while let Some(argument) = arguments.get(1) {
+        if argument == "--json" {
+            manner.json = true;
+        } else if argument == "--quiet" {
+            manner.quiet = true;
+        } else {
+            break;
+        }
+        arguments.remove(1);
+    }
+    manner
+}
+
 /// Joins a value to its option if the option takes a variable number of values: `--gain-bounds auto
 /// FILE` must not take the file for its second number, nor `--schedule-delays FILE` for its value.
-fn joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+fn with_values_joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut joined: Vec<OsString> = Vec::new();
     for argument in arguments {
-        let joins = SETTINGS.iter().any(|setting| {
-            let is_word = match setting.kind {
-                Kind::Range {
-                    nothing: Some([word, _]),
-                    ..
-                } => argument == word,
-                Kind::Choice { words, .. } if setting.bare.is_some() => {
-                    words.iter().any(|[word, ..]| argument == *word)
-                }
-                _ => false,
-            };
-            is_word && joined.last().is_some_and(|last| last == setting.option)
-        });
-        match joined.last_mut().filter(|_| joins) {
-            Some(option) => {
+        match joined.last_mut() {
+            Some(option) if is_value_of(&argument, option) => {
                 option.push("=");
                 option.push(argument);
             }
-            None => joined.push(argument),
+            _ => joined.push(argument),
         }
     }
     joined
 }
 
+/// Returns whether an argument is a word that an option with a variable number of values takes.
+fn is_value_of(argument: &OsStr, option: &OsStr) -> bool {
+    let Some(setting) = SETTINGS.iter().find(|setting| option == setting.option) else {
+        return false;
+    };
+    match setting.kind {
+        Kind::Range {
+            nothing: Some([word, _]),
+            ..
+        } => argument == word,
+        Kind::Choice { words, .. } if setting.bare.is_some() => {
+            words.iter().any(|[word, ..]| argument == *word)
+        }
+        _ => false,
+    }
+}
+
 fn carry_out(command: &Command) -> Result<(), Failure> {
+    start_threads().map_err(|reason| Failure::NoThreads { reason })?;
     match command {
         Command::Analyze(arguments) => results::analyze(arguments),
         Command::Figure(arguments) => results::figure(arguments),
@@ -171,11 +197,15 @@ fn existing(force: bool) -> Existing {
     }
 }
 
+/// Reports a failure and returns the exit status.
 fn finish(result: Result<(), Failure>) -> ExitCode {
-    let status = result.err().map_or(0, |failure| {
-        coded_error(failure.code(), &failure.to_string());
-        failure.status()
-    });
+    let status = match result {
+        Ok(()) => 0,
+        Err(failure) => {
+            coded_error(failure.code(), &failure.to_string());
+            failure.status()
+        }
+    };
     ExitCode::from(terminal::end(status))
 }
 
@@ -189,19 +219,49 @@ fn usage_words(error: &clap::Error) -> String {
     }
     let words = error.to_string();
     let complaint = words.split("\n\nUsage:").next().unwrap_or(&words);
-    let paragraphs = complaint
+    let paragraphs: Vec<String> = complaint
         .split("\n\n")
-        .filter(|paragraph| !paragraph.starts_with("For more information"));
-    let line = |paragraph: &str| {
-        paragraph
-            .lines()
-            .map(str::trim)
-            .collect::<Vec<_>>()
-            .join(" ")
-    };
-    let line = paragraphs.map(line).collect::<Vec<_>>().join("; ");
+        .filter(|paragraph| !paragraph.starts_with("For more information"))
+        .map(on_one_line)
+        .collect();
+    let line = paragraphs.join("; ");
     format!(
-        "{} (gdcm --help says more)",
+        "{} (see gdcm --help)",
         line.strip_prefix("error: ").unwrap_or(&line).trim_end()
     )
+}
+
+fn on_one_line(paragraph: &str) -> String {
+    let lines: Vec<&str> = paragraph.lines().map(str::trim).collect();
+    lines.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Arguments left behind the program, and what the removed switches request.
+    fn leading(words: &str) -> (Vec<String>, Manner) {
+        let mut arguments: Vec<OsString> = words.split(' ').map(OsString::from).collect();
+        let manner = take_leading_switches(&mut arguments);
+        let left = arguments.into_iter().skip(1);
+        let left = left.map(|word| word.into_string().expect("text")).collect();
+        (left, manner)
+    }
+
+    #[test]
+    fn switches_before_the_command_are_taken_and_others_stay() {
+        let both = Manner {
+            quiet: true,
+            json: true,
+        };
+        let none = Manner::default();
+        let words = ["check".to_owned(), "--json".to_owned()];
+        assert_eq!(
+            leading("gdcm --json --quiet check --json"),
+            (words.to_vec(), both)
+        );
+        assert_eq!(leading("gdcm check --json"), (words.to_vec(), none));
+        assert_eq!(leading("gdcm"), (Vec::new(), none));
+    }
 }

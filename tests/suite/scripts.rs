@@ -195,6 +195,33 @@ fn everything_is_one_json_object_where_that_is_asked_for() {
 }
 
 #[test]
+fn the_switches_of_every_command_may_stand_before_it() {
+    let desk = desk_with_half();
+    let behind = desk.gdcm(&["analyze", "half.json", "--out", "out", "--json"]);
+    let before = desk.gdcm(&["--json", "analyze", "half.json", "--out", "out", "--force"]);
+    assert_eq!(
+        (before.status, &before.out, before.error.as_str()),
+        (behind.status, &behind.out, ""),
+        "{before:?}"
+    );
+    let object: Value = serde_json::from_str(&before.out).unwrap();
+    assert_eq!((before.status, &object["status"]), (0, &json!(0)));
+    let both = desk.gdcm(&["--quiet", "--json", "check", "missing.json", "--json"]);
+    let object: Value = serde_json::from_str(&both.out).unwrap();
+    assert_eq!((both.status, &object["status"]), (2, &json!(2)), "{both:?}");
+    // The file of the window and a command exclude each other, with or without switches.
+    for line in [
+        &["half.json", "analyze", "--out", "other"][..],
+        &["half.json", "--json", "analyze", "--out", "other"],
+        &["--json", "half.json", "analyze", "--out", "other"],
+    ] {
+        let ended = desk.gdcm(line);
+        assert_eq!(ended.status, 2, "{line:?}: {ended:?}");
+        assert!(!desk.path("other").exists(), "{line:?}: {ended:?}");
+    }
+}
+
+#[test]
 fn a_command_that_is_written_wrongly_is_told_which_one_is_meant() {
     let desk = Desk::new();
     for (line, meant) in [

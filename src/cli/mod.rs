@@ -3,18 +3,38 @@
 //! Exit status: 0 done, 1 the analysis could not be done, 2 the command line or a file is wrong;
 //! the reason on standard error.
 
+mod analyze;
 mod arguments;
+mod assemble;
+mod channel_values;
 mod check;
-pub mod flight_records;
+mod convert;
+mod destination;
+mod export;
+mod failure;
+mod figure;
+mod flight_records;
+mod found_models;
+mod histories;
+mod identification_task;
 mod identify;
 mod identify_arguments;
 mod misspelling;
-mod models;
+mod model_arguments;
+mod option_values;
+mod progress;
+mod record_parts;
+mod report;
+mod requested_channels;
 mod requirements;
-mod results;
+mod result_arguments;
+mod schedule_summary;
+mod shared_cautions;
+mod study_arguments;
 mod study_options;
 mod summary;
 mod terminal;
+mod text;
 
 use std::error::Error;
 use std::ffi::{OsStr, OsString};
@@ -33,8 +53,10 @@ use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::Kind;
 
 use crate::executor::start_threads;
-use arguments::{Arguments, Command, OpeningArguments};
-use terminal::{Failure, Manner, WRONG_INPUT, caution, coded_error, error, say};
+use arguments::{Arguments, Command};
+use failure::{Failure, WRONG_INPUT};
+use study_arguments::OpeningArguments;
+use terminal::{OutputFormat, caution, coded_error, print};
 
 /// Carries out a command line. Without a command it opens a window, on a file or on the embedded
 /// example; it prints help, version and errors itself.
@@ -44,7 +66,7 @@ pub fn run(
 ) -> ExitCode {
     let mut arguments = with_values_joined(arguments);
     // A command line that cannot be parsed is still reported in the requested format.
-    terminal::speak(Manner {
+    terminal::set_output(OutputFormat {
         quiet: has_argument(&arguments, "--quiet"),
         json: has_argument(&arguments, "--json"),
     });
@@ -59,7 +81,7 @@ pub fn run(
             json,
             ..
         }) => {
-            terminal::speak(Manner {
+            terminal::set_output(OutputFormat {
                 quiet: quiet || leading.quiet,
                 json: json || leading.json,
             });
@@ -71,10 +93,10 @@ pub fn run(
             ..
         }) => open_window(file),
         Err(wrong) if wrong.use_stderr() => {
-            error(&usage_words(&wrong));
+            coded_error(Some("wrong-command-line"), &usage_words(&wrong));
             ExitCode::from(terminal::end(WRONG_INPUT))
         }
-        Err(help) => finish(say(&help.to_string())),
+        Err(help) => finish(print(&help.to_string())),
     }
 }
 
@@ -82,22 +104,22 @@ fn has_argument(arguments: &[OsString], option: &str) -> bool {
     arguments.iter().any(|argument| argument == option)
 }
 
-/// Removes `--json` and `--quiet` before the command and returns what they request: the parser
+/// Removes `--json` and `--quiet` before the command and returns the requested output: the parser
 /// refuses a command behind any option, as it must behind the file of the window. The first
 /// element of `arguments` is the program.
-fn take_leading_switches(arguments: &mut Vec<OsString>) -> Manner {
-    let mut manner = Manner::default();
+fn take_leading_switches(arguments: &mut Vec<OsString>) -> OutputFormat {
+    let mut output = OutputFormat::default();
     while let Some(argument) = arguments.get(1) {
         if argument == "--json" {
-            manner.json = true;
+            output.json = true;
         } else if argument == "--quiet" {
-            manner.quiet = true;
+            output.quiet = true;
         } else {
             break;
         }
         arguments.remove(1);
     }
-    manner
+    output
 }
 
 /// Joins a value to its option if the option takes a variable number of values: `--gain-bounds auto
@@ -136,13 +158,13 @@ fn is_value_of(argument: &OsStr, option: &OsStr) -> bool {
 fn carry_out(command: &Command) -> Result<(), Failure> {
     start_threads().map_err(|reason| Failure::NoThreads { reason })?;
     match command {
-        Command::Analyze(arguments) => results::analyze(arguments),
-        Command::Figure(arguments) => results::figure(arguments),
-        Command::Report(arguments) => results::report(arguments),
+        Command::Analyze(arguments) => analyze::analyze(arguments),
+        Command::Figure(arguments) => figure::figure(arguments),
+        Command::Report(arguments) => report::report(arguments),
         Command::Requirements(arguments) => requirements::requirements(arguments),
-        Command::Export(arguments) => results::export(arguments),
-        Command::Assemble(arguments) => models::assemble(arguments),
-        Command::Convert(arguments) => models::convert(arguments),
+        Command::Export(arguments) => export::export(arguments),
+        Command::Assemble(arguments) => assemble::assemble(arguments),
+        Command::Convert(arguments) => convert::convert(arguments),
         Command::Identify(arguments) => identify::identify(arguments),
         Command::Check {
             file,
@@ -182,9 +204,9 @@ fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
 /// Writes the embedded example into a directory and reports the path.
 fn example(directory: &Path, existing: Existing) -> Result<(), Failure> {
     let path = write_example(directory, existing)?;
-    say(&format!(
-        "{}: the example dataset (synthetic data)\nthe flight records that it names, example-records.zip, are under assets in the \
-         program's source; the window finds them beside the dataset\n",
+    print(&format!(
+        "{}: the example dataset (synthetic data)\nits flight records, example-records.zip, are in the folder assets of the program's \
+         source; the window finds them beside the dataset\n",
         sanitized_path(&path)
     ))
 }
@@ -240,22 +262,22 @@ fn on_one_line(paragraph: &str) -> String {
 mod tests {
     use super::*;
 
-    /// Arguments left behind the program, and what the removed switches request.
-    fn leading(words: &str) -> (Vec<String>, Manner) {
+    /// Arguments left behind the program, and the output that the removed switches request.
+    fn leading(words: &str) -> (Vec<String>, OutputFormat) {
         let mut arguments: Vec<OsString> = words.split(' ').map(OsString::from).collect();
-        let manner = take_leading_switches(&mut arguments);
+        let output = take_leading_switches(&mut arguments);
         let left = arguments.into_iter().skip(1);
         let left = left.map(|word| word.into_string().expect("text")).collect();
-        (left, manner)
+        (left, output)
     }
 
     #[test]
     fn switches_before_the_command_are_taken_and_others_stay() {
-        let both = Manner {
+        let both = OutputFormat {
             quiet: true,
             json: true,
         };
-        let none = Manner::default();
+        let none = OutputFormat::default();
         let words = ["check".to_owned(), "--json".to_owned()];
         assert_eq!(
             leading("gdcm --json --quiet check --json"),

@@ -290,10 +290,10 @@ fn the_phase_is_corrected_as_an_option_says() {
     for words in [
         "G from the mean over all kept pairs, without effect: with leads",
         "Phase",
-        "corrected by a delay or a lead filter a channel: order 2, n 3, R_max 10",
+        "corrected by a delay or a lead filter per channel: order 2, n 3, R_max 10",
         "channel k delay/lead [ms] servo of [rad/s] replaced by dB at 120 rad/s",
         // What every condition has is said once.
-        "where all want about the same lead (column all [ms]), check first the time alignment",
+        "a common lead (column all [ms]) is better removed at its source: check first the time alignment",
         "condition PED → NY all gain",
         "conditions 1 to 3, 5 to 11: The leads add 20 states. Do not use the corrected model above 12 rad/s.",
     ] {
@@ -797,7 +797,7 @@ fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_h
     );
     let strict = desk.gdcm(&["check", "a.gdcm-study.json", "--strict"]);
     assert!(
-        strict.status == 2 && strict.error.contains("--strict asks for none"),
+        strict.status == 2 && strict.error.contains("refused by --strict"),
         "{strict:?}"
     );
     fs::rename(&dataset, desk.path("moved.json")).unwrap();

@@ -170,7 +170,7 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
             "error: bare: the file does not give the unit of P (column \"P\"), and its samples can be in rad/s or deg/s; choose it \
              with --unit \"P=rad/s\"",
             "error: bare: the file does not give the unit of Q",
-            "error: 1 of 2 records cannot be taken as they are",
+            "error: 1 of 2 records cannot be used",
         ] {
             assert!(ended.error.contains(words), "{words}: {}", ended.error);
         }
@@ -262,15 +262,15 @@ fn what_is_said_twice_of_one_channel_is_refused() {
     };
     refused(
         &["--topic", "P=roll rate", "--topic", "P=pitch rate"],
-        "--topic: P stands twice",
+        "--topic: P is given twice",
     );
     refused(
         &["--delay", "sweep_1:P=0.1", "--delay", "sweep_1.csv:P=0.1"],
-        "--delay: P of sweep_1.csv stands twice",
+        "--delay: P of sweep_1.csv is given twice",
     );
     refused(
         &["--factor", "sweep_1:P=-1", "--factor", "sweep_1:P=-1"],
-        "--factor: P of sweep_1 stands twice",
+        "--factor: P of sweep_1 is given twice",
     );
     refused(
         &["--unit", "P=rad/s", "--unit", "P=deg/s"],
@@ -286,7 +286,7 @@ fn what_is_said_twice_of_one_channel_is_refused() {
         "--out",
         "made.json",
     ]);
-    ended.assert_failed(2, &["--sign: NZ of identified stands twice"]);
+    ended.assert_failed(2, &["--sign: NZ of identified is given twice"]);
 }
 
 #[test]
@@ -319,7 +319,7 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
         &all("wrong.csv", &[]),
         &[
             "wrong: no column for the input LAT; choose a column (columns: t, lon, lever",
-            "1 of 1 record cannot be taken",
+            "1 of 1 record cannot be used",
         ],
     );
     refused(
@@ -391,9 +391,9 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
     refused(
         &["sweep_1.csv", "--into", "small.json", "--every-condition"],
         &[
-            "sweep_1: left out: its name says no condition of the dataset",
-            "conditions 7, 10: no records; the identified models there stay as they are",
-            "--every-condition: no name says a condition of the dataset (7, 10), as cond03 does",
+            "sweep_1: left out: its name gives no condition of the dataset",
+            "conditions 7, 10: no records; the identified models there stay unchanged",
+            "--every-condition: no name gives a condition of the dataset (7, 10), as cond03 does",
         ],
     );
     fs::rename(
@@ -419,8 +419,8 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
             "10",
         ],
         &[
-            "caution: 1 of 1 records left out: their names say condition 7, not 10",
-            "--condition: no record is left for condition 10; rename what belongs to it",
+            "caution: 1 of 1 records left out: their names give condition 7, not 10",
+            "--condition: no record is left for condition 10; rename the records that belong to it",
         ],
     );
     fs::copy(desk.path("sweep_1.csv"), desk.path("again.csv")).unwrap();

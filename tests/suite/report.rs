@@ -357,7 +357,7 @@ fn names_that_are_markup_stay_names_and_a_condition_without_result_says_why() {
     let ended = desk.gdcm(&["report", "odd.json", "--out", "report.html"]);
     assert_eq!(
         (ended.status, ended.out.as_str()),
-        (0, "report.html: a report on 1 conditions\n"),
+        (0, "report.html: a report on 1 condition\n"),
         "{ended:?}"
     );
     assert!(

@@ -115,11 +115,9 @@ fn records_that_identify_no_input_are_status_1() {
         "out",
     ]);
     assert_eq!(ended.status, 1, "{ended:?}");
-    assert!(
-        ended.error.contains(
-            "error: no input is identified in these records: the models say nothing of LON"
-        )
-    );
+    assert!(ended.error.contains(
+        "error: no input is identified by these records; the models do not describe LON"
+    ));
     assert!(
         desk.path("out/identified.json").exists(),
         "what was computed can be looked at"
@@ -324,7 +322,7 @@ fn a_second_delay_of_one_channel_is_refused() {
         "--quiet",
     ]);
     assert!(
-        ended.status == 2 && ended.error.contains("error: --delay: P stands twice"),
+        ended.status == 2 && ended.error.contains("error: --delay: P is given twice"),
         "{ended:?}"
     );
 }
@@ -391,7 +389,7 @@ fn no_thread_to_be_had_is_an_error_in_words() {
             .output()
             .unwrap(),
     );
-    ended.assert_failed(1, &["error: no thread is to be had"]);
+    ended.assert_failed(1, &["error: no thread can be started"]);
 }
 
 #[test]
@@ -410,7 +408,7 @@ fn a_record_named_on_the_command_line_that_cannot_be_read_is_status_1_and_the_ot
     let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], &LATE_UNITS].concat());
     assert_eq!(ended.status, 1, "{ended:?}");
     assert!(
-        ended.error.contains("caution: not taken: ") && ended.error.contains("error: broken.npz: "),
+        ended.error.contains("caution: not read: ") && ended.error.contains("error: broken.npz: "),
         "{ended:?}"
     );
     assert!(desk.path("out/identified.json").exists());
@@ -493,7 +491,7 @@ fn a_file_that_is_broken_is_told_from_a_good_one_of_its_name_and_in_its_archive(
         assert!(
             ended
                 .error
-                .contains("error: one/cond7_a.csv: not read, or not all of it"),
+                .contains("error: one/cond7_a.csv: not read, or only in part"),
             "{ended:?}"
         );
     }
@@ -518,7 +516,7 @@ fn a_file_that_is_broken_is_told_from_a_good_one_of_its_name_and_in_its_archive(
             ended.status == 1
                 && ended
                     .error
-                    .contains("error: bad.zip: not read, or not all of it"),
+                    .contains("error: bad.zip: not read, or only in part"),
             "{ended:?}"
         );
     }
@@ -624,7 +622,7 @@ fn what_many_conditions_have_is_one_table_and_one_sentence() {
     let words = ended.out.split_whitespace().collect::<Vec<_>>().join(" ");
     for sentence in [
         "held responses need lead",
-        "what it would be with a delay or lead in each channel",
+        "without and with a delay or lead in each channel",
         "check first the time alignment of the records",
     ] {
         assert_eq!(

@@ -38,7 +38,7 @@ pub enum Command {
         alias = "analyse"
     )]
     Analyze(Box<AnalyzeArguments>),
-    /// Write a figure of the window, or its numbers, to a file.
+    /// Write a figure, as in the window, or its numbers to a file.
     #[command(
         after_help = "Examples:\n  gdcm figure example-dataset.json --view net-gain --bars --out net-gain.pdf\n  gdcm figure example-dataset.json --view bode --condition 3 --pair Q/LON --out bode.svg"
     )]
@@ -61,7 +61,7 @@ pub enum Command {
         after_help = "Examples:\n  gdcm export flight.gdcm-study.json --as py --out corrections.py\n  gdcm export example-dataset.json --as state-space --condition 3 --out models.mat"
     )]
     Export(Box<ExportArguments>),
-    /// Make a dataset of a folder of model files: MATLAB, NumPy, JSON, text. Without rules, propose them and list the missing items.
+    /// Make a dataset from a folder with model files: MATLAB, NumPy, JSON, text. Without rules, propose them and list the missing items.
     #[command(
         after_help = "Examples:\n  gdcm assemble models --out dataset.json.gz\n  gdcm assemble models --rules dataset.gdcm-rules.json --out dataset.json.gz --force"
     )]

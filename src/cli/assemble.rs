@@ -1,4 +1,4 @@
-//! `gdcm assemble`: a dataset made of model files.
+//! `gdcm assemble`: a dataset made from model files.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -78,8 +78,8 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     }
 }
 
-/// Reads the models, and applies the rules of the file, or else proposed rules, with the
-/// declarations of the command line.
+/// Reads the models, and applies the file's rules, or else proposed rules, with the
+/// declarations on the command line.
 fn assembled_models(arguments: &AssembleArguments) -> Result<Assembly, Failure> {
     let given = match &arguments.rules {
         Some(path) => Some(rules_of_file(path)?),
@@ -121,7 +121,7 @@ fn report_missing_references(dataset: &Dataset) {
     }
 }
 
-/// Rejects duplicate declarations for a channel of the same models.
+/// Rejects duplicate declarations for a channel in the same models.
 fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
     let mut signs = BTreeSet::new();
     for FileValue { channel, scope, .. } in &arguments.sign {
@@ -149,7 +149,7 @@ fn converted_already(option: &'static str, channel: &str, scope: &FileScope) -> 
     Failure::option(option, reason)
 }
 
-/// Adds the units, factors and signs of the command line to the rules.
+/// Adds the units, factors and signs on the command line to the rules.
 fn declare(
     arguments: &AssembleArguments,
     models: &[FoundModel],
@@ -182,7 +182,7 @@ fn declare(
     Ok(())
 }
 
-/// Adds a declaration to the rules of a single model, or to the rules of a scope.
+/// Adds a declaration to a single model's rules, or to a scope's.
 fn declare_for_scope(
     scope: &FileScope,
     declared: &ChannelDeclarations,
@@ -230,7 +230,7 @@ fn check_declared<T>(
     Ok(())
 }
 
-/// Returns the proposed name of a dataset: that of the first folder.
+/// Returns a dataset's proposed name: the first folder's.
 fn dataset_name(folders: &[PathBuf]) -> String {
     match folders.first().and_then(|folder| folder.file_name()) {
         Some(name) => name.to_string_lossy().into_owned(),

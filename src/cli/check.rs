@@ -27,7 +27,7 @@ use super::summary::doubt_words;
 use super::terminal::{error, print};
 use super::text::{ConditionMessage, indented, line, shared_messages, with_conditions};
 
-/// Prints the contents of a dataset or a study.
+/// Prints the contents of a dataset or study.
 pub(super) fn check(
     file: &Path,
     arguments: &OpeningArguments,
@@ -53,13 +53,13 @@ pub(super) fn check(
     print(&(decided + &contents(&loaded) + &model_cautions(&study)?))
 }
 
-/// Returns whether an error concerns the content of a dataset, which may have further faults; a
+/// Returns whether an error concerns a dataset's content, which may have further faults; a
 /// syntax error is the only one reported.
 fn has_several_faults(error: &FileError) -> bool {
     matches!(error, FileError::Content { fault, .. } if matches!(**fault, ContentFault::Dataset(_)))
 }
 
-/// Reports every fault of a dataset; returns the single fault itself, or a failure with their
+/// Reports every fault in a dataset; returns a single fault itself, or a failure with their
 /// number.
 fn report_faults(file: &Path, first: FileError) -> Failure {
     match dataset_faults(file) {
@@ -77,7 +77,7 @@ fn report_faults(file: &Path, first: FileError) -> Failure {
     }
 }
 
-/// Returns the contents of a dataset: its header, conditions, timings, records and cautions.
+/// Returns the dataset's contents: its header, conditions, timings, records and cautions.
 fn contents(loaded: &LoadedDataset) -> String {
     let dataset = &loaded.dataset;
     let band = format!(
@@ -116,7 +116,7 @@ fn on_axis_words(dataset: &Dataset) -> String {
     }
 }
 
-/// Returns the cautions of an analysis that concern the models alone. Missing references come
+/// Returns an analysis's cautions about the models alone. Missing references come
 /// first, then signs and units, because other cautions may follow from them.
 fn model_cautions(study: &Study) -> Result<String, Failure> {
     let execution = Execution::new(&crate::executor::Pool, &Unobserved, 0);
@@ -225,7 +225,7 @@ fn timings(dataset: &Dataset) -> String {
     text
 }
 
-/// Returns the flight records of each condition: their number, manoeuvres and use.
+/// Returns each condition's flight records: their number, manoeuvres and use.
 fn records(dataset: &Dataset) -> String {
     let mut text = String::new();
     for condition in dataset.conditions() {
@@ -257,7 +257,7 @@ fn record_words(records: &[ConditionRecord]) -> String {
     words.join(", ")
 }
 
-/// Returns the numbers of states of the models: "39", "11-14", "measured", "12, measured".
+/// Returns the models' state counts: "39", "11-14", "measured", "12, measured".
 fn order_words(models: &[Model]) -> String {
     let mut orders: Vec<usize> = Vec::new();
     for model in models {

@@ -1,4 +1,4 @@
-//! `gdcm convert`: models of any supported format as JSON.
+//! `gdcm convert`: models in any supported format as JSON.
 
 use gdcm_io::files::model_collection::add_models;
 use gdcm_io::output_set::OutputSet;

@@ -58,7 +58,7 @@ impl Destination {
         }))
     }
 
-    /// Groups the records by condition, in the order of the dataset; reports omitted records on
+    /// Groups the records by condition, in the dataset's order; reports omitted records on
     /// standard error.
     pub(super) fn groups(&self, records: Vec<LaidOutRecord>) -> Result<Vec<RecordGroup>, Failure> {
         match self.condition {
@@ -160,7 +160,7 @@ fn group_for_condition(
     })
 }
 
-/// Returns the conditions in the names of records, as "3, 7".
+/// Returns the conditions in record names, as "3, 7".
 pub(super) fn named_conditions(records: &[LaidOutRecord]) -> String {
     let named: BTreeSet<i64> = records
         .iter()
@@ -198,7 +198,7 @@ fn moved_dataset(
     Dataset::new(header, conditions).map_err(|error| Failure::option(OPTION, error))
 }
 
-/// Returns the path of a file through another folder; an absolute path stays.
+/// Returns a file's path through another folder; an absolute path stays.
 fn moved_file(file: &str, folder: &str) -> String {
     if folder.is_empty() || folder == "." || Path::new(file).is_absolute() {
         file.to_owned()

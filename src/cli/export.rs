@@ -49,7 +49,7 @@ pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     print(&text)
 }
 
-/// Returns the name of an export: the file of the study or of the dataset.
+/// Returns an export's name: the study's or the dataset's file.
 fn source_name(arguments: &StudyArguments) -> String {
     let file = arguments.file.as_ref().and_then(|file| file.file_name());
     match file {

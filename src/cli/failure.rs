@@ -1,4 +1,4 @@
-//! Failures of the commands, with their codes and exit statuses.
+//! Command failures, with their codes and exit statuses.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use gdcm_model::progress::Cancelled;
 
 use super::text::{counted, listed_paths};
 
-/// Exit status if the analysis could not be done.
+/// Exit status without a result.
 pub(super) const NOT_DONE: u8 = 1;
 /// Exit status if the command line or a file is wrong.
 pub(super) const WRONG_INPUT: u8 = 2;
@@ -68,7 +68,7 @@ pub(super) enum Failure {
     StandardOutput { reason: String },
 }
 
-/// Returns the option that helps against an error of a file, to follow its message.
+/// Returns the option that helps against a file's error, to follow its message.
 fn file_remedy(error: &FileError) -> &'static str {
     match error {
         FileError::Exists { .. } => "; --force overwrites",
@@ -93,7 +93,7 @@ impl Failure {
         }
     }
 
-    /// Returns the stable code for scripts; `None` for an error of a file without a code.
+    /// Returns the stable code for scripts; `None` for a file's error without a code.
     pub(super) fn code(&self) -> Option<&'static str> {
         let code = match self {
             Failure::File(error) => return error.code(),

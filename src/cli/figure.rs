@@ -90,7 +90,7 @@ fn assessed_couplings(
     }
 }
 
-/// Draws the figure of a condition from the curves that the window shows.
+/// Draws a condition's figure from the curves that the window shows.
 fn figure_of_condition(
     request: &FigureRequest,
     analysis: &Analysis,
@@ -217,7 +217,7 @@ fn named_channel(dataset: &Dataset, name: &str) -> Result<Channel, Failure> {
         })
 }
 
-/// Returns the condition of a figure that shows a single condition.
+/// Returns the condition for a figure that shows a single condition.
 fn figure_condition(
     study: &Study,
     arguments: &FigureArguments,

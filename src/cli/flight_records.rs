@@ -202,8 +202,7 @@ impl RecordLayouts<'_> {
 }
 
 impl Reported {
-    /// Reports notes of a record: records of a flight are alike, and equal choices are reported
-    /// once.
+    /// Reports a record's notes: a flight's records are alike, and equal choices are reported once.
     fn add_notes(&mut self, name: &str, notes: Vec<String>) {
         if notes == self.last_notes {
             return;
@@ -216,7 +215,7 @@ impl Reported {
         self.last_notes = notes;
     }
 
-    /// Reports the problems of a record, unless they are those of the previous record.
+    /// Reports a record's problems, unless the previous record had the same.
     fn add_problems(&mut self, record: &LaidOutRecord) {
         let problems: Vec<String> = record.problems.iter().map(ToString::to_string).collect();
         if problems == self.last_problems {
@@ -342,7 +341,7 @@ pub(super) fn record_table(records: &[LaidOutRecord], indent: usize) -> String {
     indented(&table, indent)
 }
 
-/// Clock of a record as used: with topics resampled and parts cut.
+/// Record clock as used: with topics resampled and parts cut.
 struct RecordClock {
     samples: usize,
     /// Median step \[s\]; NaN if unknown.

@@ -1,4 +1,4 @@
-//! Models read from files and folders of any supported format.
+//! Models read from files and folders in any supported format.
 
 use std::path::PathBuf;
 
@@ -25,7 +25,7 @@ pub(super) fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<Fou
     Ok(found)
 }
 
-/// Returns the headings of the command line, for every table with the same number of columns.
+/// Returns the headings on the command line, for every table with as many columns.
 pub(super) fn given_headings(headings: &[String]) -> Headings {
     if headings.is_empty() {
         return Headings::new();

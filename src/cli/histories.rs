@@ -20,7 +20,7 @@ use super::result_arguments::HistoryArguments;
 use super::terminal::{caution, note};
 use crate::executor::Pool;
 
-/// The records of each condition.
+/// Each condition's records.
 #[derive(Default)]
 pub(super) struct ReadHistories {
     pub(super) conditions: Vec<HistoryRecords>,
@@ -29,7 +29,7 @@ pub(super) struct ReadHistories {
 }
 
 impl ReadHistories {
-    /// Returns the outcome of a command that used these records: a failure if some were not read.
+    /// Returns the outcome for a command that used these records: a failure if some were not read.
     pub(super) fn into_outcome(self) -> Result<(), Failure> {
         if self.unread.is_empty() {
             return Ok(());
@@ -40,7 +40,7 @@ impl ReadHistories {
     }
 }
 
-/// Reads the records of each condition, with topics resampled to a clock for this band; reports
+/// Reads each condition's records, with topics resampled to a clock for this band; reports
 /// omitted records on standard error.
 pub(super) fn read_histories(
     arguments: &HistoryArguments,
@@ -95,7 +95,7 @@ pub(super) fn read_histories(
     Ok(ReadHistories { conditions, unread })
 }
 
-/// Computes the responses of the models to the records, with progress on a terminal.
+/// Computes the models' responses to the records, with progress on a terminal.
 pub(super) fn simulated_histories(
     analysis: &Analysis,
     records: &ReadHistories,
@@ -149,7 +149,7 @@ fn laid_out_record(
     ConditionRecord { condition, record }
 }
 
-/// Reports the cautions and problems of a record, and why it is omitted.
+/// Reports a record's cautions and problems, and why it is omitted.
 fn report_record(laid_out: &ConditionRecord) {
     let record = &laid_out.record;
     let name = &record.table.name;

@@ -1,4 +1,4 @@
-//! An identification of models from flight records at a condition.
+//! Identifying models from flight records at a condition.
 
 use std::path::{Path, PathBuf};
 
@@ -24,7 +24,7 @@ use crate::executor::Pool;
 /// File of the identified models.
 pub(super) const IDENTIFIED_FILE: &str = "identified.json";
 
-/// An identification of models from a group of records.
+/// Identifying models from a group of records.
 pub(super) struct IdentificationTask {
     /// The condition in the dataset; `None` without a dataset.
     pub(super) condition: Option<ConditionId>,
@@ -155,7 +155,7 @@ impl IdentificationTask {
         }
     }
 
-    /// Returns the path of the identified models: one file for each condition if there are several.
+    /// Returns the path for the identified models: one file for each condition if there are several.
     pub(super) fn output_path(&self, arguments: &IdentifyArguments) -> PathBuf {
         match self.condition {
             Some(id) if arguments.every_condition => arguments

@@ -141,7 +141,7 @@ fn single_group(records: Vec<LaidOutRecord>) -> RecordGroup {
     }
 }
 
-/// Sets the preparation of the inputs with sample and hold, from a record that was not resampled:
+/// Prepares the inputs with sample and hold, from a record that was not resampled:
 /// resampling already shifts the time stamps.
 fn set_holds(preparation: &mut Preparation, records: &[LaidOutRecord], channels: &RecordChannels) {
     let as_logged = records
@@ -164,7 +164,7 @@ fn set_holds(preparation: &mut Preparation, records: &[LaidOutRecord], channels:
     }
 }
 
-/// A delay or factor for channels of single records.
+/// A delay or factor for channels in single records.
 struct RecordRemedy<'a> {
     option: &'static str,
     record: &'a str,
@@ -172,7 +172,7 @@ struct RecordRemedy<'a> {
     remedy: ChannelRemedy,
 }
 
-/// Returns the delays and factors for channels of single records.
+/// Returns the delays and factors for channels in single records.
 fn record_remedies(arguments: &IdentifyArguments) -> Vec<RecordRemedy<'_>> {
     let mut remedies = Vec::new();
     for delay in &arguments.delay {
@@ -204,7 +204,7 @@ fn record_remedies(arguments: &IdentifyArguments) -> Vec<RecordRemedy<'_>> {
     remedies
 }
 
-/// Applies the requested delays and factors to channels of single records; rejects duplicates.
+/// Applies the requested delays and factors to channels in single records; rejects duplicates.
 fn apply_record_remedies(
     arguments: &IdentifyArguments,
     records: &mut [LaidOutRecord],
@@ -258,7 +258,7 @@ struct Identifications<'a> {
     outputs: OutputSet,
     /// Printed lines about the results.
     lines: String,
-    /// Number of successful identifications.
+    /// Successful identifications.
     count: usize,
     /// Whether the records identify any input.
     identifies_input: bool,
@@ -296,7 +296,7 @@ impl Identifications<'_> {
         Ok(())
     }
 
-    /// Adds the result of a task to the outputs, and reports its facts.
+    /// Adds a task's result to the outputs, and reports its facts.
     fn take(
         &mut self,
         task: &IdentificationTask,
@@ -343,7 +343,7 @@ impl Identifications<'_> {
         Ok(())
     }
 
-    /// Returns the cautions of a task, and keeps those that are printed at the end: duplicates have
+    /// Returns a task's cautions, and keeps those that are printed at the end: duplicates have
     /// already been reported.
     fn cautions_of(
         &mut self,
@@ -364,7 +364,7 @@ impl Identifications<'_> {
         cautions
     }
 
-    /// Returns the channels of the models, without the references behind the inputs.
+    /// Returns the model channels, without the references behind the inputs.
     fn model_channels(&self) -> RecordChannels {
         let mut channels = self.channels.clone();
         let references = self.arguments.references().len();

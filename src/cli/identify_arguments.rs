@@ -1,4 +1,4 @@
-//! Options of `gdcm identify`.
+//! Options for `gdcm identify`.
 
 use std::path::PathBuf;
 
@@ -20,13 +20,13 @@ pub struct IdentifyArguments {
     /// Flight records at one condition, or with --every-condition at many: files, or folders with their subfolders (text, MATLAB, NumPy, JSON, zip; logs of PX4, ArduPilot and Betaflight).
     #[arg(value_name = "RECORD", required = true)]
     pub records: Vec<PathBuf>,
-    /// Inputs, separated by commas (LON,LAT), each as CHANNEL, CHANNEL[UNIT] or CHANNEL=COLUMN (the column's name, quoted if it has a comma, or #3 for the third column) [default: those of the dataset].
+    /// Inputs, separated by commas (LON,LAT), each as CHANNEL, if needed with its unit in square brackets, or CHANNEL=COLUMN (the column's name, quoted if it has a comma, or #3 for the third column) [default: the dataset's].
     #[arg(long, value_name = "NAMES", required_unless_present = "into")]
     pub inputs: Option<ChannelList>,
     /// Outputs, written like inputs.
     #[arg(long, value_name = "NAMES", required_unless_present = "into")]
     pub outputs: Option<ChannelList>,
-    /// Band to identify, in rad/s [default: that of the dataset].
+    /// Band to identify, in rad/s [default: the dataset's].
     #[arg(
         long,
         num_args = 2,
@@ -39,7 +39,7 @@ pub struct IdentifyArguments {
     /// Time column [default: recognised by its name and values].
     #[arg(long, value_name = "NAME")]
     pub time: Option<String>,
-    /// Location of a channel: its topic and field (TOPIC.FIELD), or its column; may be repeated.
+    /// Channel location: its topic and field (TOPIC.FIELD), or its column; may be repeated.
     #[arg(long, value_name = "CHANNEL=TOPIC.FIELD", value_parser = channel_topic)]
     pub topic: Vec<ChannelValue<String>>,
     /// Sample rate for all records, with the same low-pass filter for every channel; by default only topics with clocks of their own are resampled, at a rate that suits the band.
@@ -51,19 +51,19 @@ pub struct IdentifyArguments {
     /// Use only the part of each record from A to B seconds on its own clock, or +A:+B from its start, or of one record (RECORD:A:B); may be repeated, and --hold-out A:B holds out a part.
     #[arg(long, value_name = "A:B", value_parser = record_part, allow_hyphen_values = true)]
     pub part: Vec<RecordPart>,
-    /// Sample rate of records without a time column.
+    /// Sample rate for records without a time column.
     #[arg(long, value_name = "HZ", value_parser = real_number, conflicts_with = "time", allow_negative_numbers = true)]
     pub sample_rate: Option<f64>,
     /// Record for validation, excluded from identification: its file or its name; may be repeated [default: records whose names say so].
     #[arg(long, value_name = "FILE")]
     pub hold_out: Vec<String>,
-    /// Known delay of a channel in seconds, positive if it is logged late; in one record as RECORD:CHANNEL=SECONDS; may be repeated.
+    /// Known channel delay in seconds, positive if it is logged late; in one record as RECORD:CHANNEL=SECONDS; may be repeated.
     #[arg(long, value_name = "CHANNEL=SECONDS", value_parser = channel_delay, allow_hyphen_values = true)]
     pub delay: Vec<ChannelValue<f64>>,
     /// Recorded references that drove the loop from outside (a chirp, a position reference), written like inputs: gusts fed back into the inputs no longer bias the response.
     #[arg(long, value_name = "NAMES")]
     pub reference: Option<ChannelList>,
-    /// Order of the model [default: the orders that the records support]; may be repeated.
+    /// Model order [default: the orders that the records support]; may be repeated.
     #[arg(long, value_name = "N", value_parser = whole_number::<1, 60>)]
     pub order: Vec<usize>,
     /// Past window: number of Laguerre projections that predict the next [default: those that the records support]; may be repeated.
@@ -81,7 +81,7 @@ pub struct IdentifyArguments {
     /// Dataset to add the models to; the new dataset is written beside identified.json.
     #[arg(long, value_name = "DATASET", requires = "where")]
     pub into: Option<PathBuf>,
-    /// Condition of the dataset, by its id.
+    /// Condition in the dataset, by its id.
     #[arg(
         long,
         value_name = "ID",
@@ -102,7 +102,7 @@ pub struct IdentifyArguments {
         requires = "into"
     )]
     pub take: OfferedChoice,
-    /// Description of the new dataset [default: unchanged].
+    /// Description for the new dataset [default: unchanged].
     #[arg(long, value_name = "TEXT", requires = "into")]
     pub description: Option<String>,
     /// Directory for identified.json (identified-condition-ID.json with --every-condition), created if missing.

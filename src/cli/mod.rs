@@ -105,7 +105,7 @@ fn has_argument(arguments: &[OsString], option: &str) -> bool {
 }
 
 /// Removes `--json` and `--quiet` before the command and returns the requested output: the parser
-/// refuses a command behind any option, as it must behind the file of the window. The first
+/// refuses a command behind any option, as it must behind the window's file. The first
 /// element of `arguments` is the program.
 fn take_leading_switches(arguments: &mut Vec<OsString>) -> OutputFormat {
     let mut output = OutputFormat::default();
@@ -138,7 +138,7 @@ fn with_values_joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsSt
     joined
 }
 
-/// Returns whether an argument is a word that an option with a variable number of values takes.
+/// Returns whether an argument is a word for an option with a variable number of values.
 fn is_value_of(argument: &OsStr, option: &OsStr) -> bool {
     let Some(setting) = SETTINGS.iter().find(|setting| option == setting.option) else {
         return false;

@@ -1,4 +1,4 @@
-//! Options of `gdcm assemble` and `gdcm convert`.
+//! Options for `gdcm assemble` and `gdcm convert`.
 
 use std::path::PathBuf;
 
@@ -19,10 +19,10 @@ pub struct AssembleArguments {
     /// Column headings for tables without headings, separated by commas: `omega [rad/s],mag [dB],phase [deg]`.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub headings: Vec<String>,
-    /// Sign of a channel, if its name does not give it: CHANNEL=-1 (the identified models), CHANNEL=-1:physics, CHANNEL=-1:all, CHANNEL=-1:FILE (a model, or the folders of a pattern as flight_*); may be repeated.
+    /// Channel sign, if its name does not give it: CHANNEL=-1 (the identified models), CHANNEL=-1:physics, CHANNEL=-1:all, CHANNEL=-1:FILE (a model, or the folders of a pattern as flight_*); may be repeated.
     #[arg(long, value_name = "CHANNEL=SIGN[:OF]", value_parser = file_sign, allow_hyphen_values = true)]
     pub sign: Vec<FileValue<f64>>,
-    /// Unit of a channel, which overrides the files, with models chosen as for --sign: LON=in, LON=in:physics; may be repeated.
+    /// Channel unit, which overrides the files, with models chosen as for --sign: LON=in, LON=in:physics; may be repeated.
     #[arg(long, value_name = "CHANNEL=UNIT[:OF]", value_parser = file_unit)]
     pub unit: Vec<FileValue<String>>,
     /// Factor from a channel to the dataset's unit, negative for the opposite sign, with models chosen as for --sign: LON=8, NZ=-9.81:all; may be repeated.

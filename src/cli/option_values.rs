@@ -1,4 +1,4 @@
-//! Values of options: numbers, named values, responses, rejected models and parts of records.
+//! Option values: numbers, named values, responses, rejected models and parts of records.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
@@ -47,7 +47,7 @@ pub(super) fn positive_rate(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Airspeeds of a lookup table \[kt\], rising.
+/// Lookup-table airspeeds \[kt\], rising.
 pub type Breakpoints = Vec<f64>;
 
 pub(super) fn breakpoints(text: &str) -> Result<Breakpoints, String> {
@@ -95,7 +95,7 @@ fn pair_name(text: &str) -> Result<PairName, String> {
     }
 }
 
-/// Choice of responses for a figure.
+/// Responses for a figure.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PairChoice {
     OnAxis,
@@ -133,7 +133,7 @@ pub(super) fn rejection(text: &str) -> Result<Rejection, String> {
 /// A part of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordPart {
-    /// Name of the record; `None` for all records with samples at that time.
+    /// Record name; `None` for all records with samples at that time.
     pub record: Option<String>,
     /// First and last time \[s\].
     pub part_s: [f64; 2],

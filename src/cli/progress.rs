@@ -1,4 +1,4 @@
-//! Progress of long work on a terminal, and its interruption by Ctrl+C.
+//! Progress on a terminal, and its interruption by Ctrl+C.
 
 #[cfg(unix)]
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,7 +14,7 @@ use gdcm_model::progress::Progress;
 
 use super::terminal::shows_progress;
 
-/// Returns the target of progress bars: hidden if standard error is no terminal or only results are
+/// Returns the progress bars' target: hidden if standard error is no terminal or only results are
 /// requested.
 fn progress_target() -> ProgressDrawTarget {
     if shows_progress() {
@@ -24,7 +24,7 @@ fn progress_target() -> ProgressDrawTarget {
     }
 }
 
-/// Progress of reading files, shown on a terminal only.
+/// Reading progress, shown on a terminal only.
 pub(super) struct ReadingProgress {
     bar: ProgressBar,
 }
@@ -59,7 +59,7 @@ const QUICK: Duration = Duration::from_millis(500);
 
 /// Progress bar on standard error, if that is a terminal, once the analysis takes longer than half
 /// a second. While it exists, Ctrl+C ends the work at its next step, with a message and the exit
-/// status of incomplete work.
+/// status for incomplete work.
 pub(super) struct TerminalProgress {
     bar: ProgressBar,
     started: Instant,
@@ -118,7 +118,7 @@ impl Progress for TerminalProgress {
 #[cfg(unix)]
 struct Interruptible;
 
-/// State of interruptions for the lifetime of the process.
+/// Interruptions during the process.
 #[cfg(unix)]
 struct Interruption {
     /// Whether an interruption occurred.
@@ -162,12 +162,12 @@ impl Drop for Interruptible {
     }
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
 mod tests {
-    use super::*;
-
+    #[cfg(unix)]
     #[test]
     fn an_interruption_stops_work_that_reports_its_progress_and_does_not_end_the_process() {
+        use super::{INTERRUPTION, Ordering, Progress, TerminalProgress};
         let progress = TerminalProgress::new("waiting");
         assert!(!progress.cancelled());
         signal_hook::low_level::raise(signal_hook::consts::SIGINT).unwrap();

@@ -1,4 +1,4 @@
-//! Parts of flight records, chosen by time (`--part`).
+//! Flight-record parts, chosen by time (`--part`).
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use gdcm_sysid::records::{LaidOutRecord, RecordSource, RecordTable};
 use super::failure::Failure;
 use super::option_values::RecordPart;
 
-/// A record of which a part was requested.
+/// A record with a requested part.
 pub(super) struct WholeRecord {
     name: String,
     source: RecordSource,
@@ -43,7 +43,7 @@ pub(super) struct CutRecords {
     pub(super) wholes: Vec<WholeRecord>,
 }
 
-/// Cuts the requested parts out of the records. A record with unclear columns replaces its parts,
+/// Cuts the requested parts from the records. A record with unclear columns replaces its parts,
 /// so that its problems are reported.
 pub(super) fn cut_parts(
     tables: &[RecordTable],
@@ -75,7 +75,7 @@ pub(super) fn cut_parts(
 }
 
 impl CutRecords {
-    /// Adds a part of a record, or the whole record once if its columns are unclear.
+    /// Adds a record's part, or the whole record once if its columns are unclear.
     fn add(
         &mut self,
         table: &RecordTable,
@@ -103,7 +103,7 @@ impl CutRecords {
     }
 }
 
-/// Returns whether a record is a requested part of a record with the requested name; a record with
+/// Returns whether a record is a requested part from the requested record; a record with
 /// unclear columns counts as every part.
 pub(super) fn is_part(table: &RecordTable, part: &RecordPart, wholes: &[WholeRecord]) -> bool {
     if let Some(record) = &part.record
@@ -137,9 +137,9 @@ fn is_called_before_part(table: &RecordTable, wanted: &str) -> bool {
     table.part_s.is_some() && rest.is_some_and(|rest| rest.starts_with(", "))
 }
 
-/// Returns the failure for a part without samples, with the spans of the records.
+/// Returns the failure for a part without samples, with the records' spans.
 pub(super) fn part_without_samples(part: &RecordPart, wholes: &[WholeRecord]) -> Failure {
-    /// Maximum number of records whose spans are listed.
+    /// Maximum count of listed spans.
     const MOST: usize = 4;
     let spans: Vec<String> = wholes
         .iter()

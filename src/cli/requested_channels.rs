@@ -11,7 +11,7 @@ use super::channel_values::{ChannelValue, RecordChannel, first_duplicate};
 use super::failure::Failure;
 use super::identify_arguments::IdentifyArguments;
 
-/// Returns the identification band; by default that of the dataset.
+/// Returns the identification band, by default the dataset's.
 pub(super) fn requested_band(
     arguments: &IdentifyArguments,
     dataset: Option<&Dataset>,
@@ -73,7 +73,7 @@ fn listed(list: &Option<ChannelList>) -> &[SaidChannel] {
     }
 }
 
-/// Returns the channels of the command line, in the units of the first record.
+/// Returns the channels on the command line, in the first record's units.
 fn named_channels(arguments: &IdentifyArguments) -> RecordChannels {
     let inputs = listed(&arguments.inputs).iter();
     let outputs = listed(&arguments.outputs).iter();
@@ -84,7 +84,7 @@ fn named_channels(arguments: &IdentifyArguments) -> RecordChannels {
     }
 }
 
-/// Returns the channels of the dataset, in its units, with the columns of the command line.
+/// Returns the dataset's channels, in its units, with the columns on the command line.
 fn channels_of_dataset(
     arguments: &IdentifyArguments,
     dataset: &Dataset,
@@ -99,7 +99,7 @@ fn channels_of_dataset(
     Ok(channels)
 }
 
-/// Sets the column of a channel that the dataset has; rejects another unit.
+/// Sets a channel's column in the dataset; rejects another unit.
 fn set_column(
     option: &'static str,
     channel: &SaidChannel,
@@ -131,7 +131,7 @@ fn set_column(
     Ok(())
 }
 
-/// Adds the references behind the inputs of the model, because they are read like inputs.
+/// Adds the references behind the model's inputs, because they are read like inputs.
 fn add_references(
     arguments: &IdentifyArguments,
     channels: &mut RecordChannels,
@@ -181,7 +181,7 @@ fn check_held(arguments: &IdentifyArguments, channels: &RecordChannels) -> Resul
     Ok(())
 }
 
-/// Returns the preparation of the channels, which removes their known delays.
+/// Returns the channel preparation, which removes known delays.
 pub(super) fn requested_preparation(
     arguments: &IdentifyArguments,
     channels: &RecordChannels,
@@ -203,7 +203,7 @@ pub(super) fn requested_preparation(
     })
 }
 
-/// Returns the preparations that remove the known delays of channels.
+/// Returns the channel preparations that remove known delays.
 fn without_delays(rules: &[ChannelRule], delays: &[&ChannelValue<f64>]) -> Vec<ChannelPreparation> {
     let mut prepared = Vec::new();
     for rule in rules {
@@ -233,7 +233,7 @@ pub(super) fn given_twice(option: &'static str, channel: &str) -> Failure {
     Failure::option(option, format!("{channel} is given twice"))
 }
 
-/// Applies the declarations of an option to the channels; rejects duplicates.
+/// Applies an option's declarations to the channels; rejects duplicates.
 pub(super) fn declare_conversions<'a, T: Clone + 'a>(
     option: &'static str,
     declarations: impl IntoIterator<Item = &'a ChannelValue<T>>,

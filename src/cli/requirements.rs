@@ -24,7 +24,7 @@ use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study
 use super::terminal::{caution_for, note, print};
 use super::text::{ConditionMessage, counted, indented, indented_untitled, line, shared_messages};
 
-/// Writes the table of tolerances if requested; analyses, writes the requirements, and prints a
+/// Writes the tolerance table if requested; analyses, writes the requirements, and prints a
 /// short table.
 pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Failure> {
     let CommandStudy {
@@ -69,7 +69,7 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     records.into_outcome()
 }
 
-/// Adds the file of tolerances, if requested, and returns a line about it.
+/// Adds the tolerance file, if requested, and returns a line about it.
 fn tolerance_line(
     arguments: &RequirementsArguments,
     study: &Study,
@@ -95,7 +95,7 @@ fn report_cautions(requirements: &Requirements) {
     }
 }
 
-/// Reports missing results, first those of no single condition. Missing records are not reported if
+/// Reports missing results, first those about the whole. Missing records are not reported if
 /// none were given.
 fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
     // Conditions without a result have already been reported.
@@ -125,7 +125,7 @@ fn cell(value: Option<f64>, digits: usize) -> String {
     }
 }
 
-/// Bandwidth results of a response, by role.
+/// A response's bandwidth results, by role.
 struct ResponseBandwidths<'a> {
     name: String,
     findings: &'a [BandwidthFinding],
@@ -198,7 +198,7 @@ fn absent_lines(label: &str, messages: Vec<ConditionMessage>) -> String {
     text
 }
 
-/// Reason why a number of a response is missing.
+/// Reason why a response's number is missing.
 struct AbsentReason<'a> {
     /// First result without the number for this reason.
     finding: &'a BandwidthFinding,
@@ -212,7 +212,7 @@ impl AbsentReason<'_> {
     }
 }
 
-/// Returns the reasons for missing numbers of a response, each once, with its roles unless it
+/// Returns the reasons for a response's missing numbers, each once, with its roles unless it
 /// applies to all.
 fn absent_reasons<'a>(response: &ResponseBandwidths<'a>, quantity: &str) -> Vec<AbsentReason<'a>> {
     let findings = response.findings;
@@ -283,7 +283,7 @@ fn above_mark(finding: &BandwidthFinding, quantity: &str) -> &'static str {
     }
 }
 
-/// Returns mean J and the share of the band inside the envelopes, on-axis, by role.
+/// Returns mean J and the band share inside the envelopes, on-axis, by role.
 fn summary_section(requirements: &Requirements) -> String {
     let roles = [
         RequirementRole::Physics,
@@ -347,7 +347,7 @@ fn verdict_counts(model: &str, verdicts: &[ModeVerdict]) -> String {
     format!("of {model} against identified: {}", counts.join(", "))
 }
 
-/// Returns the share of time inside the tolerances for models that leave them, by condition, and
+/// Returns the time share inside the tolerances for models that leave them, by condition, and
 /// the rms errors.
 fn history_section(histories: &TimeHistories) -> String {
     const HEADING: &str = "Time history";

@@ -1,4 +1,4 @@
-//! Options of the commands that write results of an analysis.
+//! Options for the commands that write results of an analysis.
 
 use std::path::PathBuf;
 
@@ -65,7 +65,7 @@ pub struct FigureArguments {
     /// Frequencies in Hz instead of rad/s.
     #[arg(long)]
     pub hertz: bool,
-    /// Model of each condition in airspeeds: nominal, representative, corrected or identified.
+    /// Each condition's model in airspeeds: nominal, representative, corrected or identified.
     #[arg(long, value_name = "MODEL", default_value = "nominal", value_parser = one_of(AcrossRole::ALL, AcrossRole::name))]
     pub model: AcrossRole,
     /// Response, OUTPUT/INPUT, whose zeros are added to the poles: those of the nominal model and of the representatives.
@@ -138,13 +138,13 @@ pub struct ExportArguments {
     /// Format to write.
     #[arg(long = "as", value_name = "FORMAT", value_parser = export_formats())]
     pub format: ExportFormat,
-    /// Airspeeds of a lookup table, in kt, rising, separated by commas (40,60,80) [default: those of the scheduled conditions].
+    /// Lookup-table airspeeds, in kt, rising, separated by commas (40,60,80) [default: those of the scheduled conditions].
     #[arg(long, value_name = "AIRSPEEDS", value_parser = breakpoints, allow_negative_numbers = true)]
     pub breakpoints: Option<Breakpoints>,
     /// Condition, by its id, whose corrected model is written [default: all].
     #[arg(long, value_name = "ID", allow_negative_numbers = true)]
     pub condition: Option<i64>,
-    /// Physics model of the condition: nominal, representative, or the name of a model [default: nominal].
+    /// Physics model: nominal, representative, or the name of a model [default: nominal].
     #[arg(long, value_name = "MODEL", allow_hyphen_values = true)]
     pub model: Option<String>,
     /// Correction of the models: scheduled, or each condition's own [default: scheduled].

@@ -21,8 +21,7 @@ pub(super) fn shown_pairs(study: &Study) -> Vec<Pair> {
     shown.marked().collect()
 }
 
-/// Returns the usual assessment of a correction: of the nominal models, with the average of the
-/// study.
+/// Returns a correction's usual assessment: for the nominal models, with the study's average.
 pub(super) fn nominal_choice(
     analysis: &Analysis,
     correction: AssessedCorrection,
@@ -63,7 +62,7 @@ pub(super) fn schedule_section(analysis: &Analysis) -> String {
     text
 }
 
-/// Returns kind, range and second variable of the schedule.
+/// Returns the schedule's kind, range and second variable.
 fn schedule_words(schedule: &Schedule) -> String {
     let quantity = match schedule.settings.quantity {
         ScheduledQuantity::LnGain => "ln k",
@@ -86,7 +85,7 @@ fn schedule_words(schedule: &Schedule) -> String {
     words
 }
 
-/// Quantity of a scheduled response.
+/// Scheduled quantity.
 #[derive(Clone, Copy)]
 enum NetQuantity {
     Gain,
@@ -94,7 +93,7 @@ enum NetQuantity {
     Delay,
 }
 
-/// Returns a table of a scheduled quantity over airspeed.
+/// Returns a table with a scheduled quantity over airspeed.
 fn schedule_table(analysis: &Analysis, schedule: &Schedule, quantity: NetQuantity) -> String {
     /// Displayed airspeeds as fractions of the range: the ends, the middle, and the quarters.
     const SHOWN: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
@@ -120,7 +119,7 @@ fn schedule_table(analysis: &Analysis, schedule: &Schedule, quantity: NetQuantit
     indented(&table, 2)
 }
 
-/// Returns the sources of the scatter, the differences at equal airspeed, and the second variables;
+/// Returns the scatter's sources, the differences at equal airspeed, and the second variables;
 /// empty if the error bars were not computed.
 pub(super) fn evidence_section(analysis: &Analysis) -> String {
     let Some(uncertainty) = &analysis.uncertainty else {

@@ -10,14 +10,14 @@ use gdcm_study::{Analysis, ConditionAnalysis, Table};
 use super::terminal::keep_caution;
 use super::text::{ConditionMessage, indented, line, shared_messages};
 
-/// Repeated remarks of a condition.
+/// Repeated remarks about a condition.
 struct RemarkRow {
     condition: ConditionId,
     remarks: Vec<Remark>,
 }
 
 impl RemarkRow {
-    /// Returns the facts of the remarks.
+    /// Returns the facts in the remarks.
     fn facts(&self) -> impl Iterator<Item = &Repeated> {
         self.remarks
             .iter()
@@ -69,7 +69,7 @@ pub(super) fn cautions_section(analysis: &Analysis) -> String {
     text
 }
 
-/// Returns the cautions of a condition, without the doubts about signs and units, which are printed
+/// Returns a condition's cautions, without the doubts about signs and units, which are printed
 /// above all conditions.
 fn condition_cautions(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<Remark> {
     remarks(&analysis.study, result, None)
@@ -178,7 +178,7 @@ const NO_ENTRY: &str = "-";
 struct RemarkColumn {
     heading: &'static str,
     sentence: &'static str,
-    /// Returns the cell of a remark that belongs in the column.
+    /// Returns the cell for a remark that belongs in the column.
     format: fn(&Repeated, &Dataset) -> Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Options of every command that analyses a study.
+//! Options for every command that analyses a study.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ use super::option_values::{PairList, Rejection, pair_list, rejection};
 /// How a study is opened whose dataset has moved or changed.
 #[derive(Debug, Args)]
 pub struct OpeningArguments {
-    /// Dataset of the study, if it has moved.
+    /// The study's dataset, if it has moved.
     #[arg(long, value_name = "FILE")]
     pub dataset: Option<PathBuf>,
     /// End with status 2 if the dataset differs from the dataset that the study was made with.
@@ -29,10 +29,10 @@ pub struct GivenSetting {
     pub words: Vec<String>,
 }
 
-/// Options for the rows of the settings table.
+/// Options for the settings table.
 #[derive(Clone, Debug)]
 pub struct SettingOptions {
-    /// The given settings in the order of the table.
+    /// Given settings in the table's order.
     pub given: Vec<GivenSetting>,
 }
 
@@ -70,7 +70,7 @@ impl Args for SettingOptions {
     }
 }
 
-/// Returns the option of a setting, with its help and its number of values.
+/// Returns a setting's option, with its help and number of values.
 fn setting_option(setting: &'static Setting) -> Arg {
     let name = setting.option;
     let unit = match setting.unit.file {

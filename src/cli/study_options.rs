@@ -62,7 +62,7 @@ impl CommandStudy {
     }
 }
 
-/// Optional parts of an analysis.
+/// Whether an analysis computes error bars.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum ErrorBars {
     Computed,
@@ -131,7 +131,7 @@ fn report_failed_conditions(analysis: &Analysis) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns the condition with the id given by an option.
+/// Returns the condition with an option's id.
 pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Failure> {
     match dataset.condition(ConditionId(id)) {
         Some(condition) => Ok(condition.id()),
@@ -143,7 +143,7 @@ pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Fa
     }
 }
 
-/// Joins the ids of the conditions with commas.
+/// Joins the conditions' ids with commas.
 pub(super) fn condition_ids(dataset: &Dataset) -> String {
     let ids: Vec<String> = dataset
         .conditions()
@@ -282,7 +282,7 @@ pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<()
     Ok(())
 }
 
-/// Returns the responses listed in an option.
+/// Returns the responses that an option lists.
 pub(super) fn pairs_of(
     dataset: &Dataset,
     list: &[PairName],
@@ -303,7 +303,7 @@ pub(super) fn pairs_of(
     Ok(pairs)
 }
 
-/// Joins the names of channels with commas.
+/// Joins channel names with commas.
 pub(super) fn channel_names(channels: &[Channel]) -> String {
     let names: Vec<&str> = channels
         .iter()

@@ -123,7 +123,7 @@ fn held_words(analysis: &Analysis) -> String {
     }
 }
 
-/// Returns the meaning, benefit and cost of the couplings; empty without couplings.
+/// Returns the couplings' meaning, benefit and cost; empty without couplings.
 fn couplings_section(analysis: &Analysis) -> String {
     let remarks = analysis.coupling_remarks();
     if remarks.is_empty() {
@@ -171,7 +171,7 @@ fn assessment_lines(analysis: &Analysis) -> String {
     text
 }
 
-/// Returns the results of the schedule for the held-out conditions.
+/// Returns the schedule's results for the held-out conditions.
 fn held_out_line(analysis: &Analysis) -> String {
     let choice = nominal_choice(analysis, AssessedCorrection::Scheduled);
     match held_out_verdict(analysis, choice) {
@@ -180,7 +180,7 @@ fn held_out_line(analysis: &Analysis) -> String {
     }
 }
 
-/// Returns the section of a condition: representatives, rejections, the on-axis and constrained
+/// Returns a condition's section: representatives, rejections, the on-axis and constrained
 /// responses, and unmatched entries.
 fn condition_section(analysis: &Analysis, condition: &Condition) -> String {
     let state = condition.flight_state();
@@ -277,7 +277,7 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     table
 }
 
-/// Returns half the width of an error bar, relative for gains and in s for delays; `None` if the
+/// Returns half an error bar's width, relative for gains and in s for delays; `None` if the
 /// bars were not computed.
 fn bar_half_width(analysis: &Analysis, result: &ConditionAnalysis, scalar: Scalar) -> Option<f64> {
     let uncertainty = analysis.uncertainty.as_ref()?;
@@ -294,7 +294,7 @@ fn with_price_heading(columns: &[&str], price: Option<&LeadPrice>) -> Vec<String
     headings
 }
 
-/// Returns the gains and the delays or leads of the channels.
+/// Returns the channels' gains and delays or leads.
 fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let dataset = &analysis.study.dataset;
     let correction = &result.correction;
@@ -321,7 +321,7 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     detail_list("gains", &gains) + &detail_list("delays", &delays)
 }
 
-/// Returns a table of the gain and the delay or lead of each channel, with the servos that its
+/// Returns a table with each channel's gain and delay or lead, with the servos that its
 /// filter is equivalent to: as if the first were replaced by the second (M15).
 fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &ChannelLeads) -> Table {
     let columns = [

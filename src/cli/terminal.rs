@@ -1,4 +1,4 @@
-//! Output of the commands: results on standard output; notes, cautions and errors on standard
+//! Command output: results on standard output; notes, cautions and errors on standard
 //! error, or everything as one JSON object.
 
 use std::io::{ErrorKind, Write};
@@ -14,7 +14,7 @@ use gdcm_model::message_text::{sanitized, shortened_message};
 use super::failure::Failure;
 use super::text::with_conditions;
 
-/// Output format of a command.
+/// A command's output format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct OutputFormat {
     /// Omits notes.
@@ -36,14 +36,14 @@ struct Messages {
     notes: Vec<String>,
     cautions: Vec<Caution>,
     errors: Vec<String>,
-    /// Stable code of each error; null if it has none.
+    /// Stable code for each error; null without a code.
     error_codes: Vec<Option<&'static str>>,
 }
 
 /// A caution with its conditions; no conditions if it concerns the whole.
 #[derive(Debug, Serialize)]
 struct Caution {
-    /// Stable code of its subject, if it has one.
+    /// Stable code for its subject, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     code: Option<&'static str>,
     text: String,
@@ -70,7 +70,7 @@ fn messages() -> MutexGuard<'static, Messages> {
     MESSAGES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Sets the output format of the command.
+/// Sets the command's output format.
 pub(super) fn set_output(output: OutputFormat) {
     messages().output = output;
 }

@@ -6,13 +6,13 @@ use gdcm_model::dataset::ConditionId;
 use gdcm_model::message_text::{sanitized_path, shortened, shortened_message};
 use gdcm_study::Table;
 
-/// Maximum width of a page in columns.
+/// Maximum page width in columns.
 const PAGE_WIDTH: usize = 110;
 
-/// Width of the labels at the left of a section, in columns.
+/// Label width in columns.
 const LABEL_WIDTH: usize = 14;
 
-/// Indentation of the lines within a section, in columns.
+/// Indentation within a section, in columns.
 const DETAIL_INDENT: usize = 2;
 
 /// A label at the left of wrapped text.
@@ -71,7 +71,7 @@ impl<'a> Label<'a> {
     }
 }
 
-/// Returns text behind the label of a section.
+/// Returns text behind a section's label.
 pub(super) fn line(label: &str, words: &str) -> String {
     Label::of_section(label).before(words)
 }

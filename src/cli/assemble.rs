@@ -126,8 +126,8 @@ fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
     let mut signs = BTreeSet::new();
     for FileValue { channel, scope, .. } in &arguments.sign {
         if !signs.insert((channel, scope)) {
-            let reason = format!("{channel} of {scope} is given twice");
-            return Err(Failure::option("--sign", reason));
+            let subject = format!("{channel} of {scope}");
+            return Err(Failure::given_twice("--sign", &subject));
         }
     }
     let mut conversions = BTreeSet::new();
@@ -146,7 +146,7 @@ fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
 
 fn converted_already(option: &'static str, channel: &str, scope: &FileScope) -> Failure {
     let reason = format!("{channel} of {scope} has a unit or a factor already");
-    Failure::option(option, reason)
+    Failure::coded_option(option, "given-twice", reason)
 }
 
 /// Adds the units, factors and signs on the command line to the rules.
@@ -216,7 +216,7 @@ fn check_declared<T>(
             "the dataset has no channel {channel}; it has {}",
             names.join(", ")
         );
-        return Err(Failure::option(option, reason));
+        return Err(Failure::coded_option(option, "unknown-channel", reason));
     }
     let scope = &declaration.scope;
     if let FileScope::Files(pattern) = scope
@@ -225,7 +225,7 @@ fn check_declared<T>(
         let reason = format!(
             "{channel}: no model is in \"{pattern}\"; models are named as in the last column, file"
         );
-        return Err(Failure::option(option, reason));
+        return Err(Failure::coded_option(option, "unknown-model", reason));
     }
     Ok(())
 }

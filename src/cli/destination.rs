@@ -104,7 +104,11 @@ impl Destination {
                 "no name gives a condition of the dataset ({}), as cond03 does",
                 condition_ids(&self.dataset)
             );
-            return Err(Failure::option("--every-condition", reason));
+            return Err(Failure::coded_option(
+                "--every-condition",
+                "no-records",
+                reason,
+            ));
         }
         Ok(groups)
     }
@@ -152,7 +156,7 @@ fn group_for_condition(
         let reason = format!(
             "no record is left for condition {condition}; rename the records that belong to it"
         );
-        return Err(Failure::option("--condition", reason));
+        return Err(Failure::coded_option("--condition", "no-records", reason));
     }
     Ok(RecordGroup {
         condition: Some(condition),

@@ -99,7 +99,7 @@ fn check_options(arguments: &ExportArguments) -> Result<(), Failure> {
             .map(|exporter| exporter.name)
             .collect();
         let reason = format!("is an option of --as {}", names.join(" and "));
-        return Err(Failure::option(option, reason));
+        return Err(Failure::coded_option(option, "misplaced-option", reason));
     }
     Ok(())
 }

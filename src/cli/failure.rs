@@ -20,6 +20,7 @@ pub(super) enum Failure {
     #[error("{option}: {reason}")]
     Option {
         option: &'static str,
+        code: &'static str,
         reason: String,
     },
     /// The first word is neither a command nor a file, but resembles a command.
@@ -87,17 +88,38 @@ impl Failure {
 
     /// Returns the failure for a wrong option value.
     pub(super) fn option(option: &'static str, reason: impl ToString) -> Self {
+        Self::coded_option(option, "wrong-option", reason)
+    }
+
+    /// Returns the failure for a wrong option value with a code of its own.
+    pub(super) fn coded_option(
+        option: &'static str,
+        code: &'static str,
+        reason: impl ToString,
+    ) -> Self {
         Failure::Option {
             option,
+            code,
             reason: reason.to_string(),
         }
+    }
+
+    /// Returns the failure for an option that is given twice for the same subject.
+    pub(super) fn given_twice(option: &'static str, subject: &str) -> Self {
+        Self::coded_option(option, "given-twice", format!("{subject} is given twice"))
+    }
+
+    /// Returns the failure for an option with an unknown record.
+    pub(super) fn unknown_record(option: &'static str, record: &str) -> Self {
+        let reason = format!("\"{record}\" is none of the records");
+        Self::coded_option(option, "unknown-record", reason)
     }
 
     /// Returns the stable code for scripts; `None` for a file's error without a code.
     pub(super) fn code(&self) -> Option<&'static str> {
         let code = match self {
             Failure::File(error) => return error.code(),
-            Failure::Option { .. } => "wrong-option",
+            Failure::Option { code, .. } => code,
             Failure::UnknownCommand { .. } => "unknown-command",
             Failure::Different { .. } => "different-dataset",
             Failure::Faulty { .. } => "faulty-dataset",

@@ -213,7 +213,7 @@ fn named_channel(dataset: &Dataset, name: &str) -> Result<Channel, Failure> {
                 channel_names(dataset.inputs()),
                 channel_names(dataset.outputs())
             );
-            Failure::option("--channel", reason)
+            Failure::coded_option("--channel", "unknown-channel", reason)
         })
 }
 
@@ -233,7 +233,11 @@ fn figure_condition(
             arguments.view.name(),
             condition_ids(&study.dataset)
         );
-        return Err(Failure::option("--condition", reason));
+        return Err(Failure::coded_option(
+            "--condition",
+            "missing-condition",
+            reason,
+        ));
     };
     Ok(Some(condition_of(&study.dataset, id)?))
 }

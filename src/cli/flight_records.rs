@@ -291,7 +291,11 @@ pub(super) fn hold_out(
         if !is_found {
             let reason =
                 format!("\"{name}\" is none of the records; name its file as a record too");
-            return Err(Failure::option("--hold-out", reason));
+            return Err(Failure::coded_option(
+                "--hold-out",
+                "unknown-record",
+                reason,
+            ));
         }
     }
     Ok(())

@@ -229,8 +229,8 @@ fn apply_record_remedies(
             is_found = true;
             let key = (option, record.table.name.clone(), channel);
             if applied.contains(&key) {
-                let reason = format!("{channel} of {name} is given twice");
-                return Err(Failure::option(option, reason));
+                let subject = format!("{channel} of {name}");
+                return Err(Failure::given_twice(option, &subject));
             }
             applied.push(key);
             let mut layout = record.layout.clone();
@@ -241,8 +241,7 @@ fn apply_record_remedies(
             }
         }
         if !is_found {
-            let reason = format!("\"{name}\" is none of the records");
-            return Err(Failure::option(option, reason));
+            return Err(Failure::unknown_record(option, name));
         }
     }
     Ok(())

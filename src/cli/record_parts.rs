@@ -67,8 +67,7 @@ pub(super) fn cut_parts(
         }
         if !is_found {
             let record = part.record.as_deref().unwrap_or_default();
-            let reason = format!("\"{record}\" is none of the records");
-            return Err(Failure::option("--part", reason));
+            return Err(Failure::unknown_record("--part", record));
         }
     }
     Ok(cut)
@@ -166,5 +165,5 @@ pub(super) fn part_without_samples(part: &RecordPart, wholes: &[WholeRecord]) ->
             number(to)
         );
     }
-    Failure::option("--part", reason)
+    Failure::coded_option("--part", "no-samples", reason)
 }

@@ -112,7 +112,7 @@ fn set_column(
             "the dataset has no {name} there; it has {}",
             names.join(", ")
         );
-        return Err(Failure::option(option, reason));
+        return Err(Failure::coded_option(option, "unknown-channel", reason));
     };
     let rule = &mut rules[index];
     if !unit.is_empty() && *unit != rule.unit {
@@ -156,7 +156,7 @@ fn set_locations(
 ) -> Result<(), Failure> {
     const OPTION: &str = "--topic";
     if let Some(channel) = first_duplicate(&arguments.topic) {
-        return Err(given_twice(OPTION, channel));
+        return Err(Failure::given_twice(OPTION, channel));
     }
     for ChannelValue { channel, value } in &arguments.topic {
         let rule = channels
@@ -175,7 +175,7 @@ fn check_held(arguments: &IdentifyArguments, channels: &RecordChannels) -> Resul
     for held in &arguments.held {
         if channels.inputs.iter().all(|rule| rule.name != *held) {
             let reason = format!("{held} is none of the inputs");
-            return Err(Failure::option("--held", reason));
+            return Err(Failure::coded_option("--held", "unknown-channel", reason));
         }
     }
     Ok(())
@@ -194,7 +194,7 @@ pub(super) fn requested_preparation(
         }
     }
     if let Some(channel) = first_duplicate(delays.iter().copied()) {
-        return Err(given_twice(OPTION, channel));
+        return Err(Failure::given_twice(OPTION, channel));
     }
     Ok(Preparation {
         inputs: without_delays(&channels.inputs, &delays),
@@ -225,12 +225,8 @@ pub(super) fn has_channel(channels: &RecordChannels, name: &str) -> bool {
 
 /// Returns the failure for an option about an unknown channel.
 pub(super) fn unknown_channel(option: &'static str, channel: &str) -> Failure {
-    Failure::option(option, format!("{channel} is none of the channels"))
-}
-
-/// Returns the failure for several declarations about the same channel.
-pub(super) fn given_twice(option: &'static str, channel: &str) -> Failure {
-    Failure::option(option, format!("{channel} is given twice"))
+    let reason = format!("{channel} is none of the channels");
+    Failure::coded_option(option, "unknown-channel", reason)
 }
 
 /// Applies an option's declarations to the channels; rejects duplicates.
@@ -248,10 +244,8 @@ pub(super) fn declare_conversions<'a, T: Clone + 'a>(
             .said
             .insert(channel.clone(), conversion(value.clone()));
         if known.is_some() {
-            return Err(Failure::option(
-                option,
-                format!("{channel} has a unit or a factor already"),
-            ));
+            let reason = format!("{channel} has a unit or a factor already");
+            return Err(Failure::coded_option(option, "given-twice", reason));
         }
     }
     Ok(())

@@ -138,7 +138,11 @@ pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Fa
         None => {
             let ids = condition_ids(dataset);
             let reason = format!("the dataset has no condition {id}; it has {ids}");
-            Err(Failure::option("--condition", reason))
+            Err(Failure::coded_option(
+                "--condition",
+                "unknown-condition",
+                reason,
+            ))
         }
     }
 }
@@ -199,7 +203,11 @@ fn apply_requirements(study: &mut Study, arguments: &StudyArguments) -> Result<(
                 "expected one of {}, found {name}",
                 outputs.join(", ")
             ));
-            return Err(Failure::option("--attitude-command", reason));
+            return Err(Failure::coded_option(
+                "--attitude-command",
+                "unknown-channel",
+                reason,
+            ));
         }
         settings.attitude_command.insert(name.clone());
     }
@@ -250,15 +258,18 @@ fn check_second_variable(study: &Study) -> Result<(), Failure> {
         variable.unit(),
         listed_conditions(&lacking)
     );
-    Err(Failure::option("--second-variable", reason))
+    Err(Failure::coded_option(
+        "--second-variable",
+        "missing-variable",
+        reason,
+    ))
 }
 
 /// Inverts the channels whose signs an option declares, or restores them.
 pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<(), Failure> {
     const OPTION: &str = "--sign";
     if let Some(channel) = first_duplicate(signs) {
-        let reason = sanitized(&format!("{channel} is given twice"));
-        return Err(Failure::option(OPTION, reason));
+        return Err(Failure::given_twice(OPTION, &sanitized(channel)));
     }
     for ChannelValue {
         channel: name,
@@ -275,7 +286,7 @@ pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<()
             let reason = sanitized(&format!(
                 "expected one of {known}; {count} channels are called {name}"
             ));
-            return Err(Failure::option(OPTION, reason));
+            return Err(Failure::coded_option(OPTION, "unknown-channel", reason));
         };
         apply(study, OPTION, &Edit::SetSign { channel, of: *role })?;
     }
@@ -296,7 +307,7 @@ pub(super) fn pairs_of(
                 channel_names(dataset.outputs()),
                 channel_names(dataset.inputs())
             );
-            Failure::option(option, reason)
+            Failure::coded_option(option, "unknown-response", reason)
         })?;
         pairs.push(pair);
     }
@@ -329,23 +340,28 @@ fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
     let name = rejection.model.as_str();
     let Some(condition) = study.dataset.condition(id) else {
         let reason = format!("the dataset has no condition {id}");
-        return Err(Failure::option(OPTION, reason));
+        return Err(Failure::coded_option(OPTION, "unknown-condition", reason));
     };
     let bundles: Vec<BundleKind> = BundleKind::BOTH
         .into_iter()
         .filter(|bundle| condition.position(*bundle, name).is_some())
         .collect();
-    let reason = match bundles[..] {
+    match bundles[..] {
         [bundle] => {
             let model = ModelId::new(id, bundle, name);
-            return apply(study, OPTION, &Edit::Reject(model));
+            apply(study, OPTION, &Edit::Reject(model))
         }
-        [] => format!("condition {id} has no model \"{name}\""),
-        _ => format!(
-            "\"{name}\" is both a physics and an identified model of condition {id}; use a study"
-        ),
-    };
-    Err(Failure::option(OPTION, reason))
+        [] => {
+            let reason = format!("condition {id} has no model \"{name}\"");
+            Err(Failure::coded_option(OPTION, "unknown-model", reason))
+        }
+        _ => {
+            let reason = format!(
+                "\"{name}\" is both a physics and an identified model of condition {id}; use a study"
+            );
+            Err(Failure::coded_option(OPTION, "ambiguous-model", reason))
+        }
+    }
 }
 
 /// Rejects the suggested outliers; returns whether anything changed.

@@ -27,7 +27,7 @@ pub(super) enum Failure {
     #[error("{found}: no such command or file; did you mean gdcm {suggestion}?")]
     UnknownCommand { found: String, suggestion: String },
     /// The study's dataset differs from the dataset that the study was made with.
-    #[error("{path}: {count} differences from the dataset of the study, refused by --strict")]
+    #[error("{path}: {} from the dataset of the study, refused by --strict", counted(*count, "difference"))]
     Different { path: String, count: usize },
     /// Several faults in a dataset, each already reported.
     #[error("{path}: {count} faults; correct them and check the file again")]

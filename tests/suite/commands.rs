@@ -50,11 +50,81 @@ impl Desk {
         Ended::of(&output)
     }
 
+    /// Runs a command that fails, with its messages as JSON.
+    #[track_caller]
+    pub(crate) fn refusal(&self, arguments: &[&str]) -> Refusal {
+        Refusal::from_json(&self.gdcm(&[arguments, &["--json"]].concat()))
+    }
+
     pub(crate) fn command<S: AsRef<OsStr>>(&self, arguments: &[S]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_gdcm"));
         command.args(arguments).current_dir(self.directory.path());
         command
     }
+}
+
+/// A failed command, read from its JSON object.
+#[derive(Debug)]
+pub(crate) struct Refusal {
+    status: i32,
+    /// Code of each error; `None` without a code.
+    codes: Vec<Option<String>>,
+    errors: Vec<String>,
+    notes: Vec<String>,
+    cautions: Vec<String>,
+}
+
+impl Refusal {
+    fn from_json(ended: &Ended) -> Self {
+        let object: Value =
+            serde_json::from_str(&ended.out).unwrap_or_else(|error| panic!("{error}: {ended:?}"));
+        assert_eq!(ended.error, "", "nothing beside the object: {ended:?}");
+        Self {
+            status: ended.status,
+            codes: entries(&object["error_codes"])
+                .iter()
+                .map(|code| code.as_str().map(str::to_owned))
+                .collect(),
+            errors: texts(&object["errors"]),
+            notes: texts(&object["notes"]),
+            cautions: entries(&object["cautions"])
+                .iter()
+                .map(|caution| caution["text"].as_str().expect("a text").to_owned())
+                .collect(),
+        }
+    }
+
+    /// Asserts status 2, the code of the last error, and what its message names: options, names, numbers.
+    #[track_caller]
+    pub(crate) fn assert_code(&self, code: &str, names: &[&str]) -> &Self {
+        assert_eq!(self.status, 2, "{self:?}");
+        assert_eq!(self.codes.last(), Some(&Some(code.to_owned())), "{self:?}");
+        let message = self.errors.last().expect("an error");
+        assert_eq!(message.lines().count(), 1, "{self:?}");
+        for name in names {
+            assert!(message.contains(name), "expected \"{name}\" in: {message}");
+        }
+        self
+    }
+
+    /// Asserts that an error, a caution or a note holds these words.
+    #[track_caller]
+    pub(crate) fn assert_reported(&self, words: &str) -> &Self {
+        let mut messages = self.errors.iter().chain(&self.cautions).chain(&self.notes);
+        assert!(
+            messages.any(|message| message.contains(words)),
+            "expected \"{words}\": {self:?}"
+        );
+        self
+    }
+}
+
+/// The texts of a list in JSON.
+fn texts(list: &Value) -> Vec<String> {
+    entries(list)
+        .iter()
+        .map(|text| text.as_str().expect("a text").to_owned())
+        .collect()
 }
 
 /// How a command ended.
@@ -580,37 +650,77 @@ fn a_wrong_file_is_status_2_with_path_and_place() {
 #[test]
 fn a_wrong_command_line_is_status_2_with_the_option() {
     let desk = Desk::new();
-    let analyze = |options: &[&str]| {
-        let arguments: Vec<&str> = ["analyze", "small.json", "--out", "out"]
-            .iter()
-            .chain(options)
-            .copied()
-            .collect();
-        desk.gdcm(&arguments)
-    };
-    analyze(&["--alpha", "-1"]).assert_failed(2, &["--alpha: ", "from 0", "found -1"]);
-    analyze(&["--alpha", "NaN"]).assert_failed(2, &["--alpha: ", "found NaN"]);
-    analyze(&["--alpha", "much"]).assert_failed(2, &["--alpha: expected a number, found much"]);
-    analyze(&["--alpha-delay", "1e9"]).assert_failed(2, &["--alpha-delay: ", "found 1000000000"]);
-    analyze(&["--band", "8", "1"]).assert_failed(
-        2,
-        &["--band: ", "0.0001 <= min < max <= 100000", "min 8, max 1"],
-    );
-    analyze(&["--band", "8"]).assert_failed(2, &["--band"]);
-    analyze(&["--points", "1"]).assert_failed(2, &["--points: ", "from 2 to 5000"]);
-    analyze(&["--degree", "4"]).assert_failed(
-        2,
-        &["--degree: ", "expected 0, 1, 2, 3 or table", "found 4"],
-    );
-    analyze(&["--on", "P"]).assert_failed(2, &["OUTPUT/INPUT"]);
-    analyze(&["--on", "P/PED"])
-        .assert_failed(2, &["--on: ", "no response P/PED", "inputs are LON, LAT"]);
-    analyze(&["--reject", "nominal"]).assert_failed(2, &["ID:NAME"]);
-    analyze(&["--reject", "8:nominal"]).assert_failed(2, &["--reject: ", "no condition 8"]);
-    analyze(&["--reject", "7:other"])
-        .assert_failed(2, &["--reject: ", "condition 7 has no model \"other\""]);
-    analyze(&["--reject", "10:nominal"]).assert_failed(2, &["--reject: ", "the last model kept"]);
-    analyze(&["--colour"]).assert_failed(2, &["--colour"]);
+    let cases: [(&[&str], &str, &[&str]); 16] = [
+        (
+            &["--alpha", "-1"],
+            "wrong-option",
+            &["--alpha: ", "from 0", "found -1"],
+        ),
+        (
+            &["--alpha", "NaN"],
+            "wrong-option",
+            &["--alpha: ", "found NaN"],
+        ),
+        (
+            &["--alpha", "much"],
+            "wrong-option",
+            &["--alpha: ", "a number, found much"],
+        ),
+        (
+            &["--alpha-delay", "1e9"],
+            "wrong-option",
+            &["--alpha-delay: ", "found 1000000000"],
+        ),
+        (
+            &["--band", "8", "1"],
+            "wrong-option",
+            &["--band: ", "0.0001 <= min < max <= 100000", "min 8, max 1"],
+        ),
+        (&["--band", "8"], "wrong-command-line", &["--band"]),
+        (
+            &["--points", "1"],
+            "wrong-option",
+            &["--points: ", "from 2 to 5000"],
+        ),
+        (
+            &["--degree", "4"],
+            "wrong-option",
+            &["--degree: ", "0, 1, 2, 3 or table", "found 4"],
+        ),
+        (&["--on", "P"], "wrong-command-line", &["OUTPUT/INPUT"]),
+        (
+            &["--on", "P/PED"],
+            "unknown-response",
+            &["--on: ", "P/PED", "inputs are LON, LAT"],
+        ),
+        (&["--reject", "nominal"], "wrong-command-line", &["ID:NAME"]),
+        (
+            &["--reject", "8:nominal"],
+            "unknown-condition",
+            &["--reject: ", "condition 8"],
+        ),
+        (
+            &["--reject", "7:other"],
+            "unknown-model",
+            &["--reject: ", "condition 7", "\"other\""],
+        ),
+        (
+            &["--reject", "10:nominal"],
+            "wrong-option",
+            &["--reject: ", "the last model kept"],
+        ),
+        (&["--colour"], "wrong-command-line", &["--colour"]),
+        (
+            &["--sign", "P=-1", "--sign", "P=1"],
+            "given-twice",
+            &["--sign: ", "P "],
+        ),
+    ];
+    for (options, code, names) in cases {
+        let line = [&["analyze", "small.json", "--out", "out"], options].concat();
+        desk.gdcm(&line).assert_failed(2, names);
+        desk.refusal(&line).assert_code(code, names);
+    }
     desk.gdcm(&["analyze", "small.json"])
         .assert_failed(2, &["--out"]);
     assert!(!desk.path("out").exists());
@@ -797,9 +907,12 @@ fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_h
     );
     let strict = desk.gdcm(&["check", "a.gdcm-study.json", "--strict"]);
     assert!(
-        strict.status == 2 && strict.error.contains("refused by --strict"),
+        strict.status == 2 && strict.error.contains("--strict"),
         "{strict:?}"
     );
+    desk.refusal(&["check", "a.gdcm-study.json", "--strict"])
+        .assert_code("different-dataset", &["a.gdcm-study.json", "--strict"])
+        .assert_reported("condition 7 is flown at 61 kt");
     fs::rename(&dataset, desk.path("moved.json")).unwrap();
     desk.gdcm(&["check", "a.gdcm-study.json"]).assert_failed(
         2,
@@ -954,17 +1067,40 @@ fn settings_are_printed_with_six_digits() {
 fn a_figure_that_cannot_be_made_is_status_2_and_says_what_there_is() {
     let desk = Desk::new();
     let figure = |rest: &[&str]| desk.gdcm(&[&["figure", "small.json"][..], rest].concat());
-    figure(&["--view", "bode", "--out", "a.svg"])
-        .assert_failed(2, &["--condition", "a figure of one condition", "7, 10"]);
-    figure(&["--view", "bode", "--condition", "99", "--out", "a.svg"])
-        .assert_failed(2, &["no condition 99", "7, 10"]);
-    figure(&["--view", "sky", "--out", "a.svg"]).assert_failed(2, &["--view"]);
+    let cases: [(&[&str], &str, &[&str]); 5] = [
+        (
+            &["--view", "bode", "--out", "a.svg"],
+            "missing-condition",
+            &["--condition", "bode", "7, 10"],
+        ),
+        (
+            &["--view", "bode", "--condition", "99", "--out", "a.svg"],
+            "unknown-condition",
+            &["--condition", "99", "7, 10"],
+        ),
+        (
+            &["--view", "sky", "--out", "a.svg"],
+            "wrong-command-line",
+            &["--view"],
+        ),
+        (
+            &["--view", "net-gain", "--pair", "X/Y", "--out", "a.svg"],
+            "unknown-response",
+            &["--pair", "X/Y"],
+        ),
+        (
+            &["--view", "channels", "--channel", "X", "--out", "a.svg"],
+            "unknown-channel",
+            &["--channel", "channel X"],
+        ),
+    ];
+    for (options, code, names) in cases {
+        let line = [&["figure", "small.json"], options].concat();
+        desk.gdcm(&line).assert_failed(2, names);
+        desk.refusal(&line).assert_code(code, names);
+    }
     figure(&["--view", "net-gain", "--out", "a.jpg"])
         .assert_failed(2, &["a.jpg: ", ".svg, .png, .pdf or .csv"]);
-    figure(&["--view", "net-gain", "--pair", "X/Y", "--out", "a.svg"])
-        .assert_failed(2, &["--pair", "no response X/Y"]);
-    figure(&["--view", "channels", "--channel", "X", "--out", "a.svg"])
-        .assert_failed(2, &["--channel", "no channel X"]);
     figure(&["--view", "net-gain", "--out", "small.json"]).assert_failed(2, &["small.json: "]);
     assert!(!desk.path("a.svg").exists());
     fs::write(desk.path("a.svg"), "mine").unwrap();

@@ -14,7 +14,7 @@ use gdcm_model::dataset::{BundleKind, ConditionId};
 use gdcm_sysid::records::record_guess::RecordGuess;
 use gdcm_sysid::records::{RecordChannels, RecordLayout, TimeWish};
 
-use crate::commands::Desk;
+use crate::commands::{Desk, Refusal};
 use crate::window::records::late_dataset;
 
 /// The 99 records of the example.
@@ -242,41 +242,39 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
 #[test]
 fn what_is_said_twice_of_one_channel_is_refused() {
     let desk = desk();
-    let refused = |more: &[&str], words: &str| {
-        let of = [
-            "--inputs",
-            "LON,LAT",
-            "--outputs",
-            "P,Q",
-            "--band",
-            "0.5",
-            "12",
-            "--out",
-            "out",
-        ];
-        let ended = desk.gdcm(&[&["identify", "sweep_1.csv"], &of[..], more].concat());
-        assert!(
-            ended.status == 2 && ended.error.contains(words),
-            "{words}: {ended:?}"
-        );
-    };
-    refused(
-        &["--topic", "P=roll rate", "--topic", "P=pitch rate"],
-        "--topic: P is given twice",
-    );
-    refused(
-        &["--delay", "sweep_1:P=0.1", "--delay", "sweep_1.csv:P=0.1"],
-        "--delay: P of sweep_1.csv is given twice",
-    );
-    refused(
-        &["--factor", "sweep_1:P=-1", "--factor", "sweep_1:P=-1"],
-        "--factor: P of sweep_1 is given twice",
-    );
-    refused(
-        &["--unit", "P=rad/s", "--unit", "P=deg/s"],
-        "--unit: P has a unit or a factor already",
-    );
-    let ended = desk.gdcm(&[
+    let cases: [(&[&str], &[&str]); 4] = [
+        (
+            &["--topic", "P=roll rate", "--topic", "P=pitch rate"],
+            &["--topic: P "],
+        ),
+        (
+            &["--delay", "sweep_1:P=0.1", "--delay", "sweep_1.csv:P=0.1"],
+            &["--delay: P of sweep_1.csv "],
+        ),
+        (
+            &["--factor", "sweep_1:P=-1", "--factor", "sweep_1:P=-1"],
+            &["--factor: P of sweep_1 "],
+        ),
+        (&["--unit", "P=rad/s", "--unit", "P=deg/s"], &["--unit: P "]),
+    ];
+    let identify = [
+        "identify",
+        "sweep_1.csv",
+        "--inputs",
+        "LON,LAT",
+        "--outputs",
+        "P,Q",
+        "--band",
+        "0.5",
+        "12",
+        "--out",
+        "out",
+    ];
+    for (options, names) in cases {
+        desk.refusal(&[&identify, options].concat())
+            .assert_code("given-twice", names);
+    }
+    let assemble = [
         "assemble",
         ".",
         "--sign",
@@ -285,8 +283,10 @@ fn what_is_said_twice_of_one_channel_is_refused() {
         "NZ=1",
         "--out",
         "made.json",
-    ]);
-    ended.assert_failed(2, &["--sign: NZ of identified is given twice"]);
+    ];
+    let names = ["--sign: NZ of identified "];
+    desk.gdcm(&assemble).assert_failed(2, &names);
+    desk.refusal(&assemble).assert_code("given-twice", &names);
 }
 
 #[test]
@@ -300,138 +300,166 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
             .replace("lateral", "lever"),
     )
     .unwrap();
-    let refused = |arguments: &[&str], words: &[&str]| {
-        let ended = desk.gdcm(&[&["identify"], arguments, &["--out", "out"]].concat());
-        assert_eq!(ended.status, 2, "{ended:?}");
-        words
-            .iter()
-            .for_each(|word| assert!(ended.error.contains(word), "{word}: {ended:?}"));
-        assert!(!desk.path("out").exists());
-    };
-    let names = ["--inputs", "LON,LAT", "--outputs", "P,Q"];
-    let band = ["--band", "0.5", "12"];
-    let all = |record: &'static str, more: &[&'static str]| {
-        [&[record], &names[..], &band[..], more].concat()
-    };
-    refused(&["sweep_1.csv"], &["--inputs"]);
-    refused(&[&["sweep_1.csv"], &names[..]].concat(), &["--band"]);
+    refused(&desk, &["sweep_1.csv"], "wrong-command-line", &["--inputs"]);
     refused(
-        &all("wrong.csv", &[]),
-        &[
-            "wrong: no column for the input LAT; choose a column (columns: t, lon, lever",
-            "1 of 1 record cannot be used",
-        ],
+        &desk,
+        &["sweep_1.csv", "--inputs", "LON,LAT", "--outputs", "P,Q"],
+        "wrong-command-line",
+        &["--band"],
     );
-    refused(
-        &all("sweep_1.csv", &["--time", "clock"]),
-        &["there is no column \"clock\""],
+    let wrong = refused_sweep(
+        &desk,
+        "wrong.csv",
+        &[],
+        "unclear-records",
+        &["1 of 1 record "],
     );
-    refused(
-        &all("sweep_1.csv", &["--sample-rate", "-50"]),
-        &["the sample time is -0.02 s"],
+    wrong.assert_reported(
+        "wrong: no column for the input LAT; choose a column (columns: t, lon, lever",
     );
-    refused(
-        &all("sweep_1.csv", &["--hold-out", "other.csv"]),
-        &["--hold-out: \"other.csv\" is none of the records"],
-    );
-    refused(
-        &all("sweep_1.csv", &["--hold-out", "sweep_1.csv"]),
-        &["--hold-out: every record is held out"],
-    );
-    refused(
-        &all("sweep_1.csv", &["--delay", "X=0.02"]),
-        &["--delay: X is none of the channels"],
-    );
-    refused(
-        &all(
-            "sweep_1.csv",
+    let sweep = "sweep_1.csv";
+    refused_sweep(&desk, sweep, &["--time", "clock"], "unclear-records", &[])
+        .assert_reported("there is no column \"clock\"");
+    refused_sweep(
+        &desk,
+        sweep,
+        &["--sample-rate", "-50"],
+        "unclear-records",
+        &[],
+    )
+    .assert_reported("the sample time is -0.02 s");
+    let cases: [(&[&str], &str, &[&str]); 8] = [
+        (
+            &["--hold-out", "other.csv"],
+            "unknown-record",
+            &["--hold-out: \"other.csv\""],
+        ),
+        (
+            &["--hold-out", "sweep_1.csv"],
+            "wrong-option",
+            &["--hold-out: every record is held out"],
+        ),
+        (&["--delay", "X=0.02"], "unknown-channel", &["--delay: X "]),
+        (
             &[
                 "--delay", "P=0.02", "--delay", "LON=0.01", "--delay", "X=0.02",
             ],
+            "unknown-channel",
+            &["--delay: X "],
         ),
-        &["--delay: X is none of the channels"],
+        (
+            &["--delay", "P"],
+            "wrong-command-line",
+            &["--delay", "CHANNEL=SECONDS"],
+        ),
+        (&["--factor", "X=2"], "unknown-channel", &["--factor: X "]),
+        (
+            &["--unit", "P=deg/s", "--factor", "P=2"],
+            "given-twice",
+            &["--factor: P "],
+        ),
+        (&["--take", "with-plain"], "wrong-command-line", &["--into"]),
+    ];
+    for (options, code, names) in cases {
+        refused_sweep(&desk, sweep, options, code, names);
+    }
+    let missing = desk.gdcm(&[&identify_line("missing.csv", &[])[..], &["--out", "out"]].concat());
+    assert_eq!(missing.status, 2, "{missing:?}");
+    assert!(
+        missing.error.contains("missing.csv: there is no such file"),
+        "{missing:?}"
+    );
+    let into = ["sweep_1.csv", "--into", "small.json"];
+    refused(
+        &desk,
+        &[&into[..], &["--condition", "5"]].concat(),
+        "unknown-condition",
+        &["--condition: ", "condition 5", "7, 10"],
     );
     refused(
-        &all("sweep_1.csv", &["--delay", "P"]),
-        &["--delay", "expected CHANNEL=SECONDS"],
-    );
-    refused(
-        &all("sweep_1.csv", &["--factor", "X=2"]),
-        &["--factor: X is none of the channels"],
-    );
-    refused(
-        &all("sweep_1.csv", &["--unit", "P=deg/s", "--factor", "P=2"]),
-        &["--factor: P has a unit or a factor already"],
-    );
-    refused(
-        &all("missing.csv", &[]),
-        &["missing.csv: there is no such file"],
-    );
-    refused(
-        &["sweep_1.csv", "--into", "small.json", "--condition", "5"],
-        &["--condition: the dataset has no condition 5; it has 7, 10"],
-    );
-    refused(
-        &["sweep_1.csv", "--into", "small.json"],
+        &desk,
+        &into,
+        "wrong-command-line",
         &["--condition", "--every-condition"],
     );
-    refused(&["sweep_1.csv", "--every-condition"], &["--into"]);
-    refused(&all("sweep_1.csv", &["--take", "with-plain"]), &["--into"]);
     refused(
-        &[
-            "sweep_1.csv",
-            "--into",
-            "small.json",
-            "--condition",
-            "7",
-            "--every-condition",
-        ],
-        &["cannot be used with"],
+        &desk,
+        &["sweep_1.csv", "--every-condition"],
+        "wrong-command-line",
+        &["--into"],
     );
     refused(
-        &["sweep_1.csv", "--into", "small.json", "--every-condition"],
-        &[
-            "sweep_1: left out: its name gives no condition of the dataset",
-            "conditions 7, 10: no records; the identified models there stay unchanged",
-            "--every-condition: no name gives a condition of the dataset (7, 10), as cond03 does",
-        ],
+        &desk,
+        &[&into[..], &["--condition", "7", "--every-condition"]].concat(),
+        "wrong-command-line",
+        &["--condition", "--every-condition"],
     );
+    refused(
+        &desk,
+        &[&into[..], &["--every-condition"]].concat(),
+        "no-records",
+        &["--every-condition: ", "7, 10", "cond03"],
+    )
+    .assert_reported("sweep_1: left out: ")
+    .assert_reported("conditions 7, 10: no records; ");
     fs::rename(
         desk.path("validation.csv"),
         desk.path("cond7_validation.csv"),
     )
     .unwrap();
+    let into = ["cond7_validation.csv", "--into", "small.json"];
     refused(
-        &[
-            "cond7_validation.csv",
-            "--into",
-            "small.json",
-            "--every-condition",
-        ],
+        &desk,
+        &[&into[..], &["--every-condition"]].concat(),
+        "wrong-option",
         &["--hold-out: condition 7: every record is held out"],
     );
     refused(
-        &[
-            "cond7_validation.csv",
-            "--into",
-            "small.json",
-            "--condition",
-            "10",
-        ],
-        &[
-            "caution: 1 of 1 records left out: their names give condition 7, not 10",
-            "--condition: no record is left for condition 10; rename the records that belong to it",
-        ],
-    );
+        &desk,
+        &[&into[..], &["--condition", "10"]].concat(),
+        "no-records",
+        &["--condition: ", "condition 10"],
+    )
+    .assert_reported("1 of 1 records left out: their names give condition 7, not 10");
     fs::copy(desk.path("sweep_1.csv"), desk.path("again.csv")).unwrap();
-    refused(
-        &all("sweep_1.csv", &["again.csv", "--hold-out", "sweep_1.csv"]),
-        &[
-            "same samples as ",
-            "left out, because evidence counts once",
-            "--hold-out: every record is held out",
-        ],
-    );
+    refused_sweep(
+        &desk,
+        sweep,
+        &["again.csv", "--hold-out", "sweep_1.csv"],
+        "wrong-option",
+        &["--hold-out: every record is held out"],
+    )
+    .assert_reported("same samples as ")
+    .assert_reported("left out, because evidence counts once");
+}
+
+/// Arguments of an identification of a sweep, without its directory.
+fn identify_line<'a>(record: &'a str, options: &[&'a str]) -> Vec<&'a str> {
+    let channels = ["--inputs", "LON,LAT", "--outputs", "P,Q"];
+    let band = ["--band", "0.5", "12"];
+    [&["identify", record], &channels[..], &band, options].concat()
+}
+
+/// Asserts that an identification of a sweep is refused with this code and writes nothing.
+#[track_caller]
+fn refused_sweep(
+    desk: &Desk,
+    record: &str,
+    options: &[&str],
+    code: &str,
+    names: &[&str],
+) -> Refusal {
+    refused(desk, &identify_line(record, options)[1..], code, names)
+}
+
+/// Asserts that an identification is refused with this code and writes nothing.
+#[track_caller]
+fn refused(desk: &Desk, arguments: &[&str], code: &str, names: &[&str]) -> Refusal {
+    let line = [&["identify"], arguments, &["--out", "out"]].concat();
+    let refusal = desk.refusal(&line);
+    refusal.assert_code(code, names);
+    assert!(!desk.path("out").exists());
+    refusal
 }
 
 #[test]

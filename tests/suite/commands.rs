@@ -94,10 +94,16 @@ impl Refusal {
         }
     }
 
-    /// Asserts status 2, the code of the last error, and what its message names: options, names, numbers.
+    /// Asserts status 2, the code of the last error, and that its message contains these options, names and numbers.
     #[track_caller]
     pub(crate) fn assert_code(&self, code: &str, names: &[&str]) -> &Self {
-        assert_eq!(self.status, 2, "{self:?}");
+        self.assert_status_and_code(2, code, names)
+    }
+
+    /// Asserts the status, the code of the last error, and that its message contains these options, names and numbers.
+    #[track_caller]
+    pub(crate) fn assert_status_and_code(&self, status: i32, code: &str, names: &[&str]) -> &Self {
+        assert_eq!(self.status, status, "{self:?}");
         assert_eq!(self.codes.last(), Some(&Some(code.to_owned())), "{self:?}");
         let message = self.errors.last().expect("an error");
         assert_eq!(message.lines().count(), 1, "{self:?}");

@@ -104,32 +104,89 @@ fn json_and_csv_are_those_of_analyze() {
 #[test]
 fn what_cannot_be_exported_is_status_2_before_any_work() {
     let desk = Desk::new();
-    let export = |rest: &[&str]| desk.gdcm(&[&["export", "small.json", "--as"][..], rest].concat());
-    export(&["xls", "--out", "a"]).assert_failed(2, &["--as", "table-csv"]);
-    export(&["state-space", "--out", "a.csv"])
-        .assert_failed(2, &["a.csv: ", ".mat, .json or .npz"]);
-    export(&["m", "--out", "my-study.m"]).assert_failed(2, &["my-study.m: ", "found \"my-study\""]);
-    export(&["json", "--out", "small.json", "--force"])
-        .assert_failed(2, &["small.json: the data are read from this"]);
-    export(&["m", "--out", "a.m", "--pade", "2"])
-        .assert_failed(2, &["--pade: is an option of --as state-space"]);
-    export(&["h", "--out", "a.h", "--breakpoints", "1,2"])
-        .assert_failed(2, &["--breakpoints: ", "table-csv"]);
-    export(&["table-csv", "--out", "a.csv", "--breakpoints", "60,40"])
-        .assert_failed(2, &["airspeeds that rise"]);
-    let models = |rest: &[&str]| export(&[&["state-space", "--out", "a.mat"][..], rest].concat());
-    models(&["--pade", "9"]).assert_failed(2, &["--pade: ", "from 1 to 8"]);
-    models(&["--condition", "8"])
-        .assert_failed(2, &["--condition: ", "no condition 8; it has 7, 10"]);
-    models(&["--correction", "none"]).assert_failed(2, &["--correction"]);
-    models(&["--model", "V+5kt"])
-        .assert_failed(2, &["condition 10 has no physics model \"V+5kt\""]);
+    let export = ["export", "small.json", "--as"];
+    let files: [(&[&str], &[&str]); 4] = [
+        (
+            &["state-space", "--out", "a.csv"],
+            &["a.csv: ", ".mat, .json or .npz"],
+        ),
+        (
+            &["m", "--out", "my-study.m"],
+            &["my-study.m: ", "found \"my-study\""],
+        ),
+        (
+            &["json", "--out", "small.json", "--force"],
+            &["small.json: the data are read from this"],
+        ),
+        (
+            &["state-space", "--out", "a.mat", "--model", "V+5kt"],
+            &["condition 10 has no physics model \"V+5kt\""],
+        ),
+    ];
+    for (options, words) in files {
+        desk.gdcm(&[&export, options].concat())
+            .assert_failed(2, words);
+    }
+    let options: [(&[&str], &str, &[&str]); 7] = [
+        (
+            &["xls", "--out", "a"],
+            "wrong-command-line",
+            &["--as", "table-csv"],
+        ),
+        (
+            &["m", "--out", "a.m", "--pade", "2"],
+            "misplaced-option",
+            &["--pade: ", "--as state-space"],
+        ),
+        (
+            &["h", "--out", "a.h", "--breakpoints", "1,2"],
+            "misplaced-option",
+            &["--breakpoints: ", "table-csv"],
+        ),
+        (
+            &["table-csv", "--out", "a.csv", "--breakpoints", "60,40"],
+            "wrong-command-line",
+            &["--breakpoints", "60,40"],
+        ),
+        (
+            &["state-space", "--out", "a.mat", "--pade", "9"],
+            "wrong-command-line",
+            &["--pade: ", "from 1 to 8"],
+        ),
+        (
+            &["state-space", "--out", "a.mat", "--condition", "8"],
+            "unknown-condition",
+            &["--condition: ", "condition 8", "7, 10"],
+        ),
+        (
+            &["state-space", "--out", "a.mat", "--correction", "none"],
+            "wrong-command-line",
+            &["--correction"],
+        ),
+    ];
+    for (options, code, names) in options {
+        let line = [&export, options].concat();
+        desk.gdcm(&line).assert_failed(2, names);
+        desk.refusal(&line).assert_code(code, names);
+    }
     assert_eq!(
         fs::read_dir(desk.directory.path()).unwrap().count(),
         1,
         "nothing was written"
     );
-    models(&["--model", "V+5kt", "--condition", "7"]).assert_done();
+    desk.gdcm(&[
+        "export",
+        "small.json",
+        "--as",
+        "state-space",
+        "--out",
+        "a.mat",
+        "--model",
+        "V+5kt",
+        "--condition",
+        "7",
+    ])
+    .assert_done();
 }
 
 #[test]

@@ -758,7 +758,7 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
             "the dataset says what was put right"
         );
     }
-    let ended = desk.gdcm(&[
+    desk.refusal(&[
         "identify",
         "flight_0.csv",
         "--into",
@@ -777,11 +777,8 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
         "LON=%",
         "--unit",
         "LAT=%",
-    ]);
-    assert!(
-        ended.error.contains("\"x\" is none of the records"),
-        "{ended:?}"
-    );
+    ])
+    .assert_code("unknown-record", &["--delay: \"x\""]);
 }
 
 /// Magnitude of the first response of the first model of a file of identified models, at a frequency \[rad/s\].
@@ -941,6 +938,8 @@ fn desk_of_prbs() -> Desk {
 fn a_part_outside_the_clock_of_a_record_is_refused_with_its_span_and_one_from_its_start_is_taken() {
     let desk = desk_of_prbs();
     let identified = |more: &[&str]| desk.gdcm(&[&PRBS[..], more].concat());
+    desk.refusal(&[&PRBS[..], &["--part", "5:34", "--out", "none"]].concat())
+        .assert_code("no-samples", &["--part", "5:34 s", "42.30 s", "+5:+34"]);
     let ended = identified(&["--part", "5:34", "--out", "none"]);
     assert_eq!(ended.status, 2, "{ended:?}");
     let line = ended

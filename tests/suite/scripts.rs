@@ -101,7 +101,7 @@ fn records_that_identify_no_input_are_status_1() {
         "t,LON,Q\n".to_owned() + &(0..3000).map(&mut row).collect::<String>(),
     )
     .unwrap();
-    let ended = desk.gdcm(&[
+    desk.refusal(&[
         "identify",
         "a.csv",
         "--inputs",
@@ -113,11 +113,8 @@ fn records_that_identify_no_input_are_status_1() {
         "12",
         "--out",
         "out",
-    ]);
-    assert_eq!(ended.status, 1, "{ended:?}");
-    assert!(ended.error.contains(
-        "error: no input is identified by these records; the models do not describe LON"
-    ));
+    ])
+    .assert_status_and_code(1, "nothing-identified", &["LON"]);
     assert!(
         desk.path("out/identified.json").exists(),
         "what was computed can be looked at"
@@ -303,7 +300,7 @@ fn a_second_variable_that_the_dataset_does_not_say_is_refused_before_the_work() 
 fn a_second_delay_of_one_channel_is_refused() {
     let desk = Desk::new();
     write_record(&desk);
-    let ended = desk.gdcm(&[
+    let line = [
         "identify",
         "a.csv",
         "--inputs",
@@ -320,11 +317,9 @@ fn a_second_delay_of_one_channel_is_refused() {
         "--out",
         "out",
         "--quiet",
-    ]);
-    assert!(
-        ended.status == 2 && ended.error.contains("error: --delay: P is given twice"),
-        "{ended:?}"
-    );
+    ];
+    desk.refusal(&line)
+        .assert_code("given-twice", &["--delay: P "]);
 }
 
 #[test]
@@ -339,6 +334,8 @@ fn a_file_of_models_points_to_what_makes_a_dataset_of_it() {
     let desk = Desk::new();
     fs::write(desk.path("x.mat"), b"MATLAB 5.0 MAT-file").unwrap();
     let words = ["x.mat: ", "gdcm assemble x.mat --out", "Import models"];
+    desk.refusal(&["check", "x.mat"])
+        .assert_code("model-file", &words);
     desk.gdcm(&["check", "x.mat"]).assert_failed(2, &words);
     desk.gdcm(&["analyze", "x.mat", "--out", "out"])
         .assert_failed(2, &words);
@@ -477,23 +474,14 @@ fn a_file_that_is_broken_is_told_from_a_good_one_of_its_name_and_in_its_archive(
     }
     fs::copy(desk.path("a.csv"), desk.path("two/cond7_a.csv")).unwrap();
     fs::write(desk.path("one/cond7_a.csv"), "no table at all").unwrap();
-    let of_records = |records: [&str; 2]| {
-        let records = ["--records", records[0], "--records", records[1]];
-        let units = [
-            "--unit", "LON=%", "--unit", "LAT=%", "--unit", "P=deg/s", "--unit", "Q=deg/s",
-        ];
-        let report = ["report", "small.json", "--out", "r.html", "--force"];
-        let requirements = ["requirements", "small.json", "--out", "q", "--force"];
-        [report.as_slice(), &requirements].map(|of| desk.gdcm(&[of, &records, &units].concat()))
-    };
-    for ended in of_records(["one/cond7_a.csv", "two/cond7_a.csv"]) {
-        assert_eq!(ended.status, 1, "{ended:?}");
-        assert!(
-            ended
-                .error
-                .contains("error: one/cond7_a.csv: not read, or only in part"),
-            "{ended:?}"
-        );
+    let commands = [
+        ["report", "small.json", "--out", "r.html", "--force"],
+        ["requirements", "small.json", "--out", "q", "--force"],
+    ];
+    for command in commands {
+        let line = with_records(command, ["one/cond7_a.csv", "two/cond7_a.csv"]);
+        desk.refusal(&line)
+            .assert_status_and_code(1, "not-read", &["one/cond7_a.csv: "]);
     }
     // A good archive, and one of whose two files one is broken.
     let archive = |name: &str, broken: &str| {
@@ -509,17 +497,22 @@ fn a_file_that_is_broken_is_told_from_a_good_one_of_its_name_and_in_its_archive(
         "t,LON,LAT,P,Q\n0,1,2,3,4\n1,2,3,4,6\n2,3,4,5,5\n3,4,2,2,1\n4,3,2,1,5\n5,1,1,3,2\n",
     );
     archive("bad.zip", "no table at all");
-    let [good, _] = of_records(["good.zip", "two/cond7_a.csv"]);
+    let good = desk.gdcm(&with_records(commands[0], ["good.zip", "two/cond7_a.csv"]));
     assert_eq!(good.status, 0, "{good:?}");
-    for ended in of_records(["bad.zip", "two/cond7_a.csv"]) {
-        assert!(
-            ended.status == 1
-                && ended
-                    .error
-                    .contains("error: bad.zip: not read, or only in part"),
-            "{ended:?}"
-        );
+    for command in commands {
+        let line = with_records(command, ["bad.zip", "two/cond7_a.csv"]);
+        desk.refusal(&line)
+            .assert_status_and_code(1, "not-read", &["bad.zip: "]);
     }
+}
+
+/// A command with two files of records, and the units of their channels.
+fn with_records<'a>(command: [&'a str; 5], records: [&'a str; 2]) -> Vec<&'a str> {
+    let records = ["--records", records[0], "--records", records[1]];
+    let units = [
+        "--unit", "LON=%", "--unit", "LAT=%", "--unit", "P=deg/s", "--unit", "Q=deg/s",
+    ];
+    [&command[..], &records, &units].concat()
 }
 
 #[test]

@@ -87,7 +87,7 @@ fn labels(dataset: &Dataset) -> [(&'static str, Vec<String>); 4] {
     ]
 }
 
-/// Name of a model's file: the nominal model is called so, identified ones say what they are.
+/// Name of a model's file: "nominal", or the kind of an identified model.
 fn stem(kind: BundleKind, model: &Model) -> String {
     match kind {
         BundleKind::Physics if model.is_nominal() => "nominal".to_owned(),
@@ -303,7 +303,7 @@ fn assert_same_numbers(made: &Dataset, example: &Dataset, route: &str) {
     }
 }
 
-/// The name of a format, and what writes a model in it.
+/// Name of a format, with its writer.
 type Route<'w> = (&'static str, &'w dyn Fn(&Path, &Model));
 
 #[test]
@@ -1094,7 +1094,7 @@ fn a_response_whose_name_says_no_channels_makes_no_dataset_and_one_that_does_is_
 fn units_factors_and_signs_are_said_for_a_role_a_folder_or_a_file_by_the_option_that_is_printed() {
     let folder = tempfile::tempdir().unwrap();
     let root = folder.path().join("models");
-    // The identified file has another unit and says none, another name of the same input, and an output whose sign is open.
+    // The identified file has another unit without stating it, another name for the input, and an output with an unknown sign.
     write_small(
         &root.join("c1_60kt/nominal.mat"),
         1.0,

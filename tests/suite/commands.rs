@@ -151,7 +151,7 @@ impl Ended {
         }
     }
 
-    /// Asserts a failure told in one or two lines of standard error that hold these words, and nothing on standard output.
+    /// Asserts a failure with one or two lines on standard error that contain these words, and no standard output.
     #[track_caller]
     pub(crate) fn assert_failed(&self, status: i32, words: &[&str]) {
         assert_eq!((self.status, self.out.as_str()), (status, ""), "{self:?}");
@@ -368,7 +368,7 @@ fn the_phase_is_corrected_as_an_option_says() {
         "Phase",
         "corrected by a delay or a lead filter per channel: order 2, n 3, R_max 10",
         "channel k delay/lead [ms] servo of [rad/s] replaced by dB at 120 rad/s",
-        // What every condition has is said once.
+        // Remarks common to all conditions are printed once.
         "a common lead (column all [ms]) is better removed at its source: check first the time alignment",
         "condition PED → NY all gain",
         "conditions 1 to 3, 5 to 11: The leads add 20 states. Do not use the corrected model above 12 rad/s.",
@@ -1130,7 +1130,7 @@ fn check_finds_a_wrong_structure_without_reading_a_large_file_to_its_end() {
         .write(true)
         .open(desk.path("large.json"))
         .unwrap();
-    // More than is read: what reads it to its end says that.
+    // Longer than the limit: only commands that read the file to its end report that.
     file.set_len(gdcm_model::dataset::limits::LARGEST_TEXT + 1)
         .unwrap();
     desk.gdcm(&["check", "large.json"])
@@ -1222,7 +1222,7 @@ fn conditions_can_be_held_out_and_each_be_left_out_in_turn() {
         .assert_failed(2, &["--hold-out", "no condition 99"]);
 }
 
-/// What the program says of a file in a command, and how it ends.
+/// Output and exit status of a command about a file.
 fn said_of_edge(file: &str, command: &str) -> (i32, String) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/data/edges")

@@ -1,4 +1,4 @@
-//! Mixing and feedback from the command line: what is printed, and what stands in the files (M16).
+//! Mixing and feedback from the command line: printed text and files (M16).
 
 use std::fs;
 
@@ -221,7 +221,7 @@ fn couplings_that_nothing_can_be_fitted_to_are_told_in_words() {
         "{}",
         ended.out
     );
-    // What leaves must not be without couplings where some are asked for.
+    // Exported models must not lack requested couplings.
     let all: Vec<&str> = ids
         .iter()
         .flat_map(|id| ["--hold-out", id.as_str()])

@@ -640,7 +640,7 @@ fn corrected_models_are_the_program_s_in_every_format() {
                         * output_gain
                         * input_gain;
                     let expected = plain[at] * factor;
-                    // What order 8 misses of these delays is less than rounding.
+                    // The error of order 8 for these delays is below rounding.
                     assert!(
                         (corrected[at] - expected).norm() <= 1e-9 * expected.norm(),
                         "condition {}",
@@ -1050,7 +1050,7 @@ fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
         let text = String::from_utf8_lossy(&bytes);
         let is_said = text.contains(limit) || text.contains("not_valid_above_rad_s");
         assert!(is_said || extension == "mat", "{format}");
-        // What no compiler or old editor shows is spelled by its number: none of it stands in what the program itself says.
+        // Characters that compilers or old editors do not show are spelled by their numbers: the program's own words have none.
         assert!(!text.contains("<U+2212>"), "{format}");
     }
     let without = desk.gdcm(&["export", "few.json", "--as", "py", "--out", "delays.py"]);

@@ -1,4 +1,4 @@
-//! What messages say, whatever the names, the numbers and the mistakes.
+//! Messages about odd names, numbers and mistakes.
 
 use std::io::Write;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What is written: nothing over what is there unasked, never over an input, and never the half of anything.
+//! Written files: existing files stay unless replacing is requested, inputs always stay, and no file is written in part.
 
 use std::ffi::OsStr;
 use std::fs;

@@ -522,7 +522,7 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
                 "{}",
                 ended.out
             );
-            // What the window takes, in its order: the refined models, then CT-PBSID (unrefined).
+            // The models taken by the window, in its order: the refined models, then CT-PBSID (unrefined).
             let names: Vec<&str> = new
                 .bundle(BundleKind::Identified)
                 .iter()
@@ -664,7 +664,7 @@ fn units_that_were_said_once_are_kept_by_the_dataset_with_its_records() {
         told.contains("Q: times 57.29") && told.contains("removed, from the dataset"),
         "{told}"
     );
-    // What the command line says stands before it.
+    // The command line overrides it.
     let (anew, told) = identified("said/late.json", &units, "anew");
     assert_eq!(said, anew, "{told}");
 }
@@ -739,7 +739,7 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
             .1
             .trim_end_matches(')');
         let again = identified(&[option, said], &format!("{code}-again"));
-        // A large delay comes out short (M14.16): what is left is asked again.
+        // A large delay is underestimated (M14.16): the remainder is proposed again.
         let contrast = |said: &str| {
             let after = said
                 .split_once("contradict")
@@ -873,7 +873,7 @@ fn parts_of_records_are_records_of_their_own_in_the_dataset_too() {
     let first = (json!([0.0, 20.0]), json!(false));
     let second = (json!([20.0, 40.0]), json!(true));
     assert_eq!(records, [first.clone(), first, second.clone(), second]);
-    // What is used of each lies within it, at 25 Hz.
+    // The used part of each lies within it, at 25 Hz.
     let used = &identified["records"][2]["used_s"][0];
     assert!(
         used[0].as_f64().unwrap() >= 20.0 && used[1].as_f64().unwrap() <= 40.0,
@@ -1021,7 +1021,7 @@ fn models_are_identified_into_a_dataset_that_has_none_yet() {
             .remove("identified_models");
     }
     fs::write(desk.path("late.json"), dataset.to_string()).unwrap();
-    // Without any reference there is no result, and it is said what is needed.
+    // Without any reference there is no result, and the message names the missing data.
     let ended = desk.gdcm(&["analyze", "late.json", "--out", "results"]);
     assert_eq!(ended.status, 1, "{ended:?}");
     assert!(

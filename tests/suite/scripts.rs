@@ -1,4 +1,4 @@
-//! What scripts rely on: the manner in which commands speak, and how they end.
+//! Output formats, messages and exit statuses, on which scripts rely.
 
 use std::fs;
 
@@ -120,7 +120,7 @@ fn records_that_identify_no_input_are_status_1() {
         "what was computed can be looked at"
     );
 
-    // The same record under a second name counts once, and programs are told.
+    // The same record under a second name counts once, with a code for programs.
     fs::copy(desk.path("a.csv"), desk.path("b.csv")).unwrap();
     let more = [
         "--inputs",
@@ -483,7 +483,7 @@ fn a_file_that_is_broken_is_told_from_a_good_one_of_its_name_and_in_its_archive(
         desk.refusal(&line)
             .assert_status_and_code(1, "not-read", &["one/cond7_a.csv: "]);
     }
-    // A good archive, and one of whose two files one is broken.
+    // A good archive, and an archive with a broken second file.
     let archive = |name: &str, broken: &str| {
         let text = fs::read(desk.path("two/cond7_a.csv")).unwrap();
         let files = [
@@ -575,7 +575,7 @@ fn a_sign_that_is_said_of_files_is_in_the_dataset_that_is_made_of_them() {
     crate::assembling::foreign_tree(&desk.path("models"));
     let assemble = |out: &str, more: &[&str]| {
         let ended = desk.gdcm(&[&["assemble", "models", "--out", out], more].concat());
-        // What an inch is stands in the rules.
+        // The rules define the inch.
         assert_eq!(ended.status, 2, "{ended:?}");
         let rules = out.replace(".json", ".gdcm-rules.json");
         let mut said = crate::read_json(&desk.path(&rules));

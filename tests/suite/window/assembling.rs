@@ -14,7 +14,7 @@ pub(super) fn bench(window: &Window) -> &AssemblyState {
         .expect("models are being imported")
 }
 
-/// Types over what a field holds, and leaves it open.
+/// Replaces the text in a field, and leaves the field open.
 pub(super) fn fill_in(window: &mut Window, field: &str, text: &str) {
     window.get_by_label(field).focus();
     window.run_steps(2);
@@ -23,7 +23,7 @@ pub(super) fn fill_in(window: &mut Window, field: &str, text: &str) {
     window.run_steps(2);
 }
 
-/// Types over what a field holds, and enters it; in a form that carries out what is asked for.
+/// Replaces the text in a field and presses Enter, which carries out a form.
 pub(super) fn type_into(window: &mut Window, field: &str, text: &str) {
     fill_in(window, field, text);
     window.key_press(Key::Enter);

@@ -175,7 +175,7 @@ fn the_page_of_keys_is_made_from_the_table_and_fits_the_least_window() {
     assert!(close.max.y < 560.0, "{close}");
 }
 
-/// What was put on the clipboard in the last frames.
+/// Text put on the clipboard in the last frames.
 fn copied(window: &mut Window) -> String {
     for _ in 0..4 {
         window.step();

@@ -47,7 +47,7 @@ impl Trap {
     }
 }
 
-/// Opens the trap when it is dropped, by a test that fails too: what waits holds threads that other tests compute on.
+/// Opens the trap when it is dropped, also by a failing test: waiting work holds threads that other tests need.
 struct Closed<'a>(&'a Trap);
 
 impl Drop for Closed<'_> {
@@ -71,7 +71,7 @@ impl Executor for Trap {
     }
 }
 
-/// Notes where panics are, as the program does, besides what the tests do with them.
+/// Notes the places of panics, as the program does, beside the panic handling of the tests.
 fn note_panics() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -219,7 +219,7 @@ fn quitting_does_not_wait_for_what_is_being_computed() {
     });
     let start = Instant::now();
     drop(window);
-    // What is being computed would never end.
+    // The running computation would never end.
     assert!(start.elapsed() < Duration::from_secs(30));
     drop(closed);
 }
@@ -307,7 +307,7 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     wait_until(&mut window, "a part of the error bars", |window| {
         counts(window).is_some_and(|(done, total)| done > 0 && total == 2 * models)
     });
-    // However fast the machine is, no more than what has begun is computed before the click.
+    // However fast the machine is, only computations that have begun are finished before the click.
     let closed = trap.close();
     wait_until(&mut window, "the button", |window| {
         window.query_by_label("Stop").is_some()
@@ -356,7 +356,7 @@ fn couplings_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     wait_until(&mut window, "a part of the assessment", |window| {
         steps(window).is_some_and(|(done, _)| done > 0)
     });
-    // However fast the machine is, what follows the fits without each condition is not computed before the click.
+    // However fast the machine is, the steps after the fits without each condition are not computed before the click.
     let closed = trap.close();
     wait_until(&mut window, "the button", |window| {
         window.query_by_label("Stop").is_some()

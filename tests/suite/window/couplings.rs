@@ -63,7 +63,7 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
         CouplingCorrection::MixingAndFeedback
     );
     assert!(!texts(&window).contains("None are used"));
-    // The map beside the conditions has what they did off the axis.
+    // The map beside the conditions shows their effect on off-axis responses.
     window.get_by_label_contains("19 responses not held, condition 3: mean J of magnitude");
     // The poles that move are drawn among those of the models.
     show(&mut window, View::Poles);
@@ -115,7 +115,7 @@ fn couplings_are_offered_once_leads_do_what_a_channel_can() {
         CouplingCorrection::MixingAndFeedback
     );
     assert!(offered_couplings(state(&window)).is_none());
-    // What they cost is among the reasons, whatever view is shown.
+    // Their cost is among the reasons in every view.
     assessed(&mut window);
     give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
     let said = texts(&window);

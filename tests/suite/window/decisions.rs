@@ -1,4 +1,4 @@
-//! Decisions, by hand, and what they give.
+//! Decisions by hand, and their results.
 
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm_study::results::derivation::derivation;

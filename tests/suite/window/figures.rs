@@ -1,4 +1,4 @@
-//! What a view shows, taken away.
+//! Figures of a view as files and on the clipboard.
 
 use std::fs;
 

@@ -1,4 +1,4 @@
-//! What a new user does with files of other programs, by the controls alone: what is silent, or turned, is found by the program.
+//! Files of other programs, imported through the controls alone: the program finds missing units and inverted signs.
 
 use gdcm::gui::commands::assembling::AssemblingCommand;
 use gdcm::gui::commands::file::FileCommand;
@@ -27,7 +27,7 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
         bench(window).reading.is_none()
     });
     type_into(&mut window, "Unit of input 1", "%");
-    // What an inch is nobody guesses.
+    // The size of an inch of stick is not guessed.
     assert!(window.query_by_label_contains("to complete").is_some());
     type_into(
         &mut window,

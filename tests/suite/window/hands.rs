@@ -1,4 +1,4 @@
-//! What can be asked and taken in the plots and tables: derivations, models in the overview, tables as files.
+//! Derivations, models in the overview, and tables as files, requested in plots and tables.
 
 use gdcm::gui::commands::command::Command as Action;
 use gdcm::gui::commands::command_table::every_command;

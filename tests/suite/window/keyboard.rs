@@ -15,7 +15,7 @@ fn press(window: &mut Window, modifiers: Modifiers, key: Key) {
     window.run_steps(3);
 }
 
-/// The label of what has the focus; empty where nothing has it.
+/// Label of the focused control; empty without focus.
 fn focused(window: &Window) -> String {
     let found = window
         .root()
@@ -99,7 +99,7 @@ fn a_space_in_a_text_decides_nothing() {
         "it goes to the field"
     );
     press(&mut window, Modifiers::NONE, Key::Escape);
-    // A list row that has the focus is what the space bar presses.
+    // The space bar presses the focused list row.
     window.get_by_label_contains("Condition 3: ").focus();
     window.run_steps(2);
     window.key_press(Key::Space);

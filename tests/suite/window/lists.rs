@@ -1,4 +1,4 @@
-//! What the lists say, and that it can be read.
+//! Texts in the lists, and their legibility.
 
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::selection::SelectionCommand;
@@ -21,7 +21,7 @@ fn narrow_window(height: f32) -> Window {
     window
 }
 
-/// The texts painted in the last frame whose place is inside `area`, each with its place; none of what a sheet covers there.
+/// Texts painted in the last frame inside `area`, each with its rectangle, without those under a sheet.
 pub(super) fn texts_in(window: &Window, area: egui::Rect) -> Vec<(String, egui::Rect)> {
     let shapes = &window.output().shapes;
     let covers = |clipped: &egui::epaint::ClippedShape| match &clipped.shape {

@@ -114,7 +114,7 @@ fn a_log_of_ardupilot_proposes_outputs_of_its_controller_and_rates_of_its_identi
         notes.iter().any(|note| note.contains("P = SIDD.Gx")),
         "{notes:?}"
     );
-    // What the identification mode adds drives the loop from outside.
+    // The signal added by the identification mode drives the loop from outside.
     let row = &state(&window).records.conditions[&ConditionId(1)].rows[0];
     assert!(
         row.possible_references().contains(&("SIDD.Targ", true)),

@@ -32,13 +32,13 @@ struct Format {
     scale: usize,
 }
 
-/// What tests compare.
+/// Size of the compared pictures.
 const COMPARED: Format = Format {
     size: [1280, 720],
     folder: "tests/data/pictures",
     scale: 2,
 };
-/// What the pages show: as large as the renderer allows.
+/// Size of the pictures in the documentation: as large as the renderer allows.
 const SHOWN: Format = Format {
     size: [1280, 720],
     folder: "assets/screenshots",
@@ -97,7 +97,7 @@ fn colour(of: egui::Color32) -> Color {
     Color::from_rgba_premultiplied(r, g, b, a)
 }
 
-/// The pixels of what the window shows, red, green and blue, averaged over squares of the format's scale.
+/// Pixels of the window, red, green and blue, averaged over squares of the format's scale.
 fn picture(window: &Window, textures: &Textures, format: Format) -> Vec<u8> {
     let [width, height] = format.size;
     let scale = format.scale;
@@ -197,7 +197,7 @@ fn read(name: &str, format: Format) -> Vec<u8> {
     pixels
 }
 
-/// What is to be said of a picture that looks otherwise than the one kept; in a run that makes them anew, it is kept.
+/// Returns the difference between a picture and the kept picture; a run that renews the pictures keeps it instead.
 fn miss(name: &str, window: &Window, textures: &Textures, format: Format) -> Option<String> {
     let found = picture(window, textures, format);
     if std::env::var("GDCM_PICTURES").is_ok_and(|what| what == "write") {
@@ -262,7 +262,7 @@ fn every_view_looks_as_it_did_in_both_themes() {
                     .is_some_and(|of| of.rows.len() == 9),
                 _ => true,
             });
-            // What is under way is told in the status bar.
+            // Running work is shown in the status bar.
             wait_until(&mut window, "rest", |window| {
                 !state(window).results.background.is_busy()
             });

@@ -91,7 +91,7 @@ pub(super) fn drag_along(window: &mut Window, from: Pos2, to: Pos2) {
     }
 }
 
-/// Where a frequency stands in the magnitude plot, near its lower edge.
+/// Position of a frequency in the magnitude plot, near its lower edge.
 fn place_of(window: &Window, omega: f64) -> Pos2 {
     let view = &state(window).display.frequency.bode;
     let frame = *view.transform(Pane::Magnitude).unwrap().frame();
@@ -330,7 +330,7 @@ fn assert_little_is_hidden(window: &Window, what: &str) {
     );
 }
 
-/// How many triangles of the frame drawn last lie outside what they are clipped to, and how many there are.
+/// Count of triangles in the last frame outside their clip rectangles, and count of all triangles.
 fn hidden_triangles(window: &Window) -> (usize, usize) {
     let output = window.output();
     let mut hidden = 0;
@@ -374,7 +374,7 @@ fn pointing_at_plots_starts_no_analysis() {
     assert_eq!(same, Some(true));
 }
 
-/// What Airspeeds has to show of magnitude and phase: the values of its curves within the band.
+/// Expected values of the curves in Airspeeds within the band, as magnitude and phase.
 fn across_values(window: &Window) -> [Range; 2] {
     let state = state(window);
     let made_of = (state.dataset(), state.analysis());

@@ -1,4 +1,4 @@
-//! What pointing says: in the status line over plots, in small tooltips over lists.
+//! Texts under the pointer: in the status line over plots, in small tooltips over lists.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use super::*;
 
 /// Rests the pointer at a place for longer than any tooltip waits.
 fn rest_at(window: &mut Window, at: Pos2) {
-    // From elsewhere: no tooltip of what was there before is in the way.
+    // The pointer comes from elsewhere, so that no earlier tooltip is in the way.
     window.hover_at(pos2(3.0, 3.0));
     window.run_steps(3);
     window.hover_at(at);
@@ -30,7 +30,7 @@ fn tooltips(window: &Window) -> Vec<egui::Rect> {
         .collect()
 }
 
-/// Asserts that nothing opens where something of a plot is pointed at, and that the status line says what it is.
+/// Asserts that pointing at a mark of a plot opens nothing, and that the status line describes the mark.
 fn assert_told(window: &mut Window, what: &str, at: Pos2) {
     rest_at(window, at);
     let told = state(window).display.selection.told.clone();
@@ -137,7 +137,7 @@ fn lines_of_tooltip(window: &mut Window, at: Pos2) -> usize {
     let [place] = open[..] else {
         panic!("one tooltip: {open:?}")
     };
-    // What lies under it was there before.
+    // The marks under it were there before.
     let is_new =
         |label: &Option<String>, rect: egui::Rect| !before.contains(&format!("{label:?} {rect}"));
     let nodes = window.query_all_by_role(Role::Label);

@@ -1,4 +1,4 @@
-//! What is said of identified models in the Records view: marks at their places, and buttons that act.
+//! Cautions about identified models in the Records view: marks at their places, and buttons with remedies.
 
 use std::fs;
 
@@ -83,7 +83,7 @@ fn cautions_stand_as_marks_at_their_places_and_their_buttons_act() {
     // At the record that is not predicted, and at no other.
     window.get_by_label("Cautions of flight 3");
     assert!(window.query_by_label("Cautions of flight 1").is_none());
-    // Beyond what the sweeps show.
+    // Beyond the band of the sweeps.
     click(&mut window, "Page Response");
     window.get_by_label_contains("⚠ shows nothing");
     press(&mut window, "Fit flight 3 too");

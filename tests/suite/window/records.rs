@@ -158,7 +158,7 @@ fn all_conditions_are_identified_one_after_the_other_and_stand_in_a_table() {
                 .get(&id)
                 .is_some_and(|of| !of.rows.is_empty())
         });
-        // A search of little: what is looked at is that it comes to its end.
+        // A small search: only its end matters here.
         if window.query_by_label("Identification: orders").is_none() {
             click(&mut window, "Advanced");
         }
@@ -266,7 +266,7 @@ fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_p
         (rows(&window), part(&window, 1).0),
         (10, Some([first, last]))
     );
-    // What is searched is typed too, and what cannot be is refused.
+    // The search space is typed too, and impossible values are refused.
     click(&mut window, "Advanced");
     type_into(&mut window, "Identification: orders", "8 10");
     assert_eq!(
@@ -684,7 +684,7 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
     assert_eq!(state(&window).study.taken_models().count(), 11);
 }
 
-/// A record of the example's channels whose file does not say units, of samples that leave most of them open.
+/// A record of the example's channels without units, with samples that leave most units ambiguous.
 fn without_units(phase: f64) -> String {
     let row = |k: u32| {
         let at = 0.02 * f64::from(k);
@@ -747,7 +747,7 @@ fn units_that_no_file_says_are_asked_once_for_the_records_of_all_conditions() {
     assert_eq!([5, 8, 10].map(|id| factor(&window, id, 0)), [1.0; 3]);
     step(&mut window, UNDO);
     assert_eq!(open(&window), Some((3, 3)));
-    // In another unit: what is said of the columns of one record is said of all that were added.
+    // In another unit: a declaration about the columns of a record applies to all added records.
     click(&mut window, "Say others…");
     assert_eq!(
         (state(&window).condition().id(), state(&window).records.page),

@@ -446,7 +446,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     give(&mut window, StudyCommand::Undo);
     assert_eq!(overview(&window), usual);
 
-    // What is saved is what is shown: both tables, and as numbers.
+    // The saved file holds both displayed tables, with numbers.
     let folder = tempfile::tempdir().unwrap();
     let width = gdcm_plot::figure::ColumnWidth::Double;
     let path = folder.path().join("summary.csv");
@@ -527,7 +527,7 @@ fn tolerances_are_reached_without_a_record_and_those_of_modes_are_edited() {
     ] {
         type_into(&mut window, field, "1e4");
     }
-    // What does not oscillate where the flown mode does stays outside, whatever the tolerance.
+    // A mode without the oscillation of the flown mode stays outside any tolerance.
     let outside = |of: &[ModeVerdict]| of.iter().filter(|of| **of == ModeVerdict::Outside).count();
     assert!(
         outside(&shown(&mut window)) < outside(&usual),

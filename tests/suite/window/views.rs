@@ -1,4 +1,4 @@
-//! The views: what each shows, by its controls.
+//! Contents of the views, through their controls.
 
 use gdcm::gui::commands::command::Command as Action;
 use gdcm::gui::commands::display::DisplayCommand;
@@ -133,7 +133,7 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
         );
     }
 
-    // The fastest pole of some perturbed model stands clear of the crowd.
+    // The fastest pole of a perturbed model is clear of the crowd.
     let fastest = marks.iter().min_by(|a, b| a[0].total_cmp(&b[0])).unwrap();
     let at = state(&window).display.figures[&View::Poles]
         .position(0, *fastest)
@@ -511,7 +511,7 @@ fn a_double_click_on_its_edge_puts_a_panel_back() {
     let edge = |window: &Window| window.get_by_label("Export corrections…").rect().left();
     let before = edge(&window);
     let y = 500.0;
-    // The edge of the answer panel, some points left of what it holds.
+    // The edge of the answer panel, some points left of its content.
     let at = pos2((1600.0_f32 - 352.0).round(), y);
     window.drag_at(at);
     window.run_steps(2);

@@ -1,4 +1,4 @@
-//! Datasets out of folders of files, by the command line and by the library.
+//! Datasets made from folders, by the command line and by the library.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -144,7 +144,7 @@ fn write_sys(path: &Path, matrices: [&DMatrix<f64>; 4], labels: [(&'static str, 
     std::fs::write(path.with_file_name(file_name(path, "mat")), bytes).unwrap();
 }
 
-/// The models of the example in a folder of MATLAB files.
+/// The example's models in a folder with MATLAB files.
 pub(crate) fn example_folder(root: &Path) {
     let example = &crate::EXAMPLE.dataset;
     write_folders(root, example, |path, model| {
@@ -152,7 +152,7 @@ pub(crate) fn example_folder(root: &Path) {
     });
 }
 
-/// Per cent of the travel of the longitudinal stick in an inch of it.
+/// Share of the longitudinal stick's travel in an inch \[%\].
 pub(crate) const PERCENT_IN_AN_INCH: f64 = 12.5;
 
 /// Conditions 1 and 3 of the example as files of two programs: in the identified models NZ is positive the other way round, and the
@@ -582,7 +582,7 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
     assert!(response.coherence().is_some());
 }
 
-/// A stack of physics models and one of identified models in a file each, without any names of conditions.
+/// A stack with physics models and a stack with identified models, a file each, without condition names.
 #[test]
 fn stacks_with_airspeeds_become_conditions_and_what_is_not_used_is_noted_once_a_file() {
     let folder = tempfile::tempdir().unwrap();
@@ -974,7 +974,7 @@ fn walk(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// A response of one channel pair, dB and degrees over rad/s, under a name of a file.
+/// A channel pair's response, dB and degrees over rad/s, in a file with this name.
 fn write_response(folder: &Path, name: &str) {
     let mut frf = String::from("omega [rad/s],mag [dB],phase [deg]\n");
     for step in 0..40 {
@@ -989,7 +989,7 @@ fn write_response(folder: &Path, name: &str) {
     std::fs::write(folder.join(name), frf).unwrap();
 }
 
-/// A model of one state in a file of MATLAB: gain, and names and units of its input and output.
+/// A model with a single state in a MATLAB file: gain, and the names and units of input and output.
 fn write_small(path: &Path, gain: f64, names: [&str; 2], units: [Option<&str>; 2]) {
     let scalar = |value: f64| DMatrix::from_element(1, 1, value);
     let lists = [("InputName", names[0]), ("OutputName", names[1])]
@@ -1015,7 +1015,7 @@ fn write_small(path: &Path, gain: f64, names: [&str; 2], units: [Option<&str>; 2
     std::fs::write(path, write_mat(&variables).unwrap()).unwrap();
 }
 
-/// The gain C B of the first model of a bundle of the first condition, in the dataset's units.
+/// The gain C B for the first model in a bundle at the first condition, in the dataset's units.
 fn gain_of(dataset: &Path, kind: BundleKind) -> f64 {
     let dataset = load_dataset(dataset).unwrap().dataset;
     let [_, b, c, _] = matrices(&dataset.conditions()[0].bundle(kind)[0]);
@@ -1048,7 +1048,7 @@ fn a_response_whose_name_says_no_channels_makes_no_dataset_and_one_that_does_is_
         .concat())
     };
     let units = ["--unit", "LON=%", "--unit", "Q=deg/s"];
-    // It names the pedals, which the dataset does not have; a dataset of zeros was made of it.
+    // It names the pedals, which the dataset lacks; a dataset with zeros was made from it.
     write_response(&models, "frf_r_ped_run2.csv");
     let ended = assemble(&units);
     assert_eq!(ended.status, 2, "{}{}", ended.out, ended.error);

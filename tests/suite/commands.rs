@@ -234,7 +234,7 @@ fn the_embedded_example_is_analysed_without_a_file() {
     assert!(widest <= 120, "{widest} columns");
 }
 
-/// The result of a condition, of a file of corrections.
+/// A condition's result in a corrections file.
 fn condition_of<'j>(corrections: &'j Value, id: &str) -> &'j Value {
     entries(&corrections["conditions"])
         .iter()
@@ -360,7 +360,7 @@ fn the_phase_is_corrected_as_an_option_says() {
         desk.gdcm(&[&["analyze", reference, "--out", "out", "--force"][..], more].concat())
     };
     let read = || crate::read_json(&desk.path("out/corrections.json"));
-    // Figures of the leads are the same wherever G is taken from, and the text says so.
+    // The leads do not depend on the source of G, and the text reports that.
     let ended = analyze(&["--phase", "lead", "--gain-from", "mean"]);
     ended.assert_done();
     for words in [

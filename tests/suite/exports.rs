@@ -208,7 +208,7 @@ fn the_options_of_a_study_come_first() {
         !text.contains("delays are not scheduled")
             && !ended.out.contains("delays are not scheduled")
     );
-    // Held responses of this dataset have net delays: they are scheduled unasked, and left out where that is said.
+    // Held responses in this dataset have net delays: they are scheduled by default, and omitted on request.
     let unscheduled = "delays are not scheduled in this study: they are zero here";
     let unasked = desk.gdcm(&["export", "small.json", "--as", "py", "--out", "b.py"]);
     unasked.assert_done();
@@ -697,7 +697,7 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
                 let s = nalgebra::Complex::new(0.0, omega);
                 let filters = filter(output_leads[output], s) * filter(input_leads[input], s);
                 let expected = plain.curve(pair)[place] * filters * output_gain * input_gain;
-                // Responses are evaluated to a part of the greatest one, of order 1; far above the band most are 1e-6 of it.
+                // Responses have a rounding error relative to the largest response, about 1; far above the band most are 1e-6.
                 let allowed = 1e-9 * expected.norm() + 1e-11;
                 assert!(
                     (corrected.curve(pair)[place] - expected).norm() <= allowed,
@@ -766,7 +766,7 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
     }
 }
 
-/// The filter of the header, step by step, against the filter's own gain: 1 at rest, and its gain at a frequency of the band.
+/// The header's filter, step by step, against the analytical gain: 1 at rest, and at a frequency within the band.
 #[test]
 fn the_filter_of_the_c_header_leads_a_sine() {
     let desk = Desk::new();
@@ -856,7 +856,7 @@ fn delays_of_discrete_time_are_exact_or_refused() {
         "{}",
         ended.out
     );
-    // Condition 7 and condition 10; the correction has none, and neither is said to be without.
+    // Conditions 7 and 10; the correction has no delays, and no message reports that.
     assert_eq!(
         ended.out.matches("the model's own delays exact\n").count(),
         2,
@@ -1024,7 +1024,7 @@ fn octave_computes_the_response_of_a_corrected_model() {
 #[test]
 fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
     let desk = Desk::with_few();
-    // Of the example's conditions the 10th has the strongest lead on LON: as if a servo of 18 rad/s were one of 36.
+    // Condition 10 has the strongest lead on LON in the example: as if a servo of 36 rad/s replaced a servo of 18 rad/s.
     let limit = "not valid above 12 rad/s: at 120 rad/s the leads add +";
     for ExportFormat {
         name: format,

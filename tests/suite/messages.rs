@@ -234,7 +234,7 @@ fn pointers(value: &Value, at: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Values, each of which is wrong in most places.
+/// Values that are wrong in most places.
 fn wrong_values() -> impl Strategy<Value = Value> {
     prop::sample::select(vec![
         json!(null),

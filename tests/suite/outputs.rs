@@ -167,7 +167,7 @@ fn a_file_larger_than_the_system_allows_is_status_1_and_leaves_what_was_there() 
     );
 }
 
-/// Runs a command that has to end by itself: one that waits for a pipe is ended after a minute, and fails the test.
+/// Runs a command that has to end by itself: a command that waits for a pipe is killed after a minute, and fails the test.
 #[cfg(unix)]
 fn ends(desk: &Desk, arguments: &[&str]) -> Ended {
     use std::process::Stdio;

@@ -73,7 +73,7 @@ fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() 
     }
 }
 
-/// The units of the records of the late dataset, which their files do not say.
+/// Record units in the late dataset, which the files do not give.
 pub(crate) const LATE_UNITS: [&str; 8] = [
     "--unit", "LON=%", "--unit", "LAT=%", "--unit", "P=deg/s", "--unit", "Q=deg/s",
 ];
@@ -162,7 +162,7 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
         ];
         desk.gdcm(&[&["identify"], records, &of[..], more].concat())
     };
-    // Whichever comes first: rad/s of one file say nothing of the other.
+    // In either order: rad/s in a file implies nothing about the other file.
     for records in [["sweep_1.csv", "bare.csv"], ["bare.csv", "sweep_1.csv"]] {
         let ended = identify(&records, &[]);
         assert_eq!(ended.status, 2, "{ended:?}");
@@ -213,7 +213,7 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
             .contains("P: column \"P\", in deg/s as set for the channel"),
         "{ended:?}"
     );
-    // The records that models are compared with are asked in the same way.
+    // The same holds for records that models are compared with.
     fs::rename(desk.path("bare.csv"), desk.path("cond7_bare.csv")).unwrap();
     let report = [
         "report",
@@ -673,7 +673,7 @@ fn units_that_were_said_once_are_kept_by_the_dataset_with_its_records() {
 fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_puts_it_right() {
     let desk = Desk::new();
     late_dataset(&desk.path("."));
-    // Q of the last flight two samples of 40 ms later than in the others, P of it turned.
+    // In the last flight Q is two samples of 40 ms late, and P has the opposite sign.
     let text = fs::read_to_string(desk.path("flight_3.csv")).unwrap();
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     let place = |name: &str| rows[0].iter().position(|of| of.starts_with(name)).unwrap();
@@ -732,7 +732,7 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
             file.contains(&format!("\"code\": \"{code}\""))
                 || file.contains(&format!("\"code\":\"{code}\""))
         );
-        // Of a pair the options of both stand there, those of the last behind.
+        // For a pair, the options for both records are given, the last record's behind.
         let said = line
             .rsplit_once(&format!("{option} "))
             .unwrap()
@@ -781,7 +781,7 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
     .assert_code("unknown-record", &["--delay: \"x\""]);
 }
 
-/// Magnitude of the first response of the first model of a file of identified models, at a frequency \[rad/s\].
+/// Magnitude \[dB\] of the first response of the first identified model in a file, at a frequency \[rad/s\].
 fn magnitude_db(identified: &Value, omega: f64) -> f64 {
     let matrix = |name: &str| {
         let rows = identified["models"][0][name].as_array().unwrap();
@@ -892,7 +892,7 @@ fn parts_of_records_are_records_of_their_own_in_the_dataset_too() {
         ([20.0, 40.0], true),
     ];
     assert_eq!(parts, expected);
-    // The whole of a record counts no more beside its parts, that of another does.
+    // A whole record no longer counts beside its parts; a whole other record does.
     let wholes: Vec<_> = entries
         .iter()
         .filter(|record| record.part_s.is_none())
@@ -1062,7 +1062,7 @@ fn models_are_identified_into_a_dataset_that_has_none_yet() {
         panic!("two conditions")
     };
     assert!(filled.has_reference() && !empty.has_reference());
-    // One condition is analysed; of the other it is said that it has no reference.
+    // A single condition is analysed; the other is reported without a reference.
     let ended = desk.gdcm(&["analyze", "out/late.json", "--out", "results", "--json"]);
     assert_eq!(ended.status, 0, "{ended:?}");
     let said: Value = serde_json::from_str(&ended.out).unwrap();

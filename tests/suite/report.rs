@@ -40,7 +40,7 @@ const SECTIONS: [&str; 11] = [
 ];
 const REASON: &str = "steps at 2 rad/s <see the & bode plot>";
 
-/// A few conditions of the example, the nominal model of condition 10 rejected with a reason.
+/// A few conditions in the example, with the nominal model at condition 10 rejected for a reason.
 static ANALYSIS: LazyLock<Analysis> = LazyLock::new(|| {
     let mut study = Study::new(FEW.dataset.clone());
     let model = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");

@@ -167,7 +167,7 @@ fn a_dataset_without_a_rate_has_words_in_place_of_bandwidths() {
 #[test]
 fn what_leads_make_above_the_band_is_refused_and_not_given() {
     let desk = Desk::with_few();
-    // In a band that ends below twice the crossings of half a turn; to 12 rad/s nothing of the example rests on more.
+    // The band ends below twice the crossing of -180 deg; up to 12 rad/s no number in the example depends on frequencies above the band.
     let ended = desk.gdcm(&[
         "requirements",
         "few.json",
@@ -397,7 +397,7 @@ fn what_a_stick_commands_is_an_option_and_levels_are_drawn() {
         ruled("P").iter().all(|rule| **rule == "phase"),
         "of attitude command the phase margin alone"
     );
-    // The intervals of a number lie about it, those of swapped models too.
+    // The intervals lie about their number, also for swapped models.
     let mut swapped = 0;
     for of in findings.iter().filter(|of| of["role"] == "physics") {
         let bandwidth = &of["omega_bw_rad_s"];

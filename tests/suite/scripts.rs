@@ -765,7 +765,7 @@ fn command_lines_put_together_at_random_end_with_a_status_and_words() {
     write_record(&desk);
     let mut state = 1_u64;
     let mut below = |bound: usize| {
-        // The generator of Knuth (MMIX), of which the upper bits are used.
+        // Knuth's generator (MMIX), whose upper bits are used.
         state = state
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Modules of a crate, each with the modules of the same crate that it may name.
+/// Modules in a crate, each with the modules in the same crate that it may name.
 type ModuleTable = &'static [(&'static str, &'static [&'static str])];
 
 /// The crates from the bottom up, each with its modules and, for each module, the modules of the same crate that it may name.
@@ -360,7 +360,7 @@ fn the_front_page_of_a_crate_names_every_module() {
     }
 }
 
-/// Every line of the code of the workspace, with its place.
+/// Every code line in the workspace, with its place.
 fn lines_of_code() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut lines = Vec::new();

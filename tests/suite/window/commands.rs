@@ -1,4 +1,4 @@
-//! The table of commands: the palette, the page of keys, tables and the tour.
+//! The command table: palette, key page, tables and tour.
 
 use gdcm::gui::commands::assembling::AssemblingCommand;
 use gdcm::gui::commands::command_table::{command_table, every_command};

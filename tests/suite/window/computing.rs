@@ -16,7 +16,7 @@ use gdcm_study::{Engine, Study};
 use super::views::show;
 use super::*;
 
-/// Executes as the program does; while it is armed it panics inside one of the tasks, or keeps them waiting.
+/// Executes as the program does; while armed it panics inside a task, or keeps the tasks waiting.
 #[derive(Clone, Default)]
 struct Trap {
     panics: Arc<AtomicBool>,

@@ -130,7 +130,7 @@ fn a_study_whose_dataset_is_gone_loses_no_decision_before_the_dataset_is_found()
     assert!(!state(&window).unsaved && state(&window).dataset().conditions().len() == 2);
 }
 
-/// The path of a dataset of two conditions.
+/// Path to a dataset with two conditions.
 pub(super) fn small_dataset() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json")
 }

@@ -27,7 +27,7 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
         bench(window).reading.is_none()
     });
     type_into(&mut window, "Unit of input 1", "%");
-    // The size of an inch of stick is not guessed.
+    // An inch of stick has no known size.
     assert!(window.query_by_label_contains("to complete").is_some());
     type_into(
         &mut window,
@@ -103,7 +103,7 @@ fn a_unit_that_neither_a_record_nor_its_samples_say_is_chosen_in_the_page_of_col
     let folder = tempfile::tempdir().unwrap();
     let row = |k: u32| {
         let at = f64::from(k);
-        // A rate of 40 is no radians in a second; one of 0.4 can be either.
+        // A rate of 40 cannot be in rad/s; 0.4 can be in rad/s or deg/s.
         let rate = 40.0 * (0.2 * at).sin();
         let slow = 0.4 * (0.2 * at).cos();
         format!(

@@ -7,7 +7,7 @@ use super::records::rows_shown;
 use super::views::{give, show};
 use super::*;
 
-/// The window on a log, in the form that asks of which channels a dataset is to be made.
+/// The window on a log, in the form for the channels of a new dataset.
 fn asked(log: &str, bytes: &[u8]) -> (Window, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join(log), bytes).unwrap();

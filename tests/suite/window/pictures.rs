@@ -58,9 +58,9 @@ impl Format {
     }
 }
 
-/// Difference of a channel from which a pixel is another: below it lie other roundings of the last digit of a curve.
+/// Channel difference from which a pixel counts as different: rounding in the last digit moves a curve by less.
 const OTHER: u8 = 40;
-/// Part of the pixels that may be others: a digit or two. A line of text or a curve that is missing is more.
+/// Share of pixels that may differ: a digit or two. A missing line of text or curve is more.
 const MOST_OTHERS: f64 = 0.002;
 
 /// The textures of a window, as the frames before have left them.

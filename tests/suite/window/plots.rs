@@ -13,7 +13,7 @@ use super::*;
 /// A point of the nominal model's curve.
 pub(super) fn place_on_nominal(window: &Window) -> Pos2 {
     let nominal = drawn(window, CurveRole::Nominal);
-    // At 2 rad/s the nominal model stands 3 dB above the bundle: nothing else is near.
+    // At 2 rad/s the nominal model is 3 dB above the bundle: nothing else is near.
     let at = nominal.omega.iter().position(|&omega| omega > 2.0).unwrap();
     let view = &state(window).display.frequency.bode;
     view.screen_position(Pane::Magnitude, nominal.omega[at], nominal.magnitude_db[at])
@@ -270,7 +270,7 @@ fn an_idle_window_draws_no_frames() {
     assert_asks_for_no_frame(&mut window, "Bode with the pointer on a curve");
 }
 
-/// Draws a few frames without input, none of which may ask for another one.
+/// Draws a few frames without input, which must not request further frames.
 fn assert_asks_for_no_frame(window: &mut Window, what: &str) {
     for _ in 0..5 {
         window.run_steps(1);
@@ -492,7 +492,7 @@ fn the_label_of_airspeeds_lies_inside_its_plot() {
         .transform(Pane::Magnitude)
         .unwrap()
         .frame();
-    // That of the heading stands above it.
+    // The heading's copy is above it.
     let labels = texts_in(&window, frame.expand(30.0))
         .into_iter()
         .filter(|(text, _)| text == "LON → Q");

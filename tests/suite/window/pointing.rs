@@ -154,7 +154,7 @@ fn lines_of_tooltip(window: &mut Window, at: Pos2) -> usize {
 fn a_tooltip_has_a_name_and_four_rows_at_most() {
     let mut window = window();
     choose_condition_10(&mut window);
-    // A model that has everything that can be said of one: trim, ratio, distance, and why it is rejected.
+    // A model with every entry: trim, ratio, distance, and the reason for its rejection.
     let reject = gdcm_study::Edit::RejectBecause {
         model: ModelId::new(ConditionId(10), BundleKind::Physics, "V+10kt"),
         reason: "a step near this trim".to_owned(),

@@ -59,7 +59,7 @@ fn doubtful() -> (Window, tempfile::TempDir) {
     (window, folder)
 }
 
-/// Presses a button that the list of records may have scrolled out of sight.
+/// Presses a button that the record list may have scrolled out of sight.
 fn press(window: &mut Window, label: &str) {
     window.get_by_label(label).click_accesskit();
     window.run_steps(3);

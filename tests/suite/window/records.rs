@@ -28,7 +28,7 @@ use crate::made_up::{Flight, Gusts, stable_aircraft, tries};
 
 const CONDITION_10_ID: ConditionId = ConditionId(10);
 
-/// The window on the records of condition 10 of the example.
+/// The window on the records at condition 10 in the example.
 fn records_window() -> Window {
     let mut window = window();
     click(&mut window, CONDITION_10);
@@ -588,7 +588,7 @@ fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_ref
     );
 }
 
-/// Records of conditions that have used some, and how many of these conditions there are.
+/// Records at conditions with used records, and the count of these conditions.
 fn used_rows(window: &Window) -> (usize, usize) {
     let used = state(window)
         .records
@@ -1149,7 +1149,7 @@ pub(super) fn rows_shown(window: &Window) -> usize {
         .map_or(0, |records| records.rows.len())
 }
 
-/// A window that makes a dataset of two records in a folder, of these channels.
+/// A window that makes a dataset from two records in a folder, with these channels.
 fn making_a_dataset(folder: &Path, inputs: &str, outputs: &str) -> Window {
     let mut window = window();
     show(&mut window, View::Records);

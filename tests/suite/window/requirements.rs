@@ -128,7 +128,7 @@ fn a_click_on_a_mark_is_of_that_model() {
     // Without leads the corrected models' marks lie on the physics models'.
     let role = RequirementRole::Identified;
     let of_role = |of: &&BandwidthFinding| of.pair == p_lat && of.role == role;
-    // The one that lies farthest from all other marks: nothing hides it.
+    // The mark farthest from all other marks: nothing hides it.
     let places = |of: &BandwidthFinding| gdcm_plot::figure::requirements::bandwidth_place(of);
     let apart = |of: &BandwidthFinding| -> f64 {
         let Some([x, y]) = places(of) else {

@@ -504,7 +504,7 @@ fn a_condition_pointed_at_in_the_list_is_lit_among_the_dots() {
 #[test]
 fn a_double_click_on_its_edge_puts_a_panel_back() {
     let mut window = window();
-    // Frames of a test are a quarter of a second apart.
+    // Test frames are 0.25 s apart.
     window
         .ctx
         .options_mut(|options| options.input_options.max_double_click_delay = 5.0);

@@ -50,6 +50,17 @@ impl Desk {
         Ended::of(&output)
     }
 
+    /// Runs a command line with further arguments.
+    pub(crate) fn run(&self, line: &[&str], more: &[&str]) -> Ended {
+        self.gdcm(&[line, more].concat())
+    }
+
+    /// Returns the text of a file.
+    #[track_caller]
+    pub(crate) fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
     /// Runs a command that fails, with its messages as JSON.
     #[track_caller]
     pub(crate) fn refusal(&self, arguments: &[&str]) -> Refusal {
@@ -143,11 +154,10 @@ pub(crate) struct Ended {
 
 impl Ended {
     pub(crate) fn of(output: &Output) -> Self {
-        let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
         Self {
             status: output.status.code().unwrap(),
-            out: text(&output.stdout),
-            error: text(&output.stderr),
+            out: String::from_utf8(output.stdout.clone()).unwrap(),
+            error: String::from_utf8(output.stderr.clone()).unwrap(),
         }
     }
 
@@ -356,12 +366,10 @@ fn delays_are_scheduled_and_a_tolerance_is_set_by_options() {
 fn the_phase_is_corrected_as_an_option_says() {
     let desk = Desk::new();
     let reference = crate::REFERENCE_DATASET.path().unwrap().to_str().unwrap();
-    let analyze = |more: &[&str]| {
-        desk.gdcm(&[&["analyze", reference, "--out", "out", "--force"][..], more].concat())
-    };
-    let read = || crate::read_json(&desk.path("out/corrections.json"));
+    let analyze = ["analyze", reference, "--out", "out", "--force"];
+    let corrections = desk.path("out/corrections.json");
     // The leads do not depend on the source of G, and the text reports that.
-    let ended = analyze(&["--phase", "lead", "--gain-from", "mean"]);
+    let ended = desk.run(&analyze, &["--phase", "lead", "--gain-from", "mean"]);
     ended.assert_done();
     for words in [
         "G from the mean over all kept pairs, without effect: with leads",
@@ -384,7 +392,7 @@ fn the_phase_is_corrected_as_an_option_says() {
             ended.out
         );
     }
-    let led = read();
+    let led = crate::read_json(&corrections);
     assert_eq!(
         (&led["settings"]["phase"], &led["settings"]["delay_from"]),
         (&json!("lead"), &json!("median"))
@@ -424,10 +432,10 @@ fn the_phase_is_corrected_as_an_option_says() {
             .unwrap()
             .contains(",tau_s,lead_s,zero_rad_s,lag_rad_s,gain_at_infinity_db,scheduled_tau_s,")
     );
-    let ended = analyze(&["--phase", "none"]);
+    let ended = desk.run(&analyze, &["--phase", "none"]);
     ended.assert_done();
     assert!(!ended.out.contains("G from"), "{}", ended.out);
-    for of in entries(&read()["conditions"]) {
+    for of in entries(&crate::read_json(&corrections)["conditions"]) {
         assert!(
             of.get("lead").is_none()
                 && members(&of["delays_s"]["outputs"])
@@ -435,13 +443,14 @@ fn the_phase_is_corrected_as_an_option_says() {
                     .all(|delay_s| **delay_s == 0.0)
         );
     }
-    analyze(&["--delay-from", "band"]).assert_done();
-    let settings = &read()["settings"];
+    desk.run(&analyze, &["--delay-from", "band"]).assert_done();
+    let settings = &crate::read_json(&corrections)["settings"];
     assert_eq!(
         (&settings["phase"], &settings["delay_from"]),
         (&json!("delay"), &json!("band"))
     );
-    analyze(&["--phase", "later"]).assert_failed(2, &["expected none, delay or lead, found later"]);
+    desk.run(&analyze, &["--phase", "later"])
+        .assert_failed(2, &["expected none, delay or lead, found later"]);
 }
 
 #[test]
@@ -1072,7 +1081,7 @@ fn settings_are_printed_with_six_digits() {
 #[test]
 fn a_figure_that_cannot_be_made_is_status_2_and_says_what_there_is() {
     let desk = Desk::new();
-    let figure = |rest: &[&str]| desk.gdcm(&[&["figure", "small.json"][..], rest].concat());
+    let figure = ["figure", "small.json"];
     let cases: [(&[&str], &str, &[&str]); 5] = [
         (
             &["--view", "bode", "--out", "a.svg"],
@@ -1101,19 +1110,22 @@ fn a_figure_that_cannot_be_made_is_status_2_and_says_what_there_is() {
         ),
     ];
     for (options, code, names) in cases {
-        let line = [&["figure", "small.json"], options].concat();
+        let line = [&figure, options].concat();
         desk.gdcm(&line).assert_failed(2, names);
         desk.refusal(&line).assert_code(code, names);
     }
-    figure(&["--view", "net-gain", "--out", "a.jpg"])
+    desk.run(&figure, &["--view", "net-gain", "--out", "a.jpg"])
         .assert_failed(2, &["a.jpg: ", ".svg, .png, .pdf or .csv"]);
-    figure(&["--view", "net-gain", "--out", "small.json"]).assert_failed(2, &["small.json: "]);
+    desk.run(&figure, &["--view", "net-gain", "--out", "small.json"])
+        .assert_failed(2, &["small.json: "]);
     assert!(!desk.path("a.svg").exists());
     fs::write(desk.path("a.svg"), "mine").unwrap();
     let existing = ["--view", "net-gain", "--out", "a.svg"];
-    figure(&existing).assert_failed(2, &["a.svg exists already; --force overwrites"]);
+    desk.run(&figure, &existing)
+        .assert_failed(2, &["a.svg exists already; --force overwrites"]);
     assert_eq!(fs::read_to_string(desk.path("a.svg")).unwrap(), "mine");
-    figure(&[&existing[..], &["--force"]].concat()).assert_done();
+    desk.run(&figure, &[&existing[..], &["--force"]].concat())
+        .assert_done();
     assert!(
         fs::read_to_string(desk.path("a.svg"))
             .unwrap()

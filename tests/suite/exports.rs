@@ -388,16 +388,18 @@ fn every_export_states_what_it_contains() {
             ended.out
         );
     }
-    let read = |name: &str| fs::read_to_string(desk.path(name)).unwrap();
     let heading = "Contains: gains scheduled, delays none, leads none, couplings none.";
     for name in ["m.m", "py.py", "h.h", "table_csv.csv"] {
         assert!(
-            read(name).contains(heading) && read(name).contains("Left out: delay of "),
+            desk.read(name).contains(heading) && desk.read(name).contains("Left out: delay of "),
             "{name}"
         );
     }
-    assert!(read("h.h").contains("#define GDCM_CONTAINS_DELAYS \"none\"\n"));
-    let table = read("csv.csv");
+    assert!(
+        desk.read("h.h")
+            .contains("#define GDCM_CONTAINS_DELAYS \"none\"\n")
+    );
+    let table = desk.read("csv.csv");
     let heading = table.lines().next().unwrap();
     assert!(heading.ends_with(",contains"), "{heading}");
     assert!(
@@ -622,16 +624,21 @@ fn corrected_models_are_the_program_s_in_every_format() {
         let physics = condition
             .model(gdcm_model::dataset::BundleKind::Physics, representative)
             .unwrap();
-        let figures = |metric: &str, side: &str| numbers(members(&result[metric][side]));
         let gdcm_model::dataset::Dynamics::StateSpace(plain) = &physics.dynamics else {
             panic!("no matrices")
         };
         let corrected = evaluate(&state_space(model), &omega);
         let plain = evaluate(plain, &omega);
-        for (output, output_gain) in figures("gains", "outputs").into_iter().enumerate() {
-            for (input, input_gain) in figures("gains", "inputs").into_iter().enumerate() {
-                let delay =
-                    figures("delays_s", "outputs")[output] + figures("delays_s", "inputs")[input];
+        for (output, output_gain) in member_numbers(&result["gains"]["outputs"])
+            .into_iter()
+            .enumerate()
+        {
+            for (input, input_gain) in member_numbers(&result["gains"]["inputs"])
+                .into_iter()
+                .enumerate()
+            {
+                let delay = member_numbers(&result["delays_s"]["outputs"])[output]
+                    + member_numbers(&result["delays_s"]["inputs"])[input];
                 delayed += usize::from(delay > 0.0);
                 let corrected = corrected.curve(Pair { output, input });
                 let plain = plain.curve(Pair { output, input });
@@ -651,6 +658,17 @@ fn corrected_models_are_the_program_s_in_every_format() {
         }
     }
     assert!(delayed > 0, "some responses are delayed");
+}
+
+/// Value of a lead filter of second order at s: Butterworth polynomials at its zero and its lag (M15).
+fn lead_filter(lead: &Value, s: nalgebra::Complex<f64>) -> nalgebra::Complex<f64> {
+    butterworth(&lead["zero_rad_s"], s) / butterworth(&lead["lag_rad_s"], s)
+}
+
+/// 1 + sqrt(2) x + x^2 with x = s / omega.
+fn butterworth(omega: &Value, s: nalgebra::Complex<f64>) -> nalgebra::Complex<f64> {
+    let x = s / omega.as_f64().unwrap();
+    x * x + x * 2.0_f64.sqrt() + 1.0
 }
 
 /// A corrected model with leads is the model between its channels' filters, exactly; programs give the filters themselves.
@@ -674,13 +692,6 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
         .iter()
         .find(|row| row["airspeed_kt"] == 45.0)
         .unwrap();
-    let filter = |of: &Value, s: nalgebra::Complex<f64>| {
-        let side = |omega: &Value| {
-            let x = s / omega.as_f64().unwrap();
-            x * x + x * 2.0_f64.sqrt() + 1.0
-        };
-        side(&of["zero_rad_s"]) / side(&of["lag_rad_s"])
-    };
     let physics = &crate::FEW.dataset.conditions()[0];
     let nominal = &physics.bundle(gdcm_model::dataset::BundleKind::Physics)[physics.nominal()];
     let gdcm_model::dataset::Dynamics::StateSpace(plain) = &nominal.dynamics else {
@@ -695,7 +706,8 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
             let pair = Pair { output, input };
             for (place, omega) in omega.into_iter().enumerate() {
                 let s = nalgebra::Complex::new(0.0, omega);
-                let filters = filter(output_leads[output], s) * filter(input_leads[input], s);
+                let filters =
+                    lead_filter(output_leads[output], s) * lead_filter(input_leads[input], s);
                 let expected = plain.curve(pair)[place] * filters * output_gain * input_gain;
                 // Responses have a rounding error relative to the largest response, about 1; far above the band most are 1e-6.
                 let allowed = 1e-9 * expected.norm() + 1e-11;
@@ -945,19 +957,17 @@ fn octave_reads_the_corrections_as_analyze_writes_them() {
         return;
     };
     let mut expected = Vec::new();
-    let table = |table: &Value| numbers(entries(table).iter().flat_map(entries));
-    let figures = |of: &Value| numbers(members(of));
     for of in entries(&corrections["conditions"]) {
         expected.push(of["id"].as_f64().unwrap());
-        expected.extend([table(&of["G"]), table(&of["D_s"])].concat());
+        expected.extend([table_numbers(&of["G"]), table_numbers(&of["D_s"])].concat());
         expected.extend(
             [
-                figures(&of["gains"]["inputs"]),
-                figures(&of["delays_s"]["outputs"]),
+                member_numbers(&of["gains"]["inputs"]),
+                member_numbers(&of["delays_s"]["outputs"]),
             ]
             .concat(),
         );
-        expected.extend(table(&of["J"]["corrected"]["mag"]));
+        expected.extend(table_numbers(&of["J"]["corrected"]["mag"]));
         expected.extend(numbers(
             entries(&of["net_gains"]).iter().map(|net| &net["gain"]),
         ));
@@ -970,7 +980,7 @@ fn octave_reads_the_corrections_as_analyze_writes_them() {
     expected.extend(
         entries(&schedule["table"])
             .iter()
-            .flat_map(|row| figures(&row["outputs"])),
+            .flat_map(|row| member_numbers(&row["outputs"])),
     );
     assert_eq!(found.len(), expected.len());
     assert!(
@@ -1060,4 +1070,14 @@ fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
         "{}",
         without.out
     );
+}
+
+/// Numbers of a table in JSON, row by row.
+fn table_numbers(table: &Value) -> Vec<f64> {
+    numbers(entries(table).iter().flat_map(entries))
+}
+
+/// Numbers of an object in JSON, in the order of its members.
+fn member_numbers(object: &Value) -> Vec<f64> {
+    numbers(members(object))
 }

@@ -149,27 +149,30 @@ fn records_that_identify_no_input_are_status_1() {
     );
 }
 
+/// Runs a command whose messages are a JSON object, and returns the object.
+#[track_caller]
+fn message_object(desk: &Desk, arguments: &[&str]) -> Value {
+    let ended = desk.gdcm(arguments);
+    assert_eq!(ended.error, "", "{ended:?}");
+    let object: Value = serde_json::from_str(&ended.out).unwrap();
+    assert_eq!(
+        (&object["format"], &object["status"]),
+        (&json!("gdcm-messages"), &json!(ended.status))
+    );
+    object
+}
+
 #[test]
 fn everything_is_one_json_object_where_that_is_asked_for() {
     let desk = desk_with_half();
-    let object = |arguments: &[&str]| {
-        let ended = desk.gdcm(arguments);
-        assert_eq!(ended.error, "", "{ended:?}");
-        let object: Value = serde_json::from_str(&ended.out).unwrap();
-        assert_eq!(
-            (&object["format"], &object["status"]),
-            (&json!("gdcm-messages"), &json!(ended.status))
-        );
-        object
-    };
-    let analysed = object(&["analyze", "half.json", "--out", "out", "--json"]);
+    let analysed = message_object(&desk, &["analyze", "half.json", "--out", "out", "--json"]);
     assert_eq!(analysed["cautions"][0]["conditions"], json!([10]));
     assert!(
         analysed["text"].as_str().unwrap().contains("Condition 7"),
         "{analysed}"
     );
     assert_eq!(analysed["error_codes"], json!([]));
-    let missing = object(&["check", "missing.json", "--json"]);
+    let missing = message_object(&desk, &["check", "missing.json", "--json"]);
     assert_eq!(
         missing["error_codes"],
         json!([null]),
@@ -182,7 +185,7 @@ fn everything_is_one_json_object_where_that_is_asked_for() {
             .starts_with("missing.json: "),
         "{missing}"
     );
-    let wrong = object(&["check", "--json", "--colour", "small.json"]);
+    let wrong = message_object(&desk, &["check", "--json", "--colour", "small.json"]);
     assert!(
         wrong["errors"][0].as_str().unwrap().contains("--colour") && wrong["status"] == json!(2),
         "{wrong}"
@@ -416,18 +419,21 @@ fn a_record_named_on_the_command_line_that_cannot_be_read_is_status_1_and_the_ot
     );
 }
 
+fn crc_32(bytes: &[u8]) -> u32 {
+    let mut sum = flate2::Crc::new();
+    sum.update(bytes);
+    sum.sum()
+}
+
 /// An archive of files that are not packed (APPNOTE 4.3).
 fn stored_zip(files: &[(&str, &[u8])]) -> Vec<u8> {
-    let sum = |bytes: &[u8]| {
-        let mut sum = flate2::Crc::new();
-        sum.update(bytes);
-        sum.sum()
-    };
     let mut archive = Vec::new();
     let mut directory = Vec::new();
     for (name, bytes) in files {
         let length = bytes.len() as u32;
-        let numbers = [sum(bytes), length, length].map(u32::to_le_bytes).concat();
+        let numbers = [crc_32(bytes), length, length]
+            .map(u32::to_le_bytes)
+            .concat();
         let fields = [
             &[20, 0, 0, 0, 0, 0, 0, 0, 0, 0][..],
             &numbers,
@@ -515,42 +521,49 @@ fn with_records<'a>(command: [&'a str; 5], records: [&'a str; 2]) -> Vec<&'a str
     [&command[..], &records, &units].concat()
 }
 
+/// Inverts the signs in a row of numbers.
+fn invert(row: &mut Value) {
+    for value in row.as_array_mut().unwrap() {
+        *value = json!(-value.as_f64().unwrap());
+    }
+}
+
+/// Undoes the wrapping of printed text.
+fn on_one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Conditions in the corrections file of a folder.
+fn corrected_conditions(desk: &Desk, folder: &str) -> Value {
+    let path = desk.path(&format!("{folder}/corrections.json"));
+    crate::read_json(&path)["conditions"].clone()
+}
+
 #[test]
 fn a_turned_channel_is_said_first_by_analyze_and_check_and_turned_by_the_option() {
     let desk = Desk::new();
-    let turn = |rows: &mut Value| {
-        for value in rows.as_array_mut().unwrap() {
-            let turned = -value.as_f64().unwrap();
-            *value = json!(turned);
-        }
-    };
     // Q of the identified models, matrices and the measured response, is positive the other way round.
     desk.write("turned.json", |file| {
         for condition in file["conditions"].as_array_mut().unwrap() {
             for model in condition["identified_models"].as_array_mut().unwrap() {
                 if model["C"].is_array() {
-                    ["C", "D"]
-                        .into_iter()
-                        .for_each(|matrix| turn(&mut model[matrix][1]));
+                    for matrix in ["C", "D"] {
+                        invert(&mut model[matrix][1]);
+                    }
                     continue;
                 }
                 for part in ["re", "im"] {
-                    model["frequency_response"][part][1]
-                        .as_array_mut()
-                        .unwrap()
-                        .iter_mut()
-                        .for_each(turn);
+                    let response = &mut model["frequency_response"][part][1];
+                    for values in response.as_array_mut().unwrap() {
+                        invert(values);
+                    }
                 }
             }
         }
     });
     let words = "LON → Q differs by half a turn at all frequencies";
-    let joined = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let found = |name: &str| {
-        crate::read_json(&desk.path(&format!("{name}/corrections.json")))["conditions"].clone()
-    };
     let said = desk.gdcm(&["analyze", "turned.json", "--out", "turned"]);
-    let out = joined(&said.out);
+    let out = on_one_line(&said.out);
     assert!(
         out.contains(words) && out.contains("has the other sign. Turn it? (--sign Q=-1)"),
         "{out}"
@@ -559,14 +572,23 @@ fn a_turned_channel_is_said_first_by_analyze_and_check_and_turned_by_the_option(
         out.find(words) < out.find("Condition 7"),
         "before anything is blamed for it"
     );
-    assert!(joined(&desk.gdcm(&["check", "turned.json"]).out).contains(words));
-    assert!(!joined(&desk.gdcm(&["check", "turned.json", "--sign", "Q=-1"]).out).contains(words));
+    assert!(on_one_line(&desk.gdcm(&["check", "turned.json"]).out).contains(words));
+    assert!(
+        !on_one_line(&desk.gdcm(&["check", "turned.json", "--sign", "Q=-1"]).out).contains(words)
+    );
     desk.gdcm(&["analyze", "turned.json", "--sign", "Q=-1", "--out", "back"])
         .assert_done();
     desk.gdcm(&["analyze", "small.json", "--out", "right"])
         .assert_done();
-    assert_eq!(found("back"), found("right"), "to the last digit");
-    assert_ne!(found("turned"), found("right"));
+    assert_eq!(
+        corrected_conditions(&desk, "back"),
+        corrected_conditions(&desk, "right"),
+        "to the last digit"
+    );
+    assert_ne!(
+        corrected_conditions(&desk, "turned"),
+        corrected_conditions(&desk, "right")
+    );
 }
 
 #[test]
@@ -626,25 +648,9 @@ fn what_many_conditions_have_is_one_table_and_one_sentence() {
         );
     }
     let corrections = crate::read_json(&desk.path("out/corrections.json"));
-    let channels = |side: &str| -> Vec<(String, String)> {
-        let of = corrections[side].as_array().unwrap().iter();
-        of.map(|channel| {
-            (
-                channel["name"].as_str().unwrap().to_owned(),
-                channel["unit"].as_str().unwrap().to_owned(),
-            )
-        })
-        .collect()
-    };
-    let expected = |channels: &[(&str, &str)]| -> Vec<(String, String)> {
-        channels
-            .iter()
-            .map(|(name, unit)| ((*name).to_owned(), (*unit).to_owned()))
-            .collect()
-    };
     assert_eq!(
-        channels("inputs"),
-        expected(&[("LON", "%"), ("LAT", "%"), ("PED", "%"), ("COL", "%")])
+        names_and_units(&corrections["inputs"]),
+        [("LON", "%"), ("LAT", "%"), ("PED", "%"), ("COL", "%")]
     );
     let rates = [
         ("P", "deg/s"),
@@ -654,7 +660,17 @@ fn what_many_conditions_have_is_one_table_and_one_sentence() {
         ("NY", "m/s2"),
         ("NZ", "m/s2"),
     ];
-    assert_eq!(channels("outputs"), expected(&rates));
+    assert_eq!(names_and_units(&corrections["outputs"]), rates);
+}
+
+/// Names and units of channels in a corrections file.
+fn names_and_units(channels: &Value) -> Vec<(&str, &str)> {
+    let mut found = Vec::new();
+    for channel in channels.as_array().unwrap() {
+        let name = channel["name"].as_str().unwrap();
+        found.push((name, channel["unit"].as_str().unwrap()));
+    }
+    found
 }
 
 #[test]

@@ -29,7 +29,7 @@ impl FolderProgress for Silent {
 }
 
 fn run(arguments: &[&str]) -> Ended {
-    Ended::of(
+    Ended::from_output(
         &Command::new(env!("CARGO_BIN_EXE_gdcm"))
             .args(arguments)
             .output()
@@ -98,9 +98,12 @@ fn stem(kind: BundleKind, model: &Model) -> String {
 
 /// Writes every model of the example into a folder for each condition, one file a model.
 fn write_folders(root: &Path, dataset: &Dataset, write: impl Fn(&Path, &Model)) {
+    fn class(class: &Option<String>) -> String {
+        class.clone().unwrap()
+    }
+
     for condition in dataset.conditions() {
         let state = condition.flight_state();
-        let class = |class: &Option<String>| class.clone().unwrap();
         let name = format!(
             "c{:02}_{:03.0}kt_{}_{}",
             state.id.0,
@@ -457,7 +460,7 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
 
 /// Two physics models and a measured response of one input and one output, as files.
 pub(crate) fn small_folder(root: &Path) {
-    let model = |gain: f64| {
+    fn model(gain: f64) -> Vec<u8> {
         let values = [
             ("A", vec![-1.0]),
             ("B", vec![gain]),
@@ -479,7 +482,8 @@ pub(crate) fn small_folder(root: &Path) {
             value: text(of),
         });
         write_mat(&[&numbers[..], &texts[..]].concat()).unwrap()
-    };
+    }
+
     let folder = root.join("c1_60kt");
     std::fs::create_dir_all(&folder).unwrap();
     std::fs::write(folder.join("trim.mat"), model(1.0)).unwrap();
@@ -501,6 +505,10 @@ pub(crate) fn small_folder(root: &Path) {
 
 #[test]
 fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
+    fn asked(assembly: &Assembly, wanted: fn(&ProblemKind) -> bool) -> bool {
+        assembly.problems().iter().any(|of| wanted(&of.kind))
+    }
+
     let folder = tempfile::tempdir().unwrap();
     small_folder(folder.path());
     let found = found_in(folder.path());
@@ -515,9 +523,6 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
     );
     let mut rules = proposed_rules("small", &found.models);
     let assembly = Assembly::new(found.models, rules.clone());
-    let asked = |assembly: &Assembly, wanted: fn(&ProblemKind) -> bool| {
-        assembly.problems().iter().any(|of| wanted(&of.kind))
-    };
     assert!(
         asked(&assembly, |kind| matches!(kind, ProblemKind::UnitOfFile(_))),
         "the response has no units: {:?}",
@@ -585,15 +590,16 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
 /// A stack with physics models and a stack with identified models, a file each, without condition names.
 #[test]
 fn stacks_with_airspeeds_become_conditions_and_what_is_not_used_is_noted_once_a_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let stack = |gains: [f64; 3], airspeeds: [f64; 3]| {
+    fn stack(gains: [f64; 3], airspeeds: [f64; 3]) -> serde_json::Value {
         let pages: Vec<serde_json::Value> = gains.iter().map(|gain| json!([[gain]])).collect();
         json!({
             "A": [[[-1.0]], [[-1.0]], [[-1.0]]], "B": pages, "C": [[1.0]], "D": [[0.0]], "airspeed_kt": airspeeds,
             "inputs": [{"name": "LON", "unit": "%"}], "outputs": [{"name": "Q", "unit": "deg/s"}],
             "input_delay_ms": [30.0], "torque": 7.0
         })
-    };
+    }
+
+    let folder = tempfile::tempdir().unwrap();
     for (name, gains, airspeeds) in [
         ("physics.json", [1.0, 2.0, 3.0], [60.0, 80.0, 100.0]),
         ("identified.json", [30.0, 20.0, 10.0], [100.0, 80.0, 60.0]),
@@ -770,6 +776,15 @@ fn columns_are_read_by_the_headings_that_the_rules_say_in_place_of_the_file_s() 
 
 #[test]
 fn names_are_said_for_the_channels_of_one_model_and_a_wrong_number_of_them_is_told() {
+    fn problem_words(assembly: &Assembly) -> String {
+        assembly
+            .told()
+            .into_iter()
+            .map(|(_, words)| words)
+            .collect::<Vec<_>>()
+            .join("\n")
+    }
+
     let folder = tempfile::tempdir().unwrap();
     small_folder(folder.path());
     let found = found_in(folder.path());
@@ -786,23 +801,15 @@ fn names_are_said_for_the_channels_of_one_model_and_a_wrong_number_of_them_is_to
             Some(names.iter().map(|name| (*name).to_owned()).collect());
         Assembly::new(found.models.clone(), rules)
     };
-    let told = |assembly: &Assembly| {
-        assembly
-            .told()
-            .into_iter()
-            .map(|(_, words)| words)
-            .collect::<Vec<_>>()
-            .join("\n")
-    };
     assert!(
-        told(&with(&["NZ"])).contains("NZ"),
+        problem_words(&with(&["NZ"])).contains("NZ"),
         "the model has another output now: {}",
-        told(&with(&["NZ"]))
+        problem_words(&with(&["NZ"]))
     );
     assert!(
-        told(&with(&["Q", "P"])).contains("2 names are said for the 1 outputs"),
+        problem_words(&with(&["Q", "P"])).contains("2 names are said for the 1 outputs"),
         "{}",
-        told(&with(&["Q", "P"]))
+        problem_words(&with(&["Q", "P"]))
     );
 }
 
@@ -845,6 +852,22 @@ fn measured_responses_of_one_model_at_differing_frequencies_are_told_with_what_m
 #[test]
 fn the_flight_records_of_a_dataset_stay_with_its_condition_and_are_found_from_where_the_new_one_lies()
  {
+    fn plain(path: &Path) -> PathBuf {
+        path.components()
+            .filter(|part| part.as_os_str() != ".")
+            .collect::<PathBuf>()
+    }
+
+    fn unplaced(records: &[ConditionRecord]) -> Vec<ConditionRecord> {
+        records
+            .iter()
+            .map(|record| ConditionRecord {
+                file: String::new(),
+                ..record.clone()
+            })
+            .collect()
+    }
+
     let folder = tempfile::tempdir().unwrap();
     let mut text: serde_json::Value =
         serde_json::from_str(include_str!("../data/small-dataset.json")).unwrap();
@@ -874,13 +897,8 @@ fn the_flight_records_of_a_dataset_stay_with_its_condition_and_are_found_from_wh
             .collect();
         let beside = old.parent().unwrap();
         let expected = ["records/lon_1.csv", "all.mat"].map(|file| beside.join(file));
-        let plain = |path: &PathBuf| {
-            path.components()
-                .filter(|part| part.as_os_str() != ".")
-                .collect::<PathBuf>()
-        };
         assert_eq!(
-            files.iter().map(plain).collect::<Vec<_>>(),
+            files.iter().map(|path| plain(path)).collect::<Vec<_>>(),
             expected,
             "from {}",
             source.display()
@@ -894,15 +912,6 @@ fn the_flight_records_of_a_dataset_stay_with_its_condition_and_are_found_from_wh
         let made = made(&source, name);
         let condition = &made.conditions()[0];
         let old = &before.conditions()[0];
-        let unplaced = |records: &[ConditionRecord]| -> Vec<ConditionRecord> {
-            records
-                .iter()
-                .map(|record| ConditionRecord {
-                    file: String::new(),
-                    ..record.clone()
-                })
-                .collect()
-        };
         assert_eq!(unplaced(condition.records()), unplaced(old.records()));
         assert_eq!(
             condition.bundle(BundleKind::Identified)[0]

@@ -47,7 +47,7 @@ impl Desk {
 
     pub(crate) fn gdcm(&self, arguments: &[&str]) -> Ended {
         let output = self.command(arguments).output().unwrap();
-        Ended::of(&output)
+        Ended::from_output(&output)
     }
 
     /// Runs a command line with further arguments.
@@ -153,7 +153,7 @@ pub(crate) struct Ended {
 }
 
 impl Ended {
-    pub(crate) fn of(output: &Output) -> Self {
+    pub(crate) fn from_output(output: &Output) -> Self {
         Self {
             status: output.status.code().unwrap(),
             out: String::from_utf8(output.stdout.clone()).unwrap(),
@@ -861,7 +861,7 @@ fn a_full_disk_behind_standard_output_is_status_1() {
         .stdout(full)
         .output()
         .unwrap();
-    Ended::of(&output).assert_failed(1, &["standard output cannot be written"]);
+    Ended::from_output(&output).assert_failed(1, &["standard output cannot be written"]);
 }
 
 #[test]

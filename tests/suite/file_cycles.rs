@@ -46,7 +46,10 @@ fn modules(package: &str) -> BTreeMap<ModulePath, String> {
 
 /// The paths that a module names, from the root of its crate: `super::a::{B, c::D}` in `x::y` gives `x::a::B` and `x::a::c`.
 fn named_paths(module: &ModulePath, code: &str) -> Vec<ModulePath> {
-    let is_path = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == ':';
+    fn is_path(c: char) -> bool {
+        c.is_ascii_alphanumeric() || c == '_' || c == ':'
+    }
+
     let mut paths = Vec::new();
     for start in ["crate::", "super::"] {
         for (at, _) in code.match_indices(start) {

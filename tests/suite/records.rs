@@ -80,8 +80,7 @@ pub(crate) const LATE_UNITS: [&str; 8] = [
 
 /// A desk with two short records of the small dataset's channels, the first in other units and under other names.
 fn desk() -> Desk {
-    let desk = Desk::new();
-    let text = |head: &str, rate: f64| {
+    fn text(head: &str, rate: f64) -> String {
         let row = |k: u32| {
             let at = f64::from(k);
             let stick = 50.0 + 10.0 * (0.3 * at).sin();
@@ -94,7 +93,9 @@ fn desk() -> Desk {
             )
         };
         head.to_owned() + &(0..80).map(row).collect::<String>()
-    };
+    }
+
+    let desk = Desk::new();
     fs::write(
         desk.path("sweep_1.csv"),
         text("t,lon,lateral,roll rate [rad/s],pitch rate [rad/s]\n", 0.2),
@@ -671,6 +672,15 @@ fn units_that_were_said_once_are_kept_by_the_dataset_with_its_records() {
 
 #[test]
 fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_puts_it_right() {
+    fn contrast(said: &str) -> f64 {
+        let after = said
+            .split_once("contradict")
+            .and_then(|(_, after)| after.split_once("(F "));
+        after.map_or(0.0, |(_, number)| {
+            number.split_once(';').unwrap().0.parse::<f64>().unwrap()
+        })
+    }
+
     let desk = Desk::new();
     late_dataset(&desk.path("."));
     // In the last flight Q is two samples of 40 ms late, and P has the opposite sign.
@@ -740,14 +750,6 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
             .trim_end_matches(')');
         let again = identified(&[option, said], &format!("{code}-again"));
         // A large delay is underestimated (M14.16): the remainder is proposed again.
-        let contrast = |said: &str| {
-            let after = said
-                .split_once("contradict")
-                .and_then(|(_, after)| after.split_once("(F "));
-            after.map_or(0.0, |(_, number)| {
-                number.split_once(';').unwrap().0.parse::<f64>().unwrap()
-            })
-        };
         assert!(
             contrast(&again) < 0.5 * contrast(line),
             "{said}: {line}\n{again}"
@@ -783,15 +785,16 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
 
 /// Magnitude \[dB\] of the first response of the first identified model in a file, at a frequency \[rad/s\].
 fn magnitude_db(identified: &Value, omega: f64) -> f64 {
+    fn row(row: &Value) -> Vec<f64> {
+        row.as_array()
+            .unwrap()
+            .iter()
+            .map(|value| value.as_f64().unwrap())
+            .collect::<Vec<_>>()
+    }
+
     let matrix = |name: &str| {
         let rows = identified["models"][0][name].as_array().unwrap();
-        let row = |row: &Value| {
-            row.as_array()
-                .unwrap()
-                .iter()
-                .map(|value| value.as_f64().unwrap())
-                .collect::<Vec<_>>()
-        };
         let rows: Vec<Vec<f64>> = rows.iter().map(row).collect();
         DMatrix::from_fn(rows.len(), rows[0].len(), |at, column| {
             Complex::from(rows[at][column])
@@ -839,6 +842,10 @@ fn the_quadrotor_is_identified_from_its_log_as_it_was_logged() {
 
 #[test]
 fn parts_of_records_are_records_of_their_own_in_the_dataset_too() {
+    fn entry_of_record(record: &Value) -> (Value, Value) {
+        (record["part_s"].clone(), record["held_out"].clone())
+    }
+
     let desk = Desk::new();
     late_dataset(&desk.path("."));
     let parts = [
@@ -863,12 +870,11 @@ fn parts_of_records_are_records_of_their_own_in_the_dataset_too() {
     );
     assert_eq!(ended.status, 0, "{ended:?}");
     let identified = crate::read_json(&desk.path("out/identified.json"));
-    let said = |record: &Value| (record["part_s"].clone(), record["held_out"].clone());
     let records: Vec<(Value, Value)> = identified["records"]
         .as_array()
         .unwrap()
         .iter()
-        .map(said)
+        .map(entry_of_record)
         .collect();
     let first = (json!([0.0, 20.0]), json!(false));
     let second = (json!([20.0, 40.0]), json!(true));

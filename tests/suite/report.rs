@@ -274,7 +274,7 @@ fn every_link_and_every_name_within_a_report_leads_to_one_place() {
 
 #[test]
 fn the_same_study_makes_the_same_bytes() {
-    let again = || {
+    fn again() -> String {
         let analysis = Engine::default()
             .analyze(&Study::new(FEW.dataset.clone()), &Unobserved)
             .unwrap();
@@ -285,7 +285,8 @@ fn the_same_study_makes_the_same_bytes() {
             &Unobserved,
         )
         .unwrap()
-    };
+    }
+
     assert!(again() == again());
 }
 

@@ -495,6 +495,10 @@ fn what_requirements_are_asked_with_comes_back_with_the_study() {
 
 #[test]
 fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
+    fn is_wide(mark: &Mark) -> bool {
+        matches!(mark, Mark::Curve(curve) if curve.name == "physics, outside" && curve.key.is_none())
+    }
+
     use gdcm_model::executor::{Executor, Sequential};
     use gdcm_model::progress::Unobserved;
     use gdcm_plot::figure::Mark;
@@ -567,7 +571,6 @@ fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
             assert!(
                 (low - (middle - width)).abs() < 1e-12 && (high - (middle + width)).abs() < 1e-12
             );
-            let is_wide = |mark: &Mark| matches!(mark, Mark::Curve(curve) if curve.name == "physics, outside" && curve.key.is_none());
             assert_eq!(
                 panel.marks.iter().any(is_wide),
                 physics.share_inside() < 1.0,

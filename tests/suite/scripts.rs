@@ -21,7 +21,7 @@ fn desk_with_half() -> Desk {
 
 /// A record of a second and a half, too short to identify anything from.
 fn write_record(desk: &Desk) {
-    let row = |k: u32| {
+    fn row(k: u32) -> String {
         let at = f64::from(k);
         let stick = (0.3 * at).sin();
         let rate = (0.2 * at).cos();
@@ -31,7 +31,8 @@ fn write_record(desk: &Desk) {
             0.5 * rate,
             0.4 * stick
         )
-    };
+    }
+
     fs::write(
         desk.path("a.csv"),
         "t,LON,LAT,P,Q\n".to_owned() + &(0..80).map(row).collect::<String>(),
@@ -383,7 +384,7 @@ fn no_thread_to_be_had_is_an_error_in_words() {
     let desk = Desk::new();
     // More than any machine can map.
     let mut command = desk.command(&["check", "small.json"]);
-    let ended = crate::commands::Ended::of(
+    let ended = crate::commands::Ended::from_output(
         &command
             .env("RUST_MIN_STACK", "140737488355328")
             .output()

@@ -293,6 +293,10 @@ fn drawing_names_no_files_and_the_commands_no_window() {
 
 #[test]
 fn every_folder_of_the_window_imports_only_folders_before_it() {
+    fn rank(folder: &str) -> Option<usize> {
+        GUI_FOLDERS.iter().position(|known| *known == folder)
+    }
+
     let mut wrong = Vec::new();
     let mut seen = 0;
     for (_, path, code) in modules("") {
@@ -303,7 +307,6 @@ fn every_folder_of_the_window_imports_only_folders_before_it() {
         if parts[0] != "gui" || parts[1] == "mod" {
             continue;
         }
-        let rank = |folder: &str| GUI_FOLDERS.iter().position(|known| *known == folder);
         let own = rank(parts[1]).unwrap_or_else(|| panic!("gui/{} is not listed", parts[1]));
         for (at, prefix) in code.match_indices("crate::gui::") {
             let named: String = code[at + prefix.len()..]

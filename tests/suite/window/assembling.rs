@@ -84,6 +84,15 @@ fn a_folder_is_put_together_by_its_labels_and_opened() {
 
 #[test]
 fn what_is_said_of_a_model_is_filled_down_undone_and_shown() {
+    fn altitudes(window: &Window) -> Vec<String> {
+        bench(window)
+            .assembly()
+            .parts()
+            .iter()
+            .map(|part| COLUMNS[4].text(part))
+            .collect()
+    }
+
     let folder = tempfile::tempdir().unwrap();
     crate::assembling::small_folder(folder.path());
     let mut window = window();
@@ -93,14 +102,6 @@ fn what_is_said_of_a_model_is_filled_down_undone_and_shown() {
     );
     wait_for_models(&mut window);
     window.run_steps(2);
-    let altitudes = |window: &Window| -> Vec<String> {
-        bench(window)
-            .assembly()
-            .parts()
-            .iter()
-            .map(|part| COLUMNS[4].text(part))
-            .collect()
-    };
     window
         .get_by_label_contains("Model c1_60kt/V+5kt.mat")
         .click();

@@ -285,6 +285,21 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
 
 #[test]
 fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
+    fn counts(window: &Window) -> Option<(usize, usize)> {
+        state(window).results.background.bars
+    }
+
+    fn bundles(of: &Condition) -> usize {
+        of.bundle(BundleKind::Physics).len() + of.bundle(BundleKind::Identified).len()
+    }
+
+    fn copied(window: &mut Window) -> String {
+        window
+            .state_mut()
+            .dispatch(OutputCommand::CopyFigure(View::NetGain));
+        state(window).notice.clone().unwrap().text
+    }
+
     let trap = Trap::default();
     let mut window = window_with(example(), trap.setup());
     show(&mut window, View::Evidence);
@@ -294,10 +309,6 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
         .get_by_role_and_label(Role::SpinButton, "Frequencies in the band")
         .set_value_accesskit(1000.0);
     settle(&mut window);
-    let counts = |window: &Window| state(window).results.background.bars;
-    let bundles = |of: &Condition| {
-        of.bundle(BundleKind::Physics).len() + of.bundle(BundleKind::Identified).len()
-    };
     let models: usize = state(&window)
         .dataset()
         .conditions()
@@ -316,12 +327,6 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
         .query_all_by_label_contains(&format!(" of {} steps …", 2 * models))
         .count();
     assert_eq!(told, 2, "in the view that waits for them, and below");
-    let copied = |window: &mut Window| {
-        window
-            .state_mut()
-            .dispatch(OutputCommand::CopyFigure(View::NetGain));
-        state(window).notice.clone().unwrap().text
-    };
     let done = "copied the numbers of Net gain";
     assert_eq!(
         copied(&mut window),
@@ -348,11 +353,14 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
 
 #[test]
 fn couplings_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
+    fn steps(window: &Window) -> Option<(usize, usize)> {
+        state(window).results.background.couplings
+    }
+
     let trap = Trap::default();
     let mut window = window_with(example(), trap.setup());
     settle(&mut window);
     show(&mut window, View::Couplings);
-    let steps = |window: &Window| state(window).results.background.couplings;
     wait_until(&mut window, "a part of the assessment", |window| {
         steps(window).is_some_and(|(done, _)| done > 0)
     });
@@ -377,6 +385,10 @@ fn couplings_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
 
 #[test]
 fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
+    fn is_open(outcome: Outcome) -> bool {
+        matches!(outcome, Outcome::NotProven { .. })
+    }
+
     let hasty = ProofBudget {
         work: 0,
         listing: 0,
@@ -385,7 +397,6 @@ fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
     let engine = move || Engine::default().with_proofs_within(hasty);
     let study = Study::new(crate::EXAMPLE.dataset.clone());
     let open = engine().analyze(&study, &Unobserved).unwrap();
-    let is_open = |outcome: Outcome| matches!(outcome, Outcome::NotProven { .. });
     assert!(
         open.conditions
             .values()

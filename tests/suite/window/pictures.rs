@@ -99,6 +99,10 @@ fn colour(of: egui::Color32) -> Color {
 
 /// Pixels of the window, red, green and blue, averaged over squares of the format's scale.
 fn picture(window: &Window, textures: &Textures, format: Format) -> Vec<u8> {
+    fn corner(at: Pos2) -> [u32; 2] {
+        [at.x.round().max(0.0) as u32, at.y.round().max(0.0) as u32]
+    }
+
     let [width, height] = format.size;
     let scale = format.scale;
     let mut renderer = SoftwareRenderer::default();
@@ -130,7 +134,6 @@ fn picture(window: &Window, textures: &Textures, format: Format) -> Vec<u8> {
         let Primitive::Mesh(mesh) = of.primitive else {
             continue;
         };
-        let corner = |at: Pos2| [at.x.round().max(0.0) as u32, at.y.round().max(0.0) as u32];
         let [min_x, min_y] = corner(of.clip_rect.min);
         let [max_x, max_y] = corner(of.clip_rect.max);
         let vertices: Vec<Vertex> = mesh
@@ -218,9 +221,10 @@ fn others(one: &[u8], other: &[u8]) -> f64 {
 }
 
 fn pictured_window(textures: &Textures, format: Format) -> Window {
-    let build = |creation: &mut eframe::CreationContext<'static>| {
+    fn build(creation: &mut eframe::CreationContext<'static>) -> gdcm::gui::app::GdcmApp {
         GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
-    };
+    }
+
     let size = vec2(format.size[0] as f32, format.size[1] as f32);
     let mut window = Harness::builder()
         .with_size(size)

@@ -157,6 +157,21 @@ fn a_dragged_end_of_the_band_stays_under_the_pointer_and_the_view_follows_when_i
 
 #[test]
 fn a_zoom_outlives_whatever_is_computed_and_whatever_is_shown() {
+    fn ranges(
+        window: &Window,
+    ) -> (
+        (f64, f64),
+        gdcm_plot::figure::Range,
+        gdcm_plot::figure::Range,
+    ) {
+        let view = &state(window).display.frequency.bode;
+        (
+            view.omega_range(),
+            view.value_range(Pane::Magnitude),
+            view.value_range(Pane::Phase),
+        )
+    }
+
     let mut window = window();
     choose_condition_10(&mut window);
     let area = *state(&window)
@@ -188,14 +203,6 @@ fn a_zoom_outlives_whatever_is_computed_and_whatever_is_shown() {
     }
     window.event(button(false));
     settle(&mut window);
-    let ranges = |window: &Window| {
-        let view = &state(window).display.frequency.bode;
-        (
-            view.omega_range(),
-            view.value_range(Pane::Magnitude),
-            view.value_range(Pane::Phase),
-        )
-    };
     let zoomed = ranges(&window);
     assert!(zoomed.0.0 > 0.5 && zoomed.0.1 < 12.0, "{zoomed:?}");
     click(&mut window, "Keep physics model V+10kt");

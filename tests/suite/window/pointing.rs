@@ -45,6 +45,13 @@ fn assert_told(window: &mut Window, what: &str, at: Pos2) {
 
 #[test]
 fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
+    fn dot(window: &Window, view: View) -> egui::Pos2 {
+        let id = MarkId::Condition(ConditionId(3));
+        state(window).display.figures[&view]
+            .screen_position(0, &id)
+            .expect("its dot is drawn")
+    }
+
     let mut window = window();
     choose_condition_10(&mut window);
     let nominal = super::plots::place_on_nominal(&window);
@@ -55,12 +62,6 @@ fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
         "{told}"
     );
 
-    let dot = |window: &Window, view: View| {
-        let id = MarkId::Condition(ConditionId(3));
-        state(window).display.figures[&view]
-            .screen_position(0, &id)
-            .expect("its dot is drawn")
-    };
     let net_gain = dot(&window, View::NetGain);
     assert_told(&mut window, "Net gain", net_gain);
     assert!(
@@ -123,12 +124,13 @@ fn marked_frequencies_are_named_over_the_plot_and_not_over_its_curves() {
 
 /// In how many lines the texts of the tooltip stand that opens at a place.
 fn lines_of_tooltip(window: &mut Window, at: Pos2) -> usize {
-    let labels = |window: &Window| -> BTreeSet<String> {
+    fn labels(window: &Window) -> BTreeSet<String> {
         let nodes = window.query_all_by_role(Role::Label);
         nodes
             .map(|node| format!("{:?} {}", node.accesskit_node().label(), node.rect()))
             .collect()
-    };
+    }
+
     window.hover_at(pos2(3.0, 3.0));
     window.run_steps(3);
     let before = labels(window);
@@ -152,6 +154,10 @@ fn lines_of_tooltip(window: &mut Window, at: Pos2) -> usize {
 
 #[test]
 fn a_tooltip_has_a_name_and_four_rows_at_most() {
+    fn place(window: &Window, label: &str) -> egui::Rect {
+        window.get_by_label(label).rect()
+    }
+
     let mut window = window();
     choose_condition_10(&mut window);
     // A model with every entry: trim, ratio, distance, and the reason for its rejection.
@@ -160,7 +166,6 @@ fn a_tooltip_has_a_name_and_four_rows_at_most() {
         reason: "a step near this trim".to_owned(),
     };
     give(&mut window, reject);
-    let place = |window: &Window, label: &str| window.get_by_label(label).rect();
     let model = place(&window, "physics model V+10kt");
     let lines = lines_of_tooltip(&mut window, pos2(model.left() + 60.0, model.center().y));
     assert!((3..=5).contains(&lines), "{lines} lines about a model");
@@ -203,9 +208,7 @@ fn what_a_tooltip_does_not_say_is_behind_the_question() {
 
 #[test]
 fn the_cell_under_the_pointer_keeps_how_sure_its_gain_is() {
-    let mut window = window();
-    wait_for_bars(&mut window);
-    let bars = |window: &Window| {
+    fn bars(window: &Window) -> usize {
         let cell = window.get_by_label("Response LON → Q").rect();
         let texts = window
             .output()
@@ -218,7 +221,10 @@ fn the_cell_under_the_pointer_keeps_how_sure_its_gain_is() {
                 _ => None,
             });
         texts.filter(|text| text.starts_with('±')).count()
-    };
+    }
+
+    let mut window = window();
+    wait_for_bars(&mut window);
     window.run_steps(3);
     let before = bars(&window);
     assert_eq!(before, 2, "of the gain and of the delay");

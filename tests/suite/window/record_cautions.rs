@@ -15,10 +15,7 @@ const OF: ConditionId = ConditionId(7);
 /// The window on four flights of which the last is held out and was flown with outputs of another size; the band reaches far beyond
 /// the sweeps.
 fn doubtful() -> (Window, tempfile::TempDir) {
-    let folder = tempfile::tempdir().unwrap();
-    let path = late_dataset(folder.path());
-    let last = folder.path().join("flight_3.csv");
-    let larger = |line: &str| {
+    fn larger(line: &str) -> String {
         let cells = line
             .split(',')
             .enumerate()
@@ -27,7 +24,19 @@ fn doubtful() -> (Window, tempfile::TempDir) {
                 _ => cell.to_owned(),
             });
         cells.collect::<Vec<_>>().join(",") + "\n"
-    };
+    }
+
+    fn records(window: &Window) -> usize {
+        state(window)
+            .records
+            .conditions
+            .get(&OF)
+            .map_or(0, |of| of.rows.len())
+    }
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = late_dataset(folder.path());
+    let last = folder.path().join("flight_3.csv");
     fs::write(
         &last,
         fs::read_to_string(&last)
@@ -43,13 +52,6 @@ fn doubtful() -> (Window, tempfile::TempDir) {
     let mut window = window();
     open_by_path(&mut window, &path);
     show(&mut window, View::Records);
-    let records = |window: &Window| {
-        state(window)
-            .records
-            .conditions
-            .get(&OF)
-            .map_or(0, |of| of.rows.len())
-    };
     wait_until(&mut window, "the records", |window| records(window) == 4);
     window.get_by_label("Identify").click();
     wait_until(&mut window, "the models", |window| {

@@ -156,12 +156,7 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
 
 #[test]
 fn zeros_of_the_response_in_focus_are_shown_on_wish() {
-    let mut window = window();
-    show(&mut window, View::Poles);
-    wait_until(&mut window, "the modes", |window| {
-        state(window).modes().is_some()
-    });
-    let zeros = |window: &Window| {
+    fn zeros(window: &Window) -> usize {
         let figure = poles(state(window)).expect("the modes are known");
         let of = |mark: &Mark| {
             if let Mark::Dots(dots) = mark {
@@ -175,7 +170,13 @@ fn zeros_of_the_response_in_focus_are_shown_on_wish() {
             .iter()
             .map(of)
             .sum::<usize>()
-    };
+    }
+
+    let mut window = window();
+    show(&mut window, View::Poles);
+    wait_until(&mut window, "the modes", |window| {
+        state(window).modes().is_some()
+    });
     assert_eq!(zeros(&window), 0);
     let name = format!(
         "zeros of {}",
@@ -297,26 +298,32 @@ fn the_evidence_answers_which_differences_are_in_earnest() {
 
 #[test]
 fn error_bars_come_beside_the_answer_and_can_be_switched_off() {
-    let mut window = window();
-    show(&mut window, View::NetGain);
-    wait_for_bars(&mut window);
-    let panels = |window: &Window| -> Vec<Panel> {
+    fn panels(window: &Window) -> Vec<Panel> {
         let plots = gdcm::gui::views::net_gain::net_gain_plots(state(window))
             .figure
             .plots;
         plots.into_iter().flat_map(|plot| plot.panels).collect()
-    };
-    let has_bars = |panel: &Panel| {
+    }
+
+    fn has_bars(panel: &Panel) -> bool {
         let of = |mark: &Mark| matches!(mark, Mark::Intervals(bars) if bars.ends.len() == panel.dots().count());
         panel.marks.iter().any(of)
-    };
-    let has_bands = |panel: &Panel| {
+    }
+
+    fn has_bands(panel: &Panel) -> bool {
         panel
             .marks
             .iter()
             .any(|mark| matches!(mark, Mark::Envelope(_)))
-    };
-    let significant = |mark: &Mark| matches!(mark, Mark::Brackets(of) if of.brackets.iter().any(|bracket| !bracket.label.is_empty()));
+    }
+
+    fn significant(mark: &Mark) -> bool {
+        matches!(mark, Mark::Brackets(of) if of.brackets.iter().any(|bracket| !bracket.label.is_empty()))
+    }
+
+    let mut window = window();
+    show(&mut window, View::NetGain);
+    wait_for_bars(&mut window);
     let shown = panels(&window);
     assert!(
         shown
@@ -366,13 +373,14 @@ fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
 
 #[test]
 fn an_assessment_can_be_had_for_every_model_correction_and_response() {
-    let mut window = window();
-    show(&mut window, View::Assessment);
-    let wait = |window: &mut Window| {
+    fn wait(window: &mut Window) {
         wait_until(window, "the assessment", |window| {
             state(window).assessment().is_some()
         });
-    };
+    }
+
+    let mut window = window();
+    show(&mut window, View::Assessment);
     wait(&mut window);
     let table = state(&window).assessment().unwrap();
     assert!(assessment_sentences(state(&window), table)[0].starts_with("better in "));
@@ -434,6 +442,22 @@ fn variants_are_kept_compared_taken_and_removed_and_undo_brings_each_back() {
 
 #[test]
 fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
+    fn curve_value(window: &Window, role: CurveRole) -> Option<f64> {
+        let drawn = &state(window).display.frequency.drawn;
+        drawn
+            .iter()
+            .find(|curve| curve.role == role)
+            .map(|curve| curve.magnitude_db[0])
+    }
+
+    fn has_key(window: &Window) -> bool {
+        let figure = gdcm::gui::views::net_gain::net_gain_plots(state(window)).figure;
+        figure.plots[0].panels[0]
+            .marks
+            .iter()
+            .any(|mark| matches!(mark, Mark::Dots(dots) if dots.name == "variant as it was"))
+    }
+
     let mut window = window();
     give(
         &mut window,
@@ -447,15 +471,8 @@ fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
     show(&mut window, View::Bode);
     let lon_q = pair(&window, "Q", "LON");
     give(&mut window, SelectionCommand::FocusPair(lon_q));
-    let of = |window: &Window, role: CurveRole| {
-        let drawn = &state(window).display.frequency.drawn;
-        drawn
-            .iter()
-            .find(|curve| curve.role == role)
-            .map(|curve| curve.magnitude_db[0])
-    };
     wait_until(&mut window, "the variant's curve", |window| {
-        of(window, CurveRole::Variant).is_some()
+        curve_value(window, CurveRole::Variant).is_some()
     });
     let condition = state(&window).condition().id();
     let held = |analysis: &Analysis| {
@@ -467,19 +484,12 @@ fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
     };
     let (_, variant) = &state(&window).results.variants[0];
     let ratio_db = 20.0 * (held(variant) / held(state(&window).analysis().unwrap())).log10();
-    let drawn_db =
-        of(&window, CurveRole::Variant).unwrap() - of(&window, CurveRole::Corrected).unwrap();
+    let drawn_db = curve_value(&window, CurveRole::Variant).unwrap()
+        - curve_value(&window, CurveRole::Corrected).unwrap();
     assert!(
         ratio_db.abs() > 1e-3 && (drawn_db - ratio_db).abs() < 1e-9,
         "{drawn_db} dB drawn, {ratio_db} dB"
     );
-    let has_key = |window: &Window| {
-        let figure = gdcm::gui::views::net_gain::net_gain_plots(state(window)).figure;
-        figure.plots[0].panels[0]
-            .marks
-            .iter()
-            .any(|mark| matches!(mark, Mark::Dots(dots) if dots.name == "variant as it was"))
-    };
     assert!(has_key(&window));
     show(&mut window, View::Compare);
     click(&mut window, "Overlay variant as it was");
@@ -503,12 +513,15 @@ fn a_condition_pointed_at_in_the_list_is_lit_among_the_dots() {
 
 #[test]
 fn a_double_click_on_its_edge_puts_a_panel_back() {
+    fn edge(window: &Window) -> f32 {
+        window.get_by_label("Export corrections…").rect().left()
+    }
+
     let mut window = window();
     // Test frames are 0.25 s apart.
     window
         .ctx
         .options_mut(|options| options.input_options.max_double_click_delay = 5.0);
-    let edge = |window: &Window| window.get_by_label("Export corrections…").rect().left();
     let before = edge(&window);
     let y = 500.0;
     // The edge of the answer panel, some points left of its content.

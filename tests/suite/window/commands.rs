@@ -152,14 +152,9 @@ fn menus_show_what_the_table_says() {
 
 #[test]
 fn the_page_of_keys_is_made_from_the_table_and_fits_the_least_window() {
-    fn build(creation: &mut eframe::CreationContext<'static>) -> gdcm::gui::app::GdcmApp {
-        GdcmApp::with(&creation.egui_ctx, example(), Setup::default())
-            .expect("a thread can be started")
-    }
-
     let mut window = Harness::builder()
         .with_size(vec2(900.0, 560.0))
-        .build_eframe(build);
+        .build_eframe(cold_example);
     settle(&mut window);
     press(&mut window, Modifiers::NONE, Key::F1);
     for entry in command_table(state(&window))

@@ -151,14 +151,9 @@ fn f6_goes_through_the_parts_of_the_window_and_comes_back_to_where_the_focus_was
 
 #[test]
 fn what_the_keyboard_reaches_is_scrolled_into_view() {
-    fn build(creation: &mut eframe::CreationContext<'static>) -> gdcm::gui::app::GdcmApp {
-        GdcmApp::with(&creation.egui_ctx, example(), Setup::default())
-            .expect("a thread can be started")
-    }
-
     let mut window = Harness::builder()
         .with_size(vec2(900.0, 560.0))
-        .build_eframe(build);
+        .build_eframe(cold_example);
     settle(&mut window);
     window.get_by_label("Response LON → P").focus();
     for _ in 0..40 {

@@ -11,14 +11,10 @@ use super::*;
 
 /// The window in a screen of so many points, drawn with so many pixels each.
 fn window_of(size: egui::Vec2, pixels_per_point: f32) -> Window {
-    fn build(creation: &mut eframe::CreationContext<'static>) -> gdcm::gui::app::GdcmApp {
-        GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
-    }
-
     let builder = Harness::builder()
         .with_size(size)
         .with_pixels_per_point(pixels_per_point);
-    let mut window = builder.build_eframe(build);
+    let mut window = builder.build_eframe(warm_example);
     settle(&mut window);
     window
 }

@@ -68,17 +68,13 @@ fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_i
 
 #[test]
 fn nothing_that_leads_say_makes_the_answer_wider_than_its_panel() {
-    fn build(creation: &mut eframe::CreationContext<'static>) -> gdcm::gui::app::GdcmApp {
-        GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
-    }
-
     fn last_cell(window: &Window) -> egui::Rect {
         window.get_by_label("Response COL → NZ").rect()
     }
 
     let mut window = Harness::builder()
         .with_size(vec2(1280.0, 720.0))
-        .build_eframe(build);
+        .build_eframe(warm_example);
     settle(&mut window);
     let before = last_cell(&window);
     give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));

@@ -10,14 +10,9 @@ use super::*;
 
 /// The window at its least width.
 fn narrow_window(height: f32) -> Window {
-    fn build(creation: &mut eframe::CreationContext<'static>) -> gdcm::gui::app::GdcmApp {
-        GdcmApp::with(&creation.egui_ctx, example(), Setup::default())
-            .expect("a thread can be started")
-    }
-
     let mut window = Harness::builder()
         .with_size(vec2(900.0, height))
-        .build_eframe(build);
+        .build_eframe(cold_example);
     settle(&mut window);
     window
 }

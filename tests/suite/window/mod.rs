@@ -97,6 +97,16 @@ pub(crate) fn few_window() -> Window {
     window_with(Opened::Dataset(crate::FEW.clone()), Setup::default())
 }
 
+/// Opens the example without any results.
+fn cold_example(creation: &mut eframe::CreationContext<'static>) -> GdcmApp {
+    GdcmApp::with(&creation.egui_ctx, example(), Setup::default()).expect("a thread can be started")
+}
+
+/// Opens the example with an engine that has analysed it.
+fn warm_example(creation: &mut eframe::CreationContext<'static>) -> GdcmApp {
+    GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
+}
+
 fn window_with(opened: Opened, setup: Setup) -> Window {
     let build = |creation: &mut eframe::CreationContext<'static>| {
         GdcmApp::with(&creation.egui_ctx, opened, setup).expect("a thread can be started")

@@ -221,15 +221,11 @@ fn others(one: &[u8], other: &[u8]) -> f64 {
 }
 
 fn pictured_window(textures: &Textures, format: Format) -> Window {
-    fn build(creation: &mut eframe::CreationContext<'static>) -> gdcm::gui::app::GdcmApp {
-        GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
-    }
-
     let size = vec2(format.size[0] as f32, format.size[1] as f32);
     let mut window = Harness::builder()
         .with_size(size)
         .renderer(textures.clone())
-        .build_eframe(build);
+        .build_eframe(warm_example);
     settle(&mut window);
     window
 }

@@ -230,7 +230,7 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
         ended.status == 1
             && ended
                 .error
-                .contains("caution: cond7_bare: left out: the file does not say"),
+                .contains("caution: cond7_bare: left out: the file does not give the unit"),
         "{ended:?}"
     );
     let ended = desk.gdcm(&[&report[..], &["--unit", "P=rad/s", "--unit", "Q=rad/s"]].concat());

@@ -20,7 +20,7 @@ use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset, Dynamics, Model, StateSpace};
 
-use crate::commands::Ended;
+use crate::commands::{Ended, Refusal};
 
 struct Silent;
 
@@ -1181,28 +1181,26 @@ fn units_factors_and_signs_are_said_for_a_role_a_folder_or_a_file_by_the_option_
         (identified / (2.0 * 9.8 / 8.0) - 1.0).abs() < 1e-12,
         "a factor has its sign: {identified}"
     );
-    for (wrong, words) in [
+    let refused: [(&[&str], &str, &[&str]); 3] = [
         (
-            ["--factor", "PED=8"],
-            "--factor: the dataset has no channel PED",
+            &["--factor", "PED=8", "--json"],
+            "unknown-channel",
+            &["--factor: ", "channel PED"],
         ),
         (
-            ["--sign", "NZ=-1:c7/*"],
-            "--sign: NZ: no model is in \"c7/*\"",
+            &["--sign", "NZ=-1:c7/*", "--json"],
+            "unknown-model",
+            &["--sign: NZ: ", "\"c7/*\""],
         ),
-    ] {
-        let ended = with(&wrong);
-        assert_eq!(ended.status, 2);
-        assert!(ended.error.contains(words), "{}", ended.error);
+        (
+            &["--factor", "LON=8", "--unit", "LON=in", "--json"],
+            "given-twice",
+            &["--factor: LON of identified "],
+        ),
+    ];
+    for (options, code, names) in refused {
+        Refusal::from_json(&with(options)).assert_code(code, names);
     }
-    let ended = with(&["--factor", "LON=8", "--unit", "LON=in"]);
-    assert!(
-        ended
-            .error
-            .contains("LON of identified has a unit or a factor already"),
-        "{}",
-        ended.error
-    );
 }
 
 #[test]

@@ -86,7 +86,7 @@ pub(crate) struct Refusal {
 }
 
 impl Refusal {
-    fn from_json(ended: &Ended) -> Self {
+    pub(crate) fn from_json(ended: &Ended) -> Self {
         let object: Value =
             serde_json::from_str(&ended.out).unwrap_or_else(|error| panic!("{error}: {ended:?}"));
         assert_eq!(ended.error, "", "nothing beside the object: {ended:?}");

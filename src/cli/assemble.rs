@@ -238,7 +238,7 @@ fn dataset_name(folders: &[PathBuf]) -> String {
     }
 }
 
-/// Returns a table with one line for each model and its role in the dataset.
+/// Returns a table with a line for each model and its role in the dataset.
 fn model_table(assembly: &Assembly) -> String {
     let headings = [
         "condition",

@@ -53,8 +53,8 @@ pub(super) fn check(
     print(&(decided + &contents(&loaded) + &model_cautions(&study)?))
 }
 
-/// Returns whether an error concerns a dataset's content, which may have further faults; a
-/// syntax error is the only one reported.
+/// Returns whether an error concerns a dataset's content, which may have further faults; behind a
+/// syntax error no further fault can be found.
 fn has_several_faults(error: &FileError) -> bool {
     matches!(error, FileError::Content { fault, .. } if matches!(**fault, ContentFault::Dataset(_)))
 }

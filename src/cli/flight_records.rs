@@ -323,7 +323,7 @@ pub(super) fn report_duplicates(record: &LaidOutRecord) -> Vec<Duplicate> {
     duplicates
 }
 
-/// Returns a table with one line for each record, indented by `indent` spaces.
+/// Returns a table with a line for each record, indented by `indent` spaces.
 pub(super) fn record_table(records: &[LaidOutRecord], indent: usize) -> String {
     let mut table = Table::new("", ["record", "kind", "samples", "step", "length", ""]);
     for record in records {

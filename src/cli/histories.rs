@@ -109,7 +109,7 @@ pub(super) fn simulated_histories(
     )?)
 }
 
-/// A record with its condition, if one is known.
+/// A record with its condition, if known.
 struct ConditionRecord {
     condition: Option<ConditionId>,
     record: LaidOutRecord,
@@ -127,7 +127,7 @@ impl ConditionRecord {
     }
 }
 
-/// Lays out a record, following the dataset's entry if there is one.
+/// Lays out a record, following the dataset's entry if any.
 fn laid_out_record(
     table: RecordTable,
     dataset: &Dataset,

@@ -147,7 +147,7 @@ impl IdentificationTask {
             .collect()
     }
 
-    /// Returns a table with one line for each record, below the condition if there is one.
+    /// Returns a table with a line for each record, below the condition if any.
     pub(super) fn table(&self) -> String {
         match self.condition {
             Some(id) => format!("condition {id}\n{}", record_table(&self.records, 2)),
@@ -155,7 +155,7 @@ impl IdentificationTask {
         }
     }
 
-    /// Returns the path for the identified models: one file for each condition if there are several.
+    /// Returns the path for the identified models: a file for each condition if there are several.
     pub(super) fn output_path(&self, arguments: &IdentifyArguments) -> PathBuf {
         match self.condition {
             Some(id) if arguments.every_condition => arguments
@@ -165,7 +165,7 @@ impl IdentificationTask {
         }
     }
 
-    /// Returns one line about the result and its file.
+    /// Returns a line about the result and its file.
     pub(super) fn outcome(&self, file: &Path, found: &Identification) -> String {
         let held_out = match found.held_out_cost {
             Some(cost) => format!(", of the held-out records {cost:.2}"),

@@ -34,7 +34,7 @@ use super::terminal::{caution, caution_for, note, print};
 use super::text::{ConditionMessage, counted, listed_paths, shared_messages};
 
 /// Identifies models from flight records and writes them, with a copy of a dataset that contains
-/// them if one is given.
+/// them if given.
 pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let read = arguments.records.iter().chain(&arguments.into);
     let outputs = OutputSet::new(existing(arguments.force), read.cloned().collect());
@@ -91,7 +91,7 @@ struct IdentificationTasks {
     duplicates: Vec<Duplicate>,
 }
 
-/// Creates the identification tasks: one for all records, or one for each condition.
+/// Creates the identification tasks: a single task for all records, or a task for each condition.
 fn identification_tasks(
     arguments: &IdentifyArguments,
     destination: Option<&Destination>,

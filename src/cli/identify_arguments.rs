@@ -54,7 +54,7 @@ pub struct IdentifyArguments {
     /// Sample rate for records without a time column.
     #[arg(long, value_name = "HZ", value_parser = real_number, conflicts_with = "time", allow_negative_numbers = true)]
     pub sample_rate: Option<f64>,
-    /// Record for validation, excluded from identification: its file or its name; may be repeated [default: records whose names say so].
+    /// Record for validation, excluded from identification: its file or its name; may be repeated [default: records named as validation].
     #[arg(long, value_name = "FILE")]
     pub hold_out: Vec<String>,
     /// Known channel delay in seconds, positive if it is logged late; in one record as RECORD:CHANNEL=SECONDS; may be repeated.
@@ -114,7 +114,7 @@ pub struct IdentifyArguments {
 }
 
 impl IdentifyArguments {
-    /// Returns the references, each with its column if one is given.
+    /// Returns the references, each with its column if given.
     pub fn references(&self) -> &[SaidChannel] {
         match &self.reference {
             Some(list) => &list.channels,

@@ -4,7 +4,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use gdcm_model::units::number;
 
-/// Returns a parser for the name of one of these values.
+/// Returns a parser for the names of these values.
 pub(super) fn one_of<T, const N: usize>(
     values: [T; N],
     name: fn(T) -> &'static str,

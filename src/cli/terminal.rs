@@ -50,7 +50,7 @@ struct Caution {
     conditions: Vec<i64>,
 }
 
-/// Global, because a process carries out one command.
+/// Global, because a process carries out a single command.
 static MESSAGES: Mutex<Messages> = Mutex::new(Messages {
     output: OutputFormat {
         quiet: false,
@@ -117,7 +117,7 @@ fn write_standard_output(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints one line on standard error; a failure to do so cannot be reported.
+/// Prints a line on standard error; a failure to do so cannot be reported.
 fn write_standard_error(kind: &str, words: &str) {
     let _ = writeln!(std::io::stderr(), "{kind}: {}", plain(words));
 }

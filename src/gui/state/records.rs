@@ -11,16 +11,19 @@ use gdcm_model::dataset::{Band, ConditionId, Dataset};
 use gdcm_model::names::ChannelRule;
 use gdcm_model::simulation::Signal;
 use gdcm_model::units::{number, telling};
-use gdcm_study::decisions::adopted_models::AdoptedModels;
-use gdcm_study::decisions::adopted_models::OfferedModels;
-use gdcm_study::jobs::identification_jobs::IdentificationRequest;
-use gdcm_study::jobs::identification_jobs::IdentifyJob;
+use gdcm_study::decisions::adopted_models::{AdoptedModels, OfferedModels};
+use gdcm_study::jobs::identification_jobs::{IdentificationRequest, IdentifyJob};
 use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::results::time_histories::HistoryRecords;
-use gdcm_sysid::identification::{CautionNote, ChannelPreparation, Identification, IdentificationError, Preparation, SearchSpace};
+use gdcm_sysid::identification::{
+    CautionNote, ChannelPreparation, Identification, IdentificationError, Preparation, SearchSpace,
+};
 use gdcm_sysid::records::channel_list::{ChannelList, SaidChannel};
 use gdcm_sysid::records::record_channels::ResamplingWish;
-use gdcm_sysid::records::{ColumnUse, LaidOutRecord, LayoutProblem, RecordChannels, RecordColumn, RecordSource, RecordTable};
+use gdcm_sysid::records::{
+    ColumnUse, LaidOutRecord, LayoutProblem, RecordChannels, RecordColumn, RecordSource,
+    RecordTable,
+};
 
 use crate::gui::widgets::controls::typed_number;
 use crate::gui::widgets::palette::Palette;

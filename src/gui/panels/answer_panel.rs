@@ -12,7 +12,7 @@ use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::setting;
 
 use super::verdict::{Step, Verdict, VerdictRow, band_words, export};
-use super::{matrix_panel, result_panel, settings_panel};
+use super::{matrix_panel, response_card, result_panel, settings_panel};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::sheet::Sheet;
@@ -80,14 +80,14 @@ pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
         });
         ui.add_space(8.0);
         let card = if window >= LEAST_WITH_CARD {
-            matrix_panel::CARD_HEIGHT + 12.0
+            response_card::CARD_HEIGHT + 12.0
         } else {
             0.0
         };
         matrix_panel::matrix_ui(ui, state, ui.available_height() - card, palette, commands);
         if card > 0.0 {
             ui.add_space(12.0);
-            matrix_panel::card_ui(ui, state, palette);
+            response_card::card_ui(ui, state, palette);
         }
     });
 }

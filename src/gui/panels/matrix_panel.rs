@@ -1,7 +1,7 @@
 //! Constraint matrix: every response with G, D and J, constrained or free.
 
 use egui::{
-    Align2, Color32, Grid, Key, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke,
+    Align2, Color32, FontId, Key, Pos2, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke,
     StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
@@ -15,6 +15,7 @@ use gdcm_study::results::caution::Undefined;
 use gdcm_study::{ConditionAnalysis, Edit, ExplainTarget};
 
 use super::explanation::{gain_conflict_marks, question_menu_ui, turn_entry};
+use super::response_card::{card_grid_ui, is_not_reduced};
 use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
@@ -521,168 +522,4 @@ fn paint_cost_bar(ui: &Ui, half: Rect, cost: f64, color: Color32) {
         ui.painter()
             .add(egui::Shape::convex_polygon(points, color, Stroke::NONE));
     }
-}
-
-/// Height of the card \[pt\].
-pub const CARD_HEIGHT: f32 = 104.0;
-/// Height of a row \[pt\].
-const ROW: f32 = 18.0;
-
-/// Row of the card.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CardRow {
-    pub name: &'static str,
-    /// Requested value, with its unit.
-    pub wants: String,
-    /// Remainder after the correction.
-    pub left: String,
-    /// Half-width of the error bar.
-    pub half: String,
-    /// Whether the remainder is not reduced.
-    pub is_missed: bool,
-}
-
-/// Returns gain, delay and both parts of J of a response: requested values, and remainders after
-/// the correction.
-pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<CardRow> {
-    let sureness = state.sureness();
-    let mut rows = Vec::new();
-    if let Some(gain) = shown.wanted_gain(pair) {
-        let left = gain / shown.correction.net_gain(pair);
-        let half = sureness
-            .half(Scalar::Gain(pair))
-            .map(|half| format!("{} %", decimals(100.0 * half, 1)));
-        let wants = decimals(gain, 3);
-        let left = decimals(left, 3);
-        let half = half.unwrap_or_default();
-        rows.push(CardRow {
-            name: "gain G",
-            wants,
-            left,
-            half,
-            is_missed: false,
-        });
-    }
-    if let Some(delay_s) = shown.wanted_delay_s(pair) {
-        let left_ms = s_to_ms(delay_s - shown.correction.net_delay_s(pair));
-        let ms = |value: f64| format!("{} ms", decimals(value, 1));
-        let half = sureness
-            .half(shown.wanted_delay(pair))
-            .map_or(String::new(), |half| ms(s_to_ms(half)));
-        let is_missed = left_ms.abs() > 0.5 && left_ms.abs() >= 0.99 * s_to_ms(delay_s).abs();
-        rows.push(CardRow {
-            name: "delay D",
-            wants: ms(s_to_ms(delay_s)),
-            left: ms(left_ms),
-            half,
-            is_missed,
-        });
-    }
-    if let Some(change) = shown.cost[pair] {
-        let before = change.uncorrected;
-        let after = change.corrected;
-        for (name, before, after) in [
-            ("J magnitude", before.magnitude, after.magnitude),
-            ("J phase", before.phase, after.phase),
-        ] {
-            let wants = decimals(before, 1);
-            let left = decimals(after, 1);
-            let is_missed = is_not_reduced(before, after);
-            rows.push(CardRow {
-                name,
-                wants,
-                left,
-                half: String::new(),
-                is_missed,
-            });
-        }
-    }
-    rows
-}
-
-/// Returns whether a noticeable part of J has not decreased; a tenth of J is not noticeable.
-pub fn is_not_reduced(before: f64, after: f64) -> bool {
-    after > 1.0 && after > before - 0.1
-}
-
-/// Draws the card of the response in focus.
-pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), CARD_HEIGHT), Sense::hover());
-    ui.painter().rect_stroke(
-        rect,
-        8.0,
-        Stroke::new(1.0, palette.line),
-        StrokeKind::Inside,
-    );
-    let inner = rect.shrink2(vec2(11.0, 9.0));
-    let pair = state.display.selection.pair;
-    let held = if state.study.settings.constrained[pair] {
-        "held"
-    } else {
-        "free"
-    };
-    let title = format!("{}, {held}", state.dataset().pair_name(pair));
-    let line = |row: usize| {
-        Rect::from_min_size(
-            inner.min + vec2(0.0, ROW * row as f32),
-            vec2(inner.width(), ROW),
-        )
-    };
-    painted_text(ui, line(0), 0.0, &title, medium(BODY_SIZE), palette.text);
-    let places = [inner.width() * 0.54, inner.width() * 0.78, inner.width()];
-    let right = |at: f32| at - inner.width() - 0.01;
-    let level = state
-        .sureness()
-        .level()
-        .map(|level| format!("± {:.0} %", 100.0 * level))
-        .unwrap_or_default();
-    for (at, head) in places.into_iter().zip(["wants", "left", level.as_str()]) {
-        painted_text(ui, line(0), right(at), head, small(), palette.dim_text);
-    }
-    let Some(shown) = state.shown() else { return };
-    for (place, row) in card_rows(state, shown, pair).iter().enumerate() {
-        let line = line(place + 1);
-        painted_text(ui, line, 0.0, row.name, body(), palette.dim_text);
-        painted_text(ui, line, right(places[0]), &row.wants, body(), palette.text);
-        let color = if row.is_missed {
-            palette.warning
-        } else {
-            palette.text
-        };
-        painted_text(ui, line, right(places[1]), &row.left, body(), color);
-        painted_text(
-            ui,
-            line,
-            right(places[2]),
-            &row.half,
-            body(),
-            palette.dim_text,
-        );
-    }
-}
-
-/// Draws the same rows in a tooltip if there is no room for the card.
-pub fn card_grid_ui(ui: &mut Ui, state: &State, pair: Pair, palette: &Palette) {
-    let Some(shown) = state.shown() else { return };
-    Grid::new("card")
-        .num_columns(4)
-        .spacing([16.0, 2.0])
-        .show(ui, |ui| {
-            for head in ["", "wants", "left", "±"] {
-                ui.label(palette.small(head));
-            }
-            ui.end_row();
-            for row in card_rows(state, shown, pair) {
-                ui.label(palette.dim(row.name));
-                ui.label(row.wants);
-                let left = RichText::new(row.left);
-                ui.label(if row.is_missed {
-                    left.color(palette.warning)
-                } else {
-                    left
-                });
-                ui.label(palette.dim(row.half));
-                ui.end_row();
-            }
-        });
 }

@@ -10,6 +10,7 @@ pub mod forms;
 pub mod help;
 pub mod matrix_panel;
 pub mod models_panel;
+pub mod response_card;
 pub mod result_panel;
 pub mod settings_panel;
 pub mod start_page;

@@ -25,7 +25,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::check_ui;
 use crate::gui::widgets::controls::{entries_ui, named_switch, painted_text};
 use crate::gui::widgets::focus::{Region, region_ui};
-use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium, small};
 
 /// Least and greatest height of a cell \[pt\].
 const CELL_HEIGHTS: [f32; 2] = [34.0, 44.0];

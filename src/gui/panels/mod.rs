@@ -3,13 +3,16 @@
 pub mod answer_panel;
 pub mod bars;
 pub mod centre;
+mod condition_marks;
 pub mod conditions_panel;
 pub mod cost_map;
 pub mod explanation;
 pub mod forms;
 pub mod help;
 pub mod matrix_panel;
+mod model_row;
 pub mod models_panel;
+mod phase_sketch;
 pub mod response_card;
 pub mod result_panel;
 pub mod settings_panel;

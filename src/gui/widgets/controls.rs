@@ -137,7 +137,39 @@ pub fn is_entered(ui: &Ui, field: &Response) -> bool {
 /// Height of a row \[pt\].
 pub const ROW_HEIGHT: f32 = 20.0;
 
-/// Allocates a clickable row, paints its background, and names it for screen readers and tests.
+/// Look of a clickable list row.
+pub struct RowLook {
+    pub is_selected: bool,
+    /// Whether its item is pointed at elsewhere in the window.
+    pub is_pointed: bool,
+    /// Height \[pt\].
+    pub height: f32,
+}
+
+impl RowLook {
+    /// Allocates the row, paints its background, and names it for screen readers and tests.
+    pub fn row_ui(&self, ui: &mut Ui, palette: &Palette, name: &str) -> (Rect, Response) {
+        let (rect, response) =
+            ui.allocate_exact_size(vec2(ui.available_width(), self.height), Sense::click());
+        response.widget_info(|| {
+            WidgetInfo::selected(Role::Button, ui.is_enabled(), self.is_selected, name)
+        });
+        if self.is_selected {
+            begin_with(ui.ctx(), response.id);
+        }
+        let fill = if self.is_selected {
+            palette.selected
+        } else if response.hovered() || self.is_pointed || response.has_focus() {
+            palette.raised
+        } else {
+            Color32::TRANSPARENT
+        };
+        ui.painter().rect_filled(rect, 4.0, fill);
+        (rect, response)
+    }
+}
+
+/// Draws a row of the usual height.
 pub fn row_ui(
     ui: &mut Ui,
     palette: &Palette,
@@ -145,31 +177,12 @@ pub fn row_ui(
     pointed: bool,
     name: &str,
 ) -> (Rect, Response) {
-    row_of_height_ui(ui, palette, (selected, pointed, ROW_HEIGHT), name)
-}
-
-/// As `row_ui`, with another height \[pt\].
-pub fn row_of_height_ui(
-    ui: &mut Ui,
-    palette: &Palette,
-    (selected, pointed, height): (bool, bool, f32),
-    name: &str,
-) -> (Rect, Response) {
-    let (rect, response) =
-        ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
-    response.widget_info(|| WidgetInfo::selected(Role::Button, ui.is_enabled(), selected, name));
-    if selected {
-        begin_with(ui.ctx(), response.id);
-    }
-    let fill = if selected {
-        palette.selected
-    } else if response.hovered() || pointed || response.has_focus() {
-        palette.raised
-    } else {
-        Color32::TRANSPARENT
+    let look = RowLook {
+        is_selected: selected,
+        is_pointed: pointed,
+        height: ROW_HEIGHT,
     };
-    ui.painter().rect_filled(rect, 4.0, fill);
-    (rect, response)
+    look.row_ui(ui, palette, name)
 }
 
 /// Restores the default size of a named panel after a double click on its edge; call it before the

@@ -11,7 +11,8 @@ use gdcm_model::units::number;
 use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::setting;
 
-use super::verdict::{Step, Verdict, VerdictRow, band_words, export};
+use super::advice::{Step, export};
+use super::verdict::{Verdict, VerdictRow, band_words};
 use super::{matrix_panel, response_card, result_panel, settings_panel};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
@@ -27,9 +28,9 @@ use crate::gui::widgets::palette::{
 
 /// Space around everything \[pt\].
 const PADDING: f32 = 12.0;
-/// Height of the settings line \[pt\].
+/// Settings line height \[pt\].
 const LINE: f32 = 36.0;
-/// Height of the export row \[pt\].
+/// Export row height \[pt\].
 const FOOT: f32 = 48.0;
 /// Least window height that shows the card on the focused response \[pt\].
 const LEAST_WITH_CARD: f32 = 860.0;
@@ -58,7 +59,7 @@ pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
     });
     frame.show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        // The width is fixed here, so that wide content of a part cannot widen the next.
+        // The width is fixed here, so that wide content in a part cannot widen the next.
         let width = ui.available_width();
         region_ui(ui, Region::Verdict, |ui| {
             verdict_ui(ui, &verdict, palette, commands)
@@ -92,7 +93,7 @@ pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
     });
 }
 
-/// Draws the two rows of the verdict and its first step.
+/// Draws both verdict rows and the steps.
 fn verdict_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
     let is_empty = verdict.rows[0].here.is_none() && verdict.caution.is_none();
     let (ground, mark) = if verdict.is_met() {
@@ -136,7 +137,7 @@ fn verdict_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut 
     );
 }
 
-/// Left edges of counts and words in a row \[pt from the row's left edge\].
+/// Left edges for counts and words \[pt from the row's left edge\].
 const COLUMNS: [f32; 2] = [46.0, 106.0];
 
 fn heads_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette) {
@@ -219,12 +220,12 @@ fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Ve
     decision_line.ui(ui, palette, commands);
 }
 
-/// Returns whether the step opens the list of reasons.
+/// Returns whether the step opens the sheet of reasons.
 fn shows_reasons(step: &Step) -> bool {
     step.command == Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons)))
 }
 
-/// Returns the link to the list of reasons if no other step leads there.
+/// Returns the link to the reasons if no other step leads there.
 fn notes_step(verdict: &Verdict) -> Option<Step> {
     if verdict.reasons == 0 || verdict.steps.iter().any(shows_reasons) {
         return None;
@@ -274,7 +275,7 @@ impl StepsLine<'_> {
         });
     }
 
-    /// Draws "⚠ Price: +21 dB above 12 rad/s", without "Price: " if the buttons leave little room.
+    /// Draws "⚠ Price: +21 dB above 12 rad/s", without "Price: " if there is little room.
     fn caution_ui(&self, ui: &mut Ui, caution: &str, palette: &Palette) {
         let width: f32 = self
             .primary

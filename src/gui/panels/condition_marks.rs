@@ -1,4 +1,4 @@
-//! Marks in the list of conditions: open tasks, part in the schedule.
+//! Marks in the conditions list: open tasks, part in the schedule.
 
 use egui::{Rect, RichText, Stroke, Ui};
 
@@ -10,7 +10,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{entries_ui, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
 
-/// Open tasks of a condition, and its part in the schedule.
+/// A condition's open tasks and its part in the schedule.
 pub(super) struct Marks {
     pub(super) condition: ConditionId,
     /// Models suggested as outliers and not rejected.
@@ -59,7 +59,7 @@ impl Marks {
         marks
     }
 
-    /// Returns the part of the row's accessible name that follows the flight state.
+    /// Returns the end of the row's accessible name, after the flight state.
     pub(super) fn after_name(&self) -> &'static str {
         if self.held_out {
             ", held out"
@@ -93,7 +93,7 @@ impl Marks {
         }
     }
 
-    /// Draws the context menu of the condition.
+    /// Draws the condition's context menu.
     pub(super) fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let condition = self.condition;
         let hold_out = if self.held_out {

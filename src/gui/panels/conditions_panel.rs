@@ -1,4 +1,4 @@
-//! List of flight conditions with a map of the remaining costs in each; wide, or as a rail.
+//! Flight conditions with a map of the remaining costs; as a wide list, or as a rail.
 
 use egui::{
     Align2, Color32, CornerRadius, Mesh, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2,
@@ -31,11 +31,11 @@ use crate::gui::widgets::palette::{
 /// Right edge of the number, centre of the mark, right edge of the airspeed \[pt from the row's
 /// left edge\].
 const PLACES: [f32; 3] = [20.0, 33.0, 70.0];
-/// Left edge of the map, and largest spacing of its columns \[pt\].
+/// Left edge of the map, and its largest column spacing \[pt\].
 const MAP: [f32; 2] = [88.0, 26.0];
-/// Half size of a map cell \[pt\].
+/// Half the cell size \[pt\].
 const HALF_CELL: [f32; 2] = [10.0, 12.0];
-/// Row heights of the list and of the rail \[pt\].
+/// Row heights in list and rail \[pt\].
 const ROWS: [f32; 2] = [20.0, 24.0];
 
 /// Draws every condition with its airspeed and the remaining cost of its constrained responses; a
@@ -175,12 +175,12 @@ fn flight_state_words(state: &FlightState) -> String {
     words
 }
 
-/// Layout of the list for one frame: its columns and their places.
+/// Columns and their places, for a single frame.
 struct Map<'a> {
     state: &'a State,
     classes: Classes,
     columns: Vec<CostColumn>,
-    /// Left edge of the columns \[pt from the row's left edge\], and their spacing.
+    /// Left edge \[pt from the row's left edge\] and spacing \[pt\] of the columns.
     left: f32,
     pitch: f32,
     is_rail: bool,
@@ -217,7 +217,7 @@ impl<'a> Map<'a> {
         }
     }
 
-    /// Returns the centre of a column, as a horizontal position.
+    /// Returns a column's horizontal centre.
     fn center(&self, row: Rect, place: usize) -> f32 {
         row.left() + self.left + self.pitch * place as f32 + HALF_CELL[0]
     }
@@ -348,7 +348,7 @@ impl<'a> Map<'a> {
         response.on_hover_ui(|ui| marks.tooltip_ui(ui, condition, palette));
     }
 
-    /// Draws the cells of a condition; a click on a cell shows the condition and the response.
+    /// Draws a condition's cells; a click on a cell shows the condition and the response.
     fn cells_ui(
         &self,
         ui: &mut Ui,
@@ -441,7 +441,7 @@ impl<'a> Map<'a> {
     }
 }
 
-/// Returns the horizontal position of a cost on the bar of shades.
+/// Returns the horizontal position for a cost on the shade bar.
 fn position_on_key(bar: Rect, cost: f32) -> f32 {
     let most = HEAT_COSTS[HEAT_COSTS.len() - 1];
     bar.left() + bar.width() * cost / most
@@ -518,7 +518,8 @@ fn cost_words(
     if column.is_mean {
         let responses = column.pairs.len();
         return format!(
-            "{responses} responses not held, condition {condition}: mean J of magnitude {magnitude}, of phase {phase}; most: {name}"
+            "{responses} responses not held, condition {condition}: mean J of magnitude \
+             {magnitude}, of phase {phase}; most: {name}"
         );
     }
     format!("{name} of condition {condition}: J of magnitude {magnitude}, of phase {phase}")

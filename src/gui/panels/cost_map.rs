@@ -8,7 +8,7 @@ use gdcm_study::CouplingCorrection;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::window_state::State;
 
-/// More constrained responses than this are merged into the worst of each input.
+/// More constrained responses than this are merged into a column for each input.
 const MOST_COLUMNS: usize = 8;
 
 /// Column of the map: a constrained response, the constrained responses of an input, or all
@@ -17,7 +17,7 @@ const MOST_COLUMNS: usize = 8;
 pub struct CostColumn {
     pub head: String,
     pub pairs: Vec<Pair>,
-    /// Whether the cost is the mean of the responses; otherwise the cost of the worst.
+    /// Whether the cost is a mean over the responses; otherwise the worst response counts.
     pub is_mean: bool,
 }
 
@@ -72,7 +72,7 @@ fn held_columns(state: &State) -> Vec<CostColumn> {
     columns
 }
 
-/// Returns the mapped J of a response in a condition; `None` without a result.
+/// Returns the mapped J for a response in a condition; `None` without a result.
 pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost> {
     let analysis = state.analysis()?;
     if state.display.judging.mapped_cost == MappedCost::Scheduled {
@@ -88,7 +88,7 @@ pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost
     }
 }
 
-/// Cost of a column in a condition.
+/// A column's cost in a condition.
 pub struct ColumnCost {
     /// Response with the greatest J, as the sum of magnitude and phase.
     pub pair: Pair,
@@ -96,7 +96,7 @@ pub struct ColumnCost {
     pub cost: Cost,
 }
 
-/// Returns the cost of a column in a condition; `None` without a result.
+/// Returns a column's cost in a condition; `None` without a result.
 pub fn cost_of_column(
     state: &State,
     condition: ConditionId,

@@ -27,7 +27,7 @@ use crate::gui::widgets::controls::{entries_ui, named_switch, painted_text};
 use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium, small};
 
-/// Least and greatest height of a cell \[pt\].
+/// Least and greatest cell height \[pt\].
 const CELL_HEIGHTS: [f32; 2] = [34.0, 44.0];
 /// Gap between two cells \[pt\].
 const GAP: f32 = 3.0;
@@ -35,7 +35,7 @@ const LEAST_CELL_WIDTH: f32 = 58.0;
 const ROW_LABEL_WIDTH: f32 = 28.0;
 const HEADER_HEIGHT: f32 = 20.0;
 const LOCK_SIZE: f32 = 13.0;
-/// J of an underline that spans its cell.
+/// J at which an underline spans its cell.
 const FULL_COST: f64 = 60.0;
 
 /// Draws every response as a cell, within a height of `room` points. A click on the cell shows the
@@ -96,9 +96,9 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
     }
 }
 
-/// Grid of cells below and beside the channel names \[pt\].
+/// Cells below and beside the channel names \[pt\].
 struct CellGrid {
-    /// Height of the visible part.
+    /// Visible height.
     room: f32,
     cell_height: f32,
 }
@@ -162,12 +162,12 @@ impl CellGrid {
     }
 }
 
-/// Name of an input above its column, or of an output beside its row.
+/// Input name above a column, or output name beside a row.
 struct ChannelName<'a> {
     name: &'a str,
     place: Pos2,
     align: Align2,
-    /// Whether the channel is involved in a conflict of the gains.
+    /// Whether the channel is involved in a gain conflict.
     is_blamed: bool,
     is_focused: bool,
 }
@@ -457,7 +457,7 @@ struct CostParts {
     after: f64,
 }
 
-/// Value in the upper or lower half of a cell.
+/// Value in the upper or lower half cell.
 struct CellValue {
     half: Rect,
     text: String,

@@ -1,4 +1,4 @@
-//! Row of a model in the list of a bundle: box, star, trim or name, discontinuity ratio or order.
+//! Row in a bundle's list: box, star, trim or name, discontinuity ratio or order.
 
 use std::collections::BTreeMap;
 
@@ -21,10 +21,10 @@ use crate::gui::widgets::controls::{
 };
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium};
 
-/// Right edges of the trim columns \[pt from the row's left edge\].
+/// Right edges for the trim columns \[pt from the row's left edge\].
 pub(super) const TRIM_ENDS: [f32; 3] = [70.0, 114.0, 154.0];
 
-/// Coordinates of the perturbed trims, as columns.
+/// Trim coordinates as columns.
 pub(super) struct TrimColumns {
     keys: Vec<String>,
     pub(super) heads: Vec<String>,
@@ -48,7 +48,7 @@ impl TrimColumns {
         Some(Self { keys, heads })
     }
 
-    /// Returns the offsets of a model, "·" for zero; `None` if the model has no offsets.
+    /// Returns a model's offsets, "·" for zero; `None` if all are zero.
     fn offsets(&self, model: &Model) -> Option<Vec<String>> {
         let trim = model.perturbation()?;
         if trim.values().all(|offset| *offset == 0.0) {
@@ -85,15 +85,15 @@ fn trim_head(key: &str) -> String {
 
 /// Discontinuity ratio that fills its bar.
 const FULL_RATIO: f64 = 4.0;
-/// Length of a full bar \[pt\].
+/// Full bar length \[pt\].
 const FULL_BAR: f32 = 38.0;
 
-/// Returns the length of the bar of a discontinuity ratio \[pt\].
+/// Returns the bar length for a discontinuity ratio \[pt\].
 fn bar_length(ratio: f64) -> f32 {
     FULL_BAR * (ratio / FULL_RATIO).clamp(0.0, 1.0) as f32
 }
 
-/// Displayed name of a model, and the names above and below it in the list.
+/// Displayed name, and the names above and below it in the list.
 pub(super) struct Neighbours<'a> {
     name: &'a str,
     beside: [Option<&'a str>; 2],
@@ -111,7 +111,7 @@ impl<'a> Neighbours<'a> {
     }
 }
 
-/// Row of the list: box, star, trim or name, value.
+/// Row that displays a model.
 pub(super) struct ModelRow<'a> {
     id: ModelId,
     model: &'a Model,
@@ -122,11 +122,11 @@ pub(super) struct ModelRow<'a> {
     pointed: bool,
     /// Mean distance to the other kept models.
     score: Option<f64>,
-    /// Discontinuity ratio of a physics model.
+    /// Discontinuity ratio; physics models only.
     ratio: Option<f64>,
     /// Reason why the model is excluded from the comparison.
     set_aside: Option<String>,
-    /// Reason of the rejection, in the engineer's words.
+    /// Why the model is rejected, in the engineer's words.
     reason: Option<String>,
 }
 
@@ -266,7 +266,7 @@ impl<'a> ModelRow<'a> {
         });
     }
 
-    /// Draws the star of the representative: a click chooses the model, or returns to the medoid.
+    /// Draws the star: a click makes the model the representative, or returns to the medoid.
     fn star_ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
         let place = Rect::from_min_size(
             pos2(rect.left() + 24.0, rect.top()),
@@ -489,7 +489,7 @@ fn signed_compact(value: f64) -> String {
     format!("{sign}{}", compact(value))
 }
 
-/// Returns the identification method of an identified model.
+/// Returns an identified model's method.
 pub(super) fn method(model: &Model) -> Option<&str> {
     match &model.origin {
         Origin::Identified { method, .. } => method.as_deref(),

@@ -72,7 +72,7 @@ pub fn bundle_sheet_ui(
     });
 }
 
-/// Height of the line that folds the identified models \[pt\].
+/// Height of the fold line above the identified models \[pt\].
 const FOLD: f32 = 36.0;
 
 fn physics_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {

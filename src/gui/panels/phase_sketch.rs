@@ -39,13 +39,13 @@ pub(super) fn phase_sketch_ui(
 
 struct PhaseSketch {
     plot: Rect,
-    /// Ends of the band \[rad/s\].
+    /// Band ends \[rad/s\].
     min: f64,
     max: f64,
     /// Least and greatest phase \[deg\].
     least: f64,
     most: f64,
-    /// Phases of the corrected and the identified model at each step \[deg\].
+    /// Phase at each step, corrected and identified model \[deg\].
     corrected: Vec<f64>,
     flight: Vec<f64>,
 }
@@ -61,9 +61,12 @@ impl PhaseSketch {
             min,
             max,
         );
-        let all = || corrected.iter().chain(&flight).copied();
-        let least = all().fold(f64::INFINITY, f64::min);
-        let most = all().fold(f64::NEG_INFINITY, f64::max);
+        let mut least = f64::INFINITY;
+        let mut most = f64::NEG_INFINITY;
+        for phase in corrected.iter().chain(&flight) {
+            least = least.min(*phase);
+            most = most.max(*phase);
+        }
         if corrected.len() <= STEPS || flight.len() <= STEPS || most <= least {
             return None;
         }
@@ -78,7 +81,7 @@ impl PhaseSketch {
         })
     }
 
-    /// Returns the vertical position of a phase.
+    /// Returns the vertical position for a phase \[deg\].
     fn y(&self, phase: f64) -> f32 {
         let part = ((phase - self.least) / (self.most - self.least)) as f32;
         let inner = self.plot.shrink2(vec2(0.0, 8.0));
@@ -174,7 +177,7 @@ fn curve_of_role(curves: &[BodeCurve], role: Role) -> Option<&BodeCurve> {
     curves.iter().find(|curve| curve.role == role)
 }
 
-/// Returns the phases of a curve \[deg\] at the steps within its range.
+/// Returns the phase at each step within the curve's range \[deg\].
 fn phases(curve: &BodeCurve, min: f64, max: f64) -> Vec<f64> {
     (0..=STEPS)
         .filter_map(|step| {
@@ -184,7 +187,7 @@ fn phases(curve: &BodeCurve, min: f64, max: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Returns 1, 2 and 5 times powers of ten within the band \[rad/s\].
+/// Returns the frequencies 1, 2 and 5 in each decade, within the band \[rad/s\].
 fn grid_frequencies(min: f64, max: f64) -> Vec<f64> {
     let decades = (min.log10().floor() as i32)..=(max.log10().ceil() as i32);
     decades
@@ -193,7 +196,7 @@ fn grid_frequencies(min: f64, max: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Returns the multiples of 90° between two phases \[deg\].
+/// Returns every 90° between two phases \[deg\].
 fn grid_phases(least: f64, most: f64) -> Vec<f64> {
     let first = (least / 90.0).ceil() as i32;
     let last = (most / 90.0).floor() as i32;

@@ -12,12 +12,12 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::painted_text;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
-/// Height of the card \[pt\].
+/// Card height \[pt\].
 pub const CARD_HEIGHT: f32 = 104.0;
-/// Height of a row \[pt\].
+/// Row height \[pt\].
 const ROW: f32 = 18.0;
 
-/// Row of the card.
+/// Card row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CardRow {
     pub name: &'static str,
@@ -25,7 +25,7 @@ pub struct CardRow {
     pub wants: String,
     /// Remainder after the correction.
     pub left: String,
-    /// Half-width of the error bar.
+    /// Half-width of the error bar, with its unit.
     pub half: String,
     /// Whether the remainder is not reduced.
     pub is_missed: bool,
@@ -134,7 +134,7 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     }
 }
 
-/// Returns the place of a row, counted from the title line.
+/// Returns the place for a row; row 0 is the title.
 fn card_line(inner: Rect, row: usize) -> Rect {
     Rect::from_min_size(
         inner.min + vec2(0.0, ROW * row as f32),

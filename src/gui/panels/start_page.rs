@@ -24,9 +24,9 @@ use crate::gui::widgets::palette::{
 
 /// Widths: ways in, open study, gap between them \[pt\].
 const WIDTHS: [f32; 3] = [600.0, 460.0, 64.0];
-/// Line height of multi-line text \[pt\].
+/// Line height in multi-line text \[pt\].
 const LINE: f32 = 20.0;
-/// Height of a way in \[pt\].
+/// Card height for a way in \[pt\].
 const WAY: f32 = 72.0;
 
 /// Way to begin.
@@ -211,7 +211,7 @@ fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: 
     ui.advance_cursor_after_rect(rect);
 }
 
-/// Draws the three steps of the work, which stand in for the recent files until there are some.
+/// Draws the three work steps, instead of the recent files while there are none.
 fn steps_ui(ui: &mut Ui, palette: &Palette) {
     let steps = [
         (
@@ -319,7 +319,7 @@ fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec
 struct StudyWords {
     title: String,
     content: String,
-    /// Text of the button that returns to the study.
+    /// Text on the button that returns to the study.
     back: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! Headings of the tables in the panels, with a menu that copies or saves the table.
+//! Table headings in the panels, with a menu that copies or saves the table.
 
 use egui::{Align, Layout, RichText, Role, Sense, Ui};
 
@@ -29,7 +29,7 @@ impl TableHeading<'_> {
     }
 }
 
-/// Draws the context menu of a table's heading.
+/// Draws the heading's context menu.
 pub fn table_menu_ui(
     ui: &mut Ui,
     heading: &egui::Response,

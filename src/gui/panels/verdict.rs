@@ -1,36 +1,29 @@
 //! Verdict: whether the corrected model holds, and the next step if it does not.
 
+use gdcm_method::correction::LeadPrice;
 use gdcm_method::correction::conflict::ConflictKind;
-use gdcm_method::correction::remedy::Remedy;
 use gdcm_method::correction::solution::Solution;
-use gdcm_method::correction::{Channel, LeadPrice};
 use gdcm_method::schedule::ScheduleCaution;
-use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
+use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::response::median;
 use gdcm_model::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
-use gdcm_study::decisions::changed_models::SignRole;
-use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting_row::Value;
 use gdcm_study::results::analysis::ConditionFailure;
-use gdcm_study::results::couplings_assessment::CouplingCost;
 use gdcm_study::results::remark::RemarkKind;
-use gdcm_study::{ConditionAnalysis, CouplingCorrection, Edit, PhaseCorrection};
+use gdcm_study::{ConditionAnalysis, PhaseCorrection};
 
-use super::explanation::{remarks_shown, turn_entry};
+use super::advice::{Advice, Step, joined};
+use super::reasons::remarks_shown;
 use crate::gui::commands::command::Command;
-use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::layout::LayoutCommand;
-use crate::gui::state::forms::FormKind;
-use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::views::{offered_couplings, used_couplings};
+use crate::gui::views::used_couplings;
 
-/// Verdict on gain and phase of the constrained responses, here and in every condition, with the
+/// Verdict on gain and phase in the constrained responses, here and in every condition, with the
 /// next steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// Condition of the verdict.
+    /// Displayed condition.
     pub condition: ConditionId,
     /// Gains, phases.
     pub rows: [VerdictRow; 2],
@@ -43,7 +36,7 @@ pub struct Verdict {
     /// Poles within the band that the couplings in use make unstable, counted over the kept physics
     /// models in all conditions.
     pub unstable_in_band: usize,
-    /// Sentence count in the list of reasons.
+    /// Remark count in the sheet of reasons.
     pub reasons: usize,
 }
 
@@ -55,7 +48,7 @@ pub struct MatchCount {
 }
 
 impl MatchCount {
-    /// Counts the constrained responses of a condition that `solution` matches.
+    /// Counts the constrained responses that `solution` matches.
     fn new(shown: &ConditionAnalysis, solution: &Solution) -> Self {
         let constrained = shown.held().marked().count();
         Self {
@@ -84,7 +77,7 @@ impl MatchCount {
     }
 }
 
-/// Gains or phases of the constrained responses.
+/// Gains or phases in the constrained responses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VerdictRow {
     /// "Gain" or "Phase".
@@ -97,31 +90,6 @@ pub struct VerdictRow {
     pub words: String,
     /// Whether all requests are met.
     pub is_met: bool,
-}
-
-/// Possible action.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Step {
-    /// Text of the button.
-    pub label: String,
-    pub command: Command,
-}
-
-impl Step {
-    fn new(label: impl Into<String>, command: impl Into<Command>) -> Self {
-        Self {
-            label: label.into(),
-            command: command.into(),
-        }
-    }
-
-    /// Returns the step to the reasons for the result.
-    fn reasons(label: &str) -> Self {
-        Self::new(
-            label,
-            Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons))),
-        )
-    }
 }
 
 impl VerdictRow {
@@ -164,7 +132,7 @@ impl Verdict {
         }
     }
 
-    /// Returns a verdict with `words` in place of a result.
+    /// Returns a verdict with `words` instead of a result.
     fn without_result(state: &State, words: &str) -> Self {
         Self {
             condition: state.condition().id(),
@@ -313,13 +281,8 @@ fn shared_words(state: &State, pairs: &[Pair]) -> Option<String> {
     Some(format!("{} share {}", pairs.len(), channel.name))
 }
 
-/// Returns a name that does not break at the end of a line.
-pub(crate) fn joined(name: &str) -> String {
-    name.replace(' ', "\u{a0}")
-}
-
-/// Returns "lags by ≈ 66 ms" if all responses lag about equally, by the criterion of the remark on
-/// a common lead, otherwise "lags 20–110 ms"; short enough for the narrowest window.
+/// Returns "lags by ≈ 66 ms" if all responses lag about equally, by the criterion for a common lead
+/// otherwise "lags 20–110 ms"; short enough for the narrowest window.
 fn lag_words(left_ms: &mut [f64]) -> String {
     let least = left_ms.iter().copied().fold(f64::INFINITY, f64::min);
     let most = left_ms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -342,183 +305,9 @@ fn lag_words(left_ms: &mut [f64]) -> String {
     }
 }
 
-/// Possible steps, the recommended step first, and the note beside them.
-struct Advice {
-    steps: Vec<Step>,
-    note: String,
-}
-
-impl Advice {
-    fn without_note(steps: Vec<Step>) -> Self {
-        Self {
-            steps,
-            note: String::new(),
-        }
-    }
-
-    /// Recommends the first that applies:
-    ///
-    /// 1. Reverse a channel whose sign is doubtful.
-    /// 2. Reject the suggested physics models.
-    /// 3. Constrain responses, if none are constrained.
-    /// 4. Resolve the conflict of the gains.
-    /// 5. Correct the phase.
-    /// 6. Use worthwhile couplings, or switch the others off.
-    /// 7. Export.
-    fn new(state: &State, shown: &ConditionAnalysis) -> Self {
-        if let Some(channel) = shown.doubts.iter().find_map(|doubt| doubt.turns()) {
-            return Self::reverse_channel(state, channel);
-        }
-        let open = state.open_suggestions(shown);
-        if !open.is_empty() {
-            return Self::reject_suggested(state, &open);
-        }
-        if shown.held().marked().next().is_none() {
-            return Self::without_note(vec![Step::new(
-                "Hold the on-axis responses",
-                Edit::ConstrainOnAxis,
-            )]);
-        }
-        if !shown.gains.matched {
-            return Self::without_note(gain_steps(state, shown));
-        }
-        let phase = state.study.settings.phase;
-        if phase == PhaseCorrection::None || !shown.delays.matched {
-            return Self::without_note(phase_steps(state, shown));
-        }
-        if let Some(advice) = Self::on_couplings(state) {
-            return advice;
-        }
-        let mut steps = vec![Step::new("Export corrections…", export())];
-        if phase == PhaseCorrection::Lead {
-            steps.push(Step::reasons("Find the cause"));
-        }
-        Self::without_note(steps)
-    }
-
-    fn reverse_channel(state: &State, channel: Channel) -> Self {
-        let (label, command) = turn_entry(state, channel, Some(SignRole::Identified));
-        Self {
-            steps: vec![Step::new(label, command), Step::reasons("Why?")],
-            note: "its sign seems reversed".to_owned(),
-        }
-    }
-
-    fn reject_suggested(state: &State, open: &[String]) -> Self {
-        let condition = state.condition();
-        let models = condition.bundle(BundleKind::Physics).len();
-        Self {
-            steps: vec![Step::new(
-                format!("Reject {} suggested", open.len()),
-                Edit::reject_physics(condition.id(), open),
-            )],
-            note: format!("of {models} models, first"),
-        }
-    }
-
-    /// Recommends worthwhile couplings, or to remove couplings that are not worthwhile.
-    fn on_couplings(state: &State) -> Option<Self> {
-        let look = Step::new(
-            "Look first",
-            Command::Layout(LayoutCommand::ShowView(View::Couplings)),
-        );
-        if let Some((assessment, cost)) = offered_couplings(state) {
-            let use_them = Step::new("Use couplings", setting::COUPLINGS.to(assessment.couplings));
-            return Some(Self {
-                steps: vec![use_them, look],
-                note: off_axis_note(cost),
-            });
-        }
-        let used = used_couplings(state)?;
-        let cost = used.deciding_cost();
-        if cost.is_worth_it() && used.unstable_in_band() == 0 {
-            return None;
-        }
-        let leave_them = Step::new(
-            "Switch couplings off",
-            setting::COUPLINGS.to(CouplingCorrection::None),
-        );
-        Some(Self {
-            steps: vec![leave_them, look],
-            note: off_axis_note(cost),
-        })
-    }
-}
-
-/// "off-axis J 41→12".
-fn off_axis_note(cost: CouplingCost) -> String {
-    match (cost.without.others, cost.with.others) {
-        (Some(without), Some(with)) => {
-            format!("off-axis J {}→{}", telling(without, 0), telling(with, 0))
-        }
-        _ => String::new(),
-    }
-}
-
 /// Counts the poles within the band that the couplings in use make unstable.
 fn unstable_in_band(state: &State) -> usize {
     used_couplings(state).map_or(0, |used| used.unstable_in_band())
-}
-
-/// Returns the command that opens the export form.
-pub(crate) fn export() -> Command {
-    Command::Form(FormCommand::ShowForm(Some(FormKind::Export)))
-}
-
-fn release_step(state: &State, pair: Pair) -> Step {
-    Step::new(
-        format!("Release {}", joined(&state.dataset().pair_name(pair))),
-        Edit::Hold(pair, false),
-    )
-}
-
-/// Returns the bound that would be sufficient, if any, then the response to release.
-fn gain_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
-    let mut steps = Vec::new();
-    if let Some(remedy) = &shown.gains.remedy {
-        if let Some(range) = widened(remedy, shown) {
-            steps.push(Step::new("Widen the bound", setting::GAIN_BOUNDS.to(range)));
-        }
-        if let Some(pair) = remedy.free.first() {
-            steps.push(release_step(state, *pair));
-        }
-    }
-    steps.push(Step::reasons("Why?"));
-    steps
-}
-
-/// Returns the gain bounds with the bound that the remedy moves.
-fn widened(remedy: &Remedy, shown: &ConditionAnalysis) -> Option<Value> {
-    let bounds = shown.gain_bounds();
-    if let Some(upper) = remedy.upper {
-        return Some(Value::Range([bounds.lower, upper]));
-    }
-    let lower = remedy.lower?;
-    Some(Value::Range([lower, bounds.upper]))
-}
-
-/// Returns the steps while the phase is uncorrected or not matched.
-fn phase_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
-    match state.study.settings.phase {
-        PhaseCorrection::None => vec![Step::new(
-            "Use delays",
-            setting::PHASE.to(PhaseCorrection::Delay),
-        )],
-        PhaseCorrection::Delay => vec![
-            Step::new("Use leads", setting::PHASE.to(PhaseCorrection::Lead)),
-            Step::reasons("Find the cause first"),
-        ],
-        PhaseCorrection::Lead => {
-            let mut steps = Vec::new();
-            if let Some(remedy) = &shown.delays.remedy
-                && let Some(pair) = remedy.free.first()
-            {
-                steps.push(release_step(state, *pair));
-            }
-            steps.push(Step::reasons("Why?"));
-            steps
-        }
-    }
 }
 
 /// Caution about the couplings.
@@ -541,7 +330,7 @@ fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
         .or_else(|| schedule_caution(state, shown))
 }
 
-/// Returns a caution if the schedule leaves more than twice the J of the condition's own correction
+/// Returns a caution if the schedule leaves more than twice the J that the own correction leaves
 /// (M12).
 fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
     let schedule = state.analysis()?.schedule.as_ref().ok()?;
@@ -610,9 +399,12 @@ mod tests {
     use nalgebra::Complex;
 
     use gdcm_model::progress::Unobserved;
+    use gdcm_study::decisions::setting;
+    use gdcm_study::decisions::setting_row::Value;
     use gdcm_study::results::couplings_assessment::UnstablePole;
-    use gdcm_study::{Engine, Study};
+    use gdcm_study::{CouplingCorrection, Edit, Engine, Study};
 
+    use super::super::advice::export;
     use super::*;
     use crate::gui::commands::study::StudyCommand;
     use crate::gui::views::couplings_job;

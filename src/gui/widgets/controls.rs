@@ -129,15 +129,15 @@ pub fn name_text_field(response: &Response, name: &str, text: &str) {
     });
 }
 
-/// Returns whether Enter ended the editing of a field.
+/// Returns whether Enter ended the editing.
 pub fn is_entered(ui: &Ui, field: &Response) -> bool {
     field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
 }
 
-/// Height of a row \[pt\].
+/// Row height \[pt\].
 pub const ROW_HEIGHT: f32 = 20.0;
 
-/// Look of a clickable list row.
+/// Clickable list row.
 pub struct RowLook {
     pub is_selected: bool,
     /// Whether its item is pointed at elsewhere in the window.
@@ -169,7 +169,7 @@ impl RowLook {
     }
 }
 
-/// Draws a row of the usual height.
+/// Draws a row with the usual height.
 pub fn row_ui(
     ui: &mut Ui,
     palette: &Palette,
@@ -276,7 +276,7 @@ fn elided_at(ui: &Ui, text: &str, room: f32, size: f32, head: f32) -> String {
     }
 }
 
-/// Returns the width of single-line text \[pt\].
+/// Returns the width that text takes on a single line \[pt\].
 pub fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
     ui.fonts_mut(|fonts| {
         fonts
@@ -373,31 +373,31 @@ pub fn typed_number(text: &str) -> Result<Option<f64>, String> {
     }
 }
 
-/// Height of a number field \[pt\].
+/// Number field height \[pt\].
 const FIELD_HEIGHT: f32 = 18.0;
 /// Passes after Escape in which egui may still commit the text being typed.
 const PASSES_AFTER_ESCAPE: u64 = 2;
 
-/// Description of a number field.
+/// Field for a number.
 pub struct NumberField<'a> {
     /// Accessible name, unique in the window.
     pub name: &'a str,
     /// Meaning, with the unit.
     pub hint: &'a str,
-    /// Unit of the typed number; empty if dimensionless.
+    /// Unit for the typed number; empty if dimensionless.
     pub unit: &'static str,
     /// Whether the unit is shown behind the number.
     pub shows_unit: bool,
     pub range: RangeInclusive<f64>,
     pub is_whole: bool,
-    /// Change per point of dragging and per arrow key.
+    /// Change per dragged point and per arrow key.
     pub step: f64,
-    /// Least width \[pt\]; 0 for the width of the text.
+    /// Least width \[pt\]; 0 to fit the text.
     pub width: f32,
     pub digits: Digits,
 }
 
-/// Result of a field in this frame.
+/// Entry in this frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Entered {
     /// New number, if it is valid.

@@ -1,4 +1,4 @@
-//! Keyboard focus: the regions of the window that F6 visits, and the focus ring.
+//! Keyboard focus: the window regions that F6 visits, and the focus ring.
 
 use std::collections::BTreeMap;
 
@@ -6,10 +6,10 @@ use egui::{Context, Id, Key, Modifiers, Rect, Stroke, StrokeKind, Ui, pos2};
 
 use super::palette::Palette;
 
-/// Region of the window, in the order of the F6 key.
+/// Window region, in the order that F6 visits them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Region {
-    /// Plots of the view in front.
+    /// Plots in the front view.
     Plots,
     /// Plots in the dock.
     Dock,
@@ -21,13 +21,13 @@ pub enum Region {
     Settings,
     /// The export button.
     Export,
-    /// List of conditions.
+    /// Conditions list.
     Conditions,
-    /// Bundles of the displayed condition.
+    /// Bundles in the displayed condition.
     Models,
 }
 
-/// Content of the regions as they were drawn.
+/// Regions as drawn.
 #[derive(Clone, Default)]
 struct Regions {
     parts: BTreeMap<Region, Part>,
@@ -40,11 +40,11 @@ struct Regions {
 struct Part {
     /// Pass in which the region was last drawn.
     pass: u64,
-    /// Focusable controls, in the order of the Tab key.
+    /// Focusable controls, in Tab order.
     controls: Vec<Id>,
     /// Control that had the focus last.
     visited: Option<Id>,
-    /// Visible place of the region.
+    /// Visible place.
     place: Option<Rect>,
 }
 
@@ -175,12 +175,12 @@ pub fn take_escape(ctx: &Context) -> bool {
     !was_focused(ctx) && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
 }
 
-/// Width of the ring \[pt\].
+/// Ring width \[pt\].
 const WIDTH: f32 = 2.0;
 /// Gap between the ring and its control \[pt\].
 const GAP: f32 = 1.0;
 
-/// Draws the focus ring on top of everything, alike around every control, list row, cell and plot.
+/// Draws the focus ring above everything, alike around controls, list rows, cells and plots.
 pub fn focus_ring_ui(ctx: &Context, palette: &Palette) {
     let focused = ctx.memory(|memory| memory.focused());
     ctx.data_mut(|data| data.insert_temp(had_focus(), focused.is_some()));

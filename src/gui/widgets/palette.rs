@@ -11,13 +11,13 @@ use egui::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Font size of captions: axes, units, bars, table headings, chips, status \[pt\].
+/// Font size for captions: axes, units, bars, table headings, chips, status \[pt\].
 pub const SMALL_SIZE: f32 = 11.0;
-/// Font size of running text: rows, controls, words \[pt\].
+/// Font size for running text: rows, controls, words \[pt\].
 pub const BODY_SIZE: f32 = 12.5;
-/// Font size of the response in focus and of the verdict's counts \[pt\].
+/// Font size for titles and for the verdict's counts \[pt\].
 pub const TITLE_SIZE: f32 = 15.0;
-/// Font size of the start page's heading \[pt\].
+/// Font size for the start page's heading \[pt\].
 pub const DISPLAY_SIZE: f32 = 20.0;
 
 /// Returns the medium weight of the typeface: section headings, selection, constrained values,
@@ -28,12 +28,12 @@ pub fn medium(size: f32) -> FontId {
 
 const MEDIUM: &str = "medium";
 
-/// Returns the font of captions.
+/// Returns the caption font.
 pub fn small() -> FontId {
     FontId::proportional(SMALL_SIZE)
 }
 
-/// Returns the font of running text.
+/// Returns the font for running text.
 pub fn body() -> FontId {
     FontId::proportional(BODY_SIZE)
 }
@@ -42,29 +42,29 @@ const fn hex(rgb: u32) -> Color32 {
     Color32::from_rgb((rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8)
 }
 
-/// Costs J between which the colours of [`Palette::heat`] are interpolated.
+/// Costs J between which [`Palette::heat`] is interpolated.
 pub const HEAT_COSTS: [f32; 5] = [0.0, 10.0, 30.0, 60.0, 110.0];
 
-/// Design tokens of a theme: each colour has a single meaning everywhere.
+/// Theme colours, each with a single meaning everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Palette {
     /// Whether the theme has light text on a dark ground.
     pub is_dark: bool,
-    /// Ground of plots and text fields.
+    /// Ground under plots and text fields.
     pub background: Color32,
-    /// Ground of side panels and bars.
+    /// Ground under side panels and bars.
     pub panel: Color32,
     /// Elements on a panel: buttons, legends, tooltips.
     pub raised: Color32,
     /// Separators and outlines.
     pub line: Color32,
-    /// Grid lines of plots.
+    /// Grid lines in plots.
     pub grid: Color32,
     /// Running text.
     pub text: Color32,
     /// Captions and units.
     pub dim_text: Color32,
-    /// Ground of a selection.
+    /// Ground under a selection.
     pub selected: Color32,
     /// Nominal physics model.
     pub nominal: Color32,
@@ -82,17 +82,17 @@ pub struct Palette {
     pub warning: Color32,
     /// Met requirements.
     pub good: Color32,
-    /// Ground of an unmet verdict and of an invalid region.
+    /// Ground under an unmet verdict and an invalid region.
     pub warning_ground: Color32,
-    /// Ground of a met verdict.
+    /// Ground under a met verdict.
     pub good_ground: Color32,
-    /// Zero values, and names of excluded items.
+    /// Zero values and excluded names.
     pub quiet_text: Color32,
-    /// Bars and ticks of boxes.
+    /// Bars, and ticks in boxes.
     pub quiet_mark: Color32,
-    /// J of the heat map at [`HEAT_COSTS`]: a single hue in steps of lightness.
+    /// Colours for J at [`HEAT_COSTS`]: a single hue with rising lightness contrast.
     pub heat: [Color32; 5],
-    /// Factor on the widths of curves.
+    /// Factor on curve widths.
     pub line_width: f32,
 }
 
@@ -214,7 +214,7 @@ impl Palette {
         self.heat[above - 1].lerp_to_gamma(self.heat[above], part)
     }
 
-    /// Returns the text colour of a name written in the colour of its curve.
+    /// Returns the text colour for a name beside a curve in `curve` colour.
     pub fn name_of(&self, curve: Color32) -> Color32 {
         self.towards_text(curve, 0.3)
     }
@@ -390,7 +390,7 @@ pub fn apply(ctx: &Context) {
     }
 }
 
-/// Colours of the curve roles.
+/// Colour set for the curve roles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum CurveColors {
     /// Red, blue, amber, green.
@@ -401,10 +401,10 @@ pub enum CurveColors {
 }
 
 impl CurveColors {
-    /// Every choice, in the order of the menu.
+    /// Every choice, in menu order.
     pub const ALL: [Self; 2] = [Self::Standard, Self::ForAllEyes];
 
-    /// Returns the text of the menu entry.
+    /// Returns the menu entry's text.
     pub fn name(self) -> &'static str {
         match self {
             Self::Standard => "Standard colours of curves",
@@ -413,12 +413,12 @@ impl CurveColors {
     }
 }
 
-/// Style of curves chosen by the engineer.
+/// Curve style chosen by the engineer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PlotStyle {
     pub curve_colors: CurveColors,
-    /// Factor on the widths of curves.
+    /// Factor on curve widths.
     pub line_width: f32,
 }
 

@@ -57,7 +57,7 @@ impl Sorting {
         order
     }
 
-    /// Returns the sort mark of a column's heading.
+    /// Returns the sort mark for a column's heading.
     pub fn mark(self, column: usize) -> &'static str {
         match self.0 {
             Some((sorted, false)) if sorted == column => " ▲",
@@ -79,14 +79,14 @@ fn number_in(cell: &str) -> Option<f64> {
 /// Click in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TableClick {
-    /// Index of the row in the original order.
+    /// Row index in the original order.
     pub row: usize,
     pub column: usize,
 }
 
-/// Appearance of a table's cells.
+/// Cell colours and focus.
 pub struct TableLook<'a> {
-    /// Text colour of a cell, by row and column; the default if `None`.
+    /// Text colour for a cell, by row and column; the default if `None`.
     pub color: &'a dyn Fn(usize, usize) -> Option<Color32>,
     /// Whether a row is in focus.
     pub selected: &'a dyn Fn(usize) -> bool,
@@ -100,7 +100,7 @@ impl TableLook<'_> {
     };
 }
 
-/// Request from the context menu of a table.
+/// Request from a table's context menu.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TableRequest {
     /// Copies this text to the clipboard.

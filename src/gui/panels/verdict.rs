@@ -281,7 +281,7 @@ fn shared_words(state: &State, pairs: &[Pair]) -> Option<String> {
     Some(format!("{} share {}", pairs.len(), channel.name))
 }
 
-/// Returns "lags by ≈ 66 ms" if all responses lag about equally, by the criterion for a common lead
+/// Returns "lags by ≈ 66 ms" if all responses lag about equally, by the criterion for a common lead,
 /// otherwise "lags 20–110 ms"; short enough for the narrowest window.
 fn lag_words(left_ms: &mut [f64]) -> String {
     let least = left_ms.iter().copied().fold(f64::INFINITY, f64::min);
@@ -307,7 +307,10 @@ fn lag_words(left_ms: &mut [f64]) -> String {
 
 /// Counts the poles within the band that the couplings in use make unstable.
 fn unstable_in_band(state: &State) -> usize {
-    used_couplings(state).map_or(0, |used| used.unstable_in_band())
+    match used_couplings(state) {
+        Some(used) => used.unstable_in_band(),
+        None => 0,
+    }
 }
 
 /// Caution about the couplings.

@@ -52,7 +52,7 @@ fn key() -> Id {
     Id::unique("regions")
 }
 
-/// Draws a region, or a further piece of it, and records its focusable controls. Scrolls to a
+/// Draws a region, or a further piece of a region, and records its focusable controls. Scrolls to a
 /// control focused by the keyboard.
 pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R) -> R {
     let layer = ui.layer_id();
@@ -85,15 +85,16 @@ pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R)
         }
         part.pass = pass;
         part.controls.extend(controls);
-        part.place = part
-            .place
-            .map_or(Some(place), |others| Some(others.union(place)));
+        part.place = match part.place {
+            Some(others) => Some(others.union(place)),
+            None => Some(place),
+        };
         part.visited = focused.or(part.visited);
     });
-    let arrived = focused
-        .and_then(|focused| ctx.read_response(focused))
-        .filter(|response| response.gained_focus());
-    if let Some(response) = arrived {
+    if let Some(focused) = focused
+        && let Some(response) = ctx.read_response(focused)
+        && response.gained_focus()
+    {
         ui.scroll_to_rect(response.rect, None);
     }
     inner
@@ -164,7 +165,7 @@ fn had_focus() -> Id {
     Id::unique("had anything the focus")
 }
 
-/// Returns whether a control had the focus at the end of the last frame: Escape was meant for it
+/// Returns whether a control had the focus after the last frame: Escape was meant for that control,
 /// and has removed its focus by now.
 pub fn was_focused(ctx: &Context) -> bool {
     ctx.data(|data| data.get_temp(had_focus()).unwrap_or(false))

@@ -273,22 +273,28 @@ impl Palette {
     }
 
     fn widgets(&self) -> Widgets {
-        let widget = |weak_bg_fill, bg_fill, outline, text| WidgetVisuals {
+        let pale = self.towards_text(self.raised, 0.07);
+        let strong = self.towards_text(self.raised, 0.22);
+        let outline = self.towards_text(self.raised, 0.3);
+        Widgets {
+            noninteractive: self.widget(self.panel, self.panel, self.line),
+            inactive: self.widget(self.raised, self.line, self.line),
+            hovered: self.widget(pale, strong, outline),
+            // Pressed and focused boxes: an accent fill would look checked.
+            active: self.widget(self.selected, strong, self.accent),
+            open: self.widget(pale, self.raised, self.line),
+        }
+    }
+
+    /// Returns the look of a control: button fill, fill of boxes and handles, outline.
+    fn widget(&self, weak_bg_fill: Color32, bg_fill: Color32, outline: Color32) -> WidgetVisuals {
+        WidgetVisuals {
             bg_fill,
             weak_bg_fill,
             bg_stroke: Stroke::new(1.0, outline),
             corner_radius: CornerRadius::same(6),
-            fg_stroke: Stroke::new(1.0, text),
+            fg_stroke: Stroke::new(1.0, self.text),
             expansion: 0.0,
-        };
-        let shade = |amount| self.towards_text(self.raised, amount);
-        Widgets {
-            noninteractive: widget(self.panel, self.panel, self.line, self.text),
-            inactive: widget(self.raised, self.line, self.line, self.text),
-            hovered: widget(shade(0.07), shade(0.22), shade(0.3), self.text),
-            // Pressed and focused boxes: an accent fill would look checked.
-            active: widget(self.selected, shade(0.22), self.accent, self.text),
-            open: widget(shade(0.07), self.raised, self.line, self.text),
         }
     }
 

@@ -1,14 +1,6 @@
-//! Window colours, dark and light, the egui style built from them, and the theme-independent curve
-//! styles.
+//! Window colours, dark and light, fonts by their use, and the engineer's curve style.
 
-use std::sync::Arc;
-
-use egui::epaint::Shadow;
-use egui::style::{HandleShape, ScrollStyle, Selection, WidgetVisuals, Widgets};
-use egui::{
-    Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke,
-    Style, TextStyle, Theme, Visuals, vec2,
-};
+use egui::{Color32, FontFamily, FontId, Visuals};
 use serde::{Deserialize, Serialize};
 
 /// Font size for captions: axes, units, bars, table headings, chips, status \[pt\].
@@ -20,13 +12,13 @@ pub const TITLE_SIZE: f32 = 15.0;
 /// Font size for the start page's heading \[pt\].
 pub const DISPLAY_SIZE: f32 = 20.0;
 
-/// Returns the medium weight of the typeface: section headings, selection, constrained values,
-/// buttons.
+/// Returns the medium-weight font, for section headings, selection, constrained values, buttons.
 pub fn medium(size: f32) -> FontId {
     FontId::new(size, FontFamily::Name(MEDIUM.into()))
 }
 
-const MEDIUM: &str = "medium";
+/// Name of the medium weight among the font families.
+pub(super) const MEDIUM: &str = "medium";
 
 /// Returns the caption font.
 pub fn small() -> FontId {
@@ -227,173 +219,6 @@ impl Palette {
             self.panel
         }
     }
-
-    /// Builds the egui visuals from these colours.
-    pub fn visuals(&self) -> Visuals {
-        let base = if self.is_dark {
-            Visuals::dark()
-        } else {
-            Visuals::light()
-        };
-        let shadow = Shadow {
-            offset: [0, 3],
-            blur: 10,
-            spread: 0,
-            color: Color32::from_black_alpha(if self.is_dark { 110 } else { 40 }),
-        };
-        Visuals {
-            widgets: self.widgets(),
-            selection: Selection {
-                bg_fill: self.selected,
-                stroke: Stroke::new(1.0, self.text),
-            },
-            weak_text_color: Some(self.dim_text),
-            hyperlink_color: self.accent,
-            faint_bg_color: self.panel.lerp_to_gamma(self.raised, 0.5),
-            extreme_bg_color: self.background,
-            code_bg_color: self.raised,
-            warn_fg_color: self.warning,
-            error_fg_color: self.nominal,
-            window_corner_radius: CornerRadius::same(8),
-            window_shadow: shadow,
-            window_fill: if self.is_dark {
-                self.raised
-            } else {
-                self.panel
-            },
-            window_stroke: Stroke::new(1.0, self.line),
-            menu_corner_radius: CornerRadius::same(6),
-            panel_fill: self.panel,
-            popup_shadow: shadow,
-            indent_has_left_vline: false,
-            handle_shape: HandleShape::Circle,
-            slider_trailing_fill: true,
-            ..base
-        }
-    }
-
-    fn widgets(&self) -> Widgets {
-        let pale = self.towards_text(self.raised, 0.07);
-        let strong = self.towards_text(self.raised, 0.22);
-        let outline = self.towards_text(self.raised, 0.3);
-        Widgets {
-            noninteractive: self.widget(self.panel, self.panel, self.line),
-            inactive: self.widget(self.raised, self.line, self.line),
-            hovered: self.widget(pale, strong, outline),
-            // Pressed and focused boxes: an accent fill would look checked.
-            active: self.widget(self.selected, strong, self.accent),
-            open: self.widget(pale, self.raised, self.line),
-        }
-    }
-
-    /// Returns the look of a control: button fill, fill of boxes and handles, outline.
-    fn widget(&self, weak_bg_fill: Color32, bg_fill: Color32, outline: Color32) -> WidgetVisuals {
-        WidgetVisuals {
-            bg_fill,
-            weak_bg_fill,
-            bg_stroke: Stroke::new(1.0, outline),
-            corner_radius: CornerRadius::same(6),
-            fg_stroke: Stroke::new(1.0, self.text),
-            expansion: 0.0,
-        }
-    }
-
-    /// Builds the whole egui style: small text, close spacing, thin scroll bars.
-    pub fn style(&self) -> Style {
-        let mut style = Style {
-            visuals: self.visuals(),
-            animation_time: 0.08,
-            ..Style::default()
-        };
-        style.text_styles = [
-            (
-                TextStyle::Small,
-                FontId::new(SMALL_SIZE, FontFamily::Proportional),
-            ),
-            (
-                TextStyle::Body,
-                FontId::new(BODY_SIZE, FontFamily::Proportional),
-            ),
-            (
-                TextStyle::Button,
-                FontId::new(BODY_SIZE, FontFamily::Proportional),
-            ),
-            (TextStyle::Heading, medium(TITLE_SIZE)),
-            (
-                TextStyle::Monospace,
-                FontId::new(SMALL_SIZE, FontFamily::Monospace),
-            ),
-        ]
-        .into();
-        let spacing = &mut style.spacing;
-        spacing.item_spacing = vec2(8.0, 4.0);
-        spacing.button_padding = vec2(8.0, 3.0);
-        spacing.interact_size = vec2(28.0, 24.0);
-        spacing.window_margin = Margin::same(12);
-        spacing.menu_margin = Margin::same(4);
-        spacing.slider_rail_height = 4.0;
-        spacing.icon_width = 15.0;
-        spacing.icon_width_inner = 9.0;
-        spacing.icon_spacing = 6.0;
-        spacing.scroll = ScrollStyle {
-            bar_width: 7.0,
-            ..ScrollStyle::thin()
-        };
-        style
-    }
-}
-
-/// Returns both weights of the typeface, each followed by egui's own fonts for other scripts and
-/// rare symbols.
-pub fn fonts() -> FontDefinitions {
-    let mut fonts = FontDefinitions::default();
-    let monospaced = fonts
-        .families
-        .get(&FontFamily::Monospace)
-        .cloned()
-        .unwrap_or_default();
-    let others = fonts
-        .families
-        .get(&FontFamily::Proportional)
-        .cloned()
-        .unwrap_or_default();
-    let cuts = [
-        (
-            "Inter",
-            include_bytes!("../../../assets/fonts/Inter-Regular.ttf").as_slice(),
-            FontFamily::Proportional,
-        ),
-        (
-            "Inter Medium",
-            include_bytes!("../../../assets/fonts/Inter-Medium.ttf"),
-            FontFamily::Name(MEDIUM.into()),
-        ),
-    ];
-    for (name, bytes, family) in cuts {
-        fonts
-            .font_data
-            .insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
-        let mut names = vec![name.to_owned()];
-        for other in others.iter().chain(&monospaced) {
-            if !names.contains(other) {
-                names.push(other.clone());
-            }
-        }
-        fonts.families.insert(family, names);
-    }
-    fonts
-}
-
-/// Gives both of egui's themes this program's style, so that egui's `set_theme` switches between
-/// them.
-pub fn apply(ctx: &Context) {
-    ctx.set_fonts(fonts());
-    for (theme, palette) in [
-        (Theme::Dark, Palette::dark()),
-        (Theme::Light, Palette::light()),
-    ] {
-        ctx.set_style_of(theme, palette.style());
-    }
 }
 
 /// Colour set for the curve roles.
@@ -453,9 +278,9 @@ impl Default for PlotStyle {
     }
 }
 
-/// Colours of nominal, perturbed, identified and corrected models: of all colours near vermilion,
-/// blue, yellow and green with a contrast of 3 to the background, those with the greatest least
-/// distance from one another and from grey, for every kind of colour vision.
+/// Colours for nominal, perturbed, identified and corrected models. Among all colours near
+/// vermilion, blue, yellow and green with a contrast of 3 to the background, they maximise the least
+/// distance from each other and from grey over every kind of colour vision.
 const fn for_all_eyes(is_dark: bool) -> [Color32; 4] {
     if is_dark {
         [hex(0xc65b04), hex(0x6996ff), hex(0xe8d525), hex(0x12e782)]
@@ -472,13 +297,14 @@ mod tests {
     use crate::gui::plot::Role;
     use crate::gui::plot::curve_style::CurveStyle;
 
-    /// Computes contrast from relative luminance as defined by the Web Content Accessibility
-    /// Guidelines 2.2.
+    /// Computes relative luminance (Web Content Accessibility Guidelines 2.2).
+    fn luminance(color: Color32) -> f32 {
+        let [r, g, b, _] = Rgba::from(color).to_array();
+        0.2126 * r + 0.7152 * g + 0.0722 * b
+    }
+
+    /// Computes the contrast ratio (Web Content Accessibility Guidelines 2.2).
     fn contrast(a: Color32, b: Color32) -> f32 {
-        let luminance = |color: Color32| {
-            let [r, g, b, _] = egui::Rgba::from(color).to_array();
-            0.2126 * r + 0.7152 * g + 0.0722 * b
-        };
         let a = luminance(a);
         let b = luminance(b);
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
@@ -487,15 +313,6 @@ mod tests {
     /// Contrast required by the guidelines for text and for meaningful lines.
     const OF_TEXT: f32 = 4.5;
     const OF_LINES: f32 = 3.0;
-
-    #[test]
-    fn a_box_with_the_focus_is_not_filled_as_if_it_were_checked() {
-        for palette in [Palette::dark(), Palette::light()] {
-            let widgets = palette.widgets();
-            assert_eq!(widgets.active.bg_fill, widgets.hovered.bg_fill);
-            assert_ne!(widgets.active.bg_fill, palette.accent);
-        }
-    }
 
     #[test]
     fn text_is_readable_on_every_surface_of_both_themes() {
@@ -589,61 +406,13 @@ mod tests {
     #[test]
     fn a_greater_cost_stands_out_more_from_the_ground() {
         for palette in [Palette::dark(), Palette::light()] {
-            let of = |cost| contrast(palette.heat_of(cost), palette.panel);
-            let steps = [0.0, 5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 110.0];
+            let costs = [0.0, 5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 110.0];
+            let contrasts = costs.map(|cost| contrast(palette.heat_of(cost), palette.panel));
             assert!(
-                steps.windows(2).all(|pair| of(pair[0]) < of(pair[1])),
+                contrasts.is_sorted_by(|less, more| less < more),
                 "{palette:?}"
             );
             assert_eq!(palette.heat_of(1e9), palette.heat[4]);
-        }
-    }
-
-    #[test]
-    fn figures_are_of_equal_width_in_both_cuts() {
-        let ctx = Context::default();
-        apply(&ctx);
-        let output = ctx.run_ui(egui::RawInput::default(), |ui| {
-            for font in [FontId::proportional(BODY_SIZE), medium(BODY_SIZE)] {
-                let mut width = |figure| ui.fonts_mut(|fonts| fonts.glyph_width(&font, figure));
-                let widths: Vec<f32> = "0123456789−+±".chars().map(&mut width).collect();
-                assert!(
-                    widths.iter().all(|other| (other - widths[0]).abs() < 1e-3),
-                    "{widths:?}"
-                );
-            }
-        });
-        output.drop_without_applying_deltas();
-    }
-
-    #[test]
-    fn the_symbols_of_the_window_have_glyphs() {
-        let ctx = Context::default();
-        apply(&ctx);
-        let output = ctx.run_ui(egui::RawInput::default(), |ui| {
-            let font = FontId::proportional(BODY_SIZE);
-            for symbol in "→−–·°ωτΔα…●○◆◇■▲★⚠✓±≈".chars() {
-                for font in [&font, &medium(BODY_SIZE)] {
-                    assert!(
-                        ui.fonts_mut(|fonts| fonts.has_glyph(font, symbol)),
-                        "{symbol}"
-                    );
-                }
-            }
-        });
-        output.drop_without_applying_deltas();
-    }
-
-    #[test]
-    fn both_themes_of_a_context_get_their_own_style() {
-        let ctx = Context::default();
-        apply(&ctx);
-        for (theme, palette) in [
-            (Theme::Dark, Palette::dark()),
-            (Theme::Light, Palette::light()),
-        ] {
-            assert_eq!(ctx.style_of(theme).visuals.panel_fill, palette.panel);
-            assert_eq!(Palette::of(&ctx.style_of(theme).visuals), palette);
         }
     }
 
@@ -683,18 +452,17 @@ mod tests {
         let x = (0.4124564 * r + 0.3575761 * g + 0.1804375 * b) / 0.95047;
         let y = 0.2126729 * r + 0.7151522 * g + 0.0721750 * b;
         let z = (0.0193339 * r + 0.119192 * g + 0.9503041 * b) / 1.08883;
-        let f = |t: f32| {
-            if t > 216.0 / 24389.0 {
-                t.cbrt()
-            } else {
-                (24389.0 / 27.0 * t + 16.0) / 116.0
-            }
-        };
-        [
-            116.0 * f(y) - 16.0,
-            500.0 * (f(x) - f(y)),
-            200.0 * (f(y) - f(z)),
-        ]
+        let [fx, fy, fz] = [x, y, z].map(lightness_root);
+        [116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz)]
+    }
+
+    /// Computes f(t) in CIE 15:2004: the cube root, linear near zero.
+    fn lightness_root(t: f32) -> f32 {
+        if t > 216.0 / 24389.0 {
+            t.cbrt()
+        } else {
+            (24389.0 / 27.0 * t + 16.0) / 116.0
+        }
     }
 
     /// Returns the opaque colour that underlies a translucent colour.
@@ -708,7 +476,7 @@ mod tests {
         lab(sight.map(|row| (row[0] * r + row[1] * g + row[2] * b).clamp(0.0, 1.0)))
     }
 
-    /// Computes the perceived colour distance CIE76, of which 2.3 is just noticeable.
+    /// Computes the perceived colour distance CIE76; 2.3 is just noticeable.
     fn distance(a: Color32, b: Color32, sight: &[[f32; 3]; 3]) -> f32 {
         let a = seen(a, sight);
         let b = seen(b, sight);
@@ -724,22 +492,25 @@ mod tests {
 
     /// Returns the styles of every role in both themes.
     fn roles(curve_colors: CurveColors) -> Vec<Vec<(Role, CurveStyle)>> {
-        let of = |theme: Palette| {
+        let mut looks = Vec::new();
+        for theme in [Palette::dark(), Palette::light()] {
             let palette = theme.with_looks(PlotStyle {
                 curve_colors,
                 ..PlotStyle::default()
             });
-            Role::ALL
-                .into_iter()
-                .map(|role| (role, palette.role_style(role, false)))
-                .collect()
-        };
-        [Palette::dark(), Palette::light()].map(of).to_vec()
+            looks.push(
+                Role::ALL
+                    .into_iter()
+                    .map(|role| (role, palette.role_style(role, false)))
+                    .collect(),
+            );
+        }
+        looks
     }
 
-    fn assert_told_apart(
+    fn assert_distinct(
         curve_colors: CurveColors,
-        is_told: impl Fn(&CurveStyle, &CurveStyle, f32) -> bool,
+        is_distinct: impl Fn(&CurveStyle, &CurveStyle, f32) -> bool,
     ) {
         for looks in roles(curve_colors) {
             for (place, (role, look)) in looks.iter().enumerate() {
@@ -747,7 +518,7 @@ mod tests {
                     for (sight, matrix) in &SIGHTS {
                         let distance = distance(look.color, other_look.color, matrix);
                         assert!(
-                            is_told(look, other_look, distance),
+                            is_distinct(look, other_look, distance),
                             "{role:?} {other:?}, {sight}: {distance}"
                         );
                     }
@@ -756,21 +527,23 @@ mod tests {
         }
     }
 
+    /// Returns whether two roles have the same colour and differ in pattern or width only;
+    /// translucent colours return with a rounding error.
+    fn shares_color(a: &CurveStyle, b: &CurveStyle) -> bool {
+        distance(a.color, b.color, &SIGHTS[0].1) < 2.3
+    }
+
     #[test]
-    fn roles_of_two_colours_are_told_apart_by_colour_alone_to_all_eyes() {
-        // Some roles share a colour and differ in pattern or width; translucent colours return with
-        // a rounding error.
-        let is_shared =
-            |a: &CurveStyle, b: &CurveStyle| distance(a.color, b.color, &SIGHTS[0].1) < 2.3;
-        assert_told_apart(CurveColors::ForAllEyes, |a, b, distance| {
-            is_shared(a, b) || distance > APART
+    fn roles_of_two_colours_are_distinct_by_colour_alone_to_all_eyes() {
+        assert_distinct(CurveColors::ForAllEyes, |a, b, distance| {
+            shares_color(a, b) || distance > APART
         });
     }
 
     #[test]
-    fn with_the_standard_colours_what_looks_alike_to_some_eyes_differs_in_line_and_width() {
+    fn standard_colours_that_look_alike_to_some_eyes_differ_in_line_or_width() {
         for curve_colors in CurveColors::ALL {
-            assert_told_apart(curve_colors, |a, b, distance| {
+            assert_distinct(curve_colors, |a, b, distance| {
                 distance > APART
                     || (a.dash, a.length) != (b.dash, b.length)
                     || (a.width - b.width).abs() > 0.5
@@ -785,7 +558,7 @@ mod tests {
         assert!(distance(red, green, &SIGHTS[0].1) > 100.0);
         assert!(
             distance(red, green, &SIGHTS[2].1) < 20.0,
-            "so the simulation sees what it is there for"
+            "the simulated eye confuses them"
         );
     }
 }

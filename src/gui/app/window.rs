@@ -43,7 +43,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::views::assembling::assembling_ui;
 use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
-use crate::gui::widgets::{egui_style, focus};
+use crate::gui::widgets::{focus, palette};
 
 /// The program's window.
 pub struct GdcmApp {
@@ -70,7 +70,7 @@ impl GdcmApp {
     /// Creates the window on a dataset or a study; starts the compute threads and the threads that
     /// watch the disk.
     pub fn with(ctx: &Context, opened: Opened, setup: Setup) -> std::io::Result<Self> {
-        egui_style::apply(ctx);
+        palette::apply(ctx);
         ctx.add_plugin(KeyOrder::default());
         let (replies, received) = ReplySender::new(ctx);
         let jobs = BackgroundJobs::start(&setup.engine, &replies)?;

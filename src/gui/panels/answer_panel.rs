@@ -37,7 +37,7 @@ const LEAST_WITH_CARD: f32 = 860.0;
 /// Least window height that shows the full result; below it the result takes a single line \[pt\].
 const LEAST_WITH_RESULT: f32 = 600.0;
 
-/// Draws the whole panel from top to bottom.
+/// Draws verdict, result and matrix, or the open settings, above the export at the foot.
 pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let verdict = Verdict::new(state);
     let foot = Frame::new().inner_margin(Margin::ZERO);

@@ -96,7 +96,7 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
     }
 }
 
-/// Cells below and beside the channel names \[pt\].
+/// Cells with the channel names above and beside them \[pt\].
 struct CellGrid {
     /// Visible height.
     room: f32,
@@ -330,10 +330,9 @@ impl<'a> Cell<'a> {
     /// underline.
     fn paint_values(&self, ui: &Ui, rect: Rect, is_pointed: bool, palette: &Palette) {
         let Some(shown) = self.shown else { return };
-        let (Some(gain), Some(delay_s)) = (
-            shown.wanted_gain(self.pair),
-            shown.wanted_delay_s(self.pair),
-        ) else {
+        let gain = shown.wanted_gain(self.pair);
+        let delay_s = shown.wanted_delay_s(self.pair);
+        let (Some(gain), Some(delay_s)) = (gain, delay_s) else {
             let nothing = matches!(self.undefined(), Some(Undefined::NumericallyNothing(_)));
             let words = if nothing { "nothing" } else { "no G" };
             ui.painter().text(

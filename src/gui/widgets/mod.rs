@@ -2,7 +2,6 @@
 
 pub mod choices;
 pub mod controls;
-pub mod egui_style;
 pub mod fields;
 pub mod focus;
 pub mod palette;

@@ -1,7 +1,11 @@
 //! Window colours, dark and light, fonts by their use, and the engineer's curve style.
 
+mod egui_style;
+
 use egui::{Color32, FontFamily, FontId, Visuals};
 use serde::{Deserialize, Serialize};
+
+pub use egui_style::apply;
 
 /// Font size for captions: axes, units, bars, table headings, chips, status \[pt\].
 pub const SMALL_SIZE: f32 = 11.0;
@@ -18,7 +22,7 @@ pub fn medium(size: f32) -> FontId {
 }
 
 /// Name of the medium weight among the font families.
-pub(super) const MEDIUM: &str = "medium";
+const MEDIUM: &str = "medium";
 
 /// Returns the caption font.
 pub fn small() -> FontId {

@@ -6,8 +6,7 @@ use super::*;
 use crate::gui::plot::bode::BodeEvent;
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::curve_menu::CurveWish;
-use crate::gui::widgets::egui_style;
-use crate::gui::widgets::palette::Palette;
+use crate::gui::widgets::palette::{self, Palette};
 
 pub(super) struct Model {
     pub(super) curves: Vec<BodeCurve>,
@@ -28,7 +27,7 @@ pub(super) fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
     let mut harness = Harness::builder()
         .with_step_dt(0.02)
         .with_size(vec2(900.0, 600.0))
-        .with_context_setup(egui_style::apply)
+        .with_context_setup(palette::apply)
         .build_ui_state(
             |ui, model: &mut Model| {
                 let scene = BodeScene {

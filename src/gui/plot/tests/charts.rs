@@ -6,7 +6,7 @@ use egui_plot::{PlotBounds, PlotMemory};
 use super::bode::wheel;
 use super::*;
 use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine, chart_ui};
-use crate::gui::widgets::egui_style;
+use crate::gui::widgets::palette;
 use crate::gui::widgets::palette::Palette;
 
 const TITLES: [&str; 2] = ["one", "other"];
@@ -46,7 +46,7 @@ fn harness() -> Harness<'static, Vec<PlotBounds>> {
     let mut harness = Harness::builder()
         .with_step_dt(0.02)
         .with_size(vec2(620.0, 420.0))
-        .with_context_setup(egui_style::apply)
+        .with_context_setup(palette::apply)
         .build_ui_state(draw, Vec::new());
     harness.run();
     harness

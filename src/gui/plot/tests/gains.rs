@@ -5,7 +5,7 @@ use gdcm_plot::figure::figure::{Bars, Curve, Dot, DotShape, Dots, Plot};
 use gdcm_plot::figure::{Color, Figure, MarkId, Panel, Range, Role as CurveRole};
 
 use super::*;
-use crate::gui::widgets::egui_style;
+use crate::gui::widgets::palette;
 use crate::gui::widgets::palette::Palette;
 
 /// Plots of gains, or of columns if there are any.
@@ -72,29 +72,27 @@ fn harness(model: Model) -> Harness<'static, Model> {
     let builder = Harness::builder()
         .with_step_dt(0.02)
         .with_size(vec2(900.0, 230.0));
-    let mut harness = builder
-        .with_context_setup(egui_style::apply)
-        .build_ui_state(
-            |ui, model: &mut Model| {
-                let scene = FigureScene {
-                    selected: Some(id(2)),
-                    columns: &model.columns,
-                    zooms: model.zooms,
-                    ..FigureScene::new(
-                        "gains",
-                        &model.figure,
-                        vec2(122.0, 120.0),
-                        "Nothing to draw",
-                        &Numbers,
-                    )
-                };
-                let palette = Palette::of(ui.visuals());
-                model
-                    .events
-                    .extend(figure_ui(ui, &scene, &mut model.view, &palette));
-            },
-            model,
-        );
+    let mut harness = builder.with_context_setup(palette::apply).build_ui_state(
+        |ui, model: &mut Model| {
+            let scene = FigureScene {
+                selected: Some(id(2)),
+                columns: &model.columns,
+                zooms: model.zooms,
+                ..FigureScene::new(
+                    "gains",
+                    &model.figure,
+                    vec2(122.0, 120.0),
+                    "Nothing to draw",
+                    &Numbers,
+                )
+            };
+            let palette = Palette::of(ui.visuals());
+            model
+                .events
+                .extend(figure_ui(ui, &scene, &mut model.view, &palette));
+        },
+        model,
+    );
     harness.run();
     harness
 }

@@ -7,7 +7,7 @@ use super::*;
 use crate::gui::plot::overview::{
     OverviewCell, OverviewEvent, OverviewScene, OverviewView, overview_ui,
 };
-use crate::gui::widgets::egui_style;
+use crate::gui::widgets::palette;
 use crate::gui::widgets::palette::Palette;
 
 #[derive(Default)]
@@ -24,7 +24,7 @@ fn overview_harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
     };
     let mut harness = Harness::builder()
         .with_size(vec2(800.0, 600.0))
-        .with_context_setup(egui_style::apply)
+        .with_context_setup(palette::apply)
         .build_ui_state(
             |ui, model: &mut Model| {
                 let inputs = ["LON", "LAT", "PED", "COL"].map(String::from);

@@ -9,7 +9,7 @@ use egui::{
     Style, TextStyle, Theme, Visuals, vec2,
 };
 
-use super::palette::{BODY_SIZE, MEDIUM, Palette, SMALL_SIZE, TITLE_SIZE, medium};
+use super::{BODY_SIZE, MEDIUM, Palette, SMALL_SIZE, TITLE_SIZE, medium};
 
 impl Palette {
     /// Builds the egui visuals from these colours.
@@ -128,7 +128,7 @@ impl Palette {
 }
 
 /// Returns both font weights, each followed by egui's own fonts for other scripts and rare symbols.
-pub fn fonts() -> FontDefinitions {
+fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::default();
     let monospaced = fonts
         .families
@@ -143,12 +143,12 @@ pub fn fonts() -> FontDefinitions {
     let cuts = [
         (
             "Inter",
-            include_bytes!("../../../assets/fonts/Inter-Regular.ttf").as_slice(),
+            include_bytes!("../../../../assets/fonts/Inter-Regular.ttf").as_slice(),
             FontFamily::Proportional,
         ),
         (
             "Inter Medium",
-            include_bytes!("../../../assets/fonts/Inter-Medium.ttf"),
+            include_bytes!("../../../../assets/fonts/Inter-Medium.ttf"),
             FontFamily::Name(MEDIUM.into()),
         ),
     ];

@@ -317,9 +317,9 @@ impl<'a> ModelRow<'a> {
         } else if self.pinned && self.set_aside.is_some() {
             "Chosen as representative, but set aside; click to use the medoid"
         } else if self.pinned {
-            "Representative, chosen by hand; click to use the medoid"
+            "Representative, chosen by hand; click to use the medoid again"
         } else if self.represents {
-            "Representative (medoid); click to keep it in every case"
+            "Representative (medoid); click to keep it as representative"
         } else {
             "Click to use as representative"
         };

@@ -305,7 +305,7 @@ fn number_text(digits: Digits, value: f64) -> String {
 }
 
 /// Formats three significant digits, without an exponent from 0.001 to 9999.
-pub fn significant(value: f64) -> String {
+fn significant(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -319,7 +319,7 @@ pub fn significant(value: f64) -> String {
 
 /// Formats a gain with three decimals, two if the third is zero; a small gain with three
 /// significant digits.
-pub fn gain_text(gain: f64) -> String {
+fn gain_text(gain: f64) -> String {
     if gain < 0.1 {
         return significant(gain);
     }

@@ -133,7 +133,7 @@ fn words_beside(state: &State, now: f64) -> Option<String> {
         return Some(format!("reading {reading} …"));
     }
     if background.stopped {
-        return Some("the rest was stopped".to_owned());
+        return Some("background work stopped".to_owned());
     }
     if state.results.is_background_told(now) {
         return Some(background_words(background, &state.records));
@@ -173,7 +173,7 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
         return bar_words(progress);
     }
     if let Some((done, total)) = background.time_histories {
-        return format!("answers to flight records, {} % …", percent(done, total));
+        return format!("responses to flight records, {} % …", percent(done, total));
     }
     if let Some((done, total)) = background.couplings {
         return format!(

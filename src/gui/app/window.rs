@@ -32,8 +32,8 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::panels::explanation::sheet_ui;
 use crate::gui::panels::{
-    answer_panel, bars, centre, conditions_panel, explanation, forms, help, models_panel,
-    start_page,
+    answer_panel, bars, centre, conditions_panel, explanation, forms, help, models_panel, reasons,
+    start_page, status_bar,
 };
 use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::preferences::Preferences;
@@ -196,7 +196,9 @@ impl GdcmApp {
                 .show(ui, |ui| bars::bars_ui(ui, &state.bars, palette, commands));
         }
         let status = Panel::bottom("status bar").frame(bar).exact_size(24.0);
-        status.show(ui, |ui| bars::status_bar_ui(ui, state, palette, commands));
+        status.show(ui, |ui| {
+            status_bar::status_bar_ui(ui, state, palette, commands)
+        });
         if let Some(bench) = &mut state.assembling {
             return assembling_ui(ui, bench, palette, commands);
         }
@@ -317,7 +319,7 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
     };
     let is_closed = sheet_ui(ui, centre, sheet, palette, |ui| match sheet {
         Sheet::Derivation => explanation::derivation_sheet_ui(ui, state, palette, commands),
-        Sheet::Reasons => explanation::reasons_ui(ui, state, palette, commands),
+        Sheet::Reasons => reasons::reasons_ui(ui, state, palette, commands),
         Sheet::Models => {
             models_panel::bundle_sheet_ui(ui, state, BundleKind::Physics, palette, commands)
         }

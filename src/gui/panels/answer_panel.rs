@@ -1,5 +1,5 @@
-//! Right side of the window: verdict, result, matrix, the response in focus, a line of settings,
-//! and the export.
+//! Right side of the window, from top to bottom: verdict, result, constraint matrix, card on the
+//! focused response, settings line, export.
 
 use egui::{
     Align, Button, CornerRadius, Frame, Layout, Margin, Panel, Rect, RichText, Role, ScrollArea,
@@ -11,8 +11,9 @@ use gdcm_model::units::number;
 use gdcm_study::PhaseCorrection;
 use gdcm_study::decisions::setting;
 
-use super::verdict::{Step, Verdict, VerdictRow, band_words, export};
-use super::{matrix_panel, result_panel, settings_panel};
+use super::advice::{Step, export};
+use super::verdict::{Verdict, VerdictRow, band_words};
+use super::{matrix_panel, response_card, result_panel, settings_panel};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::state::sheet::Sheet;
@@ -27,18 +28,18 @@ use crate::gui::widgets::palette::{
 
 /// Space around everything \[pt\].
 const PADDING: f32 = 12.0;
-/// Height of the line of settings \[pt\].
+/// Settings line height \[pt\].
 const LINE: f32 = 36.0;
-/// Height of the row of the export \[pt\].
+/// Export row height \[pt\].
 const FOOT: f32 = 48.0;
-/// Least window height that shows the card of the response in focus \[pt\].
+/// Least window height that shows the card on the focused response \[pt\].
 const LEAST_WITH_CARD: f32 = 860.0;
 /// Least window height that shows the full result; below it the result takes a single line \[pt\].
 const LEAST_WITH_RESULT: f32 = 600.0;
 
-/// Draws the whole panel from top to bottom.
+/// Draws verdict, result and matrix, or the open settings, above the export at the foot.
 pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let verdict = Verdict::of(state);
+    let verdict = Verdict::new(state);
     let foot = Frame::new().inner_margin(Margin::ZERO);
     Panel::bottom("export")
         .frame(foot)
@@ -58,7 +59,7 @@ pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
     });
     frame.show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        // The width is fixed here, so that the content of a part cannot widen the next.
+        // The width is fixed here, so that wide content in a part cannot widen the next.
         let width = ui.available_width();
         region_ui(ui, Region::Verdict, |ui| {
             verdict_ui(ui, &verdict, palette, commands)
@@ -80,36 +81,37 @@ pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
         });
         ui.add_space(8.0);
         let card = if window >= LEAST_WITH_CARD {
-            matrix_panel::CARD_HEIGHT + 12.0
+            response_card::CARD_HEIGHT + 12.0
         } else {
             0.0
         };
         matrix_panel::matrix_ui(ui, state, ui.available_height() - card, palette, commands);
         if card > 0.0 {
             ui.add_space(12.0);
-            matrix_panel::card_ui(ui, state, palette);
+            response_card::card_ui(ui, state, palette);
         }
     });
 }
 
-/// Draws the two rows of the verdict and its first step.
+/// Draws both verdict rows and the steps.
 fn verdict_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
-    let (ground, mark) = match verdict.is_met() {
-        true => (palette.good_ground, palette.good),
-        false if verdict.rows[0].here.is_none() && verdict.caution.is_none() => {
-            (palette.raised, palette.line)
-        }
-        false => (palette.warning_ground, palette.warning),
+    let is_empty = verdict.rows[0].here.is_none() && verdict.caution.is_none();
+    let (ground, mark) = if verdict.is_met() {
+        (palette.good_ground, palette.good)
+    } else if is_empty {
+        (palette.raised, palette.line)
+    } else {
+        (palette.warning_ground, palette.warning)
     };
     let frame = Frame::new()
         .fill(ground)
-        .corner_radius(CornerRadius::same(8));
-    let frame = frame.inner_margin(Margin {
-        left: 16,
-        right: 12,
-        top: 6,
-        bottom: 8,
-    });
+        .corner_radius(CornerRadius::same(8))
+        .inner_margin(Margin {
+            left: 16,
+            right: 12,
+            top: 6,
+            bottom: 8,
+        });
     let shown = frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
         heads_ui(ui, verdict, palette);
@@ -135,7 +137,7 @@ fn verdict_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut 
     );
 }
 
-/// Left edges of the counts and of the words in the rows \[pt from the row's left edge\].
+/// Left edges for counts and words \[pt from the row's left edge\].
 const COLUMNS: [f32; 2] = [46.0, 106.0];
 
 fn heads_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette) {
@@ -149,24 +151,28 @@ fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
     named(response.clone(), Role::Label, row.sentence());
     painted_text(ui, rect, 0.0, row.name, body(), palette.dim_text);
-    let is_missed = row.here.is_some_and(|[met, held]| met < held);
-    let color = match (is_all_met, is_missed) {
-        (true, _) => palette.good,
-        (_, true) => palette.warning,
-        _ => palette.text,
+    let is_missed = row
+        .here
+        .is_some_and(|count| count.matched < count.constrained);
+    let color = if is_all_met {
+        palette.good
+    } else if is_missed {
+        palette.warning
+    } else {
+        palette.text
     };
     painted_text(
         ui,
         rect,
         COLUMNS[0],
-        &VerdictRow::count(row.here),
+        &VerdictRow::count_text(row.here),
         medium(TITLE_SIZE),
         color,
     );
-    let everywhere = VerdictRow::count(row.everywhere);
+    let everywhere = VerdictRow::count_text(row.everywhere);
     let all = painted_text(ui, rect, -0.01, &everywhere, body(), palette.dim_text);
     let room = all.left() - rect.left() - COLUMNS[1] - 6.0;
-    // Without room for the band only the word is shown: "matched".
+    // Without room for the band, only "matched" is shown.
     let fits = text_width(ui, &row.words, body()) <= room;
     let words = if fits {
         row.words.as_str()
@@ -179,117 +185,132 @@ fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
 }
 
 fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
-    // The export is the primary button at the foot already.
-    let is_at_foot = |step: &&Step| step.command == export();
-    let primary = verdict.steps.first().filter(|step| !is_at_foot(step));
-    let links: Vec<Step> = verdict
+    // The primary button at the foot exports already.
+    let primary = verdict
         .steps
-        .iter()
-        .skip(1)
-        .cloned()
-        .chain(notes_step(verdict))
-        .collect();
-    match (&verdict.caution, primary) {
-        // A caution and a decision to take: each gets its own line.
-        (Some(caution), Some(_)) => {
-            let (notes, links): (Vec<Step>, Vec<Step>) = links.into_iter().partition(is_of_reasons);
-            line_ui(ui, (Some(caution), None, &notes, ""), palette, commands);
-            line_ui(
-                ui,
-                (None, primary, &links, &verdict.note),
-                palette,
-                commands,
-            );
-        }
-        (caution, primary) => {
-            line_ui(
-                ui,
-                (caution.as_deref(), primary, &links, &verdict.note),
-                palette,
-                commands,
-            );
-        }
+        .first()
+        .filter(|step| step.command != export());
+    let mut links: Vec<Step> = verdict.steps.iter().skip(1).cloned().collect();
+    links.extend(notes_step(verdict));
+    if verdict.caution.is_none() || primary.is_none() {
+        let line = StepsLine {
+            caution: verdict.caution.as_deref(),
+            primary,
+            links: &links,
+            note: &verdict.note,
+        };
+        line.ui(ui, palette, commands);
+        return;
     }
+    // A caution and a pending decision each get their own line.
+    let (notes, links): (Vec<Step>, Vec<Step>) = links.into_iter().partition(shows_reasons);
+    let caution_line = StepsLine {
+        caution: verdict.caution.as_deref(),
+        primary: None,
+        links: &notes,
+        note: "",
+    };
+    caution_line.ui(ui, palette, commands);
+    let decision_line = StepsLine {
+        caution: None,
+        primary,
+        links: &links,
+        note: &verdict.note,
+    };
+    decision_line.ui(ui, palette, commands);
 }
 
-fn is_of_reasons(step: &Step) -> bool {
+/// Returns whether the step opens the sheet of reasons.
+fn shows_reasons(step: &Step) -> bool {
     step.command == Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons)))
 }
 
-/// Returns the link to the list of reasons if no other step leads there.
+/// Returns the link to the reasons if no other step leads there.
 fn notes_step(verdict: &Verdict) -> Option<Step> {
-    let is_offered = verdict.steps.iter().any(is_of_reasons);
-    let notes = Step {
+    if verdict.reasons == 0 || verdict.steps.iter().any(shows_reasons) {
+        return None;
+    }
+    Some(Step {
         label: format!("{} notes", verdict.reasons),
         command: Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons))),
-    };
-    (!is_offered && verdict.reasons > 0).then_some(notes)
+    })
 }
 
-/// Draws a caution, a primary button, links, and the note in the remaining width; `⚠ +21 dB above
-/// 12 rad/s` if the caution has no note.
-fn line_ui(
-    ui: &mut Ui,
-    (caution, primary, links, note): (Option<&str>, Option<&Step>, &[Step], &str),
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    ui.horizontal(|ui| {
-        ui.set_min_height(if primary.is_some() || caution.is_none() {
-            28.0
-        } else {
-            22.0
-        });
-        if let Some(caution) = caution {
-            let width: f32 = primary
-                .into_iter()
-                .chain(links)
-                .map(|of| text_width(ui, &of.label, body()) + 24.0)
-                .sum();
-            let room = ui.available_width() - width;
-            let whole = format!("⚠ {caution}");
-            let fits = text_width(ui, &whole, body()) <= room;
-            let short = format!("⚠ {}", caution.strip_prefix("Price: ").unwrap_or(caution));
-            let text = palette
-                .small_warning(if fits { whole } else { short })
-                .size(BODY_SIZE);
-            ui.scope(|ui| {
-                ui.set_max_width(room);
-                ui.add(egui::Label::new(text).truncate())
-                    .on_hover_text(caution);
-            });
-        }
-        if let Some(step) = primary {
-            step_ui(ui, step, true, palette, commands);
-        }
-        let (at_end, links): (Vec<&Step>, Vec<&Step>) = links
-            .iter()
-            .partition(|step| step.label.ends_with(" notes"));
-        for step in links {
-            step_ui(ui, step, false, palette, commands);
-        }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            for step in at_end {
+/// Line with a caution, a primary button, links, and a note in the remaining width.
+struct StepsLine<'a> {
+    caution: Option<&'a str>,
+    primary: Option<&'a Step>,
+    links: &'a [Step],
+    note: &'a str,
+}
+
+impl StepsLine<'_> {
+    fn ui(&self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
+        ui.horizontal(|ui| {
+            let has_buttons = self.primary.is_some() || self.caution.is_none();
+            ui.set_min_height(if has_buttons { 28.0 } else { 22.0 });
+            if let Some(caution) = self.caution {
+                self.caution_ui(ui, caution, palette);
+            }
+            if let Some(step) = self.primary {
+                step_ui(ui, step, true, palette, commands);
+            }
+            let (at_end, links): (Vec<&Step>, Vec<&Step>) = self
+                .links
+                .iter()
+                .partition(|step| step.label.ends_with(" notes"));
+            for step in links {
                 step_ui(ui, step, false, palette, commands);
             }
-            if !note.is_empty() {
-                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    // Without room for all of it: "of 19 models".
-                    let fits = text_width(ui, note, small()) <= ui.available_width();
-                    let shown = if fits {
-                        note
-                    } else {
-                        note.split(", ").next().unwrap_or(note)
-                    };
-                    ui.add(egui::Label::new(palette.small(shown)).truncate())
-                        .on_hover_text(note);
-                });
-            }
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                for step in at_end {
+                    step_ui(ui, step, false, palette, commands);
+                }
+                if !self.note.is_empty() {
+                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                        self.note_ui(ui, palette);
+                    });
+                }
+            });
         });
-    });
+    }
+
+    /// Draws "⚠ Price: +21 dB above 12 rad/s", without "Price: " if there is little room.
+    fn caution_ui(&self, ui: &mut Ui, caution: &str, palette: &Palette) {
+        let width: f32 = self
+            .primary
+            .into_iter()
+            .chain(self.links)
+            .map(|step| text_width(ui, &step.label, body()) + 24.0)
+            .sum();
+        let room = ui.available_width() - width;
+        let whole = format!("⚠ {caution}");
+        let short = format!("⚠ {}", caution.strip_prefix("Price: ").unwrap_or(caution));
+        let fits = text_width(ui, &whole, body()) <= room;
+        let text = palette
+            .small_warning(if fits { whole } else { short })
+            .size(BODY_SIZE);
+        ui.scope(|ui| {
+            ui.set_max_width(room);
+            ui.add(egui::Label::new(text).truncate())
+                .on_hover_text(caution);
+        });
+    }
+
+    /// Draws "of 19 models, first", or "of 19 models" if there is no room for all.
+    fn note_ui(&self, ui: &mut Ui, palette: &Palette) {
+        let fits = text_width(ui, self.note, small()) <= ui.available_width();
+        let shown = if fits {
+            self.note
+        } else {
+            self.note.split(", ").next().unwrap_or(self.note)
+        };
+        ui.add(egui::Label::new(palette.small(shown)).truncate())
+            .on_hover_text(self.note);
+    }
 }
 
-/// Draws a step as a link or as the only primary button of the window; Enter on it carries it out.
+/// Draws a step as a link, or as the only primary button in the window.
 fn step_ui(
     ui: &mut Ui,
     step: &Step,
@@ -307,7 +328,7 @@ fn step_ui(
         .asks(step.command.clone(), commands);
 }
 
-/// Draws the settings in one line; a click unfolds them over matrix and card.
+/// Draws the settings on a single line; a click unfolds them over matrix and card.
 fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let is_open = state.display.layout.settings_open;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::click());
@@ -342,16 +363,15 @@ fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mu
     if response.clicked() || (is_open && take_escape(ui.ctx())) {
         commands.push(LayoutCommand::ShowSettings(!is_open).into());
     }
-    response.on_hover_text(format!(
-        "{words}. Click, or Ctrl+comma: {} them",
-        if is_open { "fold" } else { "open" }
-    ));
+    let action = if is_open { "Fold" } else { "Open" };
+    response.on_hover_text(format!("{words}\n{action} with Ctrl+comma"));
 }
 
 /// "α 1 · 0.5–12 rad/s · delays · representatives".
 fn settings_words(state: &State) -> String {
     let settings = &state.study.settings;
-    let [gains, delays] = [settings.alpha_gain, settings.alpha_delay].map(number);
+    let gains = number(settings.alpha_gain);
+    let delays = number(settings.alpha_delay);
     let alpha = if gains == delays {
         format!("α {gains}")
     } else {
@@ -370,7 +390,7 @@ fn settings_words(state: &State) -> String {
     words
 }
 
-/// Draws the export button, which is always visible; primary if nothing else is left to do.
+/// Draws the export button, which is always visible, and primary if no other step is left.
 fn export_ui(
     ui: &mut Ui,
     state: &State,
@@ -413,18 +433,18 @@ fn export_ui(
             export_button.on_hover_text(hint).asks(export(), commands);
         });
     });
-    let schedule = state
-        .analysis()
-        .is_some_and(|analysis| analysis.schedule.is_ok());
     let count = state.dataset().conditions().len();
-    let conditions = if count == 1 {
+    let noun = if count == 1 {
         "condition"
     } else {
         "conditions"
     };
-    let what = format!(
-        "{count} {conditions}{}",
-        if schedule { ", schedule" } else { "" }
-    );
-    painted_text(ui, inner, -0.01, &what, body(), palette.dim_text);
+    let mut content = format!("{count} {noun}");
+    let has_schedule = state
+        .analysis()
+        .is_some_and(|analysis| analysis.schedule.is_ok());
+    if has_schedule {
+        content.push_str(", schedule");
+    }
+    painted_text(ui, inner, -0.01, &content, body(), palette.dim_text);
 }

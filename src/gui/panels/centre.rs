@@ -1,9 +1,9 @@
-//! Middle of the window: groups of views, the view in front with its title, and the dock below.
+//! Middle of the window: view groups, the front view with its title, and the dock below.
 
 use egui::containers::menu::MenuButton;
 use egui::{
-    Align, AsIdSalt, Button, Frame, Layout, Margin, Panel, Rect, RichText, Role, Sense, Stroke,
-    StrokeKind, Ui, UiBuilder, pos2, vec2,
+    Align, AsIdSalt, Button, Frame, Label, Layout, Margin, Panel, Rect, RichText, Role, Sense,
+    Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
 
 use super::start_page::example_line_ui;
@@ -21,15 +21,15 @@ use crate::gui::widgets::controls::{
 use crate::gui::widgets::focus::{Region, region_ui};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, TITLE_SIZE, body, medium};
 
-/// Height of the bar of the views \[pt\].
+/// View bar height \[pt\].
 const BAR: f32 = 40.0;
-/// Height of a title \[pt\].
+/// Title row height \[pt\].
 const TITLE: f32 = 28.0;
-/// Height of the folded dock \[pt\].
+/// Folded dock height \[pt\].
 const FOLDED: f32 = 34.0;
 /// Least window height that unfolds the dock \[pt\].
 const LEAST_WITH_DOCK: f32 = 680.0;
-/// Share of the height taken by the dock.
+/// The dock's share in the window height.
 const DOCK_PART: f32 = 0.252;
 /// Horizontal padding \[pt\].
 const PADDING: i8 = 16;
@@ -69,8 +69,8 @@ pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &m
     );
 }
 
-/// Draws the groups at the left, the views of the group in front beside them, and the tools for the
-/// view at the right.
+/// Draws the groups at the left, the views in the front group beside them, and the tools at the
+/// right.
 fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let bar = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), BAR));
     ui.allocate_rect(bar, Sense::hover());
@@ -90,7 +90,7 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         true,
         |ui| {
             figure_button_ui(ui, state, state.display.layout.arrangement.view(), commands);
-            let hint = "Bring every curve into view (F, or double click)";
+            let hint = "All curves into view (F, or double click)";
             button_ui(
                 ui,
                 Button::new("Fit").frame(false),
@@ -154,14 +154,18 @@ fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     }
 }
 
-/// Draws the views of the group in front side by side, or as a menu if there is no room.
+/// Draws the views in the front group side by side, or as a menu if there is no room.
 fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &mut Vec<Command>) {
-    /// Width of the other controls in the bar \[pt\].
+    /// Room for the other controls in the bar \[pt\].
     const TOOLS: f32 = 130.0;
     let arrangement = &state.display.layout.arrangement;
-    let width = |view: View| text_width(ui, view.name(), medium(BODY_SIZE)) + 16.0;
     let room = bar.right() - ui.cursor().left() - TOOLS;
-    if arrangement.group().views().map(width).sum::<f32>() <= room {
+    let width: f32 = arrangement
+        .group()
+        .views()
+        .map(|view| text_width(ui, view.name(), medium(BODY_SIZE)) + 16.0)
+        .sum();
+    if width <= room {
         for view in arrangement.group().views() {
             tab_ui(ui, bar, view, arrangement.view() == view, palette, commands);
         }
@@ -177,10 +181,10 @@ fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &
             commands,
         );
     });
-    named_switch(button, Role::Tab, true, front.name()).on_hover_text("The views of this group");
+    named_switch(button, Role::Tab, true, front.name()).on_hover_text("Views in this group");
 }
 
-/// Draws the name of a view, underlined in the accent colour if it is in front.
+/// Draws a view's name, underlined in the accent colour if it is in front.
 fn tab_ui(
     ui: &mut Ui,
     bar: Rect,
@@ -205,15 +209,12 @@ fn tab_ui(
             place.shrink2(vec2(4.0, 0.0)).x_range(),
             bar.bottom() - 2.0..=bar.bottom(),
         );
-        ui.painter().rect_filled(
-            line,
-            1.0,
-            if is_front {
-                palette.accent
-            } else {
-                palette.line
-            },
-        );
+        let line_color = if is_front {
+            palette.accent
+        } else {
+            palette.line
+        };
+        ui.painter().rect_filled(line, 1.0, line_color);
     }
     let response = named_switch(response, Role::Tab, is_front, view.name());
     response
@@ -225,29 +226,20 @@ fn tab_ui(
 fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let arrangement = &state.display.layout.arrangement;
     let (button, _) = MenuButton::from_button(Button::new("     ").frame(false)).ui(ui, |ui| {
-        let views = View::ALL
+        let others = View::ALL
             .into_iter()
-            .filter(|view| *view != arrangement.view());
-        entries_ui(
-            ui,
-            views.map(|view| {
+            .filter(|view| *view != arrangement.view())
+            .map(|view| {
                 (
                     format!("{} beside it", view.name()),
                     Command::Layout(LayoutCommand::ShowBeside(Some(view))),
                 )
-            }),
-            commands,
-        );
+            });
+        entries_ui(ui, others, commands);
         if arrangement.beside().is_some() {
             ui.separator();
-            entries_ui(
-                ui,
-                [(
-                    "One view alone",
-                    Command::Layout(LayoutCommand::ShowBeside(None)),
-                )],
-                commands,
-            );
+            let alone = Command::Layout(LayoutCommand::ShowBeside(None));
+            entries_ui(ui, [("One view alone", alone)], commands);
         }
     });
     let symbol = Rect::from_center_size(button.rect.center(), vec2(14.0, 12.0));
@@ -264,7 +256,7 @@ fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
         .on_hover_text("Another view beside this one");
 }
 
-/// Draws a view with its title and its tools into an area.
+/// Draws a view with its title and tools into an area.
 fn part_ui(
     ui: &mut Ui,
     area: Rect,
@@ -274,37 +266,36 @@ fn part_ui(
     commands: &mut Vec<Command>,
 ) {
     let top = if state.is_example { 0 } else { 6 };
-    clipped_ui(ui, ("view", view), area, [top, 4], |ui| {
+    let padding = Margin {
+        left: PADDING,
+        right: PADDING,
+        top,
+        bottom: 4,
+    };
+    clipped_ui(ui, ("view", view), area, padding, |ui| {
         title_row_ui(ui, state, view, palette, commands);
         let draw = view_content(view).draw;
         region_ui(ui, Region::Plots, |ui| draw(ui, state, palette, commands));
     });
 }
 
-/// Draws content clipped to an area, with the given padding above and below.
+/// Draws content clipped to an area.
 fn clipped_ui(
     ui: &mut Ui,
     id: impl AsIdSalt,
     area: Rect,
-    [top, bottom]: [i8; 2],
+    padding: Margin,
     add: impl FnOnce(&mut Ui),
 ) {
     ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(area), |ui| {
         ui.set_clip_rect(area.intersect(ui.clip_rect()));
-        Frame::new()
-            .inner_margin(Margin {
-                left: PADDING,
-                right: PADDING,
-                top,
-                bottom,
-            })
-            .show(ui, add);
+        Frame::new().inner_margin(padding).show(ui, add);
     });
     ui.advance_cursor_after_rect(area);
 }
 
-/// Draws the title of the view at the left and its tools at the right; the tools move to a line of
-/// their own if there is no room.
+/// Draws the view's title at the left and its tools at the right; without room, the tools move to a
+/// line below.
 fn title_row_ui(
     ui: &mut Ui,
     state: &State,
@@ -312,7 +303,7 @@ fn title_row_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    /// Least width of a title \[pt\].
+    /// Least title width \[pt\].
     const LEAST: f32 = 200.0;
     let content = view_content(view);
     let width = ui.available_width();
@@ -349,46 +340,45 @@ fn tools_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    // The bar shows the tools of the view in front.
+    // The view bar has the front view's figure button.
     if view != state.display.layout.arrangement.view() {
         figure_button_ui(ui, state, view, commands);
     }
     (view_content(view).tools)(ui, state, palette, commands);
     if view.facts().is_of_all_conditions && state.others_are_older() {
         let text = palette.small_warning("of older settings");
-        ui.label(text).on_hover_text(
-            "The condition shown is computed anew already; the others are on their way",
-        );
+        ui.label(text)
+            .on_hover_text("The displayed condition is up to date; the others are being computed");
     }
 }
 
-/// "LON → Q  condition 10: 60 kt, low altitude, high weight".
+/// Draws "LON → Q  condition 10: 60 kt, low altitude, high weight", or a part of it.
 fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
     let condition = state.condition();
-    let of_condition = format!(
-        "condition {}: {}",
-        condition.id(),
-        condition.flight_state().name
-    );
-    let heading = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).font(medium(TITLE_SIZE)));
+    let id = condition.id();
+    let flight_state = &condition.flight_state().name;
+    let response = state.dataset().pair_name(state.display.selection.pair);
     match title {
         ViewTitle::Response => {
-            heading(ui, &state.dataset().pair_name(state.display.selection.pair));
-            ui.add(egui::Label::new(palette.dim(of_condition)).truncate());
+            heading_ui(ui, &response);
+            dim_ui(ui, palette, format!("condition {id}: {flight_state}"));
         }
-        ViewTitle::Focus => drop(heading(
-            ui,
-            &state.dataset().pair_name(state.display.selection.pair),
-        )),
+        ViewTitle::Focus => heading_ui(ui, &response),
         ViewTitle::Condition => {
-            heading(ui, &format!("Condition {}", condition.id()));
-            ui.add(egui::Label::new(palette.dim(&condition.flight_state().name)).truncate());
+            heading_ui(ui, &format!("Condition {id}"));
+            dim_ui(ui, palette, flight_state.clone());
         }
-        ViewTitle::Words(words) => {
-            drop(ui.add(egui::Label::new(palette.dim(words(state))).truncate()))
-        }
+        ViewTitle::Words(words) => dim_ui(ui, palette, words(state)),
         ViewTitle::None => {}
     }
+}
+
+fn heading_ui(ui: &mut Ui, text: &str) {
+    ui.label(RichText::new(text).font(medium(TITLE_SIZE)));
+}
+
+fn dim_ui(ui: &mut Ui, palette: &Palette, text: String) {
+    ui.add(Label::new(palette.dim(text)).truncate());
 }
 
 /// Draws the view below the others, folded to its bar in a low window.
@@ -405,6 +395,7 @@ fn dock_ui(
         .layout
         .arrangement
         .is_dock_open(window >= LEAST_WITH_DOCK);
+    let dock = Dock { view, is_open };
     let frame = Frame::new().fill(palette.background);
     restore_panel_size(ui, "dock");
     let panel = Panel::bottom(if is_open { "dock" } else { "folded dock" }).frame(frame);
@@ -418,8 +409,14 @@ fn dock_ui(
     };
     panel.show(ui, |ui| {
         let area = ui.available_rect_before_wrap();
-        clipped_ui(ui, "dock content", area, [0, 2], |ui| {
-            dock_head_ui(ui, state, (view, is_open), palette, commands);
+        let padding = Margin {
+            left: PADDING,
+            right: PADDING,
+            top: 0,
+            bottom: 2,
+        };
+        clipped_ui(ui, "dock content", area, padding, |ui| {
+            dock_head_ui(ui, state, dock, palette, commands);
             if is_open {
                 let draw = view_content(view).draw;
                 region_ui(ui, Region::Dock, |ui| draw(ui, state, palette, commands));
@@ -428,12 +425,18 @@ fn dock_ui(
     });
 }
 
-/// Draws the head of the dock: the name of its view, which folds it, the other views it can show,
-/// and the tools.
+/// View in the dock.
+#[derive(Clone, Copy)]
+struct Dock {
+    view: View,
+    is_open: bool,
+}
+
+/// Draws the dock's head: an arrow that folds it, the views it can show, and the tools.
 fn dock_head_ui(
     ui: &mut Ui,
     state: &State,
-    (view, is_open): (View, bool),
+    dock: Dock,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
@@ -443,43 +446,47 @@ fn dock_head_ui(
         Layout::right_to_left(Align::Center),
         |ui| {
             ui.set_min_size(vec2(width, FOLDED));
-            if is_open {
-                tools_ui(ui, state, view, palette, commands);
+            if dock.is_open {
+                tools_ui(ui, state, dock.view, palette, commands);
             }
             let rest = ui.available_rect_before_wrap();
             in_line_ui(ui, rest, false, |ui| {
-                let (place, response) = ui.allocate_exact_size(vec2(16.0, FOLDED), Sense::click());
-                chevron(ui, place.center(), is_open, palette);
-                let response = named_switch(response, Role::Button, is_open, "Dock");
-                let hint = if is_open {
-                    "Fold the plots below"
-                } else {
-                    "Unfold the plots below"
-                };
-                response
-                    .on_hover_text(hint)
-                    .asks(LayoutCommand::OpenDock(!is_open), commands);
-                let others: Vec<View> = View::docked(state.study.settings.phase).collect();
-                for docked in &others {
-                    let is_front = *docked == view;
-                    let text = RichText::new(docked.facts().long_name.unwrap_or(docked.name()))
-                        .font(medium(BODY_SIZE));
-                    if others.len() == 1 {
-                        ui.label(text);
-                    } else {
-                        let button = ui.add(Button::selectable(is_front, text));
-                        let button = named_switch(
-                            button,
-                            Role::Tab,
-                            is_front,
-                            format!("{} in the dock", docked.name()),
-                        );
-                        button.asks(LayoutCommand::ShowInDock(*docked), commands);
-                    }
-                }
+                fold_ui(ui, dock.is_open, palette, commands);
+                dock_tabs_ui(ui, state, dock.view, commands);
                 ui.add_space(4.0);
-                title_ui(ui, state, view_content(view).title, palette);
+                title_ui(ui, state, view_content(dock.view).title, palette);
             });
         },
     );
+}
+
+fn fold_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mut Vec<Command>) {
+    let (place, response) = ui.allocate_exact_size(vec2(16.0, FOLDED), Sense::click());
+    chevron(ui, place.center(), is_open, palette);
+    let hint = if is_open {
+        "Fold the plots below"
+    } else {
+        "Unfold the plots below"
+    };
+    named_switch(response, Role::Button, is_open, "Dock")
+        .on_hover_text(hint)
+        .asks(LayoutCommand::OpenDock(!is_open), commands);
+}
+
+/// Draws a tab for each view that the dock can show, or a plain name if there is only one.
+fn dock_tabs_ui(ui: &mut Ui, state: &State, front: View, commands: &mut Vec<Command>) {
+    let views: Vec<View> = View::docked(state.study.settings.phase).collect();
+    for view in &views {
+        let name = view.facts().long_name.unwrap_or(view.name());
+        let text = RichText::new(name).font(medium(BODY_SIZE));
+        if views.len() == 1 {
+            ui.label(text);
+            continue;
+        }
+        let is_front = *view == front;
+        let button = ui.add(Button::selectable(is_front, text));
+        let name = format!("{} in the dock", view.name());
+        named_switch(button, Role::Tab, is_front, name)
+            .asks(LayoutCommand::ShowInDock(*view), commands);
+    }
 }

@@ -1,5 +1,5 @@
-//! Map of costs: J of magnitude and phase of every constrained response in every condition, as
-//! shades of a single hue; with couplings, the mean of the other responses beside them.
+//! Cost map: magnitude and phase part of J for every constrained response in every condition, as
+//! shades of a single hue; with couplings, the mean over the other responses beside them.
 
 use gdcm_method::fidelity::Cost;
 use gdcm_model::dataset::{ConditionId, Pair};
@@ -8,7 +8,7 @@ use gdcm_study::CouplingCorrection;
 use crate::gui::state::mapped_cost::MappedCost;
 use crate::gui::state::window_state::State;
 
-/// More constrained responses than this are merged into the worst of each input.
+/// More constrained responses than this are merged into a column for each input.
 const MOST_COLUMNS: usize = 8;
 
 /// Column of the map: a constrained response, the constrained responses of an input, or all
@@ -17,12 +17,12 @@ const MOST_COLUMNS: usize = 8;
 pub struct CostColumn {
     pub head: String,
     pub pairs: Vec<Pair>,
-    /// Whether the cost is the mean of the responses; otherwise the cost of the worst.
+    /// Whether the cost is a mean over the responses; otherwise the worst response counts.
     pub is_mean: bool,
 }
 
-/// Returns the columns of the constrained responses, in the order of the outputs; with couplings
-/// also a column of the responses that these improve.
+/// Returns the columns of the constrained responses, in output order; with couplings also a column
+/// of the responses that these improve.
 pub fn columns(state: &State) -> Vec<CostColumn> {
     let mut columns = held_columns(state);
     if state.study.settings.couplings != CouplingCorrection::None {
@@ -44,35 +44,35 @@ pub fn columns(state: &State) -> Vec<CostColumn> {
 fn held_columns(state: &State) -> Vec<CostColumn> {
     let dataset = state.dataset();
     let held: Vec<Pair> = state.study.settings.constrained.marked().collect();
-    if held.len() > MOST_COLUMNS {
-        let of_input = |input: usize| {
-            held.iter()
-                .copied()
-                .filter(|pair| pair.input == input)
-                .collect::<Vec<_>>()
-        };
-        let columns = dataset
-            .inputs()
-            .iter()
-            .enumerate()
-            .map(|(input, channel)| (channel.name.clone(), of_input(input)));
-        let columns = columns.map(|(head, pairs)| CostColumn {
-            head,
-            pairs,
-            is_mean: false,
-        });
-        return columns.filter(|column| !column.pairs.is_empty()).collect();
+    let mut columns = Vec::new();
+    if held.len() <= MOST_COLUMNS {
+        for pair in held {
+            columns.push(CostColumn {
+                head: dataset.outputs()[pair.output].name.clone(),
+                pairs: vec![pair],
+                is_mean: false,
+            });
+        }
+        return columns;
     }
-    let head = |pair: &Pair| dataset.outputs()[pair.output].name.clone();
-    let column = |pair: &Pair| CostColumn {
-        head: head(pair),
-        pairs: vec![*pair],
-        is_mean: false,
-    };
-    held.iter().map(column).collect()
+    for (input, channel) in dataset.inputs().iter().enumerate() {
+        let pairs: Vec<Pair> = held
+            .iter()
+            .copied()
+            .filter(|pair| pair.input == input)
+            .collect();
+        if !pairs.is_empty() {
+            columns.push(CostColumn {
+                head: channel.name.clone(),
+                pairs,
+                is_mean: false,
+            });
+        }
+    }
+    columns
 }
 
-/// Returns J of magnitude and phase of a response in a condition; `None` without a result.
+/// Returns the mapped J for a response in a condition; `None` without a result.
 pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost> {
     let analysis = state.analysis()?;
     if state.display.judging.mapped_cost == MappedCost::Scheduled {
@@ -88,13 +88,20 @@ pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost
     }
 }
 
-/// Returns the cost of a column, magnitude and phase separately, with the response whose sum is the
-/// greatest.
+/// A column's cost in a condition.
+pub struct ColumnCost {
+    /// Response with the greatest J, as the sum of magnitude and phase.
+    pub pair: Pair,
+    /// Mean or maximum over the responses, for magnitude and phase separately.
+    pub cost: Cost,
+}
+
+/// Returns a column's cost in a condition; `None` without a result.
 pub fn cost_of_column(
     state: &State,
     condition: ConditionId,
     column: &CostColumn,
-) -> Option<(Pair, Cost)> {
+) -> Option<ColumnCost> {
     let costs: Vec<(Pair, Cost)> = column
         .pairs
         .iter()
@@ -103,19 +110,19 @@ pub fn cost_of_column(
     let (worst, _) = *costs
         .iter()
         .max_by(|(_, a), (_, b)| a.total().total_cmp(&b.total()))?;
-    let of = |part: fn(&Cost) -> f64| {
-        let parts = costs.iter().map(|(_, cost)| part(cost));
-        if column.is_mean {
-            parts.sum::<f64>() / costs.len() as f64
-        } else {
-            parts.fold(0.0, f64::max)
+    let magnitudes = costs.iter().map(|(_, cost)| cost.magnitude);
+    let phases = costs.iter().map(|(_, cost)| cost.phase);
+    let cost = if column.is_mean {
+        let count = costs.len() as f64;
+        Cost {
+            magnitude: magnitudes.sum::<f64>() / count,
+            phase: phases.sum::<f64>() / count,
+        }
+    } else {
+        Cost {
+            magnitude: magnitudes.fold(0.0, f64::max),
+            phase: phases.fold(0.0, f64::max),
         }
     };
-    Some((
-        worst,
-        Cost {
-            magnitude: of(|cost| cost.magnitude),
-            phase: of(|cost| cost.phase),
-        },
-    ))
+    Some(ColumnCost { pair: worst, cost })
 }

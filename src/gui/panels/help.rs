@@ -1,4 +1,4 @@
-//! Help on the window: the page of keys and gestures, and the guided tour.
+//! Help on the window: keys, gestures and marks, and the guided tour.
 
 use egui::{
     Align2, Area, Button, Context, Frame, Grid, Id, Order, Rect, RichText, ScrollArea, Stroke,
@@ -14,10 +14,10 @@ use crate::gui::widgets::controls::Asks;
 use crate::gui::widgets::focus::{Region, region_place, take_escape};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Width of the note \[pt\].
+/// Note width \[pt\].
 const WIDTH: f32 = 300.0;
 
-/// Step of the tour: region of the window, title, and text.
+/// Tour step.
 struct Step {
     region: Region,
     title: &'static str,
@@ -28,41 +28,45 @@ const STEPS: [Step; 5] = [
     Step {
         region: Region::Conditions,
         title: "Flight conditions",
-        words: "A click, or Up and Down, shows a condition. The map beside them says what the correction leaves of each held \
-                response: left magnitude, right phase, pale is matched. ⚠: models are suggested as outliers.",
+        words: "A click, or Up and Down, shows a condition. The map beside them shows the remaining \
+                J of each held response: left magnitude, right phase, pale is matched. ⚠: models \
+                are suggested as outliers.",
     },
     Step {
         region: Region::Models,
         title: "The bundle of models",
-        words: "Each physics model is one perturbed trim; its bar says how far it lies from what the perturbation explains. \
-                The box rejects or restores it, the star makes it the representative.",
+        words: "Each physics model is one perturbed trim; its bar is the distance from the other \
+                models beyond the effect of the perturbation. The box rejects or restores it, the \
+                star makes it the representative.",
     },
     Step {
         region: Region::Plots,
         title: "The curves",
-        words: "Red is the nominal model, blue the perturbed ones, amber what was identified from flight, green the corrected \
-                model. A click on a curve rejects or restores its model.",
+        words: "Red: nominal model. Blue: perturbed models. Amber: models identified from flight. \
+                Green: corrected model. A click on a curve rejects or restores its model.",
     },
     Step {
         region: Region::Matrix,
-        title: "What is held",
-        words: "Each cell is a response: the gain and the delay that would match it, over its J of magnitude and of phase. In \
-                filled cells the gain is held exactly; the box, or the space bar, holds or releases one.",
+        title: "Held responses",
+        words: "Each cell is a response: the gain and the delay that would match it, over its J of \
+                magnitude and of phase. In filled cells the gain is held exactly; the box, or the \
+                space bar, holds or releases the response.",
     },
     Step {
         region: Region::Verdict,
         title: "The verdict",
-        words: "Whether gain and phase of the held responses are met, here and in all conditions, and the one thing to do next. \
-                Green: both are. Ctrl+Z takes any decision back; Ctrl+K finds every command.",
+        words: "Whether gain and phase of the held responses are met, here and in all conditions, \
+                and the next step. Green: both are met. Ctrl+Z undoes any decision; Ctrl+K finds \
+                every command.",
     },
 ];
 
 /// Draws the current step, if any: a ring around its region, and a note beside it.
 pub fn tour_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let Some((number, step)) = state
-        .tour
-        .and_then(|number| Some((number, STEPS.get(number)?)))
-    else {
+    let Some(number) = state.tour else {
+        return;
+    };
+    let Some(step) = STEPS.get(number) else {
         return;
     };
     // The notes refer to the panels: the tour waits while these are hidden.
@@ -117,19 +121,18 @@ fn note_ui(
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         let is_last = number + 1 == STEPS.len();
-        if ui
-            .button(if is_last { "End the tour" } else { "Next step" })
-            .clicked()
-        {
-            commands.push(LayoutCommand::ShowTourStep((!is_last).then_some(number + 1)).into());
+        let end = LayoutCommand::ShowTourStep(None);
+        let previous = LayoutCommand::ShowTourStep(Some(number.saturating_sub(1)));
+        let next = LayoutCommand::ShowTourStep(Some(number + 1));
+        if is_last {
+            ui.button("End the tour").asks(end.clone(), commands);
+        } else {
+            ui.button("Next step").asks(next, commands);
         }
         ui.add_enabled(number > 0, Button::new("Previous step"))
-            .asks(
-                LayoutCommand::ShowTourStep(Some(number.saturating_sub(1))),
-                commands,
-            );
-        if !is_last && ui.button("Skip the tour").clicked() {
-            commands.push(LayoutCommand::ShowTourStep(None).into());
+            .asks(previous, commands);
+        if !is_last {
+            ui.button("Skip the tour").asks(end, commands);
         }
     });
 }
@@ -142,9 +145,9 @@ fn beside(place: Rect, window: Rect) -> (Align2, egui::Pos2) {
     if window.right() - place.right() > room {
         (Align2::LEFT_TOP, place.right_top() + GAP)
     } else if place.left() - window.left() > room {
-        // Growing upwards, because a region at the foot of the window leaves no room below.
-        let low = place.top() > window.center().y;
-        if low {
+        // A region at the foot of the window leaves no room below: the note grows upwards.
+        let is_low = place.top() > window.center().y;
+        if is_low {
             (Align2::RIGHT_BOTTOM, place.left_bottom() - GAP)
         } else {
             (Align2::RIGHT_TOP, place.left_top() - GAP)
@@ -173,11 +176,11 @@ const GESTURES: &[(&str, &str)] = &[
     ),
     (
         "pointing in a plot",
-        "the status line says what is under the pointer",
+        "describe the pointed item in the status line",
     ),
     (
         "right-click in a plot",
-        "what can be done with the curve, or with the frequency there",
+        "actions on the curve, or on the frequency there",
     ),
     (
         "click on a chip",
@@ -195,7 +198,8 @@ const GESTURES: &[(&str, &str)] = &[
     ("drag an end of the band", "move the band of comparison"),
     (
         "click on a cell",
-        "show its response; on its box, or twice: hold or release it: its net gain exactly, its delay where one can",
+        "show its response; on its box, or twice: hold its net gain exactly and its delay as far as \
+         possible, or release both",
     ),
     (
         "click on a star",
@@ -203,16 +207,16 @@ const GESTURES: &[(&str, &str)] = &[
     ),
     (
         "right-click",
-        "on a heading: copy or save its table; on a cell or a condition: more",
+        "on a heading: copy or save its table; on a cell or a condition: more actions",
     ),
 ];
 
-/// Marks in the list of conditions.
+/// Marks in the conditions list.
 const MARKS: &[(&str, &str)] = &[
     (
         "⚠",
-        "models are suggested as outliers, a held gain is not matched, or a held delay though a delay could; pointing at the row \
-         counts them",
+        "models are suggested as outliers, or a held gain or a held delay that needs no lead is not \
+         matched; the tooltip of the row counts them",
     ),
     (
         "dot or square",
@@ -228,11 +232,11 @@ const MARKS: &[(&str, &str)] = &[
     ),
     (
         "bar at the left",
-        "it is held out: the schedule is judged by it",
+        "the condition is held out, and used to judge the schedule",
     ),
 ];
 
-/// Draws every key of the command table, the gestures, and the marks.
+/// Draws keys, gestures and marks.
 pub fn keys_page_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     let room = ui.ctx().content_rect().height() - 120.0;
     ScrollArea::vertical()
@@ -240,37 +244,61 @@ pub fn keys_page_ui(ui: &mut Ui, state: &State, palette: &Palette) {
         .min_scrolled_height(room)
         .auto_shrink([false, true])
         .show(ui, |ui| {
-            let keys: Vec<(String, String)> = command_table(state)
-                .into_iter()
-                .filter(|entry| !entry.shortcuts.is_empty())
-                .map(|entry| {
-                    let keys: Vec<String> = entry
-                        .shortcuts
-                        .iter()
-                        .map(|keys| ui.ctx().format_shortcut(keys))
-                        .collect();
-                    let without_focus = if entry.reach == Reach::WithoutFocus {
-                        " *"
-                    } else {
-                        ""
-                    };
-                    (format!("{}{without_focus}", keys.join(", ")), entry.name)
-                })
-                .collect();
-            let others = [
-                ("Tab, Shift+Tab", "next, previous control"),
-                ("Escape", "close a form, leave a field as it was"),
-            ];
+            let mut keys = command_keys(ui.ctx(), state);
+            keys.push(KeyRow::new("Tab, Shift+Tab", "next, previous control"));
+            keys.push(KeyRow::new(
+                "Escape",
+                "close a form, leave a field as it was",
+            ));
             let keys = keys
                 .iter()
-                .map(|(keys, name)| (keys.as_str(), name.as_str()));
-            rows_ui(ui, "keys", keys.chain(others), palette);
+                .map(|row| (row.keys.as_str(), row.meaning.as_str()));
+            rows_ui(ui, "keys", keys, palette);
             ui.label(RichText::new("* while nothing has the focus").color(palette.dim_text));
             ui.separator();
             rows_ui(ui, "gestures", GESTURES.iter().copied(), palette);
             ui.separator();
             rows_ui(ui, "marks", MARKS.iter().copied(), palette);
         });
+}
+
+/// Keys and their meaning.
+struct KeyRow {
+    keys: String,
+    meaning: String,
+}
+
+impl KeyRow {
+    fn new(keys: &str, meaning: &str) -> Self {
+        Self {
+            keys: keys.to_owned(),
+            meaning: meaning.to_owned(),
+        }
+    }
+}
+
+/// Returns the keys in the command table; " *" marks keys that work only without focus.
+fn command_keys(ctx: &Context, state: &State) -> Vec<KeyRow> {
+    let mut rows = Vec::new();
+    for entry in command_table(state) {
+        if entry.shortcuts.is_empty() {
+            continue;
+        }
+        let shortcuts: Vec<String> = entry
+            .shortcuts
+            .iter()
+            .map(|keys| ctx.format_shortcut(keys))
+            .collect();
+        let mut keys = shortcuts.join(", ");
+        if entry.reach == Reach::WithoutFocus {
+            keys.push_str(" *");
+        }
+        rows.push(KeyRow {
+            keys,
+            meaning: entry.name,
+        });
+    }
+    rows
 }
 
 fn rows_ui<'a>(

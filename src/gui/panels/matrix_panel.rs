@@ -1,8 +1,7 @@
-//! Constraint matrix: every response with G, D and J, constrained or free; and the card of the
-//! response in focus with its request, remainder and error bar.
+//! Constraint matrix: every response with G, D and J, constrained or free.
 
 use egui::{
-    Align2, Color32, Grid, Key, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke,
+    Align2, Color32, FontId, Key, Pos2, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke,
     StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
@@ -18,6 +17,7 @@ use gdcm_words::ExplainTarget;
 use gdcm_words::caution::undefined_text;
 
 use super::explanation::{gain_conflict_marks, question_menu_ui, turn_entry};
+use super::response_card::{card_grid_ui, is_not_reduced};
 use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::selection::SelectionCommand;
@@ -27,9 +27,9 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::check_ui;
 use crate::gui::widgets::controls::{entries_ui, named_switch, painted_text};
 use crate::gui::widgets::focus::{Region, region_ui};
-use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium, small};
 
-/// Least and greatest height of a cell \[pt\].
+/// Least and greatest cell height \[pt\].
 const CELL_HEIGHTS: [f32; 2] = [34.0, 44.0];
 /// Gap between two cells \[pt\].
 const GAP: f32 = 3.0;
@@ -37,9 +37,10 @@ const LEAST_CELL_WIDTH: f32 = 58.0;
 const ROW_LABEL_WIDTH: f32 = 28.0;
 const HEADER_HEIGHT: f32 = 20.0;
 const LOCK_SIZE: f32 = 13.0;
-/// J at which an underline reaches the full length of its cell.
+/// J at which an underline spans its cell.
 const FULL_COST: f64 = 60.0;
-/// Draws every response as a cell, within `room` points of height. A click on the cell shows the
+
+/// Draws every response as a cell, within a height of `room` points. A click on the cell shows the
 /// response in the large plot; a click on its box, a double click or the space bar constrains or
 /// releases it; a right-click offers more.
 pub fn matrix_ui(
@@ -62,13 +63,16 @@ pub fn matrix_ui(
     table_menu_ui(ui, &heading, TableKind::Matrix, commands);
     let outputs = state.dataset().outputs().len();
     let pitch = (room - 20.0 - HEADER_HEIGHT) / outputs as f32;
-    let height = (pitch - GAP).clamp(CELL_HEIGHTS[0], CELL_HEIGHTS[1]);
+    let grid = CellGrid {
+        room: room - 20.0,
+        cell_height: (pitch - GAP).clamp(CELL_HEIGHTS[0], CELL_HEIGHTS[1]),
+    };
     region_ui(ui, Region::Matrix, |ui| {
-        cells_ui(ui, state, (room - 20.0, height), palette, commands)
+        grid.ui(ui, state, palette, commands)
     });
 }
 
-/// Draws the key of the underlines, from right to left.
+/// Explains the underlines, from right to left.
 fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
     let mut right = row.right();
     for (words, color) in [
@@ -94,57 +98,99 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
     }
 }
 
-fn cells_ui(
-    ui: &mut Ui,
-    state: &State,
-    (room, cell_height): (f32, f32),
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    let outputs = state.dataset().outputs();
-    let inputs = state.dataset().inputs();
-    let width = ((ui.available_width() - ROW_LABEL_WIDTH + GAP) / inputs.len() as f32)
-        .max(LEAST_CELL_WIDTH);
-    let pitch = cell_height + GAP;
-    let size = vec2(
-        ROW_LABEL_WIDTH + width * inputs.len() as f32 - GAP,
-        HEADER_HEIGHT + pitch * outputs.len() as f32,
-    );
-    let (in_conflict, blamed) = state.shown().map(gain_conflict_marks).unwrap_or_default();
-    let focus = state.display.selection.pair;
-    let name_look = |channel, is_of_focus| match (blamed.contains(&channel), is_of_focus) {
-        (true, _) => (palette.warning, small()),
-        (_, true) => (palette.text, medium(SMALL_SIZE)),
-        _ => (palette.dim_text, small()),
-    };
-    // A matrix larger than its room scrolls by itself: verdict and export stay in place.
-    ScrollArea::both()
-        .id_salt("constraint matrix")
-        .max_height(room)
-        .show(ui, |ui| {
-            let (area, _) = ui.allocate_exact_size(size, Sense::hover());
-            for (input, channel) in inputs.iter().enumerate() {
-                let x = area.left() + ROW_LABEL_WIDTH + width * input as f32 + 0.5 * (width - GAP);
-                let (color, font) = name_look(Channel::Input(input), input == focus.input);
-                let place = pos2(x, area.top() + 0.5 * HEADER_HEIGHT);
-                ui.painter()
-                    .text(place, Align2::CENTER_CENTER, &channel.name, font, color);
-            }
-            for (output, channel) in outputs.iter().enumerate() {
-                let top = area.top() + HEADER_HEIGHT + pitch * output as f32;
-                let place = pos2(area.left() + ROW_LABEL_WIDTH - 8.0, top + 0.5 * cell_height);
-                let (color, font) = name_look(Channel::Output(output), output == focus.output);
-                ui.painter()
-                    .text(place, Align2::RIGHT_CENTER, &channel.name, font, color);
-                for input in 0..inputs.len() {
-                    let left = area.left() + ROW_LABEL_WIDTH + width * input as f32;
-                    let rect = Rect::from_min_size(pos2(left, top), vec2(width - GAP, cell_height));
-                    let pair = Pair { output, input };
-                    Cell::of(state, pair, in_conflict.contains(&pair))
-                        .ui(ui, rect, palette, commands);
+/// Cells with the channel names above and beside them \[pt\].
+struct CellGrid {
+    /// Visible height.
+    room: f32,
+    cell_height: f32,
+}
+
+impl CellGrid {
+    fn ui(&self, ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+        let outputs = state.dataset().outputs();
+        let inputs = state.dataset().inputs();
+        let width = ((ui.available_width() - ROW_LABEL_WIDTH + GAP) / inputs.len() as f32)
+            .max(LEAST_CELL_WIDTH);
+        let pitch = self.cell_height + GAP;
+        let size = vec2(
+            ROW_LABEL_WIDTH + width * inputs.len() as f32 - GAP,
+            HEADER_HEIGHT + pitch * outputs.len() as f32,
+        );
+        let (in_conflict, blamed) = state.shown().map(gain_conflict_marks).unwrap_or_default();
+        let focus = state.display.selection.pair;
+        // A matrix larger than its room scrolls by itself: verdict and export stay in place.
+        ScrollArea::both()
+            .id_salt("constraint matrix")
+            .max_height(self.room)
+            .show(ui, |ui| {
+                let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+                for (input, channel) in inputs.iter().enumerate() {
+                    let x =
+                        area.left() + ROW_LABEL_WIDTH + width * input as f32 + 0.5 * (width - GAP);
+                    ChannelName {
+                        name: &channel.name,
+                        place: pos2(x, area.top() + 0.5 * HEADER_HEIGHT),
+                        align: Align2::CENTER_CENTER,
+                        is_blamed: blamed.contains(&Channel::Input(input)),
+                        is_focused: input == focus.input,
+                    }
+                    .paint(ui, palette);
                 }
-            }
-        });
+                for (output, channel) in outputs.iter().enumerate() {
+                    let top = area.top() + HEADER_HEIGHT + pitch * output as f32;
+                    ChannelName {
+                        name: &channel.name,
+                        place: pos2(
+                            area.left() + ROW_LABEL_WIDTH - 8.0,
+                            top + 0.5 * self.cell_height,
+                        ),
+                        align: Align2::RIGHT_CENTER,
+                        is_blamed: blamed.contains(&Channel::Output(output)),
+                        is_focused: output == focus.output,
+                    }
+                    .paint(ui, palette);
+                    for input in 0..inputs.len() {
+                        let left = area.left() + ROW_LABEL_WIDTH + width * input as f32;
+                        let rect = Rect::from_min_size(
+                            pos2(left, top),
+                            vec2(width - GAP, self.cell_height),
+                        );
+                        let pair = Pair { output, input };
+                        Cell::new(state, pair, in_conflict.contains(&pair))
+                            .ui(ui, rect, palette, commands);
+                    }
+                }
+            });
+    }
+}
+
+/// Input name above a column, or output name beside a row.
+struct ChannelName<'a> {
+    name: &'a str,
+    place: Pos2,
+    align: Align2,
+    /// Whether the channel is involved in a gain conflict.
+    is_blamed: bool,
+    is_focused: bool,
+}
+
+impl ChannelName<'_> {
+    fn paint(&self, ui: &Ui, palette: &Palette) {
+        let color = if self.is_blamed {
+            palette.warning
+        } else if self.is_focused {
+            palette.text
+        } else {
+            palette.dim_text
+        };
+        let font = if self.is_focused && !self.is_blamed {
+            medium(SMALL_SIZE)
+        } else {
+            small()
+        };
+        ui.painter()
+            .text(self.place, self.align, self.name, font, color);
+    }
 }
 
 struct Cell<'a> {
@@ -161,7 +207,7 @@ struct Cell<'a> {
 }
 
 impl<'a> Cell<'a> {
-    fn of(state: &'a State, pair: Pair, in_conflict: bool) -> Self {
+    fn new(state: &'a State, pair: Pair, in_conflict: bool) -> Self {
         Self {
             pair,
             name: state.dataset().pair_name(pair),
@@ -210,7 +256,7 @@ impl<'a> Cell<'a> {
         response.on_hover_ui(|ui| self.tooltip_ui(ui, palette));
     }
 
-    /// Draws the box that constrains or releases the response, at the end of the line of G; visible
+    /// Draws the box that constrains or releases the response, at the end of the G line; visible
     /// under the pointer.
     fn lock_ui(&self, ui: &mut Ui, rect: Rect, is_pointed: bool, palette: &Palette) -> Response {
         let corner = rect.right_top() + vec2(-LOCK_SIZE, 1.0);
@@ -250,49 +296,45 @@ impl<'a> Cell<'a> {
                 StrokeKind::Inside,
             );
         }
-        let hint = match (self.undefined(), self.constrained) {
-            (Some(why), _) => format!("{} cannot be held: {}", self.name, undefined_text(why)),
-            (_, true) => {
-                "Held: its net gain exactly, its delay where one can; click to free it".to_owned()
-            }
-            (_, false) => {
-                "Free; click to hold its net gain exactly, and its delay where one can".to_owned()
-            }
+        let hint = if let Some(why) = self.undefined() {
+            format!("{} cannot be held: {}", self.name, undefined_text(why))
+        } else if self.constrained {
+            "Held: net gain exact, delay as far as possible; click to release".to_owned()
+        } else {
+            "Free; click to hold the net gain exactly, the delay as far as possible".to_owned()
         };
         response.on_hover_text(hint)
     }
 
     fn paint(&self, ui: &Ui, rect: Rect, is_pointed: bool, palette: &Palette) {
         let painter = ui.painter();
-        let fill = match (self.constrained, is_pointed) {
-            (true, _) => palette.selected,
-            (false, true) => palette.raised,
-            (false, false) => Color32::TRANSPARENT,
+        let fill = if self.constrained {
+            palette.selected
+        } else if is_pointed {
+            palette.raised
+        } else {
+            Color32::TRANSPARENT
         };
-        let outline = match (self.in_conflict, self.focused) {
-            (_, true) => Stroke::new(2.0, palette.accent),
-            (true, false) => Stroke::new(2.0, palette.warning),
-            (false, false) => Stroke::new(
-                1.0,
-                if self.constrained {
-                    Color32::TRANSPARENT
-                } else {
-                    palette.line
-                },
-            ),
+        let outline = if self.focused {
+            Stroke::new(2.0, palette.accent)
+        } else if self.in_conflict {
+            Stroke::new(2.0, palette.warning)
+        } else if self.constrained {
+            Stroke::new(1.0, Color32::TRANSPARENT)
+        } else {
+            Stroke::new(1.0, palette.line)
         };
         painter.rect(rect, 4.0, fill, outline, StrokeKind::Inside);
         self.paint_values(ui, rect, is_pointed, palette);
     }
 
-    /// Paints G and D, each with the half-width of its error bar, over an underline of its part of
-    /// J.
+    /// Paints G above D \[ms\], each with the half-width of its error bar, and its part of J as an
+    /// underline.
     fn paint_values(&self, ui: &Ui, rect: Rect, is_pointed: bool, palette: &Palette) {
         let Some(shown) = self.shown else { return };
-        let (Some(gain), Some(delay_s)) = (
-            shown.wanted_gain(self.pair),
-            shown.wanted_delay_s(self.pair),
-        ) else {
+        let gain = shown.wanted_gain(self.pair);
+        let delay_s = shown.wanted_delay_s(self.pair);
+        let (Some(gain), Some(delay_s)) = (gain, delay_s) else {
             let nothing = matches!(self.undefined(), Some(Undefined::NumericallyNothing(_)));
             let words = if nothing { "nothing" } else { "no G" };
             ui.painter().text(
@@ -304,77 +346,52 @@ impl<'a> Cell<'a> {
             );
             return;
         };
-        let cost = shown.cost[self.pair];
-        let parts = cost.map(|of| {
-            let before = of.uncorrected;
-            let after = of.corrected;
-            [
-                [before.magnitude, after.magnitude],
-                [before.phase, after.phase],
-            ]
-        });
-        let strong = if self.fitted {
+        let change = shown.cost[self.pair];
+        let gain_half = self.sureness.half(Scalar::Gain(self.pair));
+        let delay_half = self.sureness.half(shown.wanted_delay(self.pair));
+        let middle = rect.top() + 0.5 * rect.height();
+        let upper = CellValue {
+            half: rect.with_max_y(middle),
+            text: decimals(gain, 2),
+            font: medium(BODY_SIZE),
+            bar: gain_half.map(|half| format!("±{:.0}", 100.0 * half)),
+            underline: change.map(|change| CostParts {
+                before: change.uncorrected.magnitude,
+                after: change.corrected.magnitude,
+            }),
+            end_room: if is_pointed { LOCK_SIZE } else { 6.0 },
+        };
+        let lower = CellValue {
+            half: rect.with_min_y(middle - 1.0),
+            text: decimals(s_to_ms(delay_s), 0),
+            font: small(),
+            bar: delay_half.map(|half| format!("±{:.0}", s_to_ms(half))),
+            underline: change.map(|change| CostParts {
+                before: change.uncorrected.phase,
+                after: change.corrected.phase,
+            }),
+            end_room: 6.0,
+        };
+        let color = if self.fitted {
             palette.text
         } else {
             palette.quiet_text
         };
-        let gain_half = self
-            .sureness
-            .half(Scalar::Gain(self.pair))
-            .map(|half| format!("±{:.0}", 100.0 * half));
-        let delay_half = self
-            .sureness
-            .half(shown.wanted_delay(self.pair))
-            .map(|half| format!("±{:.0}", s_to_ms(half)));
-        let values = [
-            (decimals(gain, 2), medium(BODY_SIZE), gain_half),
-            (decimals(s_to_ms(delay_s), 0), small(), delay_half),
-        ];
-        let lower = rect.top() + 0.5 * rect.height();
-        let halves = [rect.with_max_y(lower), rect.with_min_y(lower - 1.0)];
-        for (place, (half, (text, font, bar))) in halves.into_iter().zip(values).enumerate() {
-            let mut line = half.shrink2(vec2(6.0, 0.0)).translate(vec2(0.0, -1.5));
-            if place == 0 && is_pointed {
-                line.max.x = rect.right() - LOCK_SIZE;
-            }
-            let value = painted_text(ui, line, 0.0, &text, font, strong);
-            if let Some(bar) = bar {
-                let galley = ui.painter().layout_no_wrap(bar, small(), palette.dim_text);
-                // The cell has no room for a three-digit half-width beside a three-digit value:
-                // both are in the tooltip and in the card.
-                let place = pos2(
-                    line.right() - galley.size().x,
-                    line.center().y - 0.5 * galley.size().y,
-                );
-                if place.x > value.right() {
-                    ui.painter().galley(place, galley, palette.dim_text);
-                }
-            }
-            if let Some([before, after]) = parts.map(|parts| parts[place]) {
-                underline(ui, half, (before, after), palette);
-            }
-        }
+        upper.paint(ui, color, palette);
+        lower.paint(ui, color, palette);
     }
 
     fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let mut switch = |ui: &mut Ui, is_on: bool, text: String, edit: fn(Pair, bool) -> Edit| {
-            if let Some(is_on) = check_ui(ui, is_on, text, "") {
-                commands.push(edit(self.pair, is_on).into());
-                ui.close();
-            }
-        };
-        switch(
-            ui,
-            self.constrained,
-            format!("Hold {} exactly", self.name),
-            Edit::Hold,
-        );
-        switch(
-            ui,
-            self.fitted,
-            format!("Fit {} in the objective", self.name),
-            Edit::Fit,
-        );
+        let hold = format!("Hold {} exactly", self.name);
+        if let Some(is_on) = check_ui(ui, self.constrained, hold, "") {
+            commands.push(Edit::Hold(self.pair, is_on).into());
+            ui.close();
+        }
+        let fit = format!("Fit {} in the objective", self.name);
+        if let Some(is_on) = check_ui(ui, self.fitted, fit, "") {
+            commands.push(Edit::Fit(self.pair, is_on).into());
+            ui.close();
+        }
         entries_ui(
             ui,
             [(
@@ -383,16 +400,11 @@ impl<'a> Cell<'a> {
             )],
             commands,
         );
-        let turn = |channel| {
-            let is_turned = self.state.study.signs.contains_key(&channel);
-            turn_entry(
-                self.state,
-                channel,
-                (!is_turned).then_some(SignRole::Identified),
-            )
-        };
-        entries_ui(ui, Channel::of(self.pair).map(turn), commands);
-        if let Some(shown) = self.shown.filter(|_| self.undefined().is_none()) {
+        let turns = Channel::of(self.pair).map(|channel| self.turn(channel));
+        entries_ui(ui, turns, commands);
+        if let Some(shown) = self.shown
+            && self.undefined().is_none()
+        {
             let id = shown.condition.id();
             let pair = self.pair;
             let values = [
@@ -411,8 +423,19 @@ impl<'a> Cell<'a> {
         }
     }
 
-    /// Draws four aligned rows; the rest is available through
-    /// [`QUESTION`](crate::gui::widgets::controls::QUESTION) in the menu.
+    /// Returns the menu entry that reverses the identified sign of a channel, or restores it.
+    fn turn(&self, channel: Channel) -> (String, Command) {
+        let is_turned = self.state.study.signs.contains_key(&channel);
+        let role = if is_turned {
+            None
+        } else {
+            Some(SignRole::Identified)
+        };
+        turn_entry(self.state, channel, role)
+    }
+
+    /// Draws four aligned rows; the menu explains every value through
+    /// [`QUESTION`](crate::gui::widgets::controls::QUESTION).
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         let held = if self.constrained { "held" } else { "free" };
         let ignored = if self.fitted {
@@ -429,198 +452,75 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// Paints the part of J before the correction, pale, and after it; orange if it did not decrease. A
-/// tip at the end marks a value beyond the available length.
-fn underline(ui: &Ui, half: Rect, (before, after): (f64, f64), palette: &Palette) {
-    let y = half.bottom() - 2.5;
-    let left = half.left() + 4.0;
-    let room = half.width() - 8.0;
-    let bar = |cost: f64, color: Color32| {
-        let part = (cost / FULL_COST).clamp(0.0, 1.0) as f32;
-        let place = Rect::from_min_size(pos2(left, y), vec2(part * room, 2.5));
-        ui.painter().rect_filled(place, 1.0, color);
-        if cost > FULL_COST {
-            let tip = pos2(place.right(), y + 1.25);
-            let points = vec![
-                tip + vec2(0.0, -2.8),
-                tip + vec2(3.0, 0.0),
-                tip + vec2(0.0, 2.8),
-            ];
-            ui.painter()
-                .add(egui::Shape::convex_polygon(points, color, Stroke::NONE));
+/// Magnitude or phase part of J, before and after the correction.
+struct CostParts {
+    before: f64,
+    after: f64,
+}
+
+/// Value in the upper or lower half cell.
+struct CellValue {
+    half: Rect,
+    text: String,
+    font: FontId,
+    /// Half-width of the error bar: "±12".
+    bar: Option<String>,
+    underline: Option<CostParts>,
+    /// Room at the right end \[pt\].
+    end_room: f32,
+}
+
+impl CellValue {
+    fn paint(self, ui: &Ui, color: Color32, palette: &Palette) {
+        let mut line = self.half.shrink2(vec2(6.0, 0.0));
+        line.max.x = self.half.right() - self.end_room;
+        let line = line.translate(vec2(0.0, -1.5));
+        let value = painted_text(ui, line, 0.0, &self.text, self.font, color);
+        if let Some(bar) = self.bar {
+            let galley = ui.painter().layout_no_wrap(bar, small(), palette.dim_text);
+            // The cell has no room for a three-digit half-width beside a three-digit value:
+            // both are in the tooltip and in the card.
+            let place = pos2(
+                line.right() - galley.size().x,
+                line.center().y - 0.5 * galley.size().y,
+            );
+            if place.x > value.right() {
+                ui.painter().galley(place, galley, palette.dim_text);
+            }
         }
-    };
-    bar(before, palette.quiet_mark);
-    bar(
-        after,
-        if is_not_reduced(before, after) {
-            palette.warning
-        } else {
-            palette.text
-        },
-    );
-}
-
-/// Height of the card \[pt\].
-pub const CARD_HEIGHT: f32 = 104.0;
-/// Height of a row \[pt\].
-const ROW: f32 = 18.0;
-
-/// Row of the card.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CardRow {
-    pub name: &'static str,
-    /// Requested value, with its unit.
-    pub wants: String,
-    /// Remainder after the correction.
-    pub left: String,
-    /// Half-width of the error bar.
-    pub half: String,
-    /// Whether the remainder is not reduced.
-    pub is_missed: bool,
-}
-
-/// Returns gain, delay and both parts of J of a response: requested values, and remainders after
-/// the correction.
-pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<CardRow> {
-    let sureness = state.sureness();
-    let mut rows = Vec::new();
-    if let Some(gain) = shown.wanted_gain(pair) {
-        let left = gain / shown.correction.net_gain(pair);
-        let half = sureness
-            .half(Scalar::Gain(pair))
-            .map(|half| format!("{} %", decimals(100.0 * half, 1)));
-        let wants = decimals(gain, 3);
-        let left = decimals(left, 3);
-        let half = half.unwrap_or_default();
-        rows.push(CardRow {
-            name: "gain G",
-            wants,
-            left,
-            half,
-            is_missed: false,
-        });
-    }
-    if let Some(delay_s) = shown.wanted_delay_s(pair) {
-        let left_ms = s_to_ms(delay_s - shown.correction.net_delay_s(pair));
-        let ms = |value: f64| format!("{} ms", decimals(value, 1));
-        let half = sureness
-            .half(shown.wanted_delay(pair))
-            .map_or(String::new(), |half| ms(s_to_ms(half)));
-        let is_missed = left_ms.abs() > 0.5 && left_ms.abs() >= 0.99 * s_to_ms(delay_s).abs();
-        rows.push(CardRow {
-            name: "delay D",
-            wants: ms(s_to_ms(delay_s)),
-            left: ms(left_ms),
-            half,
-            is_missed,
-        });
-    }
-    if let Some(change) = shown.cost[pair] {
-        let before = change.uncorrected;
-        let after = change.corrected;
-        for (name, before, after) in [
-            ("J magnitude", before.magnitude, after.magnitude),
-            ("J phase", before.phase, after.phase),
-        ] {
-            let wants = decimals(before, 1);
-            let left = decimals(after, 1);
-            let is_missed = is_not_reduced(before, after);
-            rows.push(CardRow {
-                name,
-                wants,
-                left,
-                half: String::new(),
-                is_missed,
-            });
+        if let Some(parts) = self.underline {
+            underline(ui, self.half, parts, palette);
         }
     }
-    rows
 }
 
-/// Returns whether a noticeable part of J has not decreased; a tenth of J is not noticeable.
-pub fn is_not_reduced(before: f64, after: f64) -> bool {
-    after > 1.0 && after > before - 0.1
-}
-
-/// Draws the card of the response in focus.
-pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), CARD_HEIGHT), Sense::hover());
-    ui.painter().rect_stroke(
-        rect,
-        8.0,
-        Stroke::new(1.0, palette.line),
-        StrokeKind::Inside,
-    );
-    let inner = rect.shrink2(vec2(11.0, 9.0));
-    let pair = state.display.selection.pair;
-    let held = if state.study.settings.constrained[pair] {
-        "held"
+/// Paints the part of J before the correction, pale, and after it; orange if it did not decrease.
+fn underline(ui: &Ui, half: Rect, parts: CostParts, palette: &Palette) {
+    paint_cost_bar(ui, half, parts.before, palette.quiet_mark);
+    let after_color = if is_not_reduced(parts.before, parts.after) {
+        palette.warning
     } else {
-        "free"
+        palette.text
     };
-    let title = format!("{}, {held}", state.dataset().pair_name(pair));
-    let line = |row: usize| {
-        Rect::from_min_size(
-            inner.min + vec2(0.0, ROW * row as f32),
-            vec2(inner.width(), ROW),
-        )
-    };
-    painted_text(ui, line(0), 0.0, &title, medium(BODY_SIZE), palette.text);
-    let places = [inner.width() * 0.54, inner.width() * 0.78, inner.width()];
-    let right = |at: f32| at - inner.width() - 0.01;
-    let level = state
-        .sureness()
-        .level()
-        .map(|level| format!("± {:.0} %", 100.0 * level))
-        .unwrap_or_default();
-    for (at, head) in places.into_iter().zip(["wants", "left", level.as_str()]) {
-        painted_text(ui, line(0), right(at), head, small(), palette.dim_text);
-    }
-    let Some(shown) = state.shown() else { return };
-    for (place, row) in card_rows(state, shown, pair).iter().enumerate() {
-        let line = line(place + 1);
-        painted_text(ui, line, 0.0, row.name, body(), palette.dim_text);
-        painted_text(ui, line, right(places[0]), &row.wants, body(), palette.text);
-        let color = if row.is_missed {
-            palette.warning
-        } else {
-            palette.text
-        };
-        painted_text(ui, line, right(places[1]), &row.left, body(), color);
-        painted_text(
-            ui,
-            line,
-            right(places[2]),
-            &row.half,
-            body(),
-            palette.dim_text,
-        );
-    }
+    paint_cost_bar(ui, half, parts.after, after_color);
 }
 
-/// Draws the same rows in a tooltip if there is no room for the card.
-pub fn card_grid_ui(ui: &mut Ui, state: &State, pair: Pair, palette: &Palette) {
-    let Some(shown) = state.shown() else { return };
-    Grid::new("card")
-        .num_columns(4)
-        .spacing([16.0, 2.0])
-        .show(ui, |ui| {
-            for head in ["", "wants", "left", "±"] {
-                ui.label(palette.small(head));
-            }
-            ui.end_row();
-            for row in card_rows(state, shown, pair) {
-                ui.label(palette.dim(row.name));
-                ui.label(row.wants);
-                let left = RichText::new(row.left);
-                ui.label(if row.is_missed {
-                    left.color(palette.warning)
-                } else {
-                    left
-                });
-                ui.label(palette.dim(row.half));
-                ui.end_row();
-            }
-        });
+/// Paints a bar of a length proportional to the cost; a tip at the end marks a cost beyond
+/// [`FULL_COST`].
+fn paint_cost_bar(ui: &Ui, half: Rect, cost: f64, color: Color32) {
+    let y = half.bottom() - 2.5;
+    let room = half.width() - 8.0;
+    let part = (cost / FULL_COST).clamp(0.0, 1.0) as f32;
+    let place = Rect::from_min_size(pos2(half.left() + 4.0, y), vec2(part * room, 2.5));
+    ui.painter().rect_filled(place, 1.0, color);
+    if cost > FULL_COST {
+        let tip = pos2(place.right(), y + 1.25);
+        let points = vec![
+            tip + vec2(0.0, -2.8),
+            tip + vec2(3.0, 0.0),
+            tip + vec2(0.0, 2.8),
+        ];
+        ui.painter()
+            .add(egui::Shape::convex_polygon(points, color, Stroke::NONE));
+    }
 }

@@ -1,4 +1,4 @@
-//! Correction of the displayed condition: gains and delays of inputs and outputs, side by side.
+//! Correction in the displayed condition: gains and delays, inputs and outputs side by side.
 
 use egui::{Color32, CursorIcon, FontId, Rect, Role, Sense, Ui, pos2, vec2};
 
@@ -21,12 +21,12 @@ use crate::gui::views::gain_plots::bar_words;
 use crate::gui::widgets::controls::{Asks, QUESTION, named, painted_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, body, medium, small};
 
-/// Height of a row \[pt\].
+/// Row height \[pt\].
 const ROW: f32 = 18.0;
-/// Right edges of gains and delays, as shares of the width of a side.
+/// Right edges of gains and delays, as shares of a side's width.
 const ENDS: [f32; 2] = [0.5, 0.85];
 
-/// Draws gains and delays of every channel; in a low window only the range of the gains.
+/// Draws gain and delay for every channel; in a low window only the least and the greatest gain.
 pub fn result_ui(
     ui: &mut Ui,
     state: &State,
@@ -48,10 +48,12 @@ pub fn result_ui(
     };
     proof_ui(ui, rect, state.is_proving(shown), shown, palette, commands);
     if is_folded {
-        let gains = || shown.gains.inputs.iter().chain(&shown.gains.outputs);
-        let (least, most) = gains().fold((f64::INFINITY, 0.0_f64), |(a, b), gain| {
-            (a.min(*gain), b.max(*gain))
-        });
+        let mut least = f64::INFINITY;
+        let mut most = 0.0_f64;
+        for gain in shown.gains.inputs.iter().chain(&shown.gains.outputs) {
+            least = least.min(*gain);
+            most = most.max(*gain);
+        }
         let words = format!("k {} to {}", decimals(least, 3), decimals(most, 3));
         painted_text(ui, rect, 56.0, &words, body(), palette.dim_text);
         return;
@@ -63,17 +65,23 @@ pub fn result_ui(
         Sense::hover(),
     );
     let width = 0.5 * (area.width() - 12.0);
-    for (of_inputs, left) in [(true, area.left()), (false, area.right() - width)] {
-        let side = Rect::from_min_size(pos2(left, area.top()), vec2(width, area.height()));
-        Side {
-            of_inputs,
-            side,
-            state,
-            shown,
-            palette,
-        }
-        .ui(ui, commands);
-    }
+    let inputs = Side {
+        of_inputs: true,
+        side: Rect::from_min_size(area.min, vec2(width, area.height())),
+        state,
+        shown,
+        palette,
+    };
+    let outputs = Side {
+        of_inputs: false,
+        side: Rect::from_min_size(
+            pos2(area.right() - width, area.top()),
+            vec2(width, area.height()),
+        ),
+        ..inputs
+    };
+    inputs.ui(ui, commands);
+    outputs.ui(ui, commands);
 }
 
 /// Draws whether better gains exist, in small text because it is the usual case; a click opens the
@@ -105,7 +113,8 @@ fn proof_ui(
         .asks(LayoutCommand::ShowSheet(Some(Sheet::Reasons)), commands);
 }
 
-/// Channels of a side.
+/// Inputs on the left, or outputs on the right.
+#[derive(Clone, Copy)]
 struct Side<'a> {
     of_inputs: bool,
     side: Rect,
@@ -114,15 +123,18 @@ struct Side<'a> {
     palette: &'a Palette,
 }
 
-/// Value of a channel: its right edge, its painting with the half-width of its error bar, and its
-/// tooltip.
+/// A channel's gain or delay.
 struct ChannelValue {
+    /// Right edge, as a share of the row's width.
     end: f32,
     text: String,
     font: FontId,
     color: Color32,
+    /// Half-width of the error bar: "±12".
     half: Option<String>,
+    /// Accessible name.
     name: String,
+    /// Unrounded value, for the tooltip.
     exact: String,
     scalar: Scalar,
     asked: ExplainTarget,
@@ -160,17 +172,23 @@ impl Side<'_> {
         for (index, channel) in channels.iter().enumerate() {
             let row = self.row(index + 1);
             painted_text(ui, row, 0.0, &channel.name, body(), palette.text);
-            let of = if self.of_inputs {
-                Channel::Input(index)
-            } else {
-                Channel::Output(index)
-            };
-            self.value_ui(ui, row, self.gain(of, index, &channel.name), commands);
-            self.value_ui(ui, row, self.delay(of, index, &channel.name), commands);
+            let gain = self.gain(index, &channel.name);
+            self.value_ui(ui, row, gain, commands);
+            let delay = self.delay(index, &channel.name);
+            self.value_ui(ui, row, delay, commands);
         }
     }
 
-    fn gain(&self, channel: Channel, index: usize, name: &str) -> ChannelValue {
+    fn channel(&self, index: usize) -> Channel {
+        if self.of_inputs {
+            Channel::Input(index)
+        } else {
+            Channel::Output(index)
+        }
+    }
+
+    fn gain(&self, index: usize, name: &str) -> ChannelValue {
+        let channel = self.channel(index);
         let gains = if self.of_inputs {
             &self.shown.gains.inputs
         } else {
@@ -194,7 +212,8 @@ impl Side<'_> {
         }
     }
 
-    fn delay(&self, channel: Channel, index: usize, name: &str) -> ChannelValue {
+    fn delay(&self, index: usize, name: &str) -> ChannelValue {
+        let channel = self.channel(index);
         let delays = if self.of_inputs {
             &self.shown.delays.inputs
         } else {
@@ -203,16 +222,18 @@ impl Side<'_> {
         let delay_ms = s_to_ms(delays[index]);
         let is_delayed = delay_ms != 0.0;
         let scalar = Scalar::ChannelDelay(channel);
-        let half = self.state.sureness().half(scalar).filter(|_| is_delayed);
+        let half = if is_delayed {
+            self.state.sureness().half(scalar)
+        } else {
+            None
+        };
         let digits = if delay_ms.abs() < 10.0 { 1 } else { 0 };
-        let filter = self
-            .shown
-            .compensated
-            .as_ref()
-            .and_then(|led| led.leads.filters()[channel]);
-        let filter = filter
-            .map(|filter| format!("\nlead: {}", servo_words(filter)))
-            .unwrap_or_default();
+        let mut exact = format!("{delay_ms} ms");
+        if let Some(compensated) = &self.shown.compensated
+            && let Some(filter) = compensated.leads.filters()[channel]
+        {
+            exact.push_str(&format!("\nlead: {}", servo_words(filter)));
+        }
         ChannelValue {
             end: ENDS[1],
             text: if is_delayed {
@@ -228,7 +249,7 @@ impl Side<'_> {
             },
             half: half.map(|half| format!("±{:.0}", s_to_ms(half))),
             name: format!("Delay of {name}"),
-            exact: format!("{delay_ms} ms{filter}"),
+            exact,
             scalar,
             asked: ExplainTarget::Delay(self.shown.condition.id(), channel),
         }
@@ -265,12 +286,11 @@ impl Side<'_> {
             Role::Button,
             format!("{name}: {text} {}", half.unwrap_or_default()).trim_end(),
         );
-        let words = self
-            .state
-            .sureness()
-            .bar(scalar)
-            .map(|(bar, level)| format!("\n{}", bar_words(bar, scalar, level)));
-        let hint = format!("{exact}{}\nclick: {QUESTION}", words.unwrap_or_default());
+        let mut hint = exact;
+        if let Some((bar, level)) = self.state.sureness().bar(scalar) {
+            hint.push_str(&format!("\n{}", bar_words(bar, scalar, level)));
+        }
+        hint.push_str(&format!("\nclick: {QUESTION}"));
         let response = response
             .on_hover_cursor(CursorIcon::Help)
             .on_hover_text(hint);

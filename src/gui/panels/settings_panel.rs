@@ -19,71 +19,69 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 4.0;
     region_ui(ui, Region::Settings, |ui| {
-        let is_first = |line: &Vec<&'static Setting>| {
-            let place = line[0].control.place;
-            matches!(place, Place::Slider | Place::Top) || *line[0] == setting::BAND
-        };
         let (mut first, advanced): (Vec<_>, Vec<_>) =
-            lines_of(state).into_iter().partition(is_first);
+            lines_of(state).into_iter().partition(is_frequent);
         first.sort_by_key(|line| line[0].control.place != Place::Slider);
         for line in first {
-            match line[0].control.place {
-                Place::Slider => SettingControls {
-                    ui,
-                    state,
-                    palette,
-                    commands,
-                }
-                .slider_ui(line[0]),
-                _ => drop(ui.horizontal_wrapped(|ui| {
-                    let mut panel = SettingControls {
-                        ui,
-                        state,
-                        palette,
-                        commands,
-                    };
-                    panel.caption_ui(line[0]);
-                    panel.controls_ui(&line);
-                })),
+            if line[0].control.place == Place::Slider {
+                controls(ui, state, palette, commands).slider_ui(line[0]);
+            } else {
+                ui.horizontal_wrapped(|ui| {
+                    let mut line_controls = controls(ui, state, palette, commands);
+                    line_controls.caption_ui(line[0]);
+                    line_controls.controls_ui(&line);
+                });
             }
         }
         ui.add_space(8.0);
-        advanced_head_ui(ui, state.display.layout.advanced_open, palette, commands);
-        if !state.display.layout.advanced_open {
-            return;
+        let is_open = state.display.layout.advanced_open;
+        advanced_head_ui(ui, is_open, palette, commands);
+        if is_open {
+            advanced_ui(ui, state, &advanced, palette, commands);
         }
-        Grid::new("settings")
-            .num_columns(2)
-            .spacing([8.0, 5.0])
-            .show(ui, |ui| {
-                for line in advanced {
-                    SettingControls {
-                        ui,
-                        state,
-                        palette,
-                        commands,
-                    }
-                    .caption_ui(line[0]);
-                    ui.horizontal(|ui| {
-                        SettingControls {
-                            ui,
-                            state,
-                            palette,
-                            commands,
-                        }
-                        .controls_ui(&line)
-                    });
-                    ui.end_row();
-                    SettingControls {
-                        ui,
-                        state,
-                        palette,
-                        commands,
-                    }
-                    .note_ui(line[0]);
-                }
-            });
     });
+}
+
+/// Controls on a line: a setting, and those beside it.
+type Line = Vec<&'static Setting>;
+
+fn is_frequent(line: &Line) -> bool {
+    let place = line[0].control.place;
+    matches!(place, Place::Slider | Place::Top) || *line[0] == setting::BAND
+}
+
+fn advanced_ui(
+    ui: &mut Ui,
+    state: &State,
+    lines: &[Line],
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    Grid::new("settings")
+        .num_columns(2)
+        .spacing([8.0, 5.0])
+        .show(ui, |ui| {
+            for line in lines {
+                controls(ui, state, palette, commands).caption_ui(line[0]);
+                ui.horizontal(|ui| controls(ui, state, palette, commands).controls_ui(line));
+                ui.end_row();
+                controls(ui, state, palette, commands).note_ui(line[0]);
+            }
+        });
+}
+
+fn controls<'a, 'c>(
+    ui: &'a mut Ui,
+    state: &'a State,
+    palette: &'a Palette,
+    commands: &'c mut Vec<Command>,
+) -> SettingControls<'a, 'c> {
+    SettingControls {
+        ui,
+        state,
+        palette,
+        commands,
+    }
 }
 
 /// Draws the line that folds and unfolds the rarely changed settings.
@@ -96,12 +94,12 @@ fn advanced_head_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mu
 }
 
 /// Returns the effective settings, line by line.
-fn lines_of(state: &State) -> Vec<Vec<&'static Setting>> {
-    let mut lines: Vec<Vec<&'static Setting>> = Vec::new();
-    for setting in SETTINGS
-        .iter()
-        .filter(|setting| (setting.control.applies)(&state.study))
-    {
+fn lines_of(state: &State) -> Vec<Line> {
+    let mut lines: Vec<Line> = Vec::new();
+    for setting in SETTINGS {
+        if !(setting.control.applies)(&state.study) {
+            continue;
+        }
         match (setting.control.place, lines.last_mut()) {
             (Place::Elsewhere, _) => {}
             (Place::Beside, Some(line)) => line.push(setting),

@@ -2,19 +2,19 @@
 //! behind the page.
 
 use egui::{
-    Align, Align2, Button, Color32, Frame, Layout, Margin, Pos2, Rect, RichText, Role, ScrollArea,
-    Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
+    Align, Align2, Button, Color32, Frame, Layout, Margin, Rect, RichText, Role, ScrollArea, Sense,
+    Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
 
-use gdcm_model::number_format::compact;
+use gdcm_model::dataset::BundleKind;
 
 use super::conditions_panel::cost_picture_ui;
+use super::phase_sketch::phase_sketch_ui;
 use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::plot::{BodeCurve, Pane, Role as CurveRole};
 use crate::gui::state::window_state::State;
 use crate::gui::views::frequency::bode_curves;
 use crate::gui::widgets::controls::{Asks, button_ui, elided, named, painted_text};
@@ -22,11 +22,11 @@ use crate::gui::widgets::palette::{
     BODY_SIZE, DISPLAY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
 };
 
-/// Widths of the ways in, of the open study, and of the gap between them \[pt\].
+/// Widths: ways in, open study, gap between them \[pt\].
 const WIDTHS: [f32; 3] = [600.0, 460.0, 64.0];
-/// Line height of multi-line text \[pt\].
+/// Line height in multi-line text \[pt\].
 const LINE: f32 = 20.0;
-/// Height of a way in \[pt\].
+/// Card height for a way in \[pt\].
 const WAY: f32 = 72.0;
 
 /// Way to begin.
@@ -64,7 +64,7 @@ fn ways() -> [Way; 3] {
     ]
 }
 
-/// Draws the line above the example's plots that offers the same three ways.
+/// Draws the three ways in as links above the example's plots.
 pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     let size = vec2(ui.available_width(), 18.0);
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
@@ -128,9 +128,9 @@ pub fn start_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mu
 
 fn ways_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     ui.label(RichText::new("Match a physics model to flight").font(medium(DISPLAY_SIZE)));
-    ui.label(
-        palette.dim("One gain and one delay a channel, scheduled with airspeed. Every figure says how sure it is."),
-    );
+    ui.label(palette.dim(
+        "One gain and one delay per channel, scheduled with airspeed. Every number has an error bar.",
+    ));
     ui.add_space(16.0);
     for (place, way) in ways().into_iter().enumerate() {
         way_ui(ui, way, place == 0, palette, commands);
@@ -145,11 +145,10 @@ fn ways_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
         rect.left_top(),
     ];
     let stroke = Stroke::new(1.0, palette.line);
-    ui.painter().extend(
-        corners
-            .windows(2)
-            .flat_map(|ends| Shape::dashed_line(ends, stroke, 4.0, 3.0)),
-    );
+    for side in corners.windows(2) {
+        ui.painter()
+            .extend(Shape::dashed_line(side, stroke, 4.0, 3.0));
+    }
     let words = "or drop files, or a folder, anywhere in this window";
     ui.painter().text(
         rect.center(),
@@ -180,12 +179,12 @@ fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: 
         },
     );
     let text = rect.with_min_x(rect.left() + 58.0);
-    let [upper, lower] = [
-        text.with_max_y(rect.center().y + 2.0)
-            .with_min_y(rect.top() + 12.0),
-        text.with_min_y(rect.center().y)
-            .with_max_y(rect.bottom() - 12.0),
-    ];
+    let upper = text
+        .with_max_y(rect.center().y + 2.0)
+        .with_min_y(rect.top() + 12.0);
+    let lower = text
+        .with_min_y(rect.center().y)
+        .with_max_y(rect.bottom() - 12.0);
     painted_text(ui, upper, 0.0, way.title, medium(TITLE_SIZE), palette.text);
     painted_text(ui, lower, 0.0, way.words, body(), palette.dim_text);
     let place = Rect::from_center_size(
@@ -212,7 +211,7 @@ fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: 
     ui.advance_cursor_after_rect(rect);
 }
 
-/// Draws the steps of the work with data, if no file has been open before.
+/// Draws the three work steps, instead of the recent files while there are none.
 fn steps_ui(ui: &mut Ui, palette: &Palette) {
     let steps = [
         (
@@ -286,42 +285,71 @@ fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec
     let frame = Frame::new()
         .fill(palette.panel)
         .stroke(Stroke::new(1.0, palette.line))
-        .corner_radius(8.0);
-    frame.inner_margin(Margin::same(24)).show(ui, |ui| {
+        .corner_radius(8.0)
+        .inner_margin(Margin::same(24));
+    frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
-        let conditions = state.dataset().conditions();
-        let models: usize = conditions.iter().map(|of| of.bundle(gdcm_model::dataset::BundleKind::Physics).len()).sum();
-        let (title, words, back) = if state.is_example {
-            let words = format!(
-                "The example is simulated: {} conditions of a UH-60A-class helicopter, {models} physics models, flight records, and \
-                 deficits that were put in on purpose.",
-                conditions.len()
-            );
-            ("No data at hand?".to_owned(), words, "Explore the example")
-        } else {
-            let words = format!("{}: {} conditions, {models} physics models.", state.study_name, conditions.len());
-            (state.dataset().name().to_owned(), words, "Go on with it")
-        };
-        ui.label(RichText::new(title).font(medium(TITLE_SIZE)));
-        ui.label(palette.dim(words).line_height(Some(LINE)));
+        let words = StudyWords::new(state);
+        ui.label(RichText::new(words.title).font(medium(TITLE_SIZE)));
+        ui.label(palette.dim(words.content).line_height(Some(LINE)));
         ui.add_space(12.0);
         picture_ui(ui, state, palette);
         ui.add_space(8.0);
         ui.label(palette.small(
-            "Left: what the correction leaves in each condition, magnitude and phase of the held responses, pale is matched. Right: \
-             flight, and the corrected model.",
+            "Left: remaining J of the held responses in each condition, magnitude and phase; pale \
+             is matched. Right: flight and the corrected model.",
         ));
         ui.add_space(12.0);
         ui.horizontal(|ui| {
-            ui.add(Button::new(back).min_size(vec2(0.0, 28.0))).asks(LayoutCommand::ShowStart(false), commands);
-            if state.is_example {
-                let tour = Button::new(RichText::new("Guided tour, five notes").color(palette.accent)).frame(false);
-                if ui.add(tour).clicked() {
-                    commands.extend([Command::Layout(LayoutCommand::ShowStart(false)), Command::Layout(LayoutCommand::StartTour)]);
-                }
+            ui.add(Button::new(words.back).min_size(vec2(0.0, 28.0)))
+                .asks(LayoutCommand::ShowStart(false), commands);
+            if !state.is_example {
+                return;
+            }
+            let text = RichText::new("Guided tour, five notes").color(palette.accent);
+            if ui.add(Button::new(text).frame(false)).clicked() {
+                commands.push(LayoutCommand::ShowStart(false).into());
+                commands.push(LayoutCommand::StartTour.into());
             }
         });
     });
+}
+
+/// Texts on the study behind the page.
+struct StudyWords {
+    title: String,
+    content: String,
+    /// Text on the button that returns to the study.
+    back: &'static str,
+}
+
+impl StudyWords {
+    fn new(state: &State) -> Self {
+        let conditions = state.dataset().conditions();
+        let models: usize = conditions
+            .iter()
+            .map(|condition| condition.bundle(BundleKind::Physics).len())
+            .sum();
+        let count = conditions.len();
+        if state.is_example {
+            return Self {
+                title: "No data at hand?".to_owned(),
+                content: format!(
+                    "The example is simulated: {count} conditions of a UH-60A-class helicopter, \
+                     {models} physics models, flight records, and known deficits of the models."
+                ),
+                back: "Explore the example",
+            };
+        }
+        Self {
+            title: state.dataset().name().to_owned(),
+            content: format!(
+                "{}: {count} conditions, {models} physics models.",
+                state.study_name
+            ),
+            back: "Continue",
+        }
+    }
 }
 
 fn picture_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
@@ -343,135 +371,7 @@ fn picture_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     let head = plot.with_max_y(plot.top() + 18.0);
     painted_text(ui, head, 0.0, &title, small(), palette.dim_text);
     let band = state.study.settings.band;
-    phases_ui(
-        ui,
-        plot.with_min_y(head.bottom()),
-        &curves,
-        (band.min(), band.max()),
-        palette,
-    );
-}
-
-/// Returns the grid frequencies and phases of a small plot \[rad/s, deg\].
-fn grid_of((min, max): (f64, f64), (least, most): (f64, f64)) -> [Vec<f64>; 2] {
-    let decades = (min.log10().floor() as i32)..=(max.log10().ceil() as i32);
-    let omegas = decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(decade)));
-    let inside = omegas.filter(|omega| (min..=max).contains(omega)).collect();
-    let [first, last] = [(least / 90.0).ceil() as i32, (most / 90.0).floor() as i32];
-    [
-        inside,
-        (first..=last).map(|line| 90.0 * f64::from(line)).collect(),
-    ]
-}
-
-/// Paints the phases of the identified and of the corrected model over the band, and the gap
-/// between them.
-fn phases_ui(ui: &Ui, plot: Rect, curves: &[BodeCurve], (min, max): (f64, f64), palette: &Palette) {
-    let plot = plot
-        .with_min_x(plot.left() + 28.0)
-        .with_max_y(plot.bottom() - 14.0);
-    ui.painter().rect(
-        plot,
-        0.0,
-        palette.background,
-        Stroke::new(1.0, palette.line),
-        StrokeKind::Inside,
-    );
-    let of_role = |role: CurveRole| curves.iter().find(|curve| curve.role == role);
-    let Some((corrected, identified)) =
-        of_role(CurveRole::Corrected).zip(of_role(CurveRole::IdentifiedRepresentative))
-    else {
-        return;
-    };
-    const STEPS: usize = 60;
-    let omega = |step: usize| min * (max / min).powf(step as f64 / STEPS as f64);
-    let phases = |curve: &BodeCurve| -> Vec<f64> {
-        (0..=STEPS)
-            .filter_map(|step| curve.value_at(Pane::Phase, omega(step)))
-            .collect()
-    };
-    let [after, flight] = [phases(corrected), phases(identified)];
-    let ends = || after.iter().chain(&flight).copied();
-    let (least, most) = ends().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| {
-        (a.min(at), b.max(at))
-    });
-    if after.len() <= STEPS || flight.len() <= STEPS || most <= least {
-        return;
-    }
-    let at = |step: usize, phase: f64| -> Pos2 {
-        let part = ((phase - least) / (most - least)) as f32;
-        let inner = plot.shrink2(vec2(0.0, 8.0));
-        pos2(
-            plot.left() + plot.width() * step as f32 / STEPS as f32,
-            inner.bottom() - part * inner.height(),
-        )
-    };
-    let [omegas, lines] = grid_of((min, max), (least, most));
-    for tick in omegas {
-        let x = plot.left() + plot.width() * ((tick / min).ln() / (max / min).ln()) as f32;
-        ui.painter()
-            .vline(x, plot.y_range(), Stroke::new(1.0, palette.grid));
-        let under = pos2(x, plot.bottom() + 2.0);
-        ui.painter().text(
-            under,
-            Align2::CENTER_TOP,
-            compact(tick),
-            small(),
-            palette.dim_text,
-        );
-    }
-    for line in lines {
-        let y = at(0, line).y;
-        ui.painter()
-            .hline(plot.x_range(), y, Stroke::new(1.0, palette.grid));
-        let beside = pos2(plot.left() - 4.0, y);
-        ui.painter().text(
-            beside,
-            Align2::RIGHT_CENTER,
-            compact(line),
-            small(),
-            palette.dim_text,
-        );
-    }
-    let path = |phases: &[f64]| -> Vec<Pos2> {
-        phases
-            .iter()
-            .enumerate()
-            .map(|(step, phase)| at(step, *phase))
-            .collect()
-    };
-    let mut mesh = egui::Mesh::default();
-    for (step, (a, b)) in path(&after).into_iter().zip(path(&flight)).enumerate() {
-        mesh.colored_vertex(a, palette.identified.gamma_multiply(0.22));
-        mesh.colored_vertex(b, palette.identified.gamma_multiply(0.22));
-        if step > 0 {
-            let corner = 2 * step as u32;
-            mesh.add_triangle(corner - 2, corner - 1, corner);
-            mesh.add_triangle(corner - 1, corner, corner + 1);
-        }
-    }
-    let mut shapes = vec![Shape::mesh(mesh)];
-    palette
-        .role_style(CurveRole::IdentifiedRepresentative, false)
-        .add_shapes(path(&flight), &mut shapes);
-    palette
-        .role_style(CurveRole::Corrected, false)
-        .add_shapes(path(&after), &mut shapes);
-    ui.painter().extend(shapes);
-    let named = [
-        (&flight, "flight", palette.identified, 10.0),
-        (&after, "corrected", palette.corrected, -8.0),
-    ];
-    for (phases, name, color, aside) in named {
-        let middle = at(STEPS / 2, phases[STEPS / 2]) + vec2(aside, 0.0);
-        let align = if aside > 0.0 {
-            Align2::LEFT_BOTTOM
-        } else {
-            Align2::RIGHT_TOP
-        };
-        ui.painter()
-            .text(middle, align, name, small(), palette.name_of(color));
-    }
+    phase_sketch_ui(ui, plot.with_min_y(head.bottom()), &curves, band, palette);
 }
 
 fn sheet_icon(ui: &Ui, place: Rect, color: Color32) {

@@ -1,4 +1,4 @@
-//! Headings of the tables in the panels, with a menu that copies or saves the table.
+//! Table headings in the panels, with a menu that copies or saves the table.
 
 use egui::{Align, Layout, RichText, Role, Sense, Ui};
 
@@ -8,26 +8,28 @@ use crate::gui::state::tables::TableKind;
 use crate::gui::widgets::controls::{entries_ui, named};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 
-/// Draws a heading on the left and a value on the right over a table; a right-click copies or saves
-/// the table, as the palette does.
-pub fn table_heading_ui(
-    ui: &mut Ui,
-    palette: &Palette,
-    (title, value): (&str, &str),
-    kind: TableKind,
-    commands: &mut Vec<Command>,
-) {
-    ui.add_space(4.0);
-    let heading = ui.horizontal(|ui| {
-        ui.label(RichText::new(title).font(medium(BODY_SIZE)));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.label(palette.small(value))
-        });
-    });
-    table_menu_ui(ui, &heading.response, kind, commands);
+/// Heading over a table, with a value on the right.
+pub struct TableHeading<'a> {
+    pub title: &'a str,
+    pub value: &'a str,
+    pub kind: TableKind,
 }
 
-/// Draws the context menu of a table's heading.
+impl TableHeading<'_> {
+    /// Draws the heading; a right-click copies or saves the table.
+    pub fn ui(&self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
+        ui.add_space(4.0);
+        let heading = ui.horizontal(|ui| {
+            ui.label(RichText::new(self.title).font(medium(BODY_SIZE)));
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.label(palette.small(self.value))
+            });
+        });
+        table_menu_ui(ui, &heading.response, self.kind, commands);
+    }
+}
+
+/// Draws the heading's context menu.
 pub fn table_menu_ui(
     ui: &mut Ui,
     heading: &egui::Response,

@@ -2,37 +2,30 @@
 
 use gdcm_method::correction::LeadPrice;
 use gdcm_method::correction::conflict::ConflictKind;
-use gdcm_method::correction::remedy::Remedy;
+use gdcm_method::correction::solution::Solution;
 use gdcm_method::schedule::ScheduleCaution;
-use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
-use gdcm_model::number_format::with_minus_sign;
+use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::statistics::median;
 use gdcm_model::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
-use gdcm_study::decisions::setting;
-use gdcm_study::decisions::setting_row::Value;
-use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::results::analysis::ConditionFailure;
-use gdcm_study::results::couplings_assessment::CouplingCost;
-use gdcm_study::{ConditionAnalysis, CouplingCorrection, Edit, PhaseCorrection};
+use gdcm_study::{ConditionAnalysis, PhaseCorrection};
 use gdcm_words::caution::failure_text;
 use gdcm_words::couplings::coupling_cautions;
 use gdcm_words::remark::RemarkKind;
 
-use super::explanation::turn_entry;
+use super::advice::{Advice, Step, joined};
+use super::reasons::remarks_shown;
 use crate::gui::commands::command::Command;
-use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::layout::LayoutCommand;
-use crate::gui::state::forms::FormKind;
-use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
-use crate::gui::views::{offered_couplings, used_couplings};
+use crate::gui::views::used_couplings;
 
-/// Verdict on gain and phase of the constrained responses, here and in every condition, with the
+/// Verdict on gain and phase in the constrained responses, here and in every condition, with the
 /// next steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// Condition of the verdict.
+    /// Displayed condition.
     pub condition: ConditionId,
     /// Gains, phases.
     pub rows: [VerdictRow; 2],
@@ -42,51 +35,63 @@ pub struct Verdict {
     pub note: String,
     /// Caution before the result is used: "Price: +21 dB above 12 rad/s".
     pub caution: Option<String>,
-    /// Number of poles of kept physics models, in all conditions, that the couplings in use make
-    /// unstable within the band.
+    /// Poles within the band that the couplings in use make unstable, counted over the kept physics
+    /// models in all conditions.
     pub unstable_in_band: usize,
-    /// Number of sentences in the list of reasons.
+    /// Remark count in the sheet of reasons.
     pub reasons: usize,
 }
 
-/// Gains or phases of the constrained responses.
+/// How many constrained responses are matched, in gain or in phase.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MatchCount {
+    pub matched: usize,
+    pub constrained: usize,
+}
+
+impl MatchCount {
+    /// Counts the constrained responses that `solution` matches.
+    fn new(shown: &ConditionAnalysis, solution: &Solution) -> Self {
+        let constrained = shown.held().marked().count();
+        Self {
+            matched: constrained.saturating_sub(solution.unmatched.len()),
+            constrained,
+        }
+    }
+
+    fn gains(shown: &ConditionAnalysis) -> Self {
+        Self::new(shown, &shown.gains)
+    }
+
+    fn delays(shown: &ConditionAnalysis) -> Self {
+        Self::new(shown, &shown.delays)
+    }
+
+    /// Adds the counts over all conditions with a result; `None` before the analysis.
+    fn everywhere(state: &State, count: fn(&ConditionAnalysis) -> Self) -> Option<Self> {
+        let mut total = Self::default();
+        for shown in state.analysis()?.conditions.values().flatten() {
+            let added = count(shown);
+            total.matched += added.matched;
+            total.constrained += added.constrained;
+        }
+        Some(total)
+    }
+}
+
+/// Gains or phases in the constrained responses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VerdictRow {
     /// "Gain" or "Phase".
     pub name: &'static str,
-    /// Matched constrained responses, and their total; `None` without a result.
-    pub here: Option<[usize; 2]>,
-    /// The same over all conditions with a result.
-    pub everywhere: Option<[usize; 2]>,
+    /// Count in the displayed condition; `None` without a result.
+    pub here: Option<MatchCount>,
+    /// Count over all conditions with a result.
+    pub everywhere: Option<MatchCount>,
     /// "matched", "lags by ≈ 66 ms".
     pub words: String,
     /// Whether all requests are met.
     pub is_met: bool,
-}
-
-/// Possible action.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Step {
-    /// Text of the button.
-    pub label: String,
-    pub command: Command,
-}
-
-impl Step {
-    fn new(label: impl Into<String>, command: impl Into<Command>) -> Self {
-        Self {
-            label: label.into(),
-            command: command.into(),
-        }
-    }
-
-    /// Returns the step to the reasons for the result.
-    fn reasons(label: &str) -> Self {
-        Self::new(
-            label,
-            Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons))),
-        )
-    }
 }
 
 impl VerdictRow {
@@ -100,14 +105,18 @@ impl VerdictRow {
         }
     }
 
-    /// "5 of 5".
-    pub fn count(counts: Option<[usize; 2]>) -> String {
-        counts.map_or("–".to_owned(), |[met, held]| format!("{met} of {held}"))
+    /// "5 of 5", "–" without a result.
+    pub fn count_text(count: Option<MatchCount>) -> String {
+        match count {
+            Some(count) => format!("{} of {}", count.matched, count.constrained),
+            None => "–".to_owned(),
+        }
     }
 
     /// Returns the verdict as a sentence for screen readers.
     pub fn sentence(&self) -> String {
-        let [here, everywhere] = [self.here, self.everywhere].map(Self::count);
+        let here = Self::count_text(self.here);
+        let everywhere = Self::count_text(self.everywhere);
         format!(
             "{}: {here} {}, of all conditions {everywhere}",
             self.name, self.words
@@ -116,54 +125,60 @@ impl VerdictRow {
 }
 
 impl Verdict {
-    /// Returns the verdict on the displayed condition.
-    pub fn of(state: &State) -> Self {
-        let condition = state.condition().id();
-        let nothing = |gain: String, steps: Vec<Step>| Self {
-            condition,
+    /// Judges the displayed condition.
+    pub fn new(state: &State) -> Self {
+        match state.outcome() {
+            None => Self::without_result(state, state.results.absence()),
+            Some(Err(failure)) => Self::from_failure(state, failure),
+            Some(Ok(shown)) => Self::from_result(state, shown),
+        }
+    }
+
+    /// Returns a verdict with `words` instead of a result.
+    fn without_result(state: &State, words: &str) -> Self {
+        Self {
+            condition: state.condition().id(),
             rows: [
-                VerdictRow::without_result("Gain", gain),
+                VerdictRow::without_result("Gain", words.to_owned()),
                 VerdictRow::without_result("Phase", String::new()),
             ],
-            steps,
+            steps: Vec::new(),
             note: String::new(),
             caution: None,
             unstable_in_band: 0,
             reasons: 0,
-        };
-        match state.outcome() {
-            None => nothing(state.results.absence().to_owned(), Vec::new()),
-            Some(Err(failure @ ConditionFailure::NoReference)) => {
-                let identify = Step::new(
-                    "Identify from records",
-                    Command::Layout(LayoutCommand::ShowView(View::Records)),
-                );
-                Self {
-                    caution: Some(failure_text(failure, state.dataset())),
-                    ..nothing("no reference yet".to_owned(), vec![identify])
-                }
-            }
-            Some(Err(failure)) => Self {
-                caution: Some(failure_text(failure, state.dataset())),
-                ..nothing("no result".to_owned(), Vec::new())
-            },
-            Some(Ok(shown)) => Self::of_result(state, shown),
         }
     }
 
-    fn of_result(state: &State, shown: &ConditionAnalysis) -> Self {
-        let reasons = super::explanation::remarks_shown(state, shown).len();
-        let (steps, note) = steps(state, shown);
-        let caution = caution(state, shown);
-        let unstable_in_band = unstable_in_band(state);
+    fn from_failure(state: &State, failure: &ConditionFailure) -> Self {
+        let caution = Some(failure_text(failure, state.dataset()));
+        if *failure != ConditionFailure::NoReference {
+            return Self {
+                caution,
+                ..Self::without_result(state, "no result")
+            };
+        }
+        let identify = Step::new(
+            "Identify from records",
+            Command::Layout(LayoutCommand::ShowView(View::Records)),
+        );
+        Self {
+            caution,
+            steps: vec![identify],
+            ..Self::without_result(state, "no reference yet")
+        }
+    }
+
+    fn from_result(state: &State, shown: &ConditionAnalysis) -> Self {
+        let advice = Advice::new(state, shown);
         Self {
             condition: shown.condition.id(),
-            rows: rows(state, shown),
-            steps,
-            note,
-            caution,
-            unstable_in_band,
-            reasons,
+            rows: [gain_row(state, shown), phase_row(state, shown)],
+            steps: advice.steps,
+            note: advice.note,
+            caution: caution(state, shown),
+            unstable_in_band: unstable_in_band(state),
+            reasons: remarks_shown(state, shown).len(),
         }
     }
 
@@ -173,61 +188,48 @@ impl Verdict {
     }
 }
 
-/// Counts the constrained responses with matched gain and with matched phase, each with the total.
-fn counts(shown: &ConditionAnalysis) -> [[usize; 2]; 2] {
-    let held = shown.held().marked().count();
-    [&shown.gains, &shown.delays].map(|solution| [held - solution.unmatched.len().min(held), held])
-}
-
-fn rows(state: &State, shown: &ConditionAnalysis) -> [VerdictRow; 2] {
-    let phase = state.study.settings.phase;
-    let [gain, delay] = counts(shown);
-    let results = state.analysis().map(|analysis| {
-        analysis
-            .conditions
-            .values()
-            .filter_map(|of| of.as_ref().ok())
-    });
-    let everywhere = results.map(|results| {
-        let none = [[0; 2]; 2];
-        results.map(counts).fold(none, |sum, of| {
-            [0, 1].map(|row| [0, 1].map(|at| sum[row][at] + of[row][at]))
-        })
-    });
-    let is_corrected = phase != PhaseCorrection::None;
-    let is_any_held = gain[1] > 0;
-    let is_phase_met = is_corrected && shown.delays.matched;
-    let gains = VerdictRow {
+fn gain_row(state: &State, shown: &ConditionAnalysis) -> VerdictRow {
+    let here = MatchCount::gains(shown);
+    let is_any_held = here.constrained > 0;
+    VerdictRow {
         name: "Gain",
-        here: Some(gain),
-        everywhere: everywhere.map(|of| of[0]),
+        here: Some(here),
+        everywhere: MatchCount::everywhere(state, MatchCount::gains),
         words: if is_any_held {
             gain_words(state, shown)
         } else {
             "fitted, none held".to_owned()
         },
         is_met: is_any_held && shown.gains.matched,
+    }
+}
+
+fn phase_row(state: &State, shown: &ConditionAnalysis) -> VerdictRow {
+    if state.study.settings.phase == PhaseCorrection::None {
+        return VerdictRow::without_result("Phase", "not corrected".to_owned());
+    }
+    let here = MatchCount::delays(shown);
+    let is_any_held = here.constrained > 0;
+    let words = if !is_any_held {
+        "fitted, none held".to_owned()
+    } else if shown.delays.matched {
+        format!("matched, {}", band_words(state))
+    } else {
+        let mut left_ms: Vec<f64> = shown
+            .delays
+            .unmatched
+            .iter()
+            .map(|missed| s_to_ms(missed.excess))
+            .collect();
+        lag_words(&mut left_ms)
     };
-    let phases = VerdictRow {
+    VerdictRow {
         name: "Phase",
-        here: is_corrected.then_some(delay),
-        everywhere: everywhere.map(|of| of[1]).filter(|_| is_corrected),
-        words: match (is_corrected, is_any_held) {
-            (false, _) => "not corrected".to_owned(),
-            (true, false) => "fitted, none held".to_owned(),
-            (true, true) if is_phase_met => format!("matched, {}", band_words(state)),
-            (true, true) => lag_words(
-                &mut shown
-                    .delays
-                    .unmatched
-                    .iter()
-                    .map(|missed| s_to_ms(missed.excess))
-                    .collect::<Vec<_>>(),
-            ),
-        },
-        is_met: is_any_held && is_phase_met,
-    };
-    [gains, phases]
+        here: Some(here),
+        everywhere: MatchCount::everywhere(state, MatchCount::delays),
+        words,
+        is_met: is_any_held && shown.delays.matched,
+    }
 }
 
 /// "0.5–12 rad/s".
@@ -240,6 +242,7 @@ pub(crate) fn band_words(state: &State) -> String {
     )
 }
 
+/// "matched", "LAT → P stops at a bound", "2 share PED", "3 disagree".
 fn gain_words(state: &State, shown: &ConditionAnalysis) -> String {
     let Some(miss) = shown.gains.unmatched.first() else {
         return "matched".to_owned();
@@ -267,42 +270,32 @@ fn shared_words(state: &State, pairs: &[Pair]) -> Option<String> {
     let [first, rest @ ..] = pairs else {
         return None;
     };
-    let inputs = state.dataset().inputs();
-    let outputs = state.dataset().outputs();
-    let input = rest
-        .iter()
-        .all(|pair| pair.input == first.input)
-        .then(|| &inputs[first.input]);
-    let output = || {
-        rest.iter()
-            .all(|pair| pair.output == first.output)
-            .then(|| &outputs[first.output])
+    if rest.is_empty() {
+        return None;
+    }
+    let channel = if rest.iter().all(|pair| pair.input == first.input) {
+        &state.dataset().inputs()[first.input]
+    } else if rest.iter().all(|pair| pair.output == first.output) {
+        &state.dataset().outputs()[first.output]
+    } else {
+        return None;
     };
-    let channel = input.or_else(output).filter(|_| !rest.is_empty())?;
     Some(format!("{} share {}", pairs.len(), channel.name))
 }
 
-/// Returns a name that does not break at the end of a line.
-pub(crate) fn joined(name: &str) -> String {
-    name.replace(' ', "\u{a0}")
-}
-
-/// Returns "lags by ≈ 66 ms" if all responses lag about equally, by the criterion of the remark on
-/// a common lead, otherwise "lags 20–110 ms"; short enough for the narrowest window.
+/// Returns "lags by ≈ 66 ms" if all responses lag about equally, by the criterion for a common lead,
+/// otherwise "lags 20–110 ms"; short enough for the narrowest window.
 fn lag_words(left_ms: &mut [f64]) -> String {
-    let (least, most) = left_ms
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| {
-            (a.min(*at), b.max(*at))
-        });
+    let least = left_ms.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = left_ms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let middle = median(left_ms);
     let verb = if middle >= 0.0 { "lags" } else { "leads" };
-    let [low, high] = if middle >= 0.0 {
+    let ends = if middle >= 0.0 {
         [least, most]
     } else {
         [-most, -least]
-    }
-    .map(|at| with_minus_sign(&telling(at, 0)));
+    };
+    let [low, high] = ends.map(|end| telling(end, 0).replace('-', "\u{2212}"));
     if low == high {
         format!("{verb} by {low} ms")
     } else if most - least <= 0.5 * middle.abs() {
@@ -314,156 +307,35 @@ fn lag_words(left_ms: &mut [f64]) -> String {
     }
 }
 
-/// Returns the steps, the recommended step first, and the note beside them.
-fn steps(state: &State, shown: &ConditionAnalysis) -> (Vec<Step>, String) {
-    let condition = shown.condition.id();
-    let alone = |steps: Vec<Step>| (steps, String::new());
-    if let Some(channel) = shown.doubts.iter().find_map(|doubt| doubt.turns()) {
-        let (label, command) = turn_entry(state, channel, Some(SignRole::Identified));
-        return (
-            vec![Step::new(label, command), Step::reasons("Why?")],
-            "its sign seems to be the other one".to_owned(),
-        );
-    }
-    let open = state.open_suggestions(shown);
-    if !open.is_empty() {
-        let reject = Step::new(
-            format!("Reject {} suggested", open.len()),
-            Edit::reject_physics(condition, &open),
-        );
-        return (
-            vec![reject],
-            format!(
-                "of {} models, first",
-                state.condition().bundle(BundleKind::Physics).len()
-            ),
-        );
-    }
-    if shown.held().marked().next().is_none() {
-        return alone(vec![Step::new(
-            "Hold the on-axis responses",
-            Edit::ConstrainOnAxis,
-        )]);
-    }
-    if !shown.gains.matched {
-        return alone(gain_steps(state, shown));
-    }
-    match state.study.settings.phase {
-        PhaseCorrection::None => alone(vec![Step::new(
-            "Use delays",
-            setting::PHASE.to(PhaseCorrection::Delay),
-        )]),
-        PhaseCorrection::Delay if !shown.delays.matched => {
-            let leads = Step::new("Use leads", setting::PHASE.to(PhaseCorrection::Lead));
-            alone(vec![leads, Step::reasons("Find the cause first")])
-        }
-        PhaseCorrection::Lead if !shown.delays.matched => {
-            let free = shown
-                .delays
-                .remedy
-                .iter()
-                .flat_map(|remedy| &remedy.free)
-                .next();
-            let free = free.map(|pair| free_step(state, *pair));
-            alone(free.into_iter().chain([Step::reasons("Why?")]).collect())
-        }
-        PhaseCorrection::Lead => couplings_steps(state).unwrap_or_else(|| {
-            alone(vec![
-                Step::new("Export corrections…", export()),
-                Step::reasons("Find the cause"),
-            ])
-        }),
-        PhaseCorrection::Delay => couplings_steps(state)
-            .unwrap_or_else(|| alone(vec![Step::new("Export corrections…", export())])),
-    }
-}
-
-/// Returns the steps to use worthwhile couplings, or to remove couplings that are not worthwhile.
-fn couplings_steps(state: &State) -> Option<(Vec<Step>, String)> {
-    let words = |cost: CouplingCost| {
-        let others = cost.without.others.zip(cost.with.others);
-        others.map_or(String::new(), |(without, with)| {
-            format!("off-axis J {}→{}", telling(without, 0), telling(with, 0))
-        })
-    };
-    let look = || {
-        Step::new(
-            "Look first",
-            Command::Layout(LayoutCommand::ShowView(View::Couplings)),
-        )
-    };
-    if let Some((assessment, cost)) = offered_couplings(state) {
-        let use_them = Step::new("Use couplings", setting::COUPLINGS.to(assessment.couplings));
-        return Some((vec![use_them, look()], words(cost)));
-    }
-    let used = used_couplings(state)?;
-    let cost = used.deciding_cost();
-    let leave_them = Step::new(
-        "Switch couplings off",
-        setting::COUPLINGS.to(CouplingCorrection::None),
-    );
-    let is_doubtful = !cost.is_worth_it() || used.unstable_in_band() > 0;
-    is_doubtful.then(|| (vec![leave_them, look()], words(cost)))
-}
-
 /// Counts the poles within the band that the couplings in use make unstable.
 fn unstable_in_band(state: &State) -> usize {
-    used_couplings(state).map_or(0, |used| used.unstable_in_band())
+    match used_couplings(state) {
+        Some(used) => used.unstable_in_band(),
+        None => 0,
+    }
 }
 
-/// Returns the command that opens the export form.
-pub(crate) fn export() -> Command {
-    Command::Form(FormCommand::ShowForm(Some(FormKind::Export)))
-}
-
-fn free_step(state: &State, pair: Pair) -> Step {
-    Step::new(
-        format!("Free {}", joined(&state.dataset().pair_name(pair))),
-        Edit::Hold(pair, false),
-    )
-}
-
-/// Returns the bound that would be sufficient, if any, then the response to release.
-fn gain_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
-    let Some(remedy) = &shown.gains.remedy else {
-        return vec![Step::reasons("Why?")];
-    };
-    let widen = widened(remedy, shown)
-        .map(|range| Step::new("Widen the bound", setting::GAIN_BOUNDS.to(range)));
-    let free = remedy.free.first().map(|pair| free_step(state, *pair));
-    widen
-        .into_iter()
-        .chain(free)
-        .chain([Step::reasons("Why?")])
-        .collect()
-}
-
-fn widened(remedy: &Remedy, shown: &ConditionAnalysis) -> Option<Value> {
-    let bounds = shown.gain_bounds();
-    let upper = remedy.upper.map(|upper| [bounds.lower, upper]);
-    upper
-        .or(remedy.lower.map(|lower| [lower, bounds.upper]))
-        .map(Value::Range)
+/// Caution about the couplings.
+struct CouplingCaution {
+    kind: RemarkKind,
+    words: String,
 }
 
 /// Returns the caution: missing couplings although some are requested, or the effect of couplings
-/// on poles and loop; else the price of the leads; else the cost of the schedule in this condition.
+/// on poles and loop; else the lead price; else the schedule's cost in this condition.
 fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
-    let of_couplings = coupling_caution(state);
-    let is_trouble = of_couplings
-        .as_ref()
-        .is_some_and(|(kind, _)| *kind == RemarkKind::Trouble);
-    let words = of_couplings.map(|(_, words)| words);
-    if is_trouble {
-        words
-    } else {
-        lead_caution(shown)
-            .or(words)
-            .or_else(|| schedule_caution(state, shown))
+    let couplings = coupling_caution(state);
+    if let Some(caution) = &couplings
+        && caution.kind == RemarkKind::Trouble
+    {
+        return Some(caution.words.clone());
     }
+    lead_caution(shown)
+        .or(couplings.map(|caution| caution.words))
+        .or_else(|| schedule_caution(state, shown))
 }
 
-/// Returns a caution if the schedule leaves more than twice the J of the condition's own correction
+/// Returns a caution if the schedule leaves more than twice the J that the own correction leaves
 /// (M12).
 fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
     let schedule = state.analysis()?.schedule.as_ref().ok()?;
@@ -478,33 +350,36 @@ fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<String> 
     None
 }
 
-/// Returns the most serious remark on the couplings in use in a few words; the list of reasons has
-/// all of them.
-fn coupling_caution(state: &State) -> Option<(RemarkKind, String)> {
+/// Returns the most serious remark on the couplings in use in a few words; the list of reasons
+/// holds every remark.
+fn coupling_caution(state: &State) -> Option<CouplingCaution> {
     if state.analysis()?.asked_couplings().is_err() {
-        return Some((
-            RemarkKind::Trouble,
-            "No couplings could be found".to_owned(),
-        ));
+        return Some(CouplingCaution {
+            kind: RemarkKind::Trouble,
+            words: "No couplings could be found".to_owned(),
+        });
     }
-    let cautions = coupling_cautions(used_couplings(state)?, state.dataset());
-    match (unstable_in_band(state), cautions.len()) {
-        (0, 0) => None,
-        (1, _) => Some((
-            RemarkKind::Trouble,
-            "Couplings: 1 pole unstable in the band".to_owned(),
-        )),
-        (count @ 2.., _) => Some((
-            RemarkKind::Trouble,
-            format!("Couplings: {count} poles unstable in the band"),
-        )),
-        (0, 1) => Some((RemarkKind::Caution, "Couplings: 1 caution".to_owned())),
-        (0, count) => Some((RemarkKind::Caution, format!("Couplings: {count} cautions"))),
+    let cautions = coupling_cautions(used_couplings(state)?, state.dataset()).len();
+    let unstable = unstable_in_band(state);
+    if unstable > 0 {
+        let poles = if unstable == 1 { "pole" } else { "poles" };
+        return Some(CouplingCaution {
+            kind: RemarkKind::Trouble,
+            words: format!("Couplings: {unstable} {poles} unstable in the band"),
+        });
     }
+    if cautions == 0 {
+        return None;
+    }
+    let noun = if cautions == 1 { "caution" } else { "cautions" };
+    Some(CouplingCaution {
+        kind: RemarkKind::Caution,
+        words: format!("Couplings: {cautions} {noun}"),
+    })
 }
 
-/// Returns the price of the leads: the greatest magnitude that the filters of a constrained
-/// response add above the band (M15.6).
+/// Returns the lead price: the greatest magnitude that the filters of a constrained response add
+/// above the band (M15.6); `None` up to 0.05 dB.
 fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
     let price = LeadPrice::of(&shown.compensated.as_ref()?.leads)?;
     let most_db = shown
@@ -512,8 +387,14 @@ fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
         .marked()
         .map(|pair| price.of_pair_db(pair))
         .fold(0.0, f64::max);
+    if most_db <= 0.05 {
+        return None;
+    }
     let top = number(price.limit_rad_s);
-    (most_db > 0.05).then(|| format!("Price: {} dB above {top} rad/s", signed(most_db, 0)))
+    Some(format!(
+        "Price: {} dB above {top} rad/s",
+        signed(most_db, 0)
+    ))
 }
 
 #[cfg(test)]
@@ -523,9 +404,12 @@ mod tests {
     use nalgebra::Complex;
 
     use gdcm_model::progress::Unobserved;
+    use gdcm_study::decisions::setting;
+    use gdcm_study::decisions::setting_row::Value;
     use gdcm_study::results::couplings_assessment::UnstablePole;
-    use gdcm_study::{Engine, Study};
+    use gdcm_study::{CouplingCorrection, Edit, Engine, Study};
 
+    use super::super::advice::export;
     use super::*;
     use crate::gui::commands::study::StudyCommand;
     use crate::gui::views::couplings_job;
@@ -536,9 +420,9 @@ mod tests {
                 .expect("it is in the program")
                 .dataset,
         );
-        decide
-            .iter()
-            .for_each(|edit| study.apply(edit).expect("the example takes it"));
+        for edit in decide {
+            study.apply(edit).expect("the example takes it");
+        }
         let mut state = State::new(study.clone(), String::new(), Vec::new());
         state.display.selection.condition = ConditionId(10);
         let analysis = Engine::default()
@@ -554,6 +438,13 @@ mod tests {
         Edit::reject_physics(ConditionId(10), &state.open_suggestions(shown))
     }
 
+    fn count(matched: usize, constrained: usize) -> Option<MatchCount> {
+        Some(MatchCount {
+            matched,
+            constrained,
+        })
+    }
+
     fn labels(verdict: &Verdict) -> Vec<&str> {
         verdict
             .steps
@@ -564,23 +455,20 @@ mod tests {
 
     #[test]
     fn suggested_models_are_to_be_rejected_before_anything_else() {
-        let verdict = Verdict::of(&state_of(&[]));
+        let verdict = Verdict::new(&state_of(&[]));
         assert_eq!(labels(&verdict), ["Reject 3 suggested"]);
         assert_eq!(verdict.note, "of 19 models, first");
     }
 
     #[test]
     fn gains_alone_do_not_make_a_verdict_good() {
-        let verdict = Verdict::of(&state_of(&[reject()]));
+        let verdict = Verdict::new(&state_of(&[reject()]));
         let [gain, phase] = &verdict.rows;
         assert_eq!(
             (gain.here, gain.everywhere, gain.words.as_str()),
-            (Some([5, 5]), Some([55, 55]), "matched")
+            (count(5, 5), count(55, 55), "matched")
         );
-        assert_eq!(
-            (phase.here, phase.everywhere),
-            (Some([0, 5]), Some([0, 55]))
-        );
+        assert_eq!((phase.here, phase.everywhere), (count(0, 5), count(0, 55)));
         // The medians of D of the example's constrained responses in condition 10: 56 to 72 ms of
         // lead.
         assert_eq!(phase.words, "lags by ≈ 66 ms");
@@ -590,7 +478,7 @@ mod tests {
 
     #[test]
     fn leads_are_met_and_say_their_price() {
-        let verdict = Verdict::of(&state_of(&[
+        let verdict = Verdict::new(&state_of(&[
             reject(),
             setting::PHASE.to(PhaseCorrection::Lead),
         ]));
@@ -633,7 +521,7 @@ mod tests {
                 .collect();
             let job = couplings_job(&state);
             state.results.couplings = Some((job, Ok(Arc::new(changed))));
-            Verdict::of(&state)
+            Verdict::new(&state)
         };
         let sound = verdict_with(&[]);
         assert!(sound.is_met() && sound.unstable_in_band == 0, "{sound:?}");
@@ -665,21 +553,21 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_is_held_the_on_axis_responses_are_offered() {
+    fn on_axis_responses_are_offered_while_none_are_held() {
         let pairs: Vec<Pair> = state_of(&[]).dataset().on_axis().marked().collect();
         let release: Vec<Edit> = pairs
             .into_iter()
             .map(|pair| Edit::Hold(pair, false))
             .chain([reject()])
             .collect();
-        let verdict = Verdict::of(&state_of(&release));
+        let verdict = Verdict::new(&state_of(&release));
         assert_eq!(verdict.rows[0].words, "fitted, none held");
         assert_eq!(labels(&verdict), ["Hold the on-axis responses"]);
         assert!(!verdict.is_met());
     }
 
     #[test]
-    fn responses_that_have_a_channel_in_common_are_told_by_it() {
+    fn responses_with_a_common_channel_are_reported_by_its_name() {
         let state = state_of(&[]);
         let words = |pairs: &[(usize, usize)]| {
             let pairs: Vec<Pair> = pairs
@@ -700,7 +588,7 @@ mod tests {
     }
 
     #[test]
-    fn what_phases_lag_by_is_one_number_or_two() {
+    fn a_common_lag_is_one_number_and_unequal_lags_are_a_range() {
         assert_eq!(lag_words(&mut [60.0]), "lags by 60 ms");
         assert_eq!(lag_words(&mut [60.0, 70.0, 64.0]), "lags by ≈ 64 ms");
         assert_eq!(lag_words(&mut [40.0, 106.0, 62.0]), "lags 40–106 ms");
@@ -711,7 +599,7 @@ mod tests {
     #[test]
     fn a_bound_that_is_in_the_way_can_be_widened() {
         let bounds = setting::GAIN_BOUNDS.to(Value::Range([0.99, 1.01]));
-        let verdict = Verdict::of(&state_of(&[reject(), bounds]));
+        let verdict = Verdict::new(&state_of(&[reject(), bounds]));
         assert!(
             !verdict.rows[0].is_met && verdict.rows[0].words.ends_with("stops at a bound"),
             "{verdict:?}"
@@ -721,6 +609,6 @@ mod tests {
             panic!("{verdict:?}")
         };
         let bounds = setting::GAIN_BOUNDS.to(Value::Range([0.99, 1.01]));
-        assert!(Verdict::of(&state_of(&[reject(), bounds, widen.clone()])).rows[0].is_met);
+        assert!(Verdict::new(&state_of(&[reject(), bounds, widen.clone()])).rows[0].is_met);
     }
 }

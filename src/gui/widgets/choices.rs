@@ -11,10 +11,13 @@ pub fn choice_ui<T: Copy + PartialEq>(
     value: &mut T,
     choices: &[(T, &str, &str)],
 ) {
-    let current = choices
-        .iter()
-        .find(|(choice, ..)| choice == value)
-        .map_or("…", |(_, text, _)| *text);
+    let mut current = "…";
+    for (choice, text, _) in choices {
+        if choice == value {
+            current = text;
+            break;
+        }
+    }
     let shown = ComboBox::from_id_salt(name)
         .selected_text(current)
         .width(60.0)
@@ -41,7 +44,7 @@ pub fn check_ui(
     let response = ui.checkbox(&mut value, text.into());
     let changed = response.changed();
     hint_ui(response, hint);
-    changed.then_some(value)
+    if changed { Some(value) } else { None }
 }
 
 /// Draws a drop-down list with an accessible name and `text` as its value; returns the choice.
@@ -55,12 +58,13 @@ pub fn list_ui<T: Copy>(
         .width(width)
         .selected_text(text)
         .show_ui(ui, |ui| {
-            let clicked = |(choice, is_chosen, text): (T, bool, String)| {
-                ui.selectable_label(is_chosen, text)
-                    .clicked()
-                    .then_some(choice)
-            };
-            choices.into_iter().filter_map(clicked).last()
+            let mut clicked = None;
+            for (choice, is_chosen, text) in choices {
+                if ui.selectable_label(is_chosen, text).clicked() {
+                    clicked = Some(choice);
+                }
+            }
+            clicked
         });
     named(shown.response, Role::ComboBox, name);
     shown.inner.flatten()

@@ -1,4 +1,4 @@
-//! Keyboard focus: the regions of the window that F6 visits, and the focus ring.
+//! Keyboard focus: the window regions that F6 visits, and the focus ring.
 
 use std::collections::BTreeMap;
 
@@ -6,10 +6,10 @@ use egui::{Context, Id, Key, Modifiers, Rect, Stroke, StrokeKind, Ui, pos2};
 
 use super::palette::Palette;
 
-/// Region of the window, in the order of the F6 key.
+/// Window region, in the order that F6 visits them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Region {
-    /// Plots of the view in front.
+    /// Plots in the front view.
     Plots,
     /// Plots in the dock.
     Dock,
@@ -21,13 +21,13 @@ pub enum Region {
     Settings,
     /// The export button.
     Export,
-    /// List of conditions.
+    /// Conditions list.
     Conditions,
-    /// Bundles of the displayed condition.
+    /// Bundles in the displayed condition.
     Models,
 }
 
-/// Content of the regions as they were drawn.
+/// Regions as drawn.
 #[derive(Clone, Default)]
 struct Regions {
     parts: BTreeMap<Region, Part>,
@@ -40,11 +40,11 @@ struct Regions {
 struct Part {
     /// Pass in which the region was last drawn.
     pass: u64,
-    /// Focusable controls, in the order of the Tab key.
+    /// Focusable controls, in Tab order.
     controls: Vec<Id>,
     /// Control that had the focus last.
     visited: Option<Id>,
-    /// Visible place of the region.
+    /// Visible place.
     place: Option<Rect>,
 }
 
@@ -52,7 +52,7 @@ fn key() -> Id {
     Id::unique("regions")
 }
 
-/// Draws a region, or a further piece of it, and records its focusable controls. Scrolls to a
+/// Draws a region, or a further piece of a region, and records its focusable controls. Scrolls to a
 /// control focused by the keyboard.
 pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R) -> R {
     let layer = ui.layer_id();
@@ -85,15 +85,16 @@ pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R)
         }
         part.pass = pass;
         part.controls.extend(controls);
-        part.place = part
-            .place
-            .map_or(Some(place), |others| Some(others.union(place)));
+        part.place = match part.place {
+            Some(others) => Some(others.union(place)),
+            None => Some(place),
+        };
         part.visited = focused.or(part.visited);
     });
-    let arrived = focused
-        .and_then(|focused| ctx.read_response(focused))
-        .filter(|response| response.gained_focus());
-    if let Some(response) = arrived {
+    if let Some(focused) = focused
+        && let Some(response) = ctx.read_response(focused)
+        && response.gained_focus()
+    {
         ui.scroll_to_rect(response.rect, None);
     }
     inner
@@ -164,7 +165,7 @@ fn had_focus() -> Id {
     Id::unique("had anything the focus")
 }
 
-/// Returns whether a control had the focus at the end of the last frame: Escape was meant for it
+/// Returns whether a control had the focus after the last frame: Escape was meant for that control,
 /// and has removed its focus by now.
 pub fn was_focused(ctx: &Context) -> bool {
     ctx.data(|data| data.get_temp(had_focus()).unwrap_or(false))
@@ -175,12 +176,12 @@ pub fn take_escape(ctx: &Context) -> bool {
     !was_focused(ctx) && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
 }
 
-/// Width of the ring \[pt\].
+/// Ring width \[pt\].
 const WIDTH: f32 = 2.0;
 /// Gap between the ring and its control \[pt\].
 const GAP: f32 = 1.0;
 
-/// Draws the focus ring on top of everything, alike around every control, list row, cell and plot.
+/// Draws the focus ring above everything, alike around controls, list rows, cells and plots.
 pub fn focus_ring_ui(ctx: &Context, palette: &Palette) {
     let focused = ctx.memory(|memory| memory.focused());
     ctx.data_mut(|data| data.insert_temp(had_focus(), focused.is_some()));

@@ -2,6 +2,7 @@
 
 pub mod choices;
 pub mod controls;
+pub mod fields;
 pub mod focus;
 pub mod palette;
 pub mod tables;

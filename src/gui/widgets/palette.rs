@@ -1,39 +1,35 @@
-//! Window colours, dark and light, the egui style built from them, and the theme-independent curve
-//! styles.
+//! Window colours, dark and light, fonts by their use, and the engineer's curve style.
 
-use std::sync::Arc;
+mod egui_style;
 
-use egui::epaint::Shadow;
-use egui::style::{HandleShape, ScrollStyle, Selection, WidgetVisuals, Widgets};
-use egui::{
-    Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke,
-    Style, TextStyle, Theme, Visuals, vec2,
-};
+use egui::{Color32, FontFamily, FontId, Visuals};
 use serde::{Deserialize, Serialize};
 
-/// Font size of captions: axes, units, bars, table headings, chips, status \[pt\].
+pub use egui_style::apply;
+
+/// Font size for captions: axes, units, bars, table headings, chips, status \[pt\].
 pub const SMALL_SIZE: f32 = 11.0;
-/// Font size of running text: rows, controls, words \[pt\].
+/// Font size for running text: rows, controls, words \[pt\].
 pub const BODY_SIZE: f32 = 12.5;
-/// Font size of the response in focus and of the verdict's counts \[pt\].
+/// Font size for titles and for the verdict's counts \[pt\].
 pub const TITLE_SIZE: f32 = 15.0;
-/// Font size of the start page's heading \[pt\].
+/// Font size for the start page's heading \[pt\].
 pub const DISPLAY_SIZE: f32 = 20.0;
 
-/// Returns the medium weight of the typeface: section headings, selection, constrained values,
-/// buttons.
+/// Returns the medium-weight font, for section headings, selection, constrained values, buttons.
 pub fn medium(size: f32) -> FontId {
     FontId::new(size, FontFamily::Name(MEDIUM.into()))
 }
 
+/// Name of the medium weight among the font families.
 const MEDIUM: &str = "medium";
 
-/// Returns the font of captions.
+/// Returns the caption font.
 pub fn small() -> FontId {
     FontId::proportional(SMALL_SIZE)
 }
 
-/// Returns the font of running text.
+/// Returns the font for running text.
 pub fn body() -> FontId {
     FontId::proportional(BODY_SIZE)
 }
@@ -42,29 +38,29 @@ const fn hex(rgb: u32) -> Color32 {
     Color32::from_rgb((rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8)
 }
 
-/// Costs J between which the colours of [`Palette::heat`] are interpolated.
+/// Costs J between which [`Palette::heat`] is interpolated.
 pub const HEAT_COSTS: [f32; 5] = [0.0, 10.0, 30.0, 60.0, 110.0];
 
-/// Design tokens of a theme: each colour has a single meaning everywhere.
+/// Theme colours, each with a single meaning everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Palette {
     /// Whether the theme has light text on a dark ground.
     pub is_dark: bool,
-    /// Ground of plots and text fields.
+    /// Ground under plots and text fields.
     pub background: Color32,
-    /// Ground of side panels and bars.
+    /// Ground under side panels and bars.
     pub panel: Color32,
     /// Elements on a panel: buttons, legends, tooltips.
     pub raised: Color32,
     /// Separators and outlines.
     pub line: Color32,
-    /// Grid lines of plots.
+    /// Grid lines in plots.
     pub grid: Color32,
     /// Running text.
     pub text: Color32,
     /// Captions and units.
     pub dim_text: Color32,
-    /// Ground of a selection.
+    /// Ground under a selection.
     pub selected: Color32,
     /// Nominal physics model.
     pub nominal: Color32,
@@ -82,17 +78,17 @@ pub struct Palette {
     pub warning: Color32,
     /// Met requirements.
     pub good: Color32,
-    /// Ground of an unmet verdict and of an invalid region.
+    /// Ground under an unmet verdict and an invalid region.
     pub warning_ground: Color32,
-    /// Ground of a met verdict.
+    /// Ground under a met verdict.
     pub good_ground: Color32,
-    /// Zero values, and names of excluded items.
+    /// Zero values and excluded names.
     pub quiet_text: Color32,
-    /// Bars and ticks of boxes.
+    /// Bars, and ticks in boxes.
     pub quiet_mark: Color32,
-    /// J of the heat map at [`HEAT_COSTS`]: a single hue in steps of lightness.
+    /// Colours for J at [`HEAT_COSTS`]: a single hue with rising lightness contrast.
     pub heat: [Color32; 5],
-    /// Factor on the widths of curves.
+    /// Factor on curve widths.
     pub line_width: f32,
 }
 
@@ -214,7 +210,7 @@ impl Palette {
         self.heat[above - 1].lerp_to_gamma(self.heat[above], part)
     }
 
-    /// Returns the text colour of a name written in the colour of its curve.
+    /// Returns the text colour for a name beside a curve in `curve` colour.
     pub fn name_of(&self, curve: Color32) -> Color32 {
         self.towards_text(curve, 0.3)
     }
@@ -227,170 +223,9 @@ impl Palette {
             self.panel
         }
     }
-
-    /// Builds the egui visuals from these colours.
-    pub fn visuals(&self) -> Visuals {
-        let base = if self.is_dark {
-            Visuals::dark()
-        } else {
-            Visuals::light()
-        };
-        let shadow = Shadow {
-            offset: [0, 3],
-            blur: 10,
-            spread: 0,
-            color: Color32::from_black_alpha(if self.is_dark { 110 } else { 40 }),
-        };
-        Visuals {
-            widgets: self.widgets(),
-            selection: Selection {
-                bg_fill: self.selected,
-                stroke: Stroke::new(1.0, self.text),
-            },
-            weak_text_color: Some(self.dim_text),
-            hyperlink_color: self.accent,
-            faint_bg_color: self.panel.lerp_to_gamma(self.raised, 0.5),
-            extreme_bg_color: self.background,
-            code_bg_color: self.raised,
-            warn_fg_color: self.warning,
-            error_fg_color: self.nominal,
-            window_corner_radius: CornerRadius::same(8),
-            window_shadow: shadow,
-            window_fill: if self.is_dark {
-                self.raised
-            } else {
-                self.panel
-            },
-            window_stroke: Stroke::new(1.0, self.line),
-            menu_corner_radius: CornerRadius::same(6),
-            panel_fill: self.panel,
-            popup_shadow: shadow,
-            indent_has_left_vline: false,
-            handle_shape: HandleShape::Circle,
-            slider_trailing_fill: true,
-            ..base
-        }
-    }
-
-    fn widgets(&self) -> Widgets {
-        let widget = |weak_bg_fill, bg_fill, outline, text| WidgetVisuals {
-            bg_fill,
-            weak_bg_fill,
-            bg_stroke: Stroke::new(1.0, outline),
-            corner_radius: CornerRadius::same(6),
-            fg_stroke: Stroke::new(1.0, text),
-            expansion: 0.0,
-        };
-        let shade = |amount| self.towards_text(self.raised, amount);
-        Widgets {
-            noninteractive: widget(self.panel, self.panel, self.line, self.text),
-            inactive: widget(self.raised, self.line, self.line, self.text),
-            hovered: widget(shade(0.07), shade(0.22), shade(0.3), self.text),
-            // Pressed and focused boxes: an accent fill would look checked.
-            active: widget(self.selected, shade(0.22), self.accent, self.text),
-            open: widget(shade(0.07), self.raised, self.line, self.text),
-        }
-    }
-
-    /// Builds the whole egui style: small text, close spacing, thin scroll bars.
-    pub fn style(&self) -> Style {
-        let mut style = Style {
-            visuals: self.visuals(),
-            animation_time: 0.08,
-            ..Style::default()
-        };
-        style.text_styles = [
-            (
-                TextStyle::Small,
-                FontId::new(SMALL_SIZE, FontFamily::Proportional),
-            ),
-            (
-                TextStyle::Body,
-                FontId::new(BODY_SIZE, FontFamily::Proportional),
-            ),
-            (
-                TextStyle::Button,
-                FontId::new(BODY_SIZE, FontFamily::Proportional),
-            ),
-            (TextStyle::Heading, medium(TITLE_SIZE)),
-            (
-                TextStyle::Monospace,
-                FontId::new(SMALL_SIZE, FontFamily::Monospace),
-            ),
-        ]
-        .into();
-        let spacing = &mut style.spacing;
-        spacing.item_spacing = vec2(8.0, 4.0);
-        spacing.button_padding = vec2(8.0, 3.0);
-        spacing.interact_size = vec2(28.0, 24.0);
-        spacing.window_margin = Margin::same(12);
-        spacing.menu_margin = Margin::same(4);
-        spacing.slider_rail_height = 4.0;
-        spacing.icon_width = 15.0;
-        spacing.icon_width_inner = 9.0;
-        spacing.icon_spacing = 6.0;
-        spacing.scroll = ScrollStyle {
-            bar_width: 7.0,
-            ..ScrollStyle::thin()
-        };
-        style
-    }
 }
 
-/// Returns both weights of the typeface, each followed by egui's own fonts for other scripts and
-/// rare symbols.
-pub fn fonts() -> FontDefinitions {
-    let mut fonts = FontDefinitions::default();
-    let monospaced = fonts
-        .families
-        .get(&FontFamily::Monospace)
-        .cloned()
-        .unwrap_or_default();
-    let others = fonts
-        .families
-        .get(&FontFamily::Proportional)
-        .cloned()
-        .unwrap_or_default();
-    let cuts = [
-        (
-            "Inter",
-            include_bytes!("../../../assets/fonts/Inter-Regular.ttf").as_slice(),
-            FontFamily::Proportional,
-        ),
-        (
-            "Inter Medium",
-            include_bytes!("../../../assets/fonts/Inter-Medium.ttf"),
-            FontFamily::Name(MEDIUM.into()),
-        ),
-    ];
-    for (name, bytes, family) in cuts {
-        fonts
-            .font_data
-            .insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
-        let mut names = vec![name.to_owned()];
-        for other in others.iter().chain(&monospaced) {
-            if !names.contains(other) {
-                names.push(other.clone());
-            }
-        }
-        fonts.families.insert(family, names);
-    }
-    fonts
-}
-
-/// Gives both of egui's themes this program's style, so that egui's `set_theme` switches between
-/// them.
-pub fn apply(ctx: &Context) {
-    ctx.set_fonts(fonts());
-    for (theme, palette) in [
-        (Theme::Dark, Palette::dark()),
-        (Theme::Light, Palette::light()),
-    ] {
-        ctx.set_style_of(theme, palette.style());
-    }
-}
-
-/// Colours of the curve roles.
+/// Colour set for the curve roles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum CurveColors {
     /// Red, blue, amber, green.
@@ -401,10 +236,10 @@ pub enum CurveColors {
 }
 
 impl CurveColors {
-    /// Every choice, in the order of the menu.
+    /// Every choice, in menu order.
     pub const ALL: [Self; 2] = [Self::Standard, Self::ForAllEyes];
 
-    /// Returns the text of the menu entry.
+    /// Returns the menu entry's text.
     pub fn name(self) -> &'static str {
         match self {
             Self::Standard => "Standard colours of curves",
@@ -413,12 +248,12 @@ impl CurveColors {
     }
 }
 
-/// Style of curves chosen by the engineer.
+/// Curve style chosen by the engineer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PlotStyle {
     pub curve_colors: CurveColors,
-    /// Factor on the widths of curves.
+    /// Factor on curve widths.
     pub line_width: f32,
 }
 
@@ -447,9 +282,9 @@ impl Default for PlotStyle {
     }
 }
 
-/// Colours of nominal, perturbed, identified and corrected models: of all colours near vermilion,
-/// blue, yellow and green with a contrast of 3 to the background, those with the greatest least
-/// distance from one another and from grey, for every kind of colour vision.
+/// Colours for nominal, perturbed, identified and corrected models. Among all colours near
+/// vermilion, blue, yellow and green with a contrast of 3 to the background, they maximise the least
+/// distance from each other and from grey over every kind of colour vision.
 const fn for_all_eyes(is_dark: bool) -> [Color32; 4] {
     if is_dark {
         [hex(0xc65b04), hex(0x6996ff), hex(0xe8d525), hex(0x12e782)]
@@ -466,13 +301,14 @@ mod tests {
     use crate::gui::plot::Role;
     use crate::gui::plot::curve_style::CurveStyle;
 
-    /// Computes contrast from relative luminance as defined by the Web Content Accessibility
-    /// Guidelines 2.2.
+    /// Computes relative luminance (Web Content Accessibility Guidelines 2.2).
+    fn luminance(color: Color32) -> f32 {
+        let [r, g, b, _] = Rgba::from(color).to_array();
+        0.2126 * r + 0.7152 * g + 0.0722 * b
+    }
+
+    /// Computes the contrast ratio (Web Content Accessibility Guidelines 2.2).
     fn contrast(a: Color32, b: Color32) -> f32 {
-        let luminance = |color: Color32| {
-            let [r, g, b, _] = egui::Rgba::from(color).to_array();
-            0.2126 * r + 0.7152 * g + 0.0722 * b
-        };
         let a = luminance(a);
         let b = luminance(b);
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
@@ -481,15 +317,6 @@ mod tests {
     /// Contrast required by the guidelines for text and for meaningful lines.
     const OF_TEXT: f32 = 4.5;
     const OF_LINES: f32 = 3.0;
-
-    #[test]
-    fn a_box_with_the_focus_is_not_filled_as_if_it_were_checked() {
-        for palette in [Palette::dark(), Palette::light()] {
-            let widgets = palette.widgets();
-            assert_eq!(widgets.active.bg_fill, widgets.hovered.bg_fill);
-            assert_ne!(widgets.active.bg_fill, palette.accent);
-        }
-    }
 
     #[test]
     fn text_is_readable_on_every_surface_of_both_themes() {
@@ -583,61 +410,13 @@ mod tests {
     #[test]
     fn a_greater_cost_stands_out_more_from_the_ground() {
         for palette in [Palette::dark(), Palette::light()] {
-            let of = |cost| contrast(palette.heat_of(cost), palette.panel);
-            let steps = [0.0, 5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 110.0];
+            let costs = [0.0, 5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 110.0];
+            let contrasts = costs.map(|cost| contrast(palette.heat_of(cost), palette.panel));
             assert!(
-                steps.windows(2).all(|pair| of(pair[0]) < of(pair[1])),
+                contrasts.is_sorted_by(|less, more| less < more),
                 "{palette:?}"
             );
             assert_eq!(palette.heat_of(1e9), palette.heat[4]);
-        }
-    }
-
-    #[test]
-    fn figures_are_of_equal_width_in_both_cuts() {
-        let ctx = Context::default();
-        apply(&ctx);
-        let output = ctx.run_ui(egui::RawInput::default(), |ui| {
-            for font in [FontId::proportional(BODY_SIZE), medium(BODY_SIZE)] {
-                let mut width = |figure| ui.fonts_mut(|fonts| fonts.glyph_width(&font, figure));
-                let widths: Vec<f32> = "0123456789−+±".chars().map(&mut width).collect();
-                assert!(
-                    widths.iter().all(|other| (other - widths[0]).abs() < 1e-3),
-                    "{widths:?}"
-                );
-            }
-        });
-        output.drop_without_applying_deltas();
-    }
-
-    #[test]
-    fn the_symbols_of_the_window_have_glyphs() {
-        let ctx = Context::default();
-        apply(&ctx);
-        let output = ctx.run_ui(egui::RawInput::default(), |ui| {
-            let font = FontId::proportional(BODY_SIZE);
-            for symbol in "→−–·°ωτΔα…●○◆◇■▲★⚠✓±≈".chars() {
-                for font in [&font, &medium(BODY_SIZE)] {
-                    assert!(
-                        ui.fonts_mut(|fonts| fonts.has_glyph(font, symbol)),
-                        "{symbol}"
-                    );
-                }
-            }
-        });
-        output.drop_without_applying_deltas();
-    }
-
-    #[test]
-    fn both_themes_of_a_context_get_their_own_style() {
-        let ctx = Context::default();
-        apply(&ctx);
-        for (theme, palette) in [
-            (Theme::Dark, Palette::dark()),
-            (Theme::Light, Palette::light()),
-        ] {
-            assert_eq!(ctx.style_of(theme).visuals.panel_fill, palette.panel);
-            assert_eq!(Palette::of(&ctx.style_of(theme).visuals), palette);
         }
     }
 
@@ -677,18 +456,17 @@ mod tests {
         let x = (0.4124564 * r + 0.3575761 * g + 0.1804375 * b) / 0.95047;
         let y = 0.2126729 * r + 0.7151522 * g + 0.0721750 * b;
         let z = (0.0193339 * r + 0.119192 * g + 0.9503041 * b) / 1.08883;
-        let f = |t: f32| {
-            if t > 216.0 / 24389.0 {
-                t.cbrt()
-            } else {
-                (24389.0 / 27.0 * t + 16.0) / 116.0
-            }
-        };
-        [
-            116.0 * f(y) - 16.0,
-            500.0 * (f(x) - f(y)),
-            200.0 * (f(y) - f(z)),
-        ]
+        let [fx, fy, fz] = [x, y, z].map(lightness_root);
+        [116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz)]
+    }
+
+    /// Computes f(t) in CIE 15:2004: the cube root, linear near zero.
+    fn lightness_root(t: f32) -> f32 {
+        if t > 216.0 / 24389.0 {
+            t.cbrt()
+        } else {
+            (24389.0 / 27.0 * t + 16.0) / 116.0
+        }
     }
 
     /// Returns the opaque colour that underlies a translucent colour.
@@ -702,7 +480,7 @@ mod tests {
         lab(sight.map(|row| (row[0] * r + row[1] * g + row[2] * b).clamp(0.0, 1.0)))
     }
 
-    /// Computes the perceived colour distance CIE76, of which 2.3 is just noticeable.
+    /// Computes the perceived colour distance CIE76; 2.3 is just noticeable.
     fn distance(a: Color32, b: Color32, sight: &[[f32; 3]; 3]) -> f32 {
         let a = seen(a, sight);
         let b = seen(b, sight);
@@ -718,22 +496,25 @@ mod tests {
 
     /// Returns the styles of every role in both themes.
     fn roles(curve_colors: CurveColors) -> Vec<Vec<(Role, CurveStyle)>> {
-        let of = |theme: Palette| {
+        let mut looks = Vec::new();
+        for theme in [Palette::dark(), Palette::light()] {
             let palette = theme.with_looks(PlotStyle {
                 curve_colors,
                 ..PlotStyle::default()
             });
-            Role::ALL
-                .into_iter()
-                .map(|role| (role, palette.role_style(role, false)))
-                .collect()
-        };
-        [Palette::dark(), Palette::light()].map(of).to_vec()
+            looks.push(
+                Role::ALL
+                    .into_iter()
+                    .map(|role| (role, palette.role_style(role, false)))
+                    .collect(),
+            );
+        }
+        looks
     }
 
-    fn assert_told_apart(
+    fn assert_distinct(
         curve_colors: CurveColors,
-        is_told: impl Fn(&CurveStyle, &CurveStyle, f32) -> bool,
+        is_distinct: impl Fn(&CurveStyle, &CurveStyle, f32) -> bool,
     ) {
         for looks in roles(curve_colors) {
             for (place, (role, look)) in looks.iter().enumerate() {
@@ -741,7 +522,7 @@ mod tests {
                     for (sight, matrix) in &SIGHTS {
                         let distance = distance(look.color, other_look.color, matrix);
                         assert!(
-                            is_told(look, other_look, distance),
+                            is_distinct(look, other_look, distance),
                             "{role:?} {other:?}, {sight}: {distance}"
                         );
                     }
@@ -750,21 +531,23 @@ mod tests {
         }
     }
 
+    /// Returns whether two roles have the same colour and differ in pattern or width only;
+    /// translucent colours return with a rounding error.
+    fn shares_color(a: &CurveStyle, b: &CurveStyle) -> bool {
+        distance(a.color, b.color, &SIGHTS[0].1) < 2.3
+    }
+
     #[test]
-    fn roles_of_two_colours_are_told_apart_by_colour_alone_to_all_eyes() {
-        // Some roles share a colour and differ in pattern or width; translucent colours return with
-        // a rounding error.
-        let is_shared =
-            |a: &CurveStyle, b: &CurveStyle| distance(a.color, b.color, &SIGHTS[0].1) < 2.3;
-        assert_told_apart(CurveColors::ForAllEyes, |a, b, distance| {
-            is_shared(a, b) || distance > APART
+    fn roles_of_two_colours_are_distinct_by_colour_alone_to_all_eyes() {
+        assert_distinct(CurveColors::ForAllEyes, |a, b, distance| {
+            shares_color(a, b) || distance > APART
         });
     }
 
     #[test]
-    fn with_the_standard_colours_what_looks_alike_to_some_eyes_differs_in_line_and_width() {
+    fn standard_colours_that_look_alike_to_some_eyes_differ_in_line_or_width() {
         for curve_colors in CurveColors::ALL {
-            assert_told_apart(curve_colors, |a, b, distance| {
+            assert_distinct(curve_colors, |a, b, distance| {
                 distance > APART
                     || (a.dash, a.length) != (b.dash, b.length)
                     || (a.width - b.width).abs() > 0.5
@@ -779,7 +562,7 @@ mod tests {
         assert!(distance(red, green, &SIGHTS[0].1) > 100.0);
         assert!(
             distance(red, green, &SIGHTS[2].1) < 20.0,
-            "so the simulation sees what it is there for"
+            "the simulated eye confuses them"
         );
     }
 }

@@ -1,9 +1,10 @@
-//! Tables of the window: as text to be copied and saved, and as drawn, sorted by a click on a
-//! heading.
+//! Tables in the window, sorted by a click on a heading, copied or saved by a right-click.
 
 use std::sync::Arc;
 
-use egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Role, ScrollArea, Sense, Ui};
+use egui::{
+    Align, Button, Color32, Grid, Label, Layout, Response, RichText, Role, ScrollArea, Sense, Ui,
+};
 
 use gdcm_words::Table;
 
@@ -57,7 +58,7 @@ impl Sorting {
         order
     }
 
-    /// Returns the sort mark of a column's heading.
+    /// Returns the sort mark for a column's heading.
     pub fn mark(self, column: usize) -> &'static str {
         match self.0 {
             Some((sorted, false)) if sorted == column => " ▲",
@@ -79,14 +80,14 @@ fn number_in(cell: &str) -> Option<f64> {
 /// Click in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TableClick {
-    /// Index of the row in the original order.
+    /// Row index in the original order.
     pub row: usize,
     pub column: usize,
 }
 
-/// Appearance of a table's cells.
+/// Cell colours and focus.
 pub struct TableLook<'a> {
-    /// Text colour of a cell, by row and column; the default if `None`.
+    /// Text colour for a cell, by row and column; the default if `None`.
     pub color: &'a dyn Fn(usize, usize) -> Option<Color32>,
     /// Whether a row is in focus.
     pub selected: &'a dyn Fn(usize) -> bool,
@@ -100,7 +101,7 @@ impl TableLook<'_> {
     };
 }
 
-/// Request from the context menu of a table.
+/// Request from a table's context menu.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TableRequest {
     /// Copies this text to the clipboard.
@@ -144,47 +145,23 @@ pub fn table_grid_ui<C: From<TableRequest>>(
         .chain(order.iter().map(|row| (look.selected)(*row)))
         .collect();
     let selected = palette.selected;
-    let row_color = move |row: usize, style: &egui::Style| match is_selected.get(row) {
-        Some(true) => Some(selected),
-        _ => (row % 2 == 1).then_some(style.visuals.faint_bg_color),
-    };
     Grid::new(("cells", &table.title))
         .spacing([12.0, 3.0])
-        .with_row_color(row_color)
-        .show(ui, |ui| {
-            for (column, heading) in table.columns.iter().enumerate() {
-                let text = palette.small(format!("{heading}{}", sorting.mark(column)));
-                let button = ui.add(Button::new(text).frame(false));
-                let button = named(
-                    button,
-                    Role::Button,
-                    format!("Sort {} by {heading}", table.title),
-                );
-                button.context_menu(|ui| copy_ui(ui, table, commands));
-                if button
-                    .on_hover_text("Sort; right-click: copy or save the table")
-                    .clicked()
-                {
-                    *sorting = sorting.clicked(column);
-                }
+        .with_row_color(move |row, style| {
+            if is_selected.get(row) == Some(&true) {
+                Some(selected)
+            } else if row % 2 == 1 {
+                Some(style.visuals.faint_bg_color)
+            } else {
+                None
             }
-            ui.end_row();
+        })
+        .show(ui, |ui| {
+            headings_ui(ui, table, sorting, palette, commands);
             for row in order {
                 for (column, cell) in table.rows[row].iter().enumerate() {
                     let color = (look.color)(row, column).unwrap_or(palette.text);
-                    let text = RichText::new(cell).size(SMALL_SIZE).color(color);
-                    let layout = if number_in(cell).is_some() || cell == "-" {
-                        Align::Max
-                    } else {
-                        Align::Min
-                    };
-                    let label = Label::new(text)
-                        .sense(Sense::click())
-                        .selectable(false)
-                        .extend();
-                    let response = ui
-                        .with_layout(Layout::top_down(layout), |ui| ui.add(label))
-                        .inner;
+                    let response = cell_ui(ui, cell, color);
                     response.context_menu(|ui| copy_ui(ui, table, commands));
                     if response.clicked() {
                         clicked = Some(TableClick { row, column });
@@ -194,6 +171,44 @@ pub fn table_grid_ui<C: From<TableRequest>>(
             }
         });
     clicked
+}
+
+/// Draws the headings; a click sorts the table.
+fn headings_ui<C: From<TableRequest>>(
+    ui: &mut Ui,
+    table: &Table,
+    sorting: &mut Sorting,
+    palette: &Palette,
+    commands: &mut Vec<C>,
+) {
+    for (column, heading) in table.columns.iter().enumerate() {
+        let text = palette.small(format!("{heading}{}", sorting.mark(column)));
+        let button = ui.add(Button::new(text).frame(false));
+        let name = format!("Sort {} by {heading}", table.title);
+        let button = named(button, Role::Button, name);
+        button.context_menu(|ui| copy_ui(ui, table, commands));
+        let button = button.on_hover_text("Sort; right-click: copy or save the table");
+        if button.clicked() {
+            *sorting = sorting.clicked(column);
+        }
+    }
+    ui.end_row();
+}
+
+/// Draws a cell, with a number at its right edge.
+fn cell_ui(ui: &mut Ui, cell: &str, color: Color32) -> Response {
+    let text = RichText::new(cell).size(SMALL_SIZE).color(color);
+    let align = if number_in(cell).is_some() || cell == "-" {
+        Align::Max
+    } else {
+        Align::Min
+    };
+    let label = Label::new(text)
+        .sense(Sense::click())
+        .selectable(false)
+        .extend();
+    ui.with_layout(Layout::top_down(align), |ui| ui.add(label))
+        .inner
 }
 
 fn copy_ui<C: From<TableRequest>>(ui: &mut Ui, table: &Table, commands: &mut Vec<C>) {
@@ -225,14 +240,12 @@ mod tests {
 
     #[test]
     fn numbers_are_sorted_by_value_and_words_by_letters() {
-        let by = |column| Sorting::default().clicked(column);
-        assert_eq!(by(1).order(&table()), [1, 3, 0, 2], "empty cells last");
-        assert_eq!(
-            by(1).clicked(1).order(&table()),
-            [0, 3, 1, 2],
-            "downwards too"
-        );
-        assert_eq!(by(0).order(&table()), [1, 0, 2, 3]);
+        let by_name = Sorting::default().clicked(0);
+        let by_value = Sorting::default().clicked(1);
+        assert_eq!(by_value.order(&table()), [1, 3, 0, 2], "empty cells last");
+        let falling = by_value.clicked(1);
+        assert_eq!(falling.order(&table()), [0, 3, 1, 2], "downwards too");
+        assert_eq!(by_name.order(&table()), [1, 0, 2, 3]);
     }
 
     #[test]

@@ -327,7 +327,7 @@ fn the_first_start_shows_the_tour_once_and_it_can_be_skipped() {
     for title in [
         "The bundle of models",
         "The curves",
-        "What is held",
+        "Held responses",
         "The verdict",
     ] {
         click(&mut window, "Next step");

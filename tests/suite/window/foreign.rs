@@ -75,7 +75,16 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
         words.len() == 1 && words[0].starts_with("COL → NZ differs by half a turn"),
         "{words:?}"
     );
-    window.get_by_label("its sign seems to be the other one");
+    window.get_by_label("its sign seems reversed");
+    let cost = |window: &Window| {
+        let pair = pair(window, "NZ", "COL");
+        state(window)
+            .shown()
+            .and_then(|shown| shown.cost[pair])
+            .expect("it has a J")
+            .uncorrected
+            .total()
+    };
     let before = cost(&window);
     click(&mut window, "Turn NZ");
     assert_eq!(doubted(&window), Vec::<String>::new());

@@ -42,7 +42,8 @@ use egui_kittest::kittest::{NodeT, Queryable};
 
 use gdcm::executor::Pool;
 use gdcm::gui::app::{GdcmApp, Setup};
-use gdcm::gui::panels::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
+use gdcm::gui::panels::explanation::{gain_conflict_marks, toggle_costs};
+use gdcm::gui::panels::reasons::remarks_shown;
 use gdcm::gui::plot::{BodeCurve, Pane, Role as CurveRole};
 use gdcm::gui::state::notices::{Notice, NoticeKind};
 use gdcm::gui::state::view::View;

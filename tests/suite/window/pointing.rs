@@ -197,7 +197,7 @@ fn what_a_tooltip_does_not_say_is_behind_the_question() {
         "{:?}",
         found.rests_on
     );
-    let text = gdcm::gui::panels::explanation::text_of(&found);
+    let text = gdcm::gui::panels::explanation::derivation_text(&found);
     for (symbol, meaning) in found.terms() {
         assert!(
             text.contains(&format!("{symbol}\t{meaning}")),

@@ -8,13 +8,14 @@ use super::gain_panel::{GainPanel, SIGNIFICANT};
 pub use super::gain_quantity::Across;
 pub use super::gain_quantity::GainQuantity;
 pub use super::gain_quantity::Measure;
-use super::gain_quantity::placed_results;
-use super::marks::{Curve, DotShape, Dots, Mark, MarkId};
-use super::role::Role;
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::results::uncertainty::Uncertainty;
+
+use super::gain_quantity::placed_results;
+use super::marks::{Curve, DotShape, Dots, Mark, MarkId};
+use super::role::Role;
 
 /// Plot height relative to its width, without and with bars and brackets.
 const ASPECT: f64 = 0.95;

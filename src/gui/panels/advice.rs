@@ -1,0 +1,225 @@
+//! Advice on the next step towards a met verdict.
+
+use gdcm_method::correction::Channel;
+use gdcm_method::correction::remedy::Remedy;
+use gdcm_model::dataset::{BundleKind, Pair};
+use gdcm_model::units::telling;
+use gdcm_study::decisions::setting;
+use gdcm_study::decisions::setting_row::Value;
+use gdcm_study::decisions::signs::SignRole;
+use gdcm_study::results::couplings_assessment::CouplingCost;
+use gdcm_study::{ConditionAnalysis, CouplingCorrection, Edit, PhaseCorrection};
+
+use super::explanation::turn_entry;
+use crate::gui::commands::command::Command;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::view::View;
+use crate::gui::state::window_state::State;
+use crate::gui::views::{offered_couplings, used_couplings};
+
+/// Possible action, with its button.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// Button text.
+    pub label: String,
+    pub command: Command,
+}
+
+impl Step {
+    pub(super) fn new(label: impl Into<String>, command: impl Into<Command>) -> Self {
+        Self {
+            label: label.into(),
+            command: command.into(),
+        }
+    }
+
+    /// Returns the step to the reasons for the result.
+    fn reasons(label: &str) -> Self {
+        Self::new(
+            label,
+            Command::Layout(LayoutCommand::ShowSheet(Some(Sheet::Reasons))),
+        )
+    }
+}
+
+/// Possible steps, the recommended step first, and the note beside them.
+pub(super) struct Advice {
+    pub(super) steps: Vec<Step>,
+    pub(super) note: String,
+}
+
+impl Advice {
+    fn without_note(steps: Vec<Step>) -> Self {
+        Self {
+            steps,
+            note: String::new(),
+        }
+    }
+
+    /// Recommends the first step that applies:
+    ///
+    /// 1. Reverse a channel whose sign is doubtful.
+    /// 2. Reject the suggested physics models.
+    /// 3. Constrain responses, if none are constrained.
+    /// 4. Resolve a gain conflict.
+    /// 5. Correct the phase.
+    /// 6. Use worthwhile couplings, or switch the others off.
+    /// 7. Export.
+    pub(super) fn new(state: &State, shown: &ConditionAnalysis) -> Self {
+        if let Some(channel) = shown.doubts.iter().find_map(|doubt| doubt.turns()) {
+            return Self::reverse_channel(state, channel);
+        }
+        let open = state.open_suggestions(shown);
+        if !open.is_empty() {
+            return Self::reject_suggested(state, &open);
+        }
+        if shown.held().marked().next().is_none() {
+            return Self::without_note(vec![Step::new(
+                "Hold the on-axis responses",
+                Edit::ConstrainOnAxis,
+            )]);
+        }
+        if !shown.gains.matched {
+            return Self::without_note(gain_steps(state, shown));
+        }
+        let phase = state.study.settings.phase;
+        if phase == PhaseCorrection::None || !shown.delays.matched {
+            return Self::without_note(phase_steps(state, shown));
+        }
+        if let Some(advice) = Self::on_couplings(state) {
+            return advice;
+        }
+        let mut steps = vec![Step::new("Export corrections…", export())];
+        if phase == PhaseCorrection::Lead {
+            steps.push(Step::reasons("Find the cause"));
+        }
+        Self::without_note(steps)
+    }
+
+    fn reverse_channel(state: &State, channel: Channel) -> Self {
+        let (label, command) = turn_entry(state, channel, Some(SignRole::Identified));
+        Self {
+            steps: vec![Step::new(label, command), Step::reasons("Why?")],
+            note: "its sign seems reversed".to_owned(),
+        }
+    }
+
+    fn reject_suggested(state: &State, open: &[String]) -> Self {
+        let condition = state.condition();
+        let models = condition.bundle(BundleKind::Physics).len();
+        Self {
+            steps: vec![Step::new(
+                format!("Reject {} suggested", open.len()),
+                Edit::reject_physics(condition.id(), open),
+            )],
+            note: format!("of {models} models, first"),
+        }
+    }
+
+    /// Recommends worthwhile couplings, or to remove couplings that are not worthwhile.
+    fn on_couplings(state: &State) -> Option<Self> {
+        let look = Step::new(
+            "Look first",
+            Command::Layout(LayoutCommand::ShowView(View::Couplings)),
+        );
+        if let Some((assessment, cost)) = offered_couplings(state) {
+            let use_them = Step::new("Use couplings", setting::COUPLINGS.to(assessment.couplings));
+            return Some(Self {
+                steps: vec![use_them, look],
+                note: off_axis_note(cost),
+            });
+        }
+        let used = used_couplings(state)?;
+        let cost = used.deciding_cost();
+        if cost.is_worth_it() && used.unstable_in_band() == 0 {
+            return None;
+        }
+        let leave_them = Step::new(
+            "Switch couplings off",
+            setting::COUPLINGS.to(CouplingCorrection::None),
+        );
+        Some(Self {
+            steps: vec![leave_them, look],
+            note: off_axis_note(cost),
+        })
+    }
+}
+
+/// "off-axis J 41→12".
+fn off_axis_note(cost: CouplingCost) -> String {
+    match (cost.without.others, cost.with.others) {
+        (Some(without), Some(with)) => {
+            format!("off-axis J {}→{}", telling(without, 0), telling(with, 0))
+        }
+        _ => String::new(),
+    }
+}
+
+/// Returns a name that does not break at a line end.
+pub(super) fn joined(name: &str) -> String {
+    name.replace(' ', "\u{a0}")
+}
+
+/// Returns the command that opens the export form.
+pub(super) fn export() -> Command {
+    Command::Form(FormCommand::ShowForm(Some(FormKind::Export)))
+}
+
+fn release_step(state: &State, pair: Pair) -> Step {
+    Step::new(
+        format!("Release {}", joined(&state.dataset().pair_name(pair))),
+        Edit::Hold(pair, false),
+    )
+}
+
+/// Returns the bound that would be sufficient, if any, then the response to release.
+fn gain_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
+    let mut steps = Vec::new();
+    if let Some(remedy) = &shown.gains.remedy {
+        if let Some(range) = widened(remedy, shown) {
+            steps.push(Step::new("Widen the bound", setting::GAIN_BOUNDS.to(range)));
+        }
+        if let Some(pair) = remedy.free.first() {
+            steps.push(release_step(state, *pair));
+        }
+    }
+    steps.push(Step::reasons("Why?"));
+    steps
+}
+
+/// Returns the gain bounds with the bound that the remedy moves.
+fn widened(remedy: &Remedy, shown: &ConditionAnalysis) -> Option<Value> {
+    let bounds = shown.gain_bounds();
+    if let Some(upper) = remedy.upper {
+        return Some(Value::Range([bounds.lower, upper]));
+    }
+    let lower = remedy.lower?;
+    Some(Value::Range([lower, bounds.upper]))
+}
+
+/// Returns the steps while the phase is uncorrected or not matched.
+fn phase_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
+    match state.study.settings.phase {
+        PhaseCorrection::None => vec![Step::new(
+            "Use delays",
+            setting::PHASE.to(PhaseCorrection::Delay),
+        )],
+        PhaseCorrection::Delay => vec![
+            Step::new("Use leads", setting::PHASE.to(PhaseCorrection::Lead)),
+            Step::reasons("Find the cause first"),
+        ],
+        PhaseCorrection::Lead => {
+            let mut steps = Vec::new();
+            if let Some(remedy) = &shown.delays.remedy
+                && let Some(pair) = remedy.free.first()
+            {
+                steps.push(release_step(state, *pair));
+            }
+            steps.push(Step::reasons("Why?"));
+            steps
+        }
+    }
+}

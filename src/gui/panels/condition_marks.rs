@@ -1,0 +1,176 @@
+//! Marks in the conditions list: open tasks, part in the schedule.
+
+use egui::{Rect, RichText, Stroke, Ui};
+
+use gdcm_model::dataset::{Condition, ConditionId};
+use gdcm_study::Edit;
+use gdcm_words::caution::failure_text;
+
+use crate::gui::commands::command::Command;
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::controls::{entries_ui, painted_text};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium, small};
+
+/// A condition's open tasks and its part in the schedule.
+pub(super) struct Marks {
+    pub(super) condition: ConditionId,
+    /// Models suggested as outliers and not rejected.
+    suggested: usize,
+    /// Constrained gains that are not matched.
+    unmatched_gains: usize,
+    /// Constrained delays that are not matched although a decision could match them; excludes
+    /// delays that need lead while leads are not requested.
+    unmatched_delays: usize,
+    pub(super) left_out: bool,
+    held_out: bool,
+    /// Reason for a missing result.
+    failure: Option<String>,
+}
+
+impl Marks {
+    pub(super) fn new(state: &State, condition: ConditionId) -> Self {
+        let choice = state.study.choice(condition);
+        let mut marks = Self {
+            condition,
+            suggested: 0,
+            unmatched_gains: 0,
+            unmatched_delays: 0,
+            left_out: !choice.scheduled,
+            held_out: choice.held_out,
+            failure: None,
+        };
+        match state
+            .analysis()
+            .and_then(|analysis| analysis.conditions.get(&condition))
+        {
+            None => {}
+            Some(Err(failure)) => marks.failure = Some(failure_text(failure, state.dataset())),
+            Some(Ok(result)) => {
+                marks.suggested = state.open_suggestions(result).len();
+                marks.unmatched_gains = result.gains.unmatched.len();
+                let has_leads = result.compensated.is_some();
+                marks.unmatched_delays = result
+                    .delays
+                    .unmatched
+                    .iter()
+                    .filter(|missed| has_leads || missed.delta >= 0.0)
+                    .count();
+            }
+        }
+        marks
+    }
+
+    /// Returns the end of the row's accessible name, after the flight state.
+    pub(super) fn after_name(&self) -> &'static str {
+        if self.held_out {
+            ", held out"
+        } else if self.left_out {
+            ", left out of the schedule"
+        } else {
+            ""
+        }
+    }
+
+    /// Paints ⚠ for an open decision, a stroke through an excluded condition, an accent on a
+    /// held-out condition.
+    pub(super) fn paint(&self, ui: &Ui, row: Rect, palette: &Palette) {
+        if self.failure.is_some()
+            || self.suggested + self.unmatched_gains + self.unmatched_delays > 0
+        {
+            painted_text(ui, row, -4.0, "⚠", small(), palette.warning);
+        }
+        if self.held_out {
+            ui.painter().vline(
+                row.left() + 1.0,
+                row.shrink(3.0).y_range(),
+                Stroke::new(2.0, palette.accent),
+            );
+        } else if self.left_out {
+            ui.painter().hline(
+                row.left() + 4.0..=row.left() + 22.0,
+                row.center().y,
+                Stroke::new(1.0, palette.quiet_text),
+            );
+        }
+    }
+
+    /// Draws the condition's context menu.
+    pub(super) fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let condition = self.condition;
+        let hold_out = if self.held_out {
+            "No longer hold out"
+        } else {
+            "Hold out, to judge the schedule"
+        };
+        let schedule = if self.left_out {
+            "Include in the schedule"
+        } else {
+            "Leave out of the schedule"
+        };
+        let entries = [
+            (
+                hold_out,
+                Edit::SetHeldOut {
+                    condition,
+                    held_out: !self.held_out,
+                },
+            ),
+            (
+                schedule,
+                Edit::SetScheduled {
+                    condition,
+                    scheduled: self.left_out,
+                },
+            ),
+        ];
+        entries_ui(
+            ui,
+            entries.map(|(text, edit)| (format!("{text}: condition {condition}"), edit.into())),
+            commands,
+        );
+    }
+
+    /// Draws the flight state and at most three sentences: open tasks, part in the schedule, reason
+    /// for a missing result.
+    pub(super) fn tooltip_ui(&self, ui: &mut Ui, condition: &Condition, palette: &Palette) {
+        let state = condition.flight_state();
+        ui.label(
+            RichText::new(&state.name)
+                .font(medium(BODY_SIZE))
+                .color(palette.text),
+        );
+        let mut values = vec![format!("{} kt true airspeed", state.airspeed_kt)];
+        values.extend(state.altitude_ft.map(|feet| format!("{feet} ft")));
+        values.extend(state.mass_kg.map(|mass| format!("{mass} kg")));
+        ui.label(values.join(" · "));
+        let tasks = self.open_tasks();
+        if !tasks.is_empty() {
+            ui.label(tasks.join("; "));
+        }
+        if self.held_out {
+            ui.label("Held out: analysed, and used to judge the schedule; right-click to end");
+        } else if self.left_out {
+            ui.label("Left out of the schedule; right-click to include");
+        }
+        if let Some(failure) = &self.failure {
+            ui.label(failure);
+        }
+    }
+
+    /// "3 suggested as outliers, not rejected".
+    fn open_tasks(&self) -> Vec<String> {
+        let counted = [
+            (self.suggested, "suggested as outliers, not rejected"),
+            (self.unmatched_gains, "held gains not matched"),
+            (
+                self.unmatched_delays,
+                "held delays not matched (without those that need lead)",
+            ),
+        ];
+        counted
+            .into_iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, words)| format!("{count} {words}"))
+            .collect()
+    }
+}

@@ -1,0 +1,265 @@
+//! Sheet with reasons for the displayed result: remarks, possible causes for a lag, leads, proof.
+
+use egui::{Button, CollapsingHeader, Rect, RichText, Role, Ui, vec2};
+
+use gdcm_method::correction::sensitivity::kkt_residual;
+use gdcm_method::correction::{GainObjective, Outcome, Quantity};
+use gdcm_study::decisions::setting;
+use gdcm_study::{ConditionAnalysis, Edit};
+use gdcm_words::caution::failure_text;
+use gdcm_words::condition_remarks::{details, remarks};
+use gdcm_words::couplings::{coupling_consequences, coupling_offer, no_couplings};
+use gdcm_words::derivation::ExplainTarget;
+use gdcm_words::leads::lead_words;
+use gdcm_words::remark::{Remark, RemarkKind};
+
+use super::explanation::{turn_entry, value_label_ui};
+use crate::gui::commands::command::Command;
+use crate::gui::commands::layout::LayoutCommand;
+use crate::gui::state::view::View;
+use crate::gui::state::window_state::State;
+use crate::gui::views::{offered_couplings, used_couplings};
+use crate::gui::widgets::controls::{Asks, button_ui, entries_ui, named};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
+
+/// Returns the remarks on the displayed result, on the schedule, and on the couplings in use.
+pub fn remarks_shown(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
+    let schedule = state
+        .analysis()
+        .and_then(|analysis| analysis.schedule.as_ref().ok());
+    let mut remarks = remarks(&state.study, shown, schedule);
+    remarks.extend(coupling_remarks(state));
+    remarks
+}
+
+/// Returns the benefit and cost of the couplings in use, or the reason for their absence; empty if
+/// none are requested.
+pub fn coupling_remarks(state: &State) -> Vec<Remark> {
+    let Some(analysis) = state.analysis() else {
+        return Vec::new();
+    };
+    match analysis.asked_couplings() {
+        Err(why) => vec![no_couplings(&why)],
+        Ok(None) => Vec::new(),
+        Ok(Some(_)) => match used_couplings(state) {
+            Some(assessment) => coupling_consequences(assessment, state.dataset()),
+            None => Vec::new(),
+        },
+    }
+}
+
+/// Possible cause for a common lag; repairing the model there is better than correcting it.
+struct Cause {
+    title: &'static str,
+    symptom: &'static str,
+    /// Button text.
+    look: &'static str,
+    view: View,
+}
+
+const CAUSES: [Cause; 4] = [
+    Cause {
+        title: "Record clock",
+        symptom: "Outputs stamped late lag by the same time in every response.",
+        look: "Look at the records",
+        view: View::Records,
+    },
+    Cause {
+        title: "Integration and sampling",
+        symptom: "Outputs passed on a step late lag by that step in every response.",
+        look: "Look at the differences",
+        view: View::Error,
+    },
+    Cause {
+        title: "Servos",
+        symptom: "A slow servo lags in every response to its input, and in no other: compare the \
+                  columns of the matrix.",
+        look: "Look at the inputs",
+        view: View::Channels,
+    },
+    Cause {
+        title: "Sensors and their filters",
+        symptom: "A slow sensor lags in every response at its output: compare the rows of the \
+                  matrix.",
+        look: "Look at the outputs",
+        view: View::Channels,
+    },
+];
+
+/// Draws the sheet for the displayed condition.
+pub fn reasons_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some(Ok(shown)) = state.outcome() else {
+        let words = match state.outcome() {
+            Some(Err(failure)) => failure_text(failure, state.dataset()),
+            _ => state.results.absence().to_owned(),
+        };
+        ui.label(words);
+        return;
+    };
+    remarks_ui(ui, state, &remarks_shown(state, shown), palette, commands);
+    couplings_offer_ui(ui, state, palette, commands);
+    if !shown.delays.matched || shown.compensated.is_some() {
+        causes_ui(ui, palette, commands);
+    }
+    lead_ui(ui, state, shown, palette);
+    section_ui(ui, "Proof");
+    proof_ui(ui, shown, state.is_proving(shown), palette);
+    objective_ui(ui, shown, palette, commands);
+    for sentence in details(&state.study, shown) {
+        ui.label(RichText::new(sentence).size(SMALL_SIZE));
+    }
+}
+
+fn section_ui(ui: &mut Ui, title: &str) {
+    ui.add_space(12.0);
+    ui.label(RichText::new(title).font(medium(BODY_SIZE)));
+}
+
+fn causes_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
+    section_ui(ui, "Possible sources of a lag");
+    for cause in CAUSES {
+        ui.label(cause.title);
+        ui.label(palette.small(cause.symptom));
+        let show = Command::Layout(LayoutCommand::ShowView(cause.view));
+        entries_ui(ui, [(cause.look, show)], commands);
+        ui.add_space(4.0);
+    }
+}
+
+/// Draws whether better gains exist, and how far the answer may be from the optimum.
+fn proof_ui(ui: &mut Ui, shown: &ConditionAnalysis, is_proving: bool, palette: &Palette) {
+    let outcome = shown.gains.proof.outcome;
+    let words = match outcome {
+        Outcome::NotProven { .. } if is_proving => {
+            "The search for better gains is running beside the live answer."
+        }
+        Outcome::NotProven { .. } => "Not proven.",
+        Outcome::Proven { .. } => "Global optimum: a lower bound proves it.",
+    };
+    ui.label(palette.dim(format!("{words} Gap {:.0e}.", outcome.gap())));
+}
+
+/// Draws sentences, each with its possible actions.
+fn remarks_ui(
+    ui: &mut Ui,
+    state: &State,
+    remarks: &[Remark],
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    for remark in remarks {
+        remark_ui(ui, palette, remark);
+        if let Some(pair) = remark.ignore {
+            let name = state.dataset().pair_name(pair);
+            let button = ui.small_button("Ignore it");
+            named(button, Role::Button, format!("Ignore {name}"))
+                .on_hover_text("No weight in the objective, in every condition")
+                .asks(Edit::Fit(pair, false), commands);
+        }
+        if let Some((channel, role)) = remark.turn {
+            let (label, turn) = turn_entry(state, channel, role);
+            let button = Button::new(label).small();
+            button_ui(ui, button, EVERYWHERE, turn, commands);
+        }
+        if let Some(phase) = remark.phase {
+            let label = format!("Correct the phase by {}", setting::PHASE.text(phase.into()));
+            let button = Button::new(label).small();
+            button_ui(ui, button, EVERYWHERE, setting::PHASE.to(phase), commands);
+        }
+    }
+}
+
+/// Hint on a button that decides for every condition.
+const EVERYWHERE: &str = "In every condition; can be undone";
+
+fn objective_ui(
+    ui: &mut Ui,
+    shown: &ConditionAnalysis,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let unit = if shown.gains.quantity == Quantity::Gain(GainObjective::Decibel) {
+        " dB²"
+    } else {
+        ""
+    };
+    let gains = format!("objective {:.4}{unit}", shown.gains.objective);
+    let delays = format!("delays {:.4} s²", shown.delays.objective);
+    let id = shown.condition.id();
+    ui.horizontal_wrapped(|ui| {
+        let label = value_label_ui(
+            ui,
+            palette.small(gains),
+            ExplainTarget::GainObjective(id),
+            commands,
+        );
+        label.on_hover_text(format!(
+            "eq. (7): {}{unit}, lower bound {}{unit}",
+            shown.gains.objective, shown.gains.proof.lower_bound
+        ));
+        let label = value_label_ui(
+            ui,
+            palette.small(delays),
+            ExplainTarget::DelayObjective(id),
+            commands,
+        );
+        let equation = if shown.compensated.is_some() {
+            "M15.4"
+        } else {
+            "eq. (11)"
+        };
+        label.on_hover_text(format!(
+            "{equation}: {} s², global optimum (convex); KKT residual {:.0e} s",
+            shown.delays.objective,
+            kkt_residual(&shown.delay_problem, &shown.delays)
+        ));
+    });
+}
+
+/// Draws the lead in each constrained response and the price for each filter.
+fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette) {
+    if shown.compensated.is_none() {
+        return;
+    }
+    let header = palette.small("Leads in words");
+    CollapsingHeader::new(header)
+        .id_salt("leads")
+        .default_open(true)
+        .show(ui, |ui| {
+            for sentence in lead_words(&state.study, shown, state.uncertainty().map(AsRef::as_ref))
+            {
+                ui.label(RichText::new(sentence).size(SMALL_SIZE));
+            }
+        });
+}
+
+/// Draws the off-axis benefit from worthwhile couplings, and the button that uses them.
+fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some((assessment, _)) = offered_couplings(state) else {
+        return;
+    };
+    let couplings = assessment.couplings;
+    if let Some(text) = coupling_offer(assessment) {
+        remark_ui(ui, palette, &Remark::good("couplings-offered", text));
+    }
+    let button = Button::new(format!("Use {}", couplings.name())).small();
+    let use_them = setting::COUPLINGS.to(couplings);
+    button_ui(ui, button, EVERYWHERE, use_them, commands);
+    let show = Command::Layout(LayoutCommand::ShowView(View::Couplings));
+    entries_ui(ui, [("Look at the couplings", show)], commands);
+}
+
+fn remark_ui(ui: &mut Ui, palette: &Palette, remark: &Remark) {
+    let color = match remark.kind {
+        RemarkKind::Good => palette.good,
+        RemarkKind::Caution | RemarkKind::Trouble => palette.warning,
+    };
+    let text = RichText::new(&remark.text).size(SMALL_SIZE);
+    let shown = ui.horizontal(|ui| {
+        ui.add_space(8.0);
+        ui.vertical(|ui| ui.label(text));
+    });
+    let rect = shown.response.rect;
+    let bar = Rect::from_min_size(rect.min, vec2(3.0, rect.height()));
+    ui.painter().rect_filled(bar, 1.0, color);
+}

@@ -1,0 +1,237 @@
+//! Status bar at the window's foot: computation status, notices, remarks on the data.
+
+use egui::{Align, Button, Color32, Label, Layout, RichText, Ui};
+
+use gdcm_model::dataset::BundleKind;
+use gdcm_words::assessment::not_assessed_text;
+
+use super::bars::counted;
+use crate::gui::commands::command::Command;
+use crate::gui::commands::computing::ComputingCommand;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::state::notices::{Notice, NoticeKind};
+use crate::gui::state::records::RecordsState;
+use crate::gui::state::results::{Background, bar_words};
+use crate::gui::state::window_state::State;
+use crate::gui::widgets::controls::button_ui;
+use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+
+/// Draws the computation status on the left; on the right the words on the pointed item, else the
+/// newest notice, else a remark on the data.
+pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    ui.horizontal_centered(|ui| {
+        computation_ui(ui, state, palette, commands);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if let Some(pointed) = &state.display.selection.told {
+                let text = RichText::new(pointed).size(SMALL_SIZE);
+                ui.add(Label::new(text).truncate());
+            } else if let Some(notice) = &state.notice {
+                notice_ui(ui, notice, palette, commands);
+            } else {
+                ui.add(Label::new(palette.small(data_remark(state))).truncate());
+            }
+        });
+    });
+}
+
+fn notice_ui(ui: &mut Ui, notice: &Notice, palette: &Palette, commands: &mut Vec<Command>) {
+    small_button_ui(ui, "Dismiss", FormCommand::DismissNotice.into(), commands);
+    let color = if notice.kind == NoticeKind::Done {
+        palette.text
+    } else {
+        palette.warning
+    };
+    let text = RichText::new(&notice.text).size(SMALL_SIZE).color(color);
+    ui.add(Label::new(text).truncate())
+        .on_hover_text(&notice.text);
+}
+
+fn small_button_ui(ui: &mut Ui, text: &str, command: Command, commands: &mut Vec<Command>) {
+    button_ui(ui, Button::new(text).small(), "", command, commands);
+}
+
+fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let now = ui.input(|input| input.time);
+    let status = Status::new(state, now, palette);
+    ui.label(RichText::new("●").size(SMALL_SIZE).color(status.dot));
+    let text = RichText::new(status.text)
+        .size(SMALL_SIZE)
+        .color(status.color);
+    let label = ui.label(text);
+    if state.analysis().is_some() {
+        let elapsed_ms = state.results.elapsed_ms;
+        label.on_hover_text(format!("The newest analysis took {elapsed_ms:.1} ms"));
+    }
+    let beside = words_beside(state, now);
+    if let Some(words) = &beside {
+        ui.label(palette.small(words));
+    }
+    let is_reading = state.opening.is_some() || state.records.reading.is_some();
+    let is_stopped = state.results.stopped || state.results.background.stopped;
+    if !is_reading && is_stopped {
+        small_button_ui(ui, "Compute", ComputingCommand::Compute.into(), commands);
+    } else if is_reading || state.results.is_stale(now) || beside.is_some() {
+        let stop = ComputingCommand::StopComputing.into();
+        small_button_ui(ui, "Stop", stop, commands);
+    }
+    ui.label(palette.small(format!(
+        "{} responses · {} frequencies",
+        count_models(state),
+        state.study.settings.points
+    )));
+    if !state.file_cautions.is_empty() {
+        let label = ui.label(palette.small_warning(counted(state.file_cautions.len(), "caution")));
+        label.on_hover_text(state.file_cautions.join("\n"));
+    }
+}
+
+/// Whether the live answer is up to date, and its colours.
+struct Status {
+    text: String,
+    color: Color32,
+    dot: Color32,
+}
+
+impl Status {
+    fn new(state: &State, now: f64, palette: &Palette) -> Self {
+        if let Some(name) = &state.opening {
+            return Self::colored(format!("reading {name} …"), palette.accent);
+        }
+        if state.results.stopped {
+            let text = format!("stopped: {}", state.after_stop());
+            return Self::colored(text, palette.warning);
+        }
+        if !state.results.is_stale(now) {
+            // Green text would claim that gains and phases are met.
+            return Self {
+                text: "up to date".to_owned(),
+                color: palette.dim_text,
+                dot: palette.good,
+            };
+        }
+        let text = match state.results.background.analysis {
+            Some((done, total)) if total > 0 => {
+                format!("computing, {} % …", 100 * done / total)
+            }
+            _ => "computing …".to_owned(),
+        };
+        Self::colored(text, palette.warning)
+    }
+
+    fn colored(text: String, color: Color32) -> Self {
+        Self {
+            text,
+            color,
+            dot: color,
+        }
+    }
+}
+
+/// Describes the work besides the live answer; `None` if there is none, or not for long enough.
+fn words_beside(state: &State, now: f64) -> Option<String> {
+    let background = &state.results.background;
+    if let Some(reading) = &state.records.reading {
+        return Some(format!("reading {reading} …"));
+    }
+    if background.stopped {
+        return Some("background work stopped".to_owned());
+    }
+    if state.results.is_background_told(now) {
+        return Some(background_words(background, &state.records));
+    }
+    None
+}
+
+/// Counts the models in both bundles over all conditions.
+fn count_models(state: &State) -> usize {
+    let mut count = 0;
+    for condition in state.dataset().conditions() {
+        for kind in BundleKind::BOTH {
+            count += condition.bundle(kind).len();
+        }
+    }
+    count
+}
+
+/// Describes the work in progress besides the live answer, longest first.
+fn background_words(background: &Background, records: &RecordsState) -> String {
+    if let Some((done, total)) = background.report {
+        return format!("writing the report, {} % …", percent(done, total));
+    }
+    if let Some((done, total)) = background.identification {
+        return identification_words(records, percent(done, total));
+    }
+    if !background.proofs.is_empty() {
+        let conditions = counted(background.proofs.len(), "condition");
+        return format!("proving the gains of {conditions} …");
+    }
+    match background.curves {
+        Some((_, 0)) => return "curves …".to_owned(),
+        Some((done, total)) => return format!("curves, {} % …", percent(done, total)),
+        None => {}
+    }
+    if let Some(progress) = background.bars {
+        return bar_words(progress);
+    }
+    if let Some((done, total)) = background.time_histories {
+        return format!("responses to flight records, {} % …", percent(done, total));
+    }
+    if let Some((done, total)) = background.couplings {
+        return format!(
+            "couplings without each condition, {} % …",
+            percent(done, total)
+        );
+    }
+    if background.views > 0 {
+        "contents of the views …".to_owned()
+    } else {
+        "costs of holding and releasing …".to_owned()
+    }
+}
+
+/// "identifying condition 10, 40 %, 2 more after it …".
+fn identification_words(records: &RecordsState, percent: usize) -> String {
+    let jobs = records.running.len();
+    match records.under_way() {
+        Some(job) if jobs >= 2 => {
+            let condition = job.condition;
+            let more = jobs - 1;
+            format!("identifying condition {condition}, {percent} %, {more} more after it …")
+        }
+        _ => format!("identifying, {percent} % …"),
+    }
+}
+
+/// Returns the whole percentage, 0 without a total.
+fn percent(done: usize, total: usize) -> usize {
+    100 * done / total.max(1)
+}
+
+/// Returns why the assessment leaves out the displayed condition, or else a remark on the
+/// data.
+fn data_remark(state: &State) -> String {
+    let id = state.condition().id();
+    if let Some(analysis) = state.analysis()
+        && let Some(Err(why)) = analysis.assessment.get(&id)
+    {
+        let why = not_assessed_text(why, state.dataset());
+        return format!("condition {id} is left out of the assessment: {why}");
+    }
+    state.condition().flight_state().name.clone()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_progress_of_a_couplings_assessment_is_reported() {
+        let background = Background {
+            couplings: Some((300, 1000)),
+            ..Background::default()
+        };
+        assert!(background.is_busy());
+        let words = background_words(&background, &RecordsState::default());
+        assert_eq!(words, "couplings without each condition, 30 % …");
+    }
+}

@@ -7,6 +7,8 @@ pub mod bode;
 pub mod channels;
 pub mod compare;
 pub mod couplings;
+mod cursor_readout;
+mod curve_chips;
 pub mod evidence;
 pub mod figure_button;
 pub mod figures;

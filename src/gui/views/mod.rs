@@ -3,6 +3,7 @@
 
 pub mod assembling;
 pub mod assessment;
+mod assessment_plots;
 pub mod bode;
 pub mod channels;
 pub mod compare;

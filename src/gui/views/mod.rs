@@ -23,6 +23,7 @@ pub mod over_time;
 pub mod poles;
 pub mod records;
 pub mod requirement_limits;
+mod requirement_tables;
 pub mod requirements;
 pub mod setting_controls;
 

@@ -17,6 +17,7 @@ pub(in crate::gui) mod frequency;
 pub mod gain_plots;
 pub mod histories;
 pub mod leads;
+mod mode_table;
 pub mod need;
 pub mod net_gain;
 pub mod over_time;
@@ -25,6 +26,7 @@ pub mod records;
 pub mod requirement_limits;
 mod requirement_tables;
 pub mod requirements;
+mod schedule_evidence;
 pub mod setting_controls;
 
 use std::sync::Arc;

@@ -3,16 +3,16 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
-use gdcm_plot::figure::MarkId;
 use gdcm_plot::figure::condition_source::schedule_words;
 use gdcm_plot::figure::gains::{Across, GainQuantity, add_variant, net_gain_figure, quieten};
+use gdcm_plot::figure::{Figure, MarkId};
 use gdcm_study::decisions::setting;
 
 use super::compare::overlaid_analysis;
-use super::evidence::{coefficient_table, forms_ui, lead_evidence_table, residual_table};
 use super::gain_plots::{
     GainPlots, bars_switch_ui, gain_command, net_gain_pairs, shown_uncertainty,
 };
+use super::schedule_evidence::{FormsTable, coefficient_table, lead_degrees_table, residual_table};
 use super::setting_controls::setting_ui;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
@@ -50,8 +50,7 @@ pub fn net_gain_header_ui(
     commands: &mut Vec<Command>,
 ) {
     let shown = state.display.gains.show_evidence;
-    let hint = "Which pairs at one airspeed differ significantly, and what each form of the schedule misses, so that a degree is \
-                chosen on evidence";
+    let hint = "Significant differences at equal airspeed, and the error of each form of the schedule: evidence for its degree";
     if toggle_ui(ui, ("evidence", "evidence"), shown, hint) {
         commands.push(DisplayCommand::ShowEvidence(!shown).into());
     }
@@ -60,8 +59,8 @@ pub fn net_gain_header_ui(
         let button = ui.small_button(
             RichText::new(format!("□ {variant} ×")).color(palette.name_of(palette.corrected)),
         );
-        let name = format!("Variant {variant} laid over");
-        let hint = "Hollow squares: the net gains of this variant. Click: take them away";
+        let name = format!("Overlaid variant {variant}");
+        let hint = "Hollow squares: net gains of this variant. Click: remove them";
         if named(button, Role::Button, &name)
             .on_hover_text(hint)
             .clicked()
@@ -71,14 +70,12 @@ pub fn net_gain_header_ui(
     }
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let form = schedule_words(&state.study.settings.schedule);
-    let text = format!(
-        "{} \u{25be}",
-        form.strip_prefix("polynomial of ").unwrap_or(&form)
-    );
+    let short_form = form.strip_prefix("polynomial of ").unwrap_or(&form);
+    let text = format!("{short_form} \u{25be}");
     let button = MenuButton::from_button(Button::new(text).frame(false)).config(config);
     let (button, _) = button.ui(ui, |ui| schedule_ui(ui, state, palette, commands));
     named(button, Role::Button, "Form of the schedule")
-        .on_hover_text("The form of the schedule over airspeed");
+        .on_hover_text("Degree, scheduled quantity, delays and airspeed tolerance");
     pair_set_ui(ui, state, commands);
 }
 
@@ -88,7 +85,7 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     if state.display.gains.net_gain_pairs == PairSet::Picked {
         let picked = state.display.gains.picked_pairs.contains(&pair);
         let (text, verb) = if picked {
-            ("−", "Let go")
+            ("−", "Remove")
         } else {
             ("+", "Pick")
         };
@@ -155,11 +152,9 @@ pub fn net_gain_view_ui(
         ..plots.scene("net gain", &plots.figure, message)
     };
     let events = figure_ui(ui, &scene, &mut view, palette);
-    commands.extend(
-        events
-            .into_iter()
-            .filter_map(|event| gain_command(state, event)),
-    );
+    for event in events {
+        commands.extend(gain_command(state, event));
+    }
     state.display.figures.insert(View::NetGain, view);
 }
 
@@ -168,21 +163,35 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
     let mut cached = std::mem::take(&mut state.display.gains.evidence);
     cached.refresh(state);
     let mut sorting = state.display.gains.evidence_sorting;
-    ScrollArea::vertical().show(ui, |ui| match cached.found() {
-        None => {
+    ScrollArea::vertical().show(ui, |ui| {
+        let Some(evidence) = cached.evidence() else {
             ui.label(palette.dim(state.results.absence()));
-        }
-        Some((conditions, evidence)) => {
-            let hint = "fit: residuals of the conditions that the schedule is made of; unseen: of each condition under the \
-                        schedule that is made without it (root mean square of ln of the net gain)";
-            ui.label(RichText::new("Error of each form [% of the net gain]").size(SMALL_SIZE).strong()).on_hover_text(hint);
-            forms_ui(ui, state, evidence, (&mut sorting, palette), commands);
-            let leads = lead_evidence_table(state, cached.leads());
-            let residuals = residual_table(state, conditions, evidence);
-            for table in leads.into_iter().chain(residuals).chain(coefficient_table(state)) {
-                ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
-                table_ui(ui, &table, &mut Sorting::default(), &TableLook::PLAIN, palette, commands);
-            }
+            return;
+        };
+        let hint = "fit: root mean square of the residuals of ln(net gain); unseen: the same for each condition under the schedule \
+                    fitted without it";
+        ui.label(
+            RichText::new("Error of each form [% of the net gain]")
+                .size(SMALL_SIZE)
+                .strong(),
+        )
+        .on_hover_text(hint);
+        let forms = FormsTable {
+            state,
+            forms: evidence.forms,
+            palette,
+        };
+        forms.ui(ui, &mut sorting, commands);
+        let tables = [
+            lead_degrees_table(state, &cached.leads),
+            residual_table(state, evidence),
+            coefficient_table(state),
+        ];
+        for table in tables.into_iter().flatten() {
+            ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
+            let mut unsorted = Sorting::default();
+            let look = TableLook::PLAIN;
+            table_ui(ui, &table, &mut unsorted, &look, palette, commands);
         }
     });
     state.display.gains.evidence = cached;
@@ -203,10 +212,10 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         .num_columns(2)
         .spacing([12.0, 6.0])
         .show(ui, |ui| {
-            for setting in rows
-                .into_iter()
-                .filter(|setting| (setting.control.applies)(&state.study))
-            {
+            for setting in rows {
+                if !(setting.control.applies)(&state.study) {
+                    continue;
+                }
                 ui.label(palette.dim(setting.control.label));
                 setting_ui(ui, state, setting, palette, commands);
                 ui.end_row();
@@ -217,26 +226,20 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
 /// Builds a plot for each response of the displayed set: the net gain of each condition's optimum,
 /// and the schedule.
 pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
-    let pairs = if state.analysis().is_some() {
-        net_gain_pairs(state)
-    } else {
-        Vec::new()
-    };
-    let figure = state
-        .analysis()
-        .map(|analysis| net_gain_figure(analysis, shown_uncertainty(state), &pairs));
-    let mut figure = figure.unwrap_or_default();
+    let mut pairs = Vec::new();
+    let mut figure = Figure::default();
+    if let Some(analysis) = state.analysis() {
+        pairs = net_gain_pairs(state);
+        figure = net_gain_figure(analysis, shown_uncertainty(state), &pairs);
+    }
     let quantities: Vec<GainQuantity> = pairs.iter().copied().map(GainQuantity::NetGain).collect();
     if let Some((name, analysis)) = overlaid_analysis(state) {
         add_variant(&mut figure, &quantities, analysis, name);
     }
-    for (plot, pair) in figure
-        .plots
-        .iter_mut()
-        .zip(&pairs)
-        .filter(|(_, pair)| !state.study.settings.constrained[**pair])
-    {
-        plot.title = format!("{} (free)", state.dataset().pair_name(*pair));
+    for (plot, pair) in figure.plots.iter_mut().zip(&pairs) {
+        if !state.study.settings.constrained[*pair] {
+            plot.title = format!("{} (free)", state.dataset().pair_name(*pair));
+        }
     }
     GainPlots {
         state,

@@ -36,32 +36,24 @@ pub fn leads_view_ui(
         panel.show(ui, |ui| {
             let pair = Channel::of(state.display.selection.pair);
             let channels = all_channels(state.dataset());
-            let selected = |row: usize| {
-                channels
-                    .get(row)
-                    .is_some_and(|channel| pair.contains(channel))
-            };
             let look = TableLook {
-                selected: &selected,
+                selected: &|row| match channels.get(row) {
+                    Some(channel) => pair.contains(channel),
+                    None => false,
+                },
                 ..TableLook::PLAIN
             };
             ui.label(palette.small_warning(&table.title));
             ui.spacing_mut().interact_size.y = 16.0;
-            table_ui(
-                ui,
-                &table,
-                &mut Sorting::default(),
-                &look,
-                palette,
-                commands,
-            );
+            let mut unsorted = Sorting::default();
+            table_ui(ui, &table, &mut unsorted, &look, palette, commands);
         });
     }
     let figure = figure(state);
     let message = match state.study.settings.phase {
         PhaseCorrection::Lead => state.results.absence(),
         _ => {
-            "No leads: the phase is corrected by delays, or not at all. Settings, phase, \"delay or lead\""
+            "No leads: the phase is corrected by delays, or not at all (to change: Settings, phase, \"delay or lead\")"
         }
     };
     let mut view = state
@@ -94,11 +86,14 @@ pub fn leads_table(state: &State) -> Option<Table> {
     let price = LeadPrice::of(leads);
     let (inputs, outputs) = state.dataset().names_of_channels();
     let top = leads.design.band_top_rad_s();
-    let title = price.as_ref().map_or_else(
-        || "No channel has a lead filter".to_owned(),
-        LeadPrice::limit_words,
-    );
-    let above = price.as_ref().map_or(top, LeadPrice::above_rad_s);
+    let title = match &price {
+        Some(price) => price.limit_words(),
+        None => "No channel has a lead filter".to_owned(),
+    };
+    let above = match &price {
+        Some(price) => price.above_rad_s(),
+        None => top,
+    };
     let columns = [
         "channel".to_owned(),
         "lead [ms]".to_owned(),
@@ -110,18 +105,23 @@ pub fn leads_table(state: &State) -> Option<Table> {
     for channel in all_channels(state.dataset()) {
         let tau_s = leads.taus_s[channel];
         let filter = leads.filters()[channel];
-        let phase = filter.map_or(-top * tau_s.max(0.0), |filter| filter.phase(top));
-        let servo = filter.map_or_else(
-            || "–".to_owned(),
-            |filter| {
-                format!(
-                    "{} → {}",
-                    telling(filter.zero_rad_s(), 0),
-                    telling(filter.lag_rad_s(), 0)
-                )
-            },
-        );
-        let gain_db = price.as_ref().map_or(0.0, |price| price.gains_db[channel]);
+        // Without a filter, the phase is that of the pure delay.
+        let phase = match filter {
+            Some(filter) => filter.phase(top),
+            None => -top * tau_s.max(0.0),
+        };
+        let servo = match filter {
+            Some(filter) => format!(
+                "{} → {}",
+                telling(filter.zero_rad_s(), 0),
+                telling(filter.lag_rad_s(), 0)
+            ),
+            None => "–".to_owned(),
+        };
+        let gain_db = match &price {
+            Some(price) => price.gains_db[channel],
+            None => 0.0,
+        };
         table.row([
             channel.name(&inputs, &outputs),
             signed(-s_to_ms(tau_s), 0),

@@ -1,5 +1,5 @@
-//! Views between the side panels, each with its header. A single list holds all views with their
-//! contents, commands and needs.
+//! Views between the side panels. [`view_content`] lists for each view its drawing, header, needed
+//! background results and figure.
 
 pub mod assembling;
 pub mod assessment;
@@ -99,16 +99,11 @@ pub fn view_content(view: View) -> ViewContent {
             title: ViewTitle::Condition,
             tools: |ui, state, _, commands| poles_header_ui(ui, state, commands),
             tools_width: 180.0,
-            needs: |state| {
-                let condition = state.dataset().condition(state.condition().id());
-                condition
-                    .map(|of| {
-                        Need::Modes(ModesJob {
-                            condition: Arc::clone(of).into(),
-                        })
-                    })
-                    .into_iter()
-                    .collect()
+            needs: |state| match state.dataset().condition(state.condition().id()) {
+                Some(condition) => vec![Need::Modes(ModesJob {
+                    condition: Arc::clone(condition).into(),
+                })],
+                None => Vec::new(),
             },
             ..ViewContent::PLAIN
         },
@@ -143,18 +138,16 @@ pub fn view_content(view: View) -> ViewContent {
             draw: assessment_view_ui,
             tools: |ui, state, _, commands| assessment_header_ui(ui, state, commands),
             tools_width: 640.0,
-            needs: |state| {
-                let choice = state.assessment_choice();
-                let job = current(state).map(|analysis| AssessmentJob {
+            needs: |state| match current(state) {
+                Some(analysis) => vec![Need::Assessment(AssessmentJob {
                     analysis: analysis.into(),
-                    choice,
-                });
-                job.map(Need::Assessment).into_iter().collect()
+                    choice: state.assessment_choice(),
+                })],
+                None => Vec::new(),
             },
             figure_pairs: assessed_pairs,
             ..ViewContent::PLAIN
         },
-        // The figure button is in the first line of the view, so the view has no tools.
         View::Evidence => ViewContent {
             draw: evidence_view_ui,
             figure_pairs: |state| state.dataset().measuring_pairs().marked().collect(),

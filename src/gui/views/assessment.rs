@@ -1,4 +1,4 @@
-//! Benefit of the correction, condition by condition.
+//! Benefit from the correction in each condition.
 
 use egui::{Align, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
 
@@ -22,10 +22,10 @@ use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
 
-/// Least size of a plot \[pt\].
+/// Least plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(190.0, 150.0);
 
-/// Draws the selection of the assessed quantity and its form, from right to left.
+/// Draws the choices of the header, from right to left.
 pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.display.judging.assessed;
     let mut chosen = shown;
@@ -49,7 +49,7 @@ pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Comma
     }
 }
 
-/// Draws the selection of average, correction, model and responses.
+/// Draws the choices that determine the assessed numbers.
 fn choices_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     let averages = [
         (None, "as set", "Median or mean, by the settings"),
@@ -128,8 +128,8 @@ fn choices_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     choice_ui(ui, "Responses assessed", &mut chosen.pairs, &pairs);
 }
 
-/// Draws the change of J of the selected responses in every condition (Figures 8 to 19), with a
-/// summary in a sentence.
+/// Draws the change of J in every condition for the chosen responses (Figures 8 to 19), below a
+/// summary.
 pub fn assessment_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -195,7 +195,7 @@ pub fn assessment_view_ui(
     state.display.figures.insert(View::Assessment, view);
 }
 
-/// Draws the key of the bars, from right to left.
+/// Draws the key from right to left.
 fn key_ui(ui: &mut Ui, palette: &Palette) {
     let faint = palette
         .dim_text
@@ -251,7 +251,7 @@ fn text_table_ui(
         if let Some(pair) = pairs.get(click.row) {
             commands.push(SelectionCommand::FocusPair(*pair).into());
         }
-        // The first column holds the names of the responses.
+        // The first column holds response names.
         if let Some(column) = click.column.checked_sub(1)
             && let Some(condition) = state.dataset().conditions().get(column)
         {
@@ -261,7 +261,7 @@ fn text_table_ui(
     state.display.judging.assessment_sorting = sorting;
 }
 
-/// Returns the assessed responses, in the order of the matrix.
+/// Returns the assessed responses in matrix order.
 pub fn assessed_pairs(state: &State) -> Vec<Pair> {
     let measuring = state.dataset().measuring_pairs();
     let mut pairs = Vec::new();
@@ -279,8 +279,8 @@ pub fn assessed_pairs(state: &State) -> Vec<Pair> {
     pairs
 }
 
-/// Builds the table with the responses in rows, the conditions in columns, and the signed change of
-/// J in each cell.
+/// Builds the table: a row for each response, a column for each condition, a signed change of J in
+/// each cell.
 pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
     let part = state.display.judging.assessed.part;
     let conditions: Vec<(ConditionId, String)> = state
@@ -299,8 +299,8 @@ pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
     )
 }
 
-/// Summarises the assessment in sentences: improved responses, verdict of the conditions held out of
-/// the schedule, and omissions.
+/// Summarises the assessment in sentences: improved responses, the verdict from conditions held out
+/// from the schedule, and omissions.
 pub fn assessment_sentences(state: &State, table: &AssessmentTable) -> Vec<String> {
     let pairs = assessed_pairs(state);
     let marked = state

@@ -1,4 +1,4 @@
-//! Plots of the change of J in each condition, as stacked bars.
+//! Stacked bars for the change of J in each condition.
 
 use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{ConditionId, Pair};
@@ -12,34 +12,34 @@ use crate::gui::plot::FigureWords;
 use crate::gui::plot::questions::NamedFigure;
 use crate::gui::state::window_state::State;
 
-/// Width of a bar, in units of the distance between conditions.
+/// Bar width, relative to the distance between conditions.
 const BAR: f64 = 0.6;
-/// Half the length of the line at the sum of both parts, in the same units.
+/// Half the length of the line at the sum of both parts, in the same unit.
 const HALF_TOTAL: f64 = 0.38;
-/// Colour strength of the phase part of a bar, relative to the magnitude part \[%\].
+/// Colour strength for the phase part, relative to the magnitude part \[%\].
 pub(super) const PHASE_PERCENT: u8 = 45;
-/// Space above and below the bars, as a share of their height.
+/// Space above and below the bars, relative to their height.
 const MARGIN: f64 = 0.12;
-/// Distance of a number from its bar, as a share of the visible range.
+/// Distance between a number and its bar, relative to the visible range.
 const NUMBER_GAP: f64 = 0.05;
 /// Value from which a number has no decimals: 9.95 rounds to 10.0.
 const WHOLE_FROM: f64 = 9.95;
 
-/// Plots of the change of J, with one response in each plot.
+/// Plots for the change of J, one response in each.
 pub(super) struct AssessmentPlots<'a> {
     pub(super) state: &'a State,
     pub(super) table: &'a AssessmentTable,
     pub(super) pairs: Vec<Pair>,
 }
 
-/// Change of J at a place on the axis of conditions.
+/// Change of J at a place on the condition axis.
 #[derive(Clone, Copy)]
 struct PlacedChange {
     at: f64,
     change: CostChange,
 }
 
-/// Part of a bar.
+/// Part that is drawn as a bar.
 #[derive(Clone, Copy, PartialEq)]
 enum BarPart {
     Magnitude,
@@ -54,8 +54,8 @@ impl PlacedChange {
         }
     }
 
-    /// Returns the value at which a part begins. The phase part is stacked on a magnitude part of
-    /// the same sign; otherwise both begin at zero, on either side of it.
+    /// Returns the value at which a part begins. The phase part is stacked on the magnitude part if
+    /// both have the same sign; otherwise they lie on either side of zero.
     fn foot(&self, part: BarPart) -> f64 {
         let is_stacked =
             part == BarPart::Phase && self.change.magnitude() * self.change.phase() > 0.0;
@@ -66,7 +66,7 @@ impl PlacedChange {
         }
     }
 
-    /// Returns the ends of both parts, and zero.
+    /// Returns the end values for both parts, and zero.
     fn ends(&self) -> [f64; 3] {
         [
             self.change.magnitude(),
@@ -75,7 +75,7 @@ impl PlacedChange {
         ]
     }
 
-    /// Returns the total as a number beyond the bar, on the side of its sign.
+    /// Returns the total as a number: above the bar if positive, below if negative.
     fn number(&self, range: Range) -> Note {
         let total = self.change.total();
         let furthest = if total > 0.0 { f64::max } else { f64::min };
@@ -99,8 +99,8 @@ impl AssessmentPlots<'_> {
         self.table.change(condition, pair)
     }
 
-    /// Builds the panel of a response: a bar for each condition with its magnitude and its phase
-    /// part, and a line across the bar at their sum.
+    /// Builds a response's panel: in each condition a bar with magnitude and phase part, and a line
+    /// across at their sum.
     pub(super) fn panel(&self, pair: Pair) -> Panel {
         let mut found = Vec::new();
         let mut left_out = Vec::new();
@@ -124,8 +124,8 @@ impl AssessmentPlots<'_> {
             .with_all(left_out.iter().map(|at| left_out_note(*at, range)))
     }
 
-    /// Returns the numbers of the displayed condition and of the largest change, unless the two are
-    /// neighbours: numbers on every bar would overlap, and the status line shows the others.
+    /// Returns the numbers for the displayed condition and for the largest change, unless these are
+    /// neighbours. Numbers on every bar would overlap; the status line shows the others.
     fn numbers(&self, found: &[PlacedChange], range: Range) -> Vec<Note> {
         let largest = found
             .iter()
@@ -154,7 +154,7 @@ fn visible_range(found: &[PlacedChange]) -> Range {
         .with_margin(MARGIN, 1.0)
 }
 
-/// Returns the bars of each part: improvements, then deteriorations.
+/// Returns the bars for each part: improvements, then deteriorations.
 fn bars(found: &[PlacedChange]) -> Vec<Bars> {
     let mut bars = Vec::new();
     for part in [BarPart::Magnitude, BarPart::Phase] {
@@ -165,7 +165,7 @@ fn bars(found: &[PlacedChange]) -> Vec<Bars> {
     bars
 }
 
-/// Returns the bars of a part which have this colour: a rise of J is a warning.
+/// Returns the bars with this colour: positive changes are warnings.
 fn bars_of_hue(found: &[PlacedChange], part: BarPart, hue: Hue) -> Bars {
     let mut bars = Vec::new();
     let mut feet = Vec::new();
@@ -226,7 +226,7 @@ fn left_out_note(at: f64, range: Range) -> Note {
     }
 }
 
-/// Returns the reason why a response of a condition has no change of J.
+/// Returns the reason for a missing change of J.
 fn absence_reason(table: &AssessmentTable, condition: ConditionId, pair: Pair) -> String {
     for left_out in &table.left_out {
         if left_out.condition == condition {

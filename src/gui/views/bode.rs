@@ -1,5 +1,5 @@
-//! Views of responses over frequency: the response in focus, large; its errors as used by the fit;
-//! the same response in every condition; and every response of a condition, small.
+//! Views over frequency: the response in focus, its errors as used by the fit, the same response in
+//! every condition, and all responses in a condition.
 
 use egui::{Align2, Pos2, Rect, Ui, vec2};
 
@@ -34,7 +34,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Draws magnitude and phase of the response in focus, for every model of the displayed condition.
+/// Draws magnitude and phase for the response in focus, for every model in the displayed condition.
 pub fn bode_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -99,14 +99,14 @@ pub fn bode_view_ui(
     state.display.frequency.drawn = curves;
 }
 
-/// Returns the drawn curve of a role.
+/// Returns the curve with this role, unless it is hidden.
 fn drawn_curve(curves: &[BodeCurve], role: Role) -> Option<&BodeCurve> {
     curves
         .iter()
         .find(|curve| !curve.hidden && curve.role == role)
 }
 
-/// Returns the region where curves only illustrate the price of leads; `None` without leads
+/// Returns the region where curves only illustrate the price paid for leads; `None` without leads
 /// (M15.6).
 fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> {
     let leads = &state.shown()?.compensated.as_ref()?.leads;
@@ -132,7 +132,7 @@ fn lead_ends_db(corrected: &BodeCurve, curves: &[BodeCurve], omega: f64) -> Opti
     ])
 }
 
-/// Returns the area between the phases of the corrected and the identified model within the band.
+/// Returns the area between corrected and identified phase within the band.
 fn missing_phase(curves: &[BodeCurve], band: Band) -> Option<BodeBand> {
     let corrected = drawn_curve(curves, Role::Corrected)?;
     let identified = drawn_curve(curves, Role::IdentifiedRepresentative)?;
@@ -162,7 +162,8 @@ const MATCHED_DB: f64 = 0.05;
 /// Remaining delay below which the phases are called matched \[s\].
 const MATCHED_S: f64 = 0.5e-3;
 
-/// Returns J of magnitude and phase before and after the correction, each with the remaining error.
+/// Returns the notes for magnitude and phase: J before and after the correction, and the remaining
+/// error.
 fn effect_notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
     let shown = state.shown()?;
     let change = shown.cost[pair]?;
@@ -191,8 +192,8 @@ fn cost_change(before: f64, after: f64) -> String {
     format!("J {} → {}", decimals(before, 1), decimals(after, 1))
 }
 
-/// Formats a remaining delay, a lead where negative: "lags by 66 ms, 46° at 12 rad/s". The sign is
-/// that of the corrected model relative to the identified model.
+/// Formats "lags by 66 ms, 46° at 12 rad/s" for the delay that the correction still lacks; the
+/// corrected model lags if it is negative.
 fn delay_verdict(state: &State, left_s: f64) -> String {
     if left_s.abs() < MATCHED_S {
         return "matched".to_owned();
@@ -214,8 +215,7 @@ fn frequency_words(state: &State, omega: f64) -> String {
     format!("{} {}", number(unit.of_omega(omega)), unit.symbol())
 }
 
-/// Draws the errors of the response in focus for every kept physics model, beside the errors left
-/// by the correction.
+/// Draws the errors in the response in focus: every kept physics model, and the corrected model.
 pub fn error_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -265,7 +265,7 @@ pub fn error_view_ui(
     state.display.frequency.drawn_errors = curves;
 }
 
-/// Draws the selection of the unit of phase differences.
+/// Draws the choice between phase differences in degrees and in milliseconds.
 pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let mut unit = state.display.curves.phase_error;
     let units = [
@@ -303,11 +303,11 @@ pub fn error_message(state: &State, pair: Pair) -> String {
     }
 }
 
-/// Steps of the colour key for airspeeds.
+/// Step count in the colour key for airspeeds.
 const KEY_STEPS: u8 = 24;
 const KEY_SIZE: egui::Vec2 = vec2(96.0, 8.0);
 
-/// Draws the selection of the model in each condition and the colour key, from right to left.
+/// Draws the choice between models and the colour key for airspeed, from right to left.
 pub fn across_header_ui(
     ui: &mut Ui,
     state: &State,
@@ -342,7 +342,7 @@ fn paint_key(ui: &Ui, rect: Rect, palette: &Palette) {
     }
 }
 
-/// Draws magnitude and phase of the response in focus for a model of every condition; a click
+/// Draws magnitude and phase for the response in focus, with a model from every condition; a click
 /// selects a condition.
 pub fn across_view_ui(
     ui: &mut Ui,
@@ -386,7 +386,7 @@ pub fn across_view_ui(
     }
 }
 
-/// Fits the plot across conditions once the curves of another response or model are available.
+/// Fits the plot after a change of response or model, once the new curves are available.
 fn fit_across(state: &mut State) {
     let asked = (
         state.display.selection.pair,
@@ -396,7 +396,7 @@ fn fit_across(state: &mut State) {
         return;
     }
     state.display.frequency.across.request_refit();
-    // The curves of the previous models are drawn until those of these models are available.
+    // Until then, the previous curves are drawn.
     if let Some((job, _)) = &state.results.across
         && job.models == across_job(state).models
     {
@@ -407,7 +407,7 @@ fn fit_across(state: &mut State) {
 /// Frequency count in each curve.
 const POINTS: usize = 300;
 
-/// Returns the job of the responses needed by the view: a model of each condition.
+/// Returns the job for the responses in the view: a model from each condition.
 pub fn across_job(state: &State) -> AcrossJob {
     let grid = (display_band(state.study.settings.band), POINTS);
     AcrossJob::of(
@@ -418,7 +418,7 @@ pub fn across_job(state: &State) -> AcrossJob {
     )
 }
 
-/// Returns the curves of the response in focus for a model of each condition; empty until the
+/// Returns the curves for the response in focus, with a model from each condition; empty until the
 /// responses are available.
 pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     let Some(curves) = state.across().cloned() else {
@@ -438,7 +438,7 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     drawn
 }
 
-/// Draws every response of the displayed condition; a click brings a response into focus.
+/// Draws every response in the displayed condition; a click shows a response in Bode.
 pub fn overview_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -491,8 +491,8 @@ pub fn overview_view_ui(
     }
 }
 
-/// Returns "J 75→61": J of the uncorrected physics representative and of the fully corrected
-/// model; empty unless both are known.
+/// Returns "J 75→61": J for the uncorrected physics representative, and for the fully corrected
+/// model. Empty unless both are known.
 fn cost_note(state: &State, pair: Pair) -> String {
     let Some(shown) = state.shown() else {
         return String::new();

@@ -14,7 +14,8 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Draws the selection of gains or delays and of airspeed or conditions, from right to left.
+/// Draws the choices between gains and delays and between airspeed and conditions, from right to
+/// left.
 pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.display.gains.channel_values;
     let (mut measure, mut across) = shown;
@@ -45,7 +46,7 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
 const HEADING_HEIGHT: f32 = 20.0;
 const GAP: f32 = 8.0;
 
-/// Draws gain or delay of every channel over airspeed (Figures 3 and 4): inputs above, outputs
+/// Draws gain or delay for every channel over airspeed (Figures 3 and 4): inputs above, outputs
 /// below, on the same axes.
 pub fn channels_view_ui(
     ui: &mut Ui,
@@ -101,12 +102,12 @@ pub fn channels_view_ui(
     state.display.gains.channels = view;
 }
 
-/// Plots of the inputs, or of the outputs.
+/// Plots for all inputs, or for all outputs.
 struct ChannelPlots<'a> {
     name: &'static str,
     rect: Rect,
     figure: Figure,
-    /// Index of the first plot among all channels.
+    /// Index among all channels.
     first_plot: usize,
     view: &'a mut FigureView,
 }

@@ -1,4 +1,4 @@
-//! Variants: named sets of decisions, compared with the current decisions.
+//! Variants (named decision sets) compared with the current decisions.
 
 use egui::{Align, Button, Layout, RichText, Role, Ui};
 
@@ -18,8 +18,7 @@ use crate::gui::widgets::controls::{is_entered, named, text_field_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
 
-/// Draws the variants of the study, their differences from the current decisions, and the effects
-/// of these differences.
+/// Draws all variants, their differences from the current decisions, and the effects.
 pub fn compare_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -78,7 +77,7 @@ fn keep_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     });
 }
 
-/// Draws the name of a variant, and from right to left its buttons.
+/// Draws a variant's name and, from right to left, its buttons.
 fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(&variant.name).strong());
@@ -123,7 +122,7 @@ fn variant_job(state: &State, name: &str) -> Option<VariantJob> {
     Some(VariantJob { study })
 }
 
-/// Returns the analysis of a variant, if available.
+/// Returns a variant's analysis, if available.
 pub fn variant_analysis<'a>(state: &'a State, variant: &Variant) -> Option<&'a Analysis> {
     let job = variant_job(state, &variant.name)?;
     for (known, analysis) in &state.results.variants {
@@ -141,12 +140,12 @@ pub fn overlaid_analysis(state: &State) -> Option<(&str, &Analysis)> {
     Some((&variant.name, variant_analysis(state, variant)?))
 }
 
-/// Returns the job of the overlaid analysis.
+/// Returns the job for the overlaid analysis.
 pub fn overlay_job(state: &State) -> Option<VariantJob> {
     variant_job(state, state.display.judging.overlaid.as_deref()?)
 }
 
-/// Builds the table of the decisions in which a variant differs from the current decisions.
+/// Builds the table with all decisions in which a variant differs from the current decisions.
 fn difference_table(state: &State) -> Table {
     let columns = ["variant", "decision", "in the variant", "now"];
     let mut table = Table::new("Different decisions", columns);
@@ -170,9 +169,7 @@ fn difference_table(state: &State) -> Table {
     table
 }
 
-/// Builds the table of effects, now and in each variant: net gain and J of the responses of the
-/// net-gain plots in the displayed condition, and the mean change of J of the scheduled correction
-/// over all conditions.
+/// Builds the table with the effects now and in each variant.
 fn effect_table(state: &State) -> Table {
     let condition = state.condition().id();
     let title = format!("Effect in condition {condition}, and of the schedule over all conditions");
@@ -201,13 +198,13 @@ fn effect_table(state: &State) -> Table {
 /// Value compared between variants.
 #[derive(Clone, Copy)]
 enum Effect {
-    /// Net gain of a response in the displayed condition.
+    /// Net gain in the displayed condition.
     NetGain(Pair),
-    /// J of a response in the displayed condition, before and after the correction.
+    /// J in the displayed condition, before and after the correction.
     Cost(Pair),
-    /// Objective of the gains in the displayed condition.
+    /// Gain objective in the displayed condition.
     Objective,
-    /// Mean change of J of the on-axis responses under the schedule, over all conditions.
+    /// Mean change of J over all on-axis responses and conditions, with the schedule.
     MeanChange,
 }
 
@@ -257,8 +254,8 @@ impl Effect {
     }
 }
 
-/// Computes the mean change of J of the nominal models' on-axis responses under the schedule, over
-/// the assessed conditions; `None` without an assessed response.
+/// Computes the mean change of J for the nominal models with the schedule, over the on-axis
+/// responses in all assessed conditions; `None` without an assessed response.
 fn mean_change(state: &State, analysis: &Analysis) -> Option<String> {
     let measuring = state.dataset().measuring_pairs();
     let mut changes = Vec::new();

@@ -24,12 +24,12 @@ use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
 
-/// Least size of a plot \[pt\].
+/// Least plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
-/// Share of the width taken by words and tables.
+/// Initial share given to words and tables in the width.
 const WORDS_PART: f32 = 0.56;
 
-/// Draws the selection of the fitted couplings.
+/// Draws the choice between coupling corrections.
 pub fn couplings_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.study.settings.couplings;
     let mut chosen = shown;
@@ -92,7 +92,7 @@ pub fn are_couplings_judged(state: &State) -> bool {
     is_phase_corrected && results >= LEAST_CONDITIONS
 }
 
-/// Returns the assessment of unused couplings with their off-axis benefit, if worthwhile by J of
+/// Returns the assessment and the off-axis benefit for unused couplings, if worthwhile by J in
 /// left-out conditions.
 pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, CouplingCost)> {
     if are_couplings_used(state) || !are_couplings_judged(state) {
@@ -107,7 +107,7 @@ pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, Co
     }
 }
 
-/// Returns the assessment of the couplings in use, once known.
+/// Returns the assessment for couplings in use, once known.
 pub fn used_couplings(state: &State) -> Option<&Arc<CouplingsAssessment>> {
     if are_couplings_used(state) {
         state.couplings()?.as_ref().ok()
@@ -261,7 +261,7 @@ impl CouplingsWords<'_> {
         }
     }
 
-    /// Draws the matrices of the couplings, then the tables of the loop and of its poles.
+    /// Draws the coupling matrices, then the loop and its poles.
     fn tables_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         for table in self.assessment.matrix_tables(self.state.dataset()) {
             // Values in parentheses are within their error bar, not distinguishable from zero.
@@ -303,8 +303,8 @@ impl CouplingsWords<'_> {
             });
     }
 
-    /// Builds the table of each condition's loop: its least singular value, and the largest effect
-    /// of the couplings on a constrained response at ten times the band.
+    /// Builds the loop table: in each condition, the least singular value, and the largest effect
+    /// on a constrained response at ten times the band.
     fn loop_table(&self) -> Table {
         let dataset = self.state.dataset();
         let columns = [
@@ -333,13 +333,13 @@ impl CouplingsWords<'_> {
         table
     }
 
-    /// Builds the table of the displayed condition's poles.
+    /// Builds the pole table for the displayed condition.
     fn pole_table(&self) -> Table {
         let id = self.state.condition().id().to_string();
         let mut table = self.assessment.pole_table();
         table.title = format!("Poles of the physics representative of condition {id}");
         table.rows.retain(|row| row[0] == id);
-        // All rows are of the same condition.
+        // All rows have the same condition.
         for row in &mut table.rows {
             row.remove(0);
         }

@@ -1,4 +1,4 @@
-//! Values of the principal curves at the pointer, at marked frequencies, or at the largest error.
+//! Principal curves as numbers at the pointer, at marked frequencies, or at the largest error.
 
 use gdcm_method::fidelity::summand;
 use gdcm_model::response::wrap;
@@ -31,7 +31,7 @@ pub(super) struct ReadoutSource<'a> {
     pub(super) band: (f64, f64),
 }
 
-/// Drawn curve of a listed role.
+/// Drawn curve with a listed role.
 #[derive(Clone, Copy)]
 struct ListedCurve<'a> {
     role: Role,
@@ -100,8 +100,7 @@ impl<'a> ReadoutSource<'a> {
         }
     }
 
-    /// Lists the values at a frequency \[rad/s\], and for responses the remaining difference of the
-    /// corrected model.
+    /// Lists the values at a frequency \[rad/s\], and for responses also the remaining difference.
     fn values(&self, heading: &str, omega: f64) -> Readout {
         let mut cells = Vec::new();
         for ListedCurve { role, curve } in self.listed_curves() {
@@ -208,7 +207,7 @@ fn change(curve: &BodeCurve, pane: Pane, from: f64, to: f64) -> Option<f64> {
     Some(curve.value_at(pane, to)? - curve.value_at(pane, from)?)
 }
 
-/// Formats a difference of two values; a ratio of two ratios is a difference in decibels.
+/// Formats a difference between two values; for ratios the difference is in decibels.
 fn difference_text(quantity: BodeQuantity<'_>, pane: Pane, difference: Option<f64>) -> String {
     let unit = match quantity.unit(pane) {
         ValueUnit::Ratio => ValueUnit::Decibel,

@@ -13,7 +13,7 @@ use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::legend::Chip;
 use crate::gui::state::window_state::State;
 
-/// Chips, and the commands of a click on each.
+/// Chips, each with the command for a click.
 #[derive(Default)]
 pub(super) struct CurveChips {
     pub(super) chips: Vec<Chip>,
@@ -22,7 +22,7 @@ pub(super) struct CurveChips {
 }
 
 impl CurveChips {
-    /// Collects the chips of the displayed condition.
+    /// Collects the chips for the displayed condition.
     pub(super) fn new(state: &State) -> Self {
         let mut chips = Self::default();
         chips.add_isolated_model(state);

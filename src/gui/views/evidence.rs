@@ -1,5 +1,5 @@
-//! Sources of the scatter of the net gains, significant differences, and the required form of the
-//! schedule.
+//! Evidence about the net gains: sources for their scatter, significant differences, and the
+//! required form of the schedule.
 
 use egui::{
     Align2, Color32, FontId, Grid, Painter, Rect, Response, RichText, ScrollArea, Sense, Ui,
@@ -17,15 +17,15 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Height of the bar of a scatter \[pt\].
+/// Bar height \[pt\].
 const BAR_HEIGHT: f32 = 15.0;
-/// Greatest height of a table, which scrolls by itself beyond it \[pt\].
+/// Greatest table height \[pt\]; longer tables scroll.
 const MOST_TABLE: f32 = 330.0;
-/// Width of the labels before the bars \[pt\].
+/// Label width before the bars \[pt\].
 const LABEL_WIDTH: f32 = 170.0;
-/// Width of the text after the bars \[pt\].
+/// Text width after the bars \[pt\].
 const TEXT_WIDTH: f32 = 400.0;
-/// Least width of a bar \[pt\].
+/// Least bar width \[pt\].
 const LEAST_BAR: f32 = 60.0;
 
 /// Draws on a single screen whether the scatter at a given airspeed is due to trim, due to
@@ -58,7 +58,6 @@ pub fn evidence_view_ui(
     state.display.gains.evidence_tables = sortings;
 }
 
-/// Content of the view.
 struct EvidencePage<'a> {
     uncertainty: &'a Uncertainty,
     palette: &'a Palette,
@@ -137,7 +136,7 @@ impl EvidencePage<'_> {
         ui.add_space(6.0);
     }
 
-    /// Draws a scatter: its name, a bar with the shares of its sources, and its numbers.
+    /// Draws a scatter: its name, a bar divided among its sources, and its numbers.
     fn split_ui(&self, ui: &mut Ui, name: &str, split: Option<&VarianceDecomposition>) {
         let size = vec2(ui.available_width(), BAR_HEIGHT + 3.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
@@ -170,7 +169,7 @@ impl EvidencePage<'_> {
         response.on_hover_text(format!("{name}: {words}"));
     }
 
-    /// Paints the shares of trim, identification and the unexplained variance, from left to right.
+    /// Paints the shares: trim, identification and unexplained variance, from left to right.
     fn paint_shares(&self, painter: &Painter, bar: Rect, split: Option<&VarianceDecomposition>) {
         let Some(shares) = split.and_then(VarianceDecomposition::shares) else {
             return;
@@ -192,7 +191,7 @@ impl EvidencePage<'_> {
         sorting: &mut Sorting,
         commands: &mut Vec<Command>,
     ) {
-        /// Column of the ratio to the expected difference.
+        /// Column with the ratio to the expected difference.
         const RATIO: usize = 6;
         let (table, differences) = difference_table(state.dataset(), self.uncertainty);
         heading_ui(ui, &table.title);
@@ -216,7 +215,7 @@ impl EvidencePage<'_> {
         }
     }
 
-    /// Draws the tests for a second variable of the schedule.
+    /// Draws the tests for a second scheduling variable.
     fn second_variable_table_ui(
         &self,
         ui: &mut Ui,
@@ -232,7 +231,7 @@ impl EvidencePage<'_> {
         });
     }
 
-    /// Draws the errors of each form of the schedule.
+    /// Draws the errors for each form of the schedule.
     fn forms_table_ui(
         &self,
         ui: &mut Ui,
@@ -260,8 +259,8 @@ impl EvidencePage<'_> {
     }
 }
 
-/// Returns the cells of a difference: response, conditions, relative difference, and its ratio to
-/// the expected difference.
+/// Returns the cells: response, conditions, relative difference, and its ratio to the expected
+/// difference.
 fn difference_cells(state: &State, found: &AirspeedDifference) -> [String; 4] {
     let [first, second] = found.conditions;
     [
@@ -287,7 +286,7 @@ fn name_label(response: &Response, name: String) {
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &name));
 }
 
-/// Returns the colours of trim, identification and the unexplained variance.
+/// Returns the colours for trim, identification and unexplained variance.
 fn source_colors(palette: &Palette) -> [Color32; 3] {
     [palette.perturbed, palette.identified, palette.nominal]
 }
@@ -313,7 +312,7 @@ fn split_words(split: &VarianceDecomposition, level: f64) -> String {
     words
 }
 
-/// Draws a table among others in a scrolling area, with the height of its rows.
+/// Draws a table no higher than its rows, because others follow in the same scroll area.
 fn with_height_of_rows<R>(ui: &mut Ui, rows: usize, add: impl FnOnce(&mut Ui) -> R) -> R {
     let row = ui.spacing().interact_size.y + 3.0;
     let bar = ui.spacing().scroll.allocated_width();

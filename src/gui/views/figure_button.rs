@@ -1,4 +1,4 @@
-//! Button that copies or saves the content of a view.
+//! Button that copies or saves a view's content.
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Role, Ui};
@@ -21,7 +21,7 @@ pub fn tables_in_place(state: &State, view: View) -> Option<Vec<Table>> {
     }
 }
 
-/// Draws the button that copies or saves the content of a view.
+/// Draws the button that copies or saves a view's content.
 pub fn figure_button_ui(ui: &mut Ui, state: &State, view: View, commands: &mut Vec<Command>) {
     if view.figure().is_none() {
         return;

@@ -1,4 +1,4 @@
-//! Figures of the views for paper.
+//! Views as figures on paper.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::gui::plot::drawn_curves::PANES;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 
-/// Returns the figure of a view; `None` until its results are available.
+/// Returns a view's figure; `None` until its results are available.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     let needs_bars = match view.figure() {
         Some(kind) => kind.needs_bars(),
@@ -26,7 +26,7 @@ pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     } else {
         state.analysis().cloned()
     };
-    // The inputs of the requirements may be newer than the analysis, which does not depend on them.
+    // The requirements' inputs may be newer than the analysis, which does not depend on them.
     let analysis = analysis.map(|analysis| analysis.asked_with(&state.study.requirements));
     let source = condition_source(state);
     request(state, view)?.figure(analysis.as_ref(), source.as_ref())
@@ -54,7 +54,7 @@ pub fn figure_name(state: &State, view: View) -> String {
     name
 }
 
-/// Returns the figure request of a view, the same as of the command `gdcm figure`.
+/// Returns a view's figure request, as the command `gdcm figure` makes it.
 pub fn request(state: &State, view: View) -> Option<FigureRequest> {
     let kind = view.figure()?;
     let pairs = view_content(view).figure_pairs;

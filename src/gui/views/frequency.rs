@@ -1,4 +1,5 @@
-//! Plots over frequency of the displayed condition: their curves, and their events as commands.
+//! Plots over frequency in the displayed condition: their curves, and the commands for their
+//! events.
 
 use std::fmt::Write as _;
 
@@ -27,7 +28,7 @@ use crate::gui::plot::{BodeCurve, BodeScene, BodeView, CurveId, bode_ui};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 
-/// Plot over frequency of the displayed condition.
+/// Plot over frequency in the displayed condition.
 pub(super) struct FrequencyPlot<'a> {
     pub(super) state: &'a State,
     /// Scene without cursors, values and chips, which are added.
@@ -37,8 +38,8 @@ pub(super) struct FrequencyPlot<'a> {
 }
 
 impl FrequencyPlot<'_> {
-    /// Draws the plot with cursors, values at the cursor and chips. Pushes the resulting commands
-    /// and the description of the element under the pointer.
+    /// Draws the plot with cursors, values at the cursor and chips. Pushes the resulting commands,
+    /// and a description for the element under the pointer.
     pub(super) fn ui(self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let Self {
             state,
@@ -99,7 +100,7 @@ impl FrequencyPlot<'_> {
     }
 }
 
-/// Returns the command of an event; `None` for events without effect on the study or display.
+/// Returns the command for an event; `None` for events without effect on study or display.
 fn event_command(state: &State, event: BodeEvent) -> Option<Command> {
     match event {
         BodeEvent::Clicked(CurveId::Model(id)) => Some(reject_or_restore(state, id)),
@@ -151,8 +152,8 @@ fn reject_or_restore(state: &State, id: ModelId) -> Command {
     }
 }
 
-/// Returns the command of an entry in a curve's menu; `None` for entries that concern models if the
-/// curve is not a model's.
+/// Returns the command for an entry in a curve's menu; `None` if the entry concerns models but the
+/// curve is no model.
 pub(super) fn wish_command(state: &State, id: CurveId, wish: CurveWish) -> Option<Command> {
     match (wish, id) {
         (CurveWish::Turn(turns), id) => {
@@ -168,7 +169,7 @@ pub(super) fn wish_command(state: &State, id: CurveId, wish: CurveWish) -> Optio
     }
 }
 
-/// Formats the numbers of a curve as text: a heading, then a tab-separated line for each frequency.
+/// Formats a curve's numbers as text: a heading, then a tab-separated line for each frequency.
 fn values_text(quantity: BodeQuantity<'_>, curve: &BodeCurve) -> String {
     let [magnitude, phase] = PANES.map(|pane| quantity.drawn_label(pane));
     let mut text = format!("{}\nω [rad/s]\t{magnitude}\t{phase}\n", curve.label);
@@ -180,7 +181,7 @@ fn values_text(quantity: BodeQuantity<'_>, curve: &BodeCurve) -> String {
     text
 }
 
-/// Returns the source of the displayed condition's curves; `None` until its responses are
+/// Returns the source for all curves in the displayed condition; `None` until its responses are
 /// available.
 pub(in crate::gui) fn condition_source(state: &State) -> Option<ConditionSource<'_>> {
     let mut schedule = None;
@@ -202,7 +203,7 @@ pub(in crate::gui) fn condition_source(state: &State) -> Option<ConditionSource<
     })
 }
 
-/// Returns the displayed parts of the responses and their form, the same as on paper.
+/// Returns the choices about displayed curves, which are the same in the window and on paper.
 pub(in crate::gui) fn bode_options(state: &State) -> BodeOptions {
     let display = &state.display;
     let curves = &display.curves;
@@ -231,7 +232,7 @@ pub(in crate::gui) fn bode_options(state: &State) -> BodeOptions {
     }
 }
 
-/// Returns every curve of a response in the displayed condition; empty until its responses are
+/// Returns all curves for a response in the displayed condition; empty until its responses are
 /// available.
 pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     let mut cache = state
@@ -250,7 +251,7 @@ pub(in crate::gui) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurv
     drawn
 }
 
-/// Returns the errors of a response, as used by the fit, in the displayed condition; empty until
+/// Returns the errors in a response, as used by the fit, in the displayed condition; empty until
 /// its responses are available.
 pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {
     let mut cache = std::mem::take(&mut state.display.frequency.errors);
@@ -277,7 +278,7 @@ pub(super) fn error_reference(curves: &[BodeCurve]) -> Option<CurveId> {
     None
 }
 
-/// Emphasises the curve under the pointer, and describes the effect of a click on each curve.
+/// Emphasises the curve under the pointer, and adds to each description the effect of a click.
 fn with_interaction(
     state: &State,
     mut curves: Vec<BodeCurve>,

@@ -1,4 +1,4 @@
-//! Plots of gains and delays over airspeed, shared by the channels and the net gains.
+//! Plots for gains and delays over airspeed, shared by channels and net gains.
 
 use egui::{Ui, Vec2, vec2};
 
@@ -19,10 +19,10 @@ use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::toggle_ui;
 
-/// Least size of a plot \[pt\].
+/// Least plot size \[pt\].
 pub const LEAST_PLOT: Vec2 = vec2(122.0, 120.0);
 
-/// Returns the uncertainty of gains and delays, if error bars are shown.
+/// Returns the uncertainty in gains and delays, if error bars are shown.
 pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
     if state.display.gains.hide_bars {
         None
@@ -31,7 +31,7 @@ pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
     }
 }
 
-/// Plots of gains or delays, with their subjects.
+/// Plots for gains or delays, with their subjects.
 pub struct GainPlots<'a> {
     pub state: &'a State,
     /// Plots with a single panel each.
@@ -41,7 +41,7 @@ pub struct GainPlots<'a> {
 }
 
 impl GainPlots<'_> {
-    /// Returns the scene of a figure with the displayed and the pointed condition marked.
+    /// Returns the scene with marks at the displayed and at the pointed condition.
     pub fn scene<'b>(
         &'b self,
         name: &'static str,
@@ -162,7 +162,7 @@ impl FigureWords for GainPlots<'_> {
     }
 }
 
-/// Returns the command of a click in a plot over airspeed.
+/// Returns the command for an event in a plot over airspeed.
 pub fn gain_command(state: &State, event: FigureEvent) -> Option<Command> {
     match event {
         FigureEvent::Clicked(_, MarkId::Condition(condition), keys) => {
@@ -212,7 +212,7 @@ pub fn bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
     words
 }
 
-/// Draws the switch of error bars and bands.
+/// Draws the switch for error bars and bands.
 pub fn bars_switch_ui(
     ui: &mut Ui,
     state: &State,
@@ -230,7 +230,7 @@ pub fn bars_switch_ui(
     }
 }
 
-/// Returns the responses of the net-gain plots, in the order of the matrix.
+/// Returns the responses in the net-gain plots, in matrix order.
 pub fn net_gain_pairs(state: &State) -> Vec<Pair> {
     let display = &state.display;
     let constrained = &state.study.settings.constrained;

@@ -25,11 +25,11 @@ use crate::gui::widgets::controls::{number_entry_ui, restore_panel_size};
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{TableLook, table_grid_ui};
 
-/// Least size of a plot \[pt\].
+/// Least plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 96.0);
-/// Least size of a record with the difference from flight below it \[pt\].
+/// Least plot size for a record, with the difference from flight below it \[pt\].
 const LEAST_RECORD: Vec2 = vec2(260.0, 190.0);
-/// Initial share of the height taken by the table.
+/// Initial share given to the table in the height.
 const TABLE_PART: f32 = 0.32;
 
 /// Draws the flown record, or the test input, and the models' responses.
@@ -91,7 +91,7 @@ pub fn histories_ui(
     state.display.figures.insert(View::Requirements, view);
 }
 
-/// Draws the selection of a record of the condition, or of a test input.
+/// Draws the choice between this condition's records and a test input.
 fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let records = state.records.conditions.get(&state.condition().id());
     let mut choices: Vec<(Option<usize>, &str, &str)> = Vec::new();
@@ -131,12 +131,13 @@ fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     }
 }
 
-/// Columns of the table of shares: share of time inside, largest excess, and trend.
+/// Columns with the share of time inside, the largest excess, and the trend.
 const SHARE: usize = 4;
 const EXCESS: usize = 5;
 const TREND: usize = 7;
 
-/// Draws the share of time inside the corridor and the largest excess of every quantity and model.
+/// Draws the share of time inside the corridor and the largest excess, for every quantity and
+/// model.
 fn shares_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -168,7 +169,7 @@ fn shares_ui(
         });
 }
 
-/// Draws shape, size and duration of the test input.
+/// Draws the test input: shape, size and duration.
 fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let test = state.study.requirements.test;
     let input = &state.dataset().inputs()[state.display.selection.pair.input];
@@ -221,7 +222,7 @@ fn set_test_input(state: &State, name: &'static str, test: TestInput) -> Command
     }
 }
 
-/// Descriptions of the plots over time.
+/// Descriptions for the plots over time.
 struct HistoryWords<'a>(&'a Figure);
 
 impl FigureWords for HistoryWords<'_> {

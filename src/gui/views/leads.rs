@@ -1,4 +1,4 @@
-//! Effect of delay or lead in each channel of the condition, and the cost of leads above the band.
+//! Effect of delay or lead in each channel, and the price paid for leads above the band.
 
 use egui::{Panel, Ui, vec2};
 
@@ -16,10 +16,10 @@ use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Share of the width taken by the table.
+/// Initial share given to the table in the width.
 const TABLE_PART: f32 = 0.5;
 
-/// Draws gain and phase of the leads up to ten times the band, and the table of the channels.
+/// Draws gain and phase added by leads up to ten times the band, and the channel table.
 pub fn leads_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -66,7 +66,7 @@ pub fn leads_view_ui(
     state.display.figures.insert(View::Leads, view);
 }
 
-/// Builds the figure of the response in focus; without plots if there are no leads.
+/// Builds the figure for the response in focus; empty if there are no leads.
 fn figure(state: &State) -> Figure {
     let has_leads = state
         .shown()
@@ -78,9 +78,9 @@ fn figure(state: &State) -> Figure {
         .unwrap_or_default()
 }
 
-/// Builds the table of the channels: delay or lead, the lag removed by its lead at the end of the
-/// band, the replaced servo, and the price; the title gives the end of the corrected model's
-/// validity. `None` without leads.
+/// Builds the channel table: delay or lead, phase at the upper end of the band, replaced servo, and
+/// the gain paid above the band. The title gives the highest frequency at which the corrected model
+/// is valid. `None` without leads.
 pub fn leads_table(state: &State) -> Option<Table> {
     let leads = state.shown()?.correction.leads.as_ref()?;
     let price = LeadPrice::of(leads);
@@ -105,7 +105,7 @@ pub fn leads_table(state: &State) -> Option<Table> {
     for channel in all_channels(state.dataset()) {
         let tau_s = leads.taus_s[channel];
         let filter = leads.filters()[channel];
-        // Without a filter, the phase is that of the pure delay.
+        // Without a filter, only a pure delay shifts the phase.
         let phase = match filter {
             Some(filter) => filter.phase(top),
             None => -top * tau_s.max(0.0),

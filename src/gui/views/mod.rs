@@ -63,7 +63,7 @@ use requirements::{
 pub use compare::overlay_job;
 pub use couplings::{are_couplings_judged, couplings_job, offered_couplings, used_couplings};
 
-/// Returns the content of a view: drawing, background jobs and figures.
+/// Returns a view's content: drawing, background jobs and figures.
 pub fn view_content(view: View) -> ViewContent {
     match view {
         View::Bode => ViewContent {
@@ -183,19 +183,19 @@ pub fn view_content(view: View) -> ViewContent {
     }
 }
 
-/// Content of a view.
+/// Content in a view.
 #[derive(Clone, Copy)]
 pub struct ViewContent {
     pub draw: fn(&mut Ui, &mut State, &Palette, &mut Vec<Command>),
-    /// Additional text of the header.
+    /// Additional text in the header.
     pub title: ViewTitle,
     /// Controls in the header, laid out from right to left.
     pub tools: fn(&mut Ui, &State, &Palette, &mut Vec<Command>),
-    /// Width of the tools \[pt\]; the title takes the rest.
+    /// Tool width \[pt\]; the title takes the rest.
     pub tools_width: f32,
     /// Computations needed besides the live answer.
     pub needs: fn(&State) -> Vec<Need>,
-    /// Responses in the figure on paper; empty for a figure of all responses or of none.
+    /// Responses in the figure on paper; empty if it shows all responses or none.
     pub figure_pairs: fn(&State) -> Vec<Pair>,
 }
 
@@ -211,7 +211,7 @@ impl ViewContent {
     };
 }
 
-/// Text in the header of a view.
+/// Text in a view's header.
 #[derive(Clone, Copy, Debug)]
 pub enum ViewTitle {
     None,

@@ -1,4 +1,4 @@
-//! Modes of the displayed condition as words and as a table, with their cache.
+//! Modes in the displayed condition, in words and in a table, with their cache.
 
 use std::sync::Arc;
 
@@ -81,7 +81,7 @@ impl CachedModes {
     }
 }
 
-/// Returns the nominal model and both representatives: zeros of every model would hide the poles.
+/// Returns the nominal model and both representatives: zeros for every model would hide the poles.
 fn models_with_zeros(state: &State, modes: &ConditionModes) -> Vec<ModelId> {
     let condition = &modes.condition;
     let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
@@ -97,8 +97,8 @@ fn models_with_zeros(state: &State, modes: &ConditionModes) -> Vec<ModelId> {
     models
 }
 
-/// Returns the index of the physics model to whose modes the others' are matched: the
-/// representative, or the nominal model until it is known.
+/// Returns the index of the physics model whose modes are followed through the others: the
+/// representative or, until it is known, the nominal model.
 fn reference_index(state: &State, modes: &ConditionModes) -> usize {
     let kind = BundleKind::Physics;
     if let Some(shown) = state.shown()
@@ -111,8 +111,8 @@ fn reference_index(state: &State, modes: &ConditionModes) -> usize {
     modes.condition.nominal()
 }
 
-/// Describes a mode: its values, its name, its largest participations, and how the pole of a
-/// discrete-time model is to be read.
+/// Describes a mode: its values, its name, its largest participations, and for discrete-time models
+/// the meaning of the pole.
 pub(super) fn mode_description(mode: &Mode, model: &Model) -> Vec<String> {
     let mut words = vec![mode_values(mode)];
     words.extend(mode_name(mode, model));
@@ -133,7 +133,7 @@ fn mode_values(mode: &Mode) -> String {
     words.join(", ")
 }
 
-/// Returns the damping ratio of a mode that oscillates.
+/// Returns the damping ratio, if the mode oscillates.
 fn shown_damping_ratio(mode: &Mode) -> Option<f64> {
     if mode.oscillates() {
         mode.damping_ratio
@@ -142,7 +142,7 @@ fn shown_damping_ratio(mode: &Mode) -> Option<f64> {
     }
 }
 
-/// Returns the name of a mode, if the states of its model are named (M17.3).
+/// Returns a mode's name, if its model names its states (M17.3).
 fn mode_name(mode: &Mode, model: &Model) -> Option<String> {
     match ModeName::of(mode, &model.states) {
         (Some(name), NamedBy::States) => Some(name.to_string()),
@@ -150,7 +150,7 @@ fn mode_name(mode: &Mode, model: &Model) -> Option<String> {
     }
 }
 
-/// Describes how a pole of a discrete-time model is to be read.
+/// Describes the conversion of discrete-time poles to `s`.
 fn discrete_time_words(model: &Model) -> Option<String> {
     let Dynamics::StateSpace(system) = &model.dynamics else {
         return None;
@@ -180,8 +180,9 @@ fn participation_words(mode: &Mode, model: &Model, most: usize) -> Option<String
     if words.is_empty() { None } else { Some(words) }
 }
 
-/// Builds the table of the physics bundle's modes, followed from model to model: a row for each
-/// mode of the reference model. Returns for each row also the first model that jumps.
+/// Builds the mode table for the physics bundle: a row for each mode in the reference model,
+/// followed from model to model. Returns with it, for each row, the first model in which the mode
+/// jumps.
 fn modes_table(
     state: &State,
     modes: &ConditionModes,

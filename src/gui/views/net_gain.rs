@@ -1,4 +1,4 @@
-//! Net gains over airspeed, and the form of the schedule.
+//! Net gains over airspeed, with the choice of the schedule.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
@@ -25,10 +25,10 @@ use crate::gui::widgets::controls::{named, restore_panel_size};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Width of this view's controls in a single line \[pt\].
+/// Width required by the controls in a single line \[pt\].
 pub const NET_GAIN_CONTROLS: f32 = 410.0;
 
-/// Describes the content of the plots.
+/// Describes the plots.
 pub fn net_gain_words(state: &State) -> String {
     let level = 100.0 * state.study.settings.uncertainty.level;
     let bars = if state.display.gains.hide_bars {
@@ -42,7 +42,7 @@ pub fn net_gain_words(state: &State) -> String {
     )
 }
 
-/// Draws the selection of the responses and of the form of the schedule, from right to left.
+/// Draws the choices about responses and schedule, from right to left.
 pub fn net_gain_header_ui(
     ui: &mut Ui,
     state: &State,
@@ -79,7 +79,7 @@ pub fn net_gain_header_ui(
     pair_set_ui(ui, state, commands);
 }
 
-/// Draws the selection of the displayed responses, from right to left.
+/// Draws the choice between displayed responses, from right to left.
 fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let pair = state.display.selection.pair;
     if state.display.gains.net_gain_pairs == PairSet::Picked {
@@ -107,7 +107,7 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
-/// Draws the net gain of the selected responses over airspeed.
+/// Draws the net gain over airspeed for each displayed response.
 pub fn net_gain_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -158,7 +158,7 @@ pub fn net_gain_view_ui(
     state.display.figures.insert(View::NetGain, view);
 }
 
-/// Draws the evidence for each form of the schedule; a click on a form selects it.
+/// Draws the evidence for each form of the schedule; a click selects a form.
 fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let mut cached = std::mem::take(&mut state.display.gains.evidence);
     cached.refresh(state);
@@ -198,7 +198,7 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
     state.display.gains.evidence_sorting = sorting;
 }
 
-/// Draws the parameters of the schedule's form, line by line.
+/// Draws the settings for the schedule, line by line.
 fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let rows = [
         &setting::SCHEDULE,
@@ -223,8 +223,8 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         });
 }
 
-/// Builds a plot for each response of the displayed set: the net gain of each condition's optimum,
-/// and the schedule.
+/// Builds a plot for each displayed response: net gain at each condition's optimum, and the
+/// schedule.
 pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
     let mut pairs = Vec::new();
     let mut figure = Figure::default();

@@ -11,7 +11,7 @@ use super::need::Need;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::window_state::State;
 
-/// Returns the job of the record shown over time; `None` without a record, or if a test is shown
+/// Returns the job for the record shown over time; `None` without a record, or if a test is shown
 /// instead.
 pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
     let analysis = current(state)?;
@@ -35,7 +35,7 @@ pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
     })
 }
 
-/// Returns the job of all models' responses to all records; `None` without records.
+/// Returns the job for all models' responses to all records; `None` without records.
 pub fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
     let analysis = current(state)?;
     let records = state.records.history_records();
@@ -49,7 +49,7 @@ pub fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
     })
 }
 
-/// Returns the job of the responses to the test input.
+/// Returns the job for the responses to the test input.
 fn test_job(state: &State) -> Option<TestAnswersJob> {
     Some(TestAnswersJob {
         analysis: current(state)?.into(),

@@ -1,4 +1,4 @@
-//! Poles in the s-plane, and the modes of the physics bundle in a table.
+//! Poles in the s-plane, and a table with the physics bundle's modes.
 
 use egui::{Panel, Ui, Vec2, vec2};
 
@@ -22,8 +22,8 @@ use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{TableLook, table_ui};
 
-/// Real and imaginary parts in the window of the slow modes \[rad/s\], which contains the
-/// rigid-body modes of a helicopter.
+/// Real and imaginary parts in the plot for slow modes \[rad/s\], which contains a helicopter's
+/// rigid-body modes.
 const SLOW: [Range; 2] = [
     Range {
         min: -2.0,
@@ -34,12 +34,12 @@ const SLOW: [Range; 2] = [
         max: 3.2,
     },
 ];
-/// Least size of a plot \[pt\].
+/// Least plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(140.0, 130.0);
-/// Initial share of the height taken by the table.
+/// Initial share given to the table in the height.
 const TABLE_PART: f32 = 0.3;
 
-/// Draws the switch of the zeros, from right to left.
+/// Draws the switch for the zeros.
 pub fn poles_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let mut shown = state.display.poles.show_zeros;
     let name = format!(
@@ -52,7 +52,7 @@ pub fn poles_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
     }
 }
 
-/// Draws the poles of every model of the displayed condition; a click rejects or restores a model.
+/// Draws the poles for every model in the displayed condition; a click rejects or restores a model.
 pub fn poles_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -116,8 +116,8 @@ pub fn poles_view_ui(
     state.display.figures.insert(View::Poles, view);
 }
 
-/// Builds the figure of the poles of every model of the displayed condition, optionally with the
-/// zeros of the response in focus; `None` until they are known.
+/// Builds the pole figure for all models in the displayed condition, optionally with the zeros in
+/// the response in focus; `None` until they are known.
 pub fn poles(state: &State) -> Option<Figure> {
     let CachedModes { zeros, shifts, .. } = &state.display.poles.modes;
     let zeros_of_model = |id: &ModelId| match zeros.iter().find(|(model, _)| model == id) {
@@ -134,8 +134,8 @@ pub fn poles(state: &State) -> Option<Figure> {
     Some(figure)
 }
 
-/// Returns the figure as shown in the window: with arcs of equal frequency in the visible range,
-/// and enlarged marks of the most important models.
+/// Returns the figure as shown in the window: arcs at equal frequency follow the visible range, and
+/// the most important models have larger marks.
 fn dressed(mut figure: Figure, view: &FigureView) -> Figure {
     if let [_, slow] = &mut figure.plots[..] {
         slow.title = "s-plane, slow modes".to_owned();
@@ -162,8 +162,8 @@ fn dressed(mut figure: Figure, view: &FigureView) -> Figure {
     figure
 }
 
-/// Returns the size of the dots under a heading of the legend, relative to the usual size: those of
-/// perturbed models are smaller than those of the nominal model and the representatives.
+/// Returns the dot size for a legend entry, relative to the usual size. Perturbed models have
+/// smaller dots than the nominal model and the representatives.
 fn dot_size(key: Option<&str>) -> f64 {
     const LARGE: [Role; 3] = [
         Role::Nominal,
@@ -179,7 +179,7 @@ fn dot_size(key: Option<&str>) -> f64 {
     }
 }
 
-/// Descriptions of the pole plots.
+/// Descriptions for the pole plots.
 struct PoleWords<'a> {
     state: &'a State,
     dots: usize,
@@ -222,7 +222,7 @@ impl FigureWords for PoleWords<'_> {
     }
 }
 
-/// Draws the table of modes; a click on a row isolates its first model whose mode jumps.
+/// Draws the mode table; a click isolates the first model in which the mode jumps.
 fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let CachedModes { table, jumping, .. } = &state.display.poles.modes;
     let look = TableLook {

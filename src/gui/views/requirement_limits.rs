@@ -1,5 +1,5 @@
-//! Editable tables of the requirements: tolerances of time histories and of modes, limits of the
-//! overview (M17).
+//! Fields for requirements: tolerances for time histories and for modes, limits in the overview
+//! (M17).
 
 use std::sync::Arc;
 
@@ -18,10 +18,10 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{button_ui, number_entry_ui};
 use crate::gui::widgets::palette::Palette;
 
-/// Width of a field \[pt\].
+/// Field width \[pt\].
 const FIELD: f32 = 56.0;
 
-/// Draws every row of the tolerances of time histories.
+/// Draws the tolerances for time histories, row by row.
 pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let table = &state.study.requirements.tolerances;
     ui.horizontal_wrapped(|ui| {
@@ -71,14 +71,14 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     }
 }
 
-/// Returns the command that changes the tolerances of time histories.
+/// Returns the command that changes the tolerances for time histories.
 fn set_tolerances(state: &State, tolerances: ToleranceTable) -> Command {
     decided(state, "tolerances", |settings| {
         settings.tolerances = tolerances;
     })
 }
 
-/// Draws every row of the tolerances of modes.
+/// Draws the tolerances for modes, row by row.
 pub fn mode_tolerances_ui(
     ui: &mut Ui,
     state: &State,
@@ -128,7 +128,7 @@ pub fn mode_tolerances_ui(
     }
 }
 
-/// Returns the command that changes the tolerances of modes.
+/// Returns the command that changes the tolerances for modes.
 fn set_mode_tolerances(state: &State, tolerances: ModeToleranceTable) -> Command {
     decided(state, "tolerances of modes", |settings| {
         settings.mode_tolerances = tolerances;
@@ -168,7 +168,7 @@ pub fn overview_limits_ui(
     }
 }
 
-/// Returns the command that changes the limits of the overview.
+/// Returns the command that changes the limits in the overview.
 fn set_overview_limits(state: &State, limits: OverviewLimits) -> Command {
     decided(state, "limits of the overview", |settings| {
         settings.overview = limits;
@@ -239,8 +239,8 @@ impl LimitField {
     }
 }
 
-/// Returns the command that changes the inputs of the requirements; `name` names the decision in the
-/// history.
+/// Returns the command that changes the requirements' inputs; `name` is for the history of
+/// decisions.
 pub fn decided(
     state: &State,
     name: &'static str,

@@ -1,4 +1,4 @@
-//! Tables on the pages of the requirements, with the colours of their cells.
+//! Tables on the pages about requirements, with cell colours.
 
 use gdcm_method::fidelity::ACCEPTABLE;
 use gdcm_method::requirements::ModeVerdict;
@@ -11,13 +11,13 @@ use super::over_time::time_histories_job;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::window_state::State;
 
-/// Table of a page.
+/// Table on a page.
 pub(super) struct PageTable<'a> {
     pub(super) table: Table,
     kind: TableKind<'a>,
 }
 
-/// Content of a table, which determines the colours of its cells.
+/// Table content, which determines the cell colours.
 enum TableKind<'a> {
     Bandwidth(&'a Requirements),
     Modes,
@@ -25,9 +25,9 @@ enum TableKind<'a> {
     Summary(&'a Requirements),
 }
 
-/// Columns of the bandwidth table before its numbers.
+/// Columns before the numbers in the bandwidth table.
 const BANDWIDTH_HEADS: usize = 4;
-/// Numbers of a bandwidth, in the order of the table's columns.
+/// Numbers in the bandwidth table, in column order.
 const BANDWIDTH_NUMBERS: [&str; 5] = [
     "omega_bw_rad_s",
     "omega_phase_rad_s",
@@ -37,7 +37,7 @@ const BANDWIDTH_NUMBERS: [&str; 5] = [
 ];
 
 impl PageTable<'_> {
-    /// Returns the colour of a cell; `None` for the default.
+    /// Returns a cell's colour; `None` for the default.
     pub(super) fn hue(&self, row: usize, column: usize) -> Option<Hue> {
         match &self.kind {
             TableKind::Bandwidth(requirements) => bandwidth_hue(requirements, row, column),
@@ -53,7 +53,7 @@ impl PageTable<'_> {
         }
     }
 
-    /// Returns the colour of a mode inside or outside its tolerance; grey without a verdict.
+    /// Returns the colour for a mode inside or outside its tolerance; grey without a verdict.
     fn mode_hue(&self, row: usize, column: usize) -> Option<Hue> {
         if !self.table.columns[column].ends_with(": tolerance") {
             return None;
@@ -68,8 +68,8 @@ impl PageTable<'_> {
         }
     }
 
-    /// Returns the colour of a mean J on either side of the acceptable limit; other columns have no
-    /// limit.
+    /// Returns the colour for a mean J on either side of the acceptable limit; other columns have
+    /// no limit.
     fn summary_hue(&self, requirements: &Requirements, row: usize, column: usize) -> Option<Hue> {
         let finding = requirements.summary_of(&self.table.rows[row])?;
         let cost = match self.table.columns[column].as_str() {
@@ -95,7 +95,7 @@ fn bandwidth_hue(requirements: &Requirements, row: usize, column: usize) -> Opti
     }
 }
 
-/// Returns the tables of the displayed page.
+/// Returns the tables on the displayed page.
 pub(super) fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> Vec<PageTable<'a>> {
     let dataset = state.dataset();
     match state.display.judging.requirements_page {
@@ -128,7 +128,7 @@ pub(super) fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> 
     }
 }
 
-/// Returns the tables of a page without a figure; `None` for a page with a figure, or until the
+/// Returns the tables on a page without a figure; `None` on a page with a figure, or until the
 /// requirements are known.
 pub fn requirement_tables(state: &State) -> Option<Vec<Table>> {
     match state.display.judging.requirements_page {

@@ -39,15 +39,15 @@ use crate::gui::widgets::controls::{button_ui, restore_panel_size};
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{TableClick, TableLook, table_grid_ui};
 
-/// Text at the top of every page.
+/// Text above every page.
 pub(super) const NO_QUALIFICATION: &str =
     "Models, not aircraft: these numbers are no qualification (docs/requirements.md)";
-/// Least size of a plot \[pt\].
+/// Least plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
-/// Initial share of the height taken by the table.
+/// Initial share given to the table in the height.
 const TABLE_PART: f32 = 0.34;
 
-/// Draws the tabs of the pages, from right to left.
+/// Draws the page tabs, from right to left.
 pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.display.judging.requirements_page;
     let pages = [
@@ -80,7 +80,7 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
     }
 }
 
-/// Returns the job of the displayed requirements; `None` until there is an analysis.
+/// Returns the job for the displayed requirements; `None` until there is an analysis.
 pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
     let analysis = current(state)?;
     Some(RequirementsJob {
@@ -151,8 +151,7 @@ pub fn requirements_view_ui(
     }
 }
 
-/// Draws the inputs of the bandwidths: the sticks that command an attitude, and the engineer's
-/// levels.
+/// Draws the inputs for bandwidths: the sticks that command an attitude, and the engineer's levels.
 fn bandwidth_inputs_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         ui.label(palette.small("attitude command:"));
@@ -207,7 +206,7 @@ fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     button_ui(ui, Button::new("Levels…").small(), hint, ask, commands);
 }
 
-/// View of known requirements.
+/// View with known requirements.
 struct RequirementsView<'a> {
     requirements: &'a Requirements,
     palette: &'a Palette,
@@ -280,7 +279,7 @@ impl RequirementsView<'_> {
         state.display.figures.insert(View::Requirements, view);
     }
 
-    /// Draws the tables of the page; a click on a row shows its subject.
+    /// Draws the tables on the page; a click on a row shows its subject.
     fn tables_ui(&self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
         let condition = state.condition().id();
         let mut sortings = state.display.judging.requirements_sorting;
@@ -326,7 +325,7 @@ impl RequirementsView<'_> {
         "No condition has a result"
     }
 
-    /// Returns the commands of a click on a row.
+    /// Returns the commands for a click on a row.
     fn click_commands(&self, state: &State, table: &Table, click: TableClick) -> Vec<Command> {
         match state.display.judging.requirements_page {
             RequirementsPage::Bandwidth => match self.requirements.bandwidth.get(click.row) {
@@ -344,7 +343,7 @@ impl RequirementsView<'_> {
     }
 }
 
-/// Returns the condition of a click: conditions are rows of the summary and columns of the overview.
+/// Returns the clicked condition: conditions are rows in the summary and columns in the overview.
 fn clicked_condition(table: &Table, click: TableClick) -> Option<ConditionId> {
     if let Some(cells) = table.rows.get(click.row)
         && let Ok(id) = cells[0].parse()
@@ -354,7 +353,7 @@ fn clicked_condition(table: &Table, click: TableClick) -> Option<ConditionId> {
     table.columns[click.column].parse().ok().map(ConditionId)
 }
 
-/// Model of a response in a condition, with a bandwidth.
+/// Model with a bandwidth: condition, response and role.
 #[derive(Clone, Copy)]
 struct BandwidthModel {
     condition: ConditionId,
@@ -376,8 +375,8 @@ impl BandwidthModel {
     }
 }
 
-/// Returns the role whose mark is at a place \[rad/s, ms\] of the plot of a response: among marks at
-/// the same place, the topmost.
+/// Returns the role marked at a place \[rad/s, ms\] in a response's plot; among marks at the same
+/// place, the topmost.
 fn role_at(
     requirements: &Requirements,
     model: BandwidthModel,
@@ -417,7 +416,7 @@ fn bode_commands(requirements: &Requirements, model: BandwidthModel) -> Vec<Comm
     commands
 }
 
-/// Descriptions of the bandwidth plots.
+/// Descriptions for the bandwidth plots.
 struct BandwidthWords<'a> {
     state: &'a State,
     requirements: &'a Requirements,

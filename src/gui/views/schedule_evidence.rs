@@ -1,4 +1,4 @@
-//! Evidence for each form of the schedule: errors of its fit and for left-out conditions, residuals
+//! Evidence for each form of the schedule: errors in fitted and in left-out conditions, residuals
 //! and coefficients.
 
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Evidence and the conditions of the schedule, in the same order.
+/// Evidence and the scheduled conditions, in the same order.
 #[derive(Clone, Copy)]
 pub(super) struct ScheduleEvidence<'a> {
     pub(super) conditions: &'a [ConditionId],
@@ -52,7 +52,7 @@ impl CachedEvidence {
     }
 }
 
-/// Table of the forms of the schedule.
+/// Table that compares the forms of the schedule.
 pub(super) struct FormsTable<'a> {
     pub(super) state: &'a State,
     pub(super) forms: &'a FormComparison,
@@ -78,8 +78,8 @@ impl FormsTable<'_> {
     }
 }
 
-/// Builds the table of the root mean square errors of each form \[%\]: of its fit and for left-out
-/// conditions, over the displayed responses and for each of them.
+/// Builds the table with each form's root mean square errors \[%\]: over the displayed responses in
+/// fitted and in left-out conditions, then for each response in left-out conditions.
 fn forms_table(state: &State, forms: &FormComparison) -> Table {
     let pairs = net_gain_pairs(state);
     let mut columns = vec![
@@ -105,7 +105,6 @@ fn forms_table(state: &State, forms: &FormComparison) -> Table {
     table
 }
 
-/// Returns the name of a form of the schedule in the table.
 fn kind_name(kind: ScheduleKind) -> String {
     match kind {
         ScheduleKind::Polynomial { degree: 0 } => "constant".to_owned(),
@@ -114,7 +113,7 @@ fn kind_name(kind: ScheduleKind) -> String {
     }
 }
 
-/// Formats a root mean square of `ln k` as a share of the gain \[%\].
+/// Formats a root mean square error in `ln k` as a relative error in the gain \[%\].
 fn percent_text(rms_ln: Option<f64>) -> String {
     match rms_ln {
         Some(rms_ln) => format!("{:.2}", 100.0 * rms_ln),
@@ -122,7 +121,7 @@ fn percent_text(rms_ln: Option<f64>) -> String {
     }
 }
 
-/// Formats an error of a delay \[ms\].
+/// Formats a delay error \[ms\].
 fn delay_text(error_s: Option<f64>) -> String {
     match error_s {
         Some(error_s) => format!("{:.2}", s_to_ms(error_s)),
@@ -130,8 +129,8 @@ fn delay_text(error_s: Option<f64>) -> String {
     }
 }
 
-/// Computes the root mean square of the residuals of `ln k` over these responses; `None` without
-/// responses, or if a response has no residuals.
+/// Computes the root mean square residual in `ln k` over these responses; `None` without responses,
+/// or if a response has no residuals.
 fn fit_rms_ln(form: &FormFit, pairs: &[Pair]) -> Option<f64> {
     if pairs.is_empty() {
         return None;
@@ -144,8 +143,8 @@ fn fit_rms_ln(form: &FormFit, pairs: &[Pair]) -> Option<f64> {
     Some((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }
 
-/// Builds the table of the errors of each degree of the scheduled signed delays \[ms\]: of the fit
-/// and for left-out conditions, for each displayed response; `None` without leads.
+/// Builds the table with the errors in scheduled signed delays \[ms\] for each polynomial degree:
+/// for each displayed response in fitted and in left-out conditions. `None` without leads.
 pub(super) fn lead_degrees_table(state: &State, degrees: &[LeadDegreeFit]) -> Option<Table> {
     if degrees.is_empty() {
         return None;
@@ -170,8 +169,8 @@ pub(super) fn lead_degrees_table(state: &State, degrees: &[LeadDegreeFit]) -> Op
     Some(table)
 }
 
-/// Builds the table of the residuals of each condition under the current schedule, for each
-/// displayed response \[% of the scheduled gain\].
+/// Builds the table with each condition's residuals from the current schedule, for each displayed
+/// response \[% of the scheduled gain\].
 pub(super) fn residual_table(state: &State, evidence: ScheduleEvidence<'_>) -> Option<Table> {
     let form = evidence.forms.of(state.study.settings.schedule.kind)?;
     let pairs = net_gain_pairs(state);
@@ -193,7 +192,8 @@ pub(super) fn residual_table(state: &State, evidence: ScheduleEvidence<'_>) -> O
     Some(table)
 }
 
-/// Builds the table of the schedule's coefficients, channel by channel; `None` without a schedule.
+/// Builds the table with the schedule's coefficients, channel by channel; `None` without a
+/// schedule.
 pub(super) fn coefficient_table(state: &State) -> Option<Table> {
     let schedule = state.analysis()?.schedule.as_ref().ok()?;
     let (inputs, outputs) = state.dataset().names_of_channels();

@@ -1,4 +1,4 @@
-//! A control for each row of the settings table.
+//! A control for each row in the settings table.
 
 use egui::{Role, Slider, Ui, WidgetInfo};
 
@@ -23,7 +23,7 @@ const SLIDER_START: f64 = 1e-3;
 const LABEL_WIDTH: f32 = 60.0;
 const TYPED_WIDTH: f32 = 62.0;
 
-/// Summary of M15 in five steps.
+/// M15 in five steps.
 const LEADS_IN_SHORT: &str = "Delay or lead:\n\
     1  For each response, a straight line through the origin is fitted to the missing phase over the band. Its slope is a delay or, \
     if negative, a lead.\n\
@@ -32,7 +32,7 @@ const LEADS_IN_SHORT: &str = "Delay or lead:\n\
     4  The gains are then computed as without leads, for the remaining error.\n\
     5  The price is gain above the band [dB].";
 
-/// Draws the control of a setting inside the view it concerns.
+/// Draws a setting's control inside the view it concerns.
 pub fn setting_ui(
     ui: &mut Ui,
     state: &State,
@@ -61,7 +61,7 @@ fn found_value(state: &State, setting: &Setting) -> Option<Value> {
     }
 }
 
-/// Draws the controls of settings, and pushes the decisions taken with them.
+/// Draws controls for settings, and pushes the decisions taken with them.
 pub struct SettingControls<'a, 'c> {
     pub ui: &'a mut Ui,
     pub state: &'a State,
@@ -84,7 +84,7 @@ impl SettingControls<'_, '_> {
         }
     }
 
-    /// Draws the caption of a setting.
+    /// Draws the caption; for the phase correction, with a summary as tooltip.
     pub fn caption_ui(&mut self, setting: &Setting) {
         let label = self.ui.label(self.palette.dim(setting.control.caption));
         if *setting == setting::PHASE {
@@ -96,7 +96,7 @@ impl SettingControls<'_, '_> {
         self.ui.label(self.palette.small(text));
     }
 
-    /// Draws the controls of several settings in a line, each but the first behind its caption.
+    /// Draws several settings in a line, each but the first with its caption in front.
     pub fn controls_ui(&mut self, line: &[&'static Setting]) {
         for (place, setting) in line.iter().enumerate() {
             if place > 0 && !setting.control.caption.is_empty() {
@@ -121,7 +121,7 @@ impl SettingControls<'_, '_> {
         }
     }
 
-    /// Draws the control for the kind of a setting.
+    /// Draws the control that fits the kind of setting.
     pub fn control_ui(&mut self, setting: &'static Setting) {
         let value = setting.value(&self.state.study.settings);
         match (setting.kind, value) {
@@ -323,7 +323,6 @@ impl SettingControls<'_, '_> {
         self.end(high);
     }
 
-    /// Draws an end of a range.
     fn end_ui(
         &mut self,
         setting: &'static Setting,
@@ -364,7 +363,7 @@ enum Automatic {
     Off,
 }
 
-/// Creates the number field of a setting, in display units; the limits are in stored units.
+/// Creates a setting's number field in display units; the limits are in stored units.
 fn number_field(
     setting: &'static Setting,
     name: &'static str,

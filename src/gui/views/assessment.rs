@@ -43,14 +43,16 @@ pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Comma
         let parts = parts.map(|(part, hint)| (part, part.symbol(), hint));
         choice_ui(ui, "Part of J", &mut chosen.part, &parts);
     }
-    choices_ui(ui, &mut chosen);
+    average_choice_ui(ui, &mut chosen);
+    correction_choice_ui(ui, &mut chosen);
+    model_choice_ui(ui, &mut chosen);
+    pairs_choice_ui(ui, &mut chosen);
     if chosen != shown {
         commands.push(DisplayCommand::Assess(chosen).into());
     }
 }
 
-/// Draws the choices that determine the assessed numbers.
-fn choices_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
+fn average_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     let averages = [
         (None, "as set", "Median or mean, by the settings"),
         (
@@ -64,12 +66,11 @@ fn choices_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
             "J with means over frequency",
         ),
     ];
-    choice_ui(
-        ui,
-        "Average of the assessment",
-        &mut chosen.average,
-        &averages,
-    );
+    let name = "Average of the assessment";
+    choice_ui(ui, name, &mut chosen.average, &averages);
+}
+
+fn correction_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     let corrections = [
         (
             AssessedCorrection::Scheduled,
@@ -92,12 +93,11 @@ fn choices_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
             "Correction optimised for the condition alone",
         ),
     ];
-    choice_ui(
-        ui,
-        "Correction assessed",
-        &mut chosen.correction,
-        &corrections,
-    );
+    let name = "Correction assessed";
+    choice_ui(ui, name, &mut chosen.correction, &corrections);
+}
+
+fn model_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     let models = [
         (
             AssessedModel::Nominal,
@@ -111,6 +111,9 @@ fn choices_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
         ),
     ];
     choice_ui(ui, "Model assessed", &mut chosen.model, &models);
+}
+
+fn pairs_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     let pairs = [
         (
             AssessedPairs::OnAxis,
@@ -147,7 +150,8 @@ pub fn assessment_view_ui(
     ui.add(egui::Label::new(text).truncate())
         .on_hover_text(&sentences);
     if state.display.judging.assessed.as_table {
-        return text_table_ui(ui, state, &table, palette, commands);
+        change_table_ui(ui, state, palette, commands);
+        return;
     }
     key_ui(ui, palette);
     let mut view = state
@@ -225,13 +229,10 @@ fn key_ui(ui: &mut Ui, palette: &Palette) {
 }
 
 /// Draws the table, with a warning if J rises. A click selects the response and the condition.
-fn text_table_ui(
-    ui: &mut Ui,
-    state: &mut State,
-    table: &AssessmentTable,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
+fn change_table_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some(table) = state.assessment() else {
+        return;
+    };
     let text = assessment_text_table(state, table);
     let pairs = assessed_pairs(state);
     let color = |row: usize, column: usize| {

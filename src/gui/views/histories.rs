@@ -1,12 +1,12 @@
 //! Requirements over time: flight records with their corridors and the models' responses; without
 //! records, a step or a doublet (M17.2).
 
-use egui::{CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
+use egui::{CollapsingHeader, Color32, Label, Panel, ScrollArea, Ui, Vec2, vec2};
 
 use gdcm_method::requirements::{TestInput, TestInputShape};
 use gdcm_model::units::number;
 use gdcm_plot::figure::{Figure, OverTime};
-use gdcm_study::results::condition_answers::RecordHistory;
+use gdcm_study::Table;
 use gdcm_study::results::time_histories::Trend;
 
 use super::figures::figure_of;
@@ -23,7 +23,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::controls::{number_entry_ui, restore_panel_size};
 use crate::gui::widgets::palette::Palette;
-use crate::gui::widgets::tables::{TableLook, table_grid_ui};
+use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
 
 /// Least plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 96.0);
@@ -60,7 +60,15 @@ pub fn histories_ui(
             .resizable(true)
             .default_size(size)
             .min_size(60.0);
-        panel.show(ui, |ui| shares_ui(ui, state, history, palette, commands));
+        let table = history.table();
+        panel.show(ui, |ui| {
+            let shares = SharesTable {
+                table: &table,
+                palette,
+            };
+            let sorting = &mut state.display.judging.requirements_sorting[0];
+            shares.ui(ui, sorting, commands);
+        });
     }
     let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
     ui.add(Label::new(palette.small(&figure.caption)).wrap());
@@ -136,37 +144,38 @@ const SHARE: usize = 4;
 const EXCESS: usize = 5;
 const TREND: usize = 7;
 
-/// Draws the share of time inside the corridor and the largest excess, for every quantity and
+/// Table with the share of time inside the corridor and the largest excess, for every quantity and
 /// model.
-fn shares_ui(
-    ui: &mut Ui,
-    state: &mut State,
-    history: &RecordHistory,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    let table = history.table();
-    let color = |row: usize, column: usize| match column {
-        SHARE | EXCESS => Some(if table.rows[row][EXCESS] == "none" {
-            palette.good
-        } else {
-            palette.warning
-        }),
-        TREND if table.rows[row][TREND] == Trend::Opposite.name() => Some(palette.warning),
-        _ => None,
-    };
-    let look = TableLook {
-        color: &color,
-        ..TableLook::PLAIN
-    };
-    ScrollArea::vertical()
-        .id_salt("tolerances")
-        .auto_shrink(false)
-        .show(ui, |ui| {
-            ui.label(palette.small(&table.title));
-            let sorting = &mut state.display.judging.requirements_sorting[0];
-            table_grid_ui(ui, &table, sorting, &look, palette, commands);
-        });
+struct SharesTable<'a> {
+    table: &'a Table,
+    palette: &'a Palette,
+}
+
+impl SharesTable<'_> {
+    fn ui(&self, ui: &mut Ui, sorting: &mut Sorting, commands: &mut Vec<Command>) {
+        let look = TableLook {
+            color: &|row, column| self.color(row, column),
+            ..TableLook::PLAIN
+        };
+        ScrollArea::vertical()
+            .id_salt("tolerances")
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                ui.label(self.palette.small(&self.table.title));
+                table_grid_ui(ui, self.table, sorting, &look, self.palette, commands);
+            });
+    }
+
+    /// Returns a cell's colour: a warning outside the corridor, and for an opposite trend.
+    fn color(&self, row: usize, column: usize) -> Option<Color32> {
+        let cells = &self.table.rows[row];
+        match column {
+            SHARE | EXCESS if cells[EXCESS] == "none" => Some(self.palette.good),
+            SHARE | EXCESS => Some(self.palette.warning),
+            TREND if cells[TREND] == Trend::Opposite.name() => Some(self.palette.warning),
+            _ => None,
+        }
+    }
 }
 
 /// Draws the test input: shape, size and duration.

@@ -56,6 +56,7 @@ use need::Need;
 use net_gain::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_view_ui, net_gain_words};
 use over_time::current;
 use poles::{poles_header_ui, poles_view_ui};
+use records::{records_header_ui, records_view_ui, simulation_jobs};
 use requirements::{
     NO_QUALIFICATION, requirements_header_ui, requirements_needs, requirements_view_ui,
 };
@@ -63,123 +64,23 @@ use requirements::{
 pub use compare::overlay_job;
 pub use couplings::{are_couplings_judged, couplings_job, offered_couplings, used_couplings};
 
-/// Returns a view's content: drawing, background jobs and figures.
+/// Returns a view's content: drawing, header, background jobs and figures.
 pub fn view_content(view: View) -> ViewContent {
     match view {
-        View::Bode => ViewContent {
-            draw: bode_view_ui,
-            title: ViewTitle::Response,
-            figure_pairs: |state| vec![state.display.selection.pair],
-            ..ViewContent::PLAIN
-        },
-        View::Error => ViewContent {
-            draw: error_view_ui,
-            title: ViewTitle::Response,
-            tools: |ui, state, _, commands| error_header_ui(ui, state, commands),
-            tools_width: 160.0,
-            figure_pairs: |state| vec![state.display.selection.pair],
-            ..ViewContent::PLAIN
-        },
-        View::Overview => ViewContent {
-            draw: overview_view_ui,
-            title: ViewTitle::Condition,
-            ..ViewContent::PLAIN
-        },
-        View::Across => ViewContent {
-            draw: across_view_ui,
-            title: ViewTitle::Focus,
-            tools: across_header_ui,
-            tools_width: 330.0,
-            needs: |state| vec![Need::Across(across_job(state))],
-            figure_pairs: |state| vec![state.display.selection.pair],
-            ..ViewContent::PLAIN
-        },
-        View::Poles => ViewContent {
-            draw: poles_view_ui,
-            title: ViewTitle::Condition,
-            tools: |ui, state, _, commands| poles_header_ui(ui, state, commands),
-            tools_width: 180.0,
-            needs: |state| match state.dataset().condition(state.condition().id()) {
-                Some(condition) => vec![Need::Modes(ModesJob {
-                    condition: Arc::clone(condition).into(),
-                })],
-                None => Vec::new(),
-            },
-            ..ViewContent::PLAIN
-        },
-        View::Couplings => ViewContent {
-            draw: couplings_view_ui,
-            title: ViewTitle::Condition,
-            tools: |ui, state, _, commands| couplings_header_ui(ui, state, commands),
-            tools_width: 220.0,
-            needs: |state| vec![Need::Couplings(couplings_job(state))],
-            ..ViewContent::PLAIN
-        },
-        View::Records => ViewContent {
-            draw: self::records::records_view_ui,
-            title: ViewTitle::Condition,
-            tools: |ui, state, _, commands| self::records::records_header_ui(ui, state, commands),
-            tools_width: 380.0,
-            needs: |state| {
-                self::records::simulation_jobs(state)
-                    .into_iter()
-                    .map(Need::Simulation)
-                    .collect()
-            },
-            ..ViewContent::PLAIN
-        },
-        View::Channels => ViewContent {
-            draw: channels_view_ui,
-            tools: |ui, state, _, commands| channels_header_ui(ui, state, commands),
-            tools_width: 410.0,
-            ..ViewContent::PLAIN
-        },
-        View::Assessment => ViewContent {
-            draw: assessment_view_ui,
-            tools: |ui, state, _, commands| assessment_header_ui(ui, state, commands),
-            tools_width: 640.0,
-            needs: |state| match current(state) {
-                Some(analysis) => vec![Need::Assessment(AssessmentJob {
-                    analysis: analysis.into(),
-                    choice: state.assessment_choice(),
-                })],
-                None => Vec::new(),
-            },
-            figure_pairs: assessed_pairs,
-            ..ViewContent::PLAIN
-        },
-        View::Evidence => ViewContent {
-            draw: evidence_view_ui,
-            figure_pairs: |state| state.dataset().measuring_pairs().marked().collect(),
-            ..ViewContent::PLAIN
-        },
-        View::Compare => ViewContent {
-            draw: compare_view_ui,
-            needs: |state| variant_jobs(state).into_iter().map(Need::Variant).collect(),
-            ..ViewContent::PLAIN
-        },
-        View::Requirements => ViewContent {
-            draw: requirements_view_ui,
-            title: ViewTitle::Words(|_| NO_QUALIFICATION.to_owned()),
-            tools: |ui, state, _, commands| requirements_header_ui(ui, state, commands),
-            tools_width: 270.0,
-            needs: requirements_needs,
-            ..ViewContent::PLAIN
-        },
-        View::Leads => ViewContent {
-            draw: leads_view_ui,
-            title: ViewTitle::Response,
-            figure_pairs: |state| vec![state.display.selection.pair],
-            ..ViewContent::PLAIN
-        },
-        View::NetGain => ViewContent {
-            draw: net_gain_view_ui,
-            title: ViewTitle::Words(net_gain_words),
-            tools: net_gain_header_ui,
-            tools_width: NET_GAIN_CONTROLS,
-            figure_pairs: net_gain_pairs,
-            ..ViewContent::PLAIN
-        },
+        View::Bode => BODE,
+        View::Error => ERROR,
+        View::Overview => OVERVIEW,
+        View::Across => ACROSS,
+        View::Poles => POLES,
+        View::Couplings => COUPLINGS,
+        View::Records => RECORDS,
+        View::Channels => CHANNELS,
+        View::Assessment => ASSESSMENT,
+        View::Evidence => EVIDENCE,
+        View::Compare => COMPARE,
+        View::Requirements => REQUIREMENTS,
+        View::Leads => LEADS,
+        View::NetGain => NET_GAIN,
     }
 }
 
@@ -222,4 +123,144 @@ pub enum ViewTitle {
     /// The response in focus.
     Focus,
     Words(fn(&State) -> String),
+}
+
+const BODE: ViewContent = ViewContent {
+    draw: bode_view_ui,
+    title: ViewTitle::Response,
+    figure_pairs: focused_pair,
+    ..ViewContent::PLAIN
+};
+
+const ERROR: ViewContent = ViewContent {
+    draw: error_view_ui,
+    title: ViewTitle::Response,
+    tools: |ui, state, _, commands| error_header_ui(ui, state, commands),
+    tools_width: 160.0,
+    figure_pairs: focused_pair,
+    ..ViewContent::PLAIN
+};
+
+const OVERVIEW: ViewContent = ViewContent {
+    draw: overview_view_ui,
+    title: ViewTitle::Condition,
+    ..ViewContent::PLAIN
+};
+
+const ACROSS: ViewContent = ViewContent {
+    draw: across_view_ui,
+    title: ViewTitle::Focus,
+    tools: across_header_ui,
+    tools_width: 330.0,
+    needs: |state| vec![Need::Across(across_job(state))],
+    figure_pairs: focused_pair,
+    ..ViewContent::PLAIN
+};
+
+const POLES: ViewContent = ViewContent {
+    draw: poles_view_ui,
+    title: ViewTitle::Condition,
+    tools: |ui, state, _, commands| poles_header_ui(ui, state, commands),
+    tools_width: 180.0,
+    needs: modes_needs,
+    ..ViewContent::PLAIN
+};
+
+const COUPLINGS: ViewContent = ViewContent {
+    draw: couplings_view_ui,
+    title: ViewTitle::Condition,
+    tools: |ui, state, _, commands| couplings_header_ui(ui, state, commands),
+    tools_width: 220.0,
+    needs: |state| vec![Need::Couplings(couplings_job(state))],
+    ..ViewContent::PLAIN
+};
+
+const RECORDS: ViewContent = ViewContent {
+    draw: records_view_ui,
+    title: ViewTitle::Condition,
+    tools: |ui, state, _, commands| records_header_ui(ui, state, commands),
+    tools_width: 380.0,
+    needs: |state| {
+        simulation_jobs(state)
+            .into_iter()
+            .map(Need::Simulation)
+            .collect()
+    },
+    ..ViewContent::PLAIN
+};
+
+const CHANNELS: ViewContent = ViewContent {
+    draw: channels_view_ui,
+    tools: |ui, state, _, commands| channels_header_ui(ui, state, commands),
+    tools_width: 410.0,
+    ..ViewContent::PLAIN
+};
+
+const ASSESSMENT: ViewContent = ViewContent {
+    draw: assessment_view_ui,
+    tools: |ui, state, _, commands| assessment_header_ui(ui, state, commands),
+    tools_width: 640.0,
+    needs: assessment_needs,
+    figure_pairs: assessed_pairs,
+    ..ViewContent::PLAIN
+};
+
+const EVIDENCE: ViewContent = ViewContent {
+    draw: evidence_view_ui,
+    figure_pairs: |state| state.dataset().measuring_pairs().marked().collect(),
+    ..ViewContent::PLAIN
+};
+
+const COMPARE: ViewContent = ViewContent {
+    draw: compare_view_ui,
+    needs: |state| variant_jobs(state).into_iter().map(Need::Variant).collect(),
+    ..ViewContent::PLAIN
+};
+
+const REQUIREMENTS: ViewContent = ViewContent {
+    draw: requirements_view_ui,
+    title: ViewTitle::Words(|_| NO_QUALIFICATION.to_owned()),
+    tools: |ui, state, _, commands| requirements_header_ui(ui, state, commands),
+    tools_width: 270.0,
+    needs: requirements_needs,
+    ..ViewContent::PLAIN
+};
+
+const LEADS: ViewContent = ViewContent {
+    draw: leads_view_ui,
+    title: ViewTitle::Response,
+    figure_pairs: focused_pair,
+    ..ViewContent::PLAIN
+};
+
+const NET_GAIN: ViewContent = ViewContent {
+    draw: net_gain_view_ui,
+    title: ViewTitle::Words(net_gain_words),
+    tools: net_gain_header_ui,
+    tools_width: NET_GAIN_CONTROLS,
+    figure_pairs: net_gain_pairs,
+    ..ViewContent::PLAIN
+};
+
+fn focused_pair(state: &State) -> Vec<Pair> {
+    vec![state.display.selection.pair]
+}
+
+fn modes_needs(state: &State) -> Vec<Need> {
+    match state.dataset().condition(state.condition().id()) {
+        Some(condition) => vec![Need::Modes(ModesJob {
+            condition: Arc::clone(condition).into(),
+        })],
+        None => Vec::new(),
+    }
+}
+
+fn assessment_needs(state: &State) -> Vec<Need> {
+    match current(state) {
+        Some(analysis) => vec![Need::Assessment(AssessmentJob {
+            analysis: analysis.into(),
+            choice: state.assessment_choice(),
+        })],
+        None => Vec::new(),
+    }
 }

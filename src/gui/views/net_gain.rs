@@ -13,7 +13,7 @@ use super::gain_plots::{
     GainPlots, bars_switch_ui, gain_command, net_gain_pairs, shown_uncertainty,
 };
 use super::schedule_evidence::{FormsTable, coefficient_table, lead_degrees_table, residual_table};
-use super::setting_controls::setting_ui;
+use super::setting_controls::SettingControls;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::plot::{FigureScene, figure_ui};
@@ -217,7 +217,13 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
                     continue;
                 }
                 ui.label(palette.dim(setting.control.label));
-                setting_ui(ui, state, setting, palette, commands);
+                let mut controls = SettingControls {
+                    ui,
+                    state,
+                    palette,
+                    commands,
+                };
+                controls.control_ui(setting);
                 ui.end_row();
             }
         });

@@ -32,23 +32,6 @@ const LEADS_IN_SHORT: &str = "Delay or lead:\n\
     4  The gains are then computed as without leads, for the remaining error.\n\
     5  The price is gain above the band [dB].";
 
-/// Draws a setting's control inside the view it concerns.
-pub fn setting_ui(
-    ui: &mut Ui,
-    state: &State,
-    setting: &'static Setting,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    SettingControls {
-        ui,
-        state,
-        palette,
-        commands,
-    }
-    .control_ui(setting);
-}
-
 /// Returns the value determined by the program for an automatic setting.
 fn found_value(state: &State, setting: &Setting) -> Option<Value> {
     let shown = state.shown()?;

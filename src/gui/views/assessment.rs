@@ -54,7 +54,7 @@ pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Comma
 
 fn average_choice_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     let averages = [
-        (None, "as set", "Median or mean, by the settings"),
+        (None, "as set", "Median or mean, as in the settings"),
         (
             Some(CostAverage::Median),
             "median",
@@ -199,7 +199,7 @@ pub fn assessment_view_ui(
     state.display.figures.insert(View::Assessment, view);
 }
 
-/// Draws the key from right to left.
+/// Draws the colour key, from right to left.
 fn key_ui(ui: &mut Ui, palette: &Palette) {
     let faint = palette
         .dim_text
@@ -300,8 +300,8 @@ pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
     )
 }
 
-/// Summarises the assessment in sentences: improved responses, the verdict from conditions held out
-/// from the schedule, and omissions.
+/// Summarises the assessment in sentences: improved responses, the verdict on conditions held out of
+/// the schedule, and omissions.
 pub fn assessment_sentences(state: &State, table: &AssessmentTable) -> Vec<String> {
     let pairs = assessed_pairs(state);
     let marked = state

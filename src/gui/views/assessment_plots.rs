@@ -25,7 +25,7 @@ const NUMBER_GAP: f64 = 0.05;
 /// Value from which a number has no decimals: 9.95 rounds to 10.0.
 const WHOLE_FROM: f64 = 9.95;
 
-/// Plots for the change of J, one response in each.
+/// Plots of the change of J, one for each response.
 pub(super) struct AssessmentPlots<'a> {
     pub(super) state: &'a State,
     pub(super) table: &'a AssessmentTable,
@@ -39,7 +39,7 @@ struct PlacedChange {
     change: CostChange,
 }
 
-/// Part that is drawn as a bar.
+/// Part of J.
 #[derive(Clone, Copy, PartialEq)]
 enum BarPart {
     Magnitude,

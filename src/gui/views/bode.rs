@@ -192,8 +192,8 @@ fn cost_change(before: f64, after: f64) -> String {
     format!("J {} → {}", decimals(before, 1), decimals(after, 1))
 }
 
-/// Formats "lags by 66 ms, 46° at 12 rad/s" for the delay that the correction still lacks; the
-/// corrected model lags if it is negative.
+/// Formats a remaining delay as "lags by 66 ms, 46° at 12 rad/s": the corrected model lags if
+/// `left_s` is negative.
 fn delay_verdict(state: &State, left_s: f64) -> String {
     if left_s.abs() < MATCHED_S {
         return "matched".to_owned();

@@ -26,7 +26,7 @@ use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
 
 /// Least plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
-/// Initial share given to words and tables in the width.
+/// Initial width of words and tables, as a share of the view's width.
 const WORDS_PART: f32 = 0.56;
 
 /// Draws the choice between coupling corrections.
@@ -64,9 +64,9 @@ pub fn couplings_job(state: &State) -> CouplingsJob {
     }
 }
 
-/// Returns whether the couplings are assessed in every view. Couplings in use are, for their cost.
-/// Unused couplings are once delays are matched or leads are requested, with enough conditions,
-/// because they may then be worthwhile.
+/// Returns whether the couplings are assessed in every view. Couplings in use are assessed for their
+/// cost; unused couplings once they may be worthwhile: with matched delays or requested leads, and
+/// with enough conditions.
 pub fn are_couplings_judged(state: &State) -> bool {
     let settings = &state.study.settings;
     let Some(analysis) = state.analysis() else {
@@ -131,7 +131,7 @@ pub fn couplings_view_ui(
         Some(Ok(assessment)) => assessment,
         Some(Err(why)) => {
             let why = why.words(&state.dataset().names_of_channels().0);
-            ui.add(Label::new(palette.dim(format!("No couplings: {why}."))).wrap());
+            ui.add(Label::new(palette.dim(format!("No couplings: {why}"))).wrap());
             return;
         }
         None => {
@@ -201,7 +201,7 @@ impl CouplingsWords<'_> {
     fn use_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         if !are_couplings_used(self.state) {
             let name = self.assessment.couplings.name();
-            let words = format!("None are used. What {name} would do:");
+            let words = format!("Not in use. Effect of {name}:");
             ui.label(self.palette.dim(words));
             self.switch_ui(
                 ui,

@@ -1,4 +1,4 @@
-//! Evidence about the net gains: sources for their scatter, significant differences, and the
+//! Evidence about the net gains: sources of their scatter, significant differences, and the
 //! required form of the schedule.
 
 use egui::{
@@ -28,7 +28,7 @@ const TEXT_WIDTH: f32 = 400.0;
 /// Least bar width \[pt\].
 const LEAST_BAR: f32 = 60.0;
 
-/// Draws on a single screen whether the scatter at a given airspeed is due to trim, due to
+/// Shows on a single screen whether the scatter at a given airspeed is due to trim, due to
 /// identification, or real.
 pub fn evidence_view_ui(
     ui: &mut Ui,
@@ -244,7 +244,7 @@ impl EvidencePage<'_> {
         if let Some(evidence) = cached.evidence() {
             heading_ui(
                 ui,
-                "Error of each form of the schedule, of its fit and for left-out conditions [% of the net gain]",
+                "Error of each form of the schedule in fitted and in left-out conditions [% of the net gain]",
             );
             let table = FormsTable {
                 state,

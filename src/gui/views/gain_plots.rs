@@ -1,4 +1,4 @@
-//! Plots for gains and delays over airspeed, shared by channels and net gains.
+//! Plots of gains and delays over airspeed, shared by channels and net gains.
 
 use egui::{Ui, Vec2, vec2};
 
@@ -31,7 +31,7 @@ pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
     }
 }
 
-/// Plots for gains or delays, with their subjects.
+/// Plots of gains or delays, with their subjects.
 pub struct GainPlots<'a> {
     pub state: &'a State,
     /// Plots with a single panel each.
@@ -119,7 +119,7 @@ impl FigureWords for GainPlots<'_> {
         }
         let choice = analysis.study.choice(*id);
         if choice.held_out {
-            words.push("held out of the schedule, to judge it".to_owned());
+            words.push("held out of the schedule to validate it".to_owned());
         } else if !choice.is_in_schedule() {
             words.push("not in the schedule".to_owned());
         }
@@ -207,7 +207,7 @@ pub fn bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
         words.push_str(&format!("; {remarks}"));
     }
     if bar.left_out > 0 {
-        words.push_str(&format!("; {} swaps without this figure", bar.left_out));
+        words.push_str(&format!("; undefined in {} substitutions", bar.left_out));
     }
     words
 }

@@ -29,7 +29,7 @@ use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
 const LEAST_PLOT: Vec2 = vec2(220.0, 96.0);
 /// Least plot size for a record, with the difference from flight below it \[pt\].
 const LEAST_RECORD: Vec2 = vec2(260.0, 190.0);
-/// Initial share given to the table in the height.
+/// Initial table height, as a share of the view's height.
 const TABLE_PART: f32 = 0.32;
 
 /// Draws the flown record, or the test input, and the models' responses.

@@ -16,7 +16,7 @@ use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Initial share given to the table in the width.
+/// Initial table width, as a share of the view's width.
 const TABLE_PART: f32 = 0.5;
 
 /// Draws gain and phase added by leads up to ten times the band, and the channel table.

@@ -84,7 +84,7 @@ pub fn view_content(view: View) -> ViewContent {
     }
 }
 
-/// Content in a view.
+/// Content of a view.
 #[derive(Clone, Copy)]
 pub struct ViewContent {
     pub draw: fn(&mut Ui, &mut State, &Palette, &mut Vec<Command>),
@@ -116,11 +116,10 @@ impl ViewContent {
 #[derive(Clone, Copy, Debug)]
 pub enum ViewTitle {
     None,
-    /// The condition.
     Condition,
     /// The response in focus, and the condition.
     Response,
-    /// The response in focus.
+    /// The response in focus, for views of all conditions.
     Focus,
     Words(fn(&State) -> String),
 }

@@ -36,7 +36,7 @@ const SLOW: [Range; 2] = [
 ];
 /// Least plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(140.0, 130.0);
-/// Initial share given to the table in the height.
+/// Initial table height, as a share of the view's height.
 const TABLE_PART: f32 = 0.3;
 
 /// Draws the switch for the zeros.

@@ -146,7 +146,7 @@ pub fn overview_limits_ui(
     let limits = state.study.requirements.overview;
     let mut changed = limits;
     ui.horizontal_wrapped(|ui| {
-        ui.label(palette.small("From no standard: bandwidth ±"));
+        ui.label(palette.small("Limits of this program, not of a standard: bandwidth ±"));
         let bandwidth = LimitField::in_percent("Limit of the bandwidth");
         bandwidth.ui(ui, &mut changed.bandwidth, commands);
         ui.label(palette.small("%, phase delay ±"));

@@ -44,7 +44,7 @@ pub(super) const NO_QUALIFICATION: &str =
     "Models, not aircraft: these numbers are no qualification (docs/requirements.md)";
 /// Least plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
-/// Initial share given to the table in the height.
+/// Initial table height, as a share of the view's height.
 const TABLE_PART: f32 = 0.34;
 
 /// Draws the page tabs, from right to left.

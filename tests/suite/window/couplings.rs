@@ -40,7 +40,7 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
     assessed(&mut window);
     let said = texts(&window);
     assert!(
-        said.contains("None are used. What mixing and feedback would do:"),
+        said.contains("Not in use. Effect of mixing and feedback:"),
         "{said}"
     );
     assert!(
@@ -62,7 +62,7 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
         state(&window).study.settings.couplings,
         CouplingCorrection::MixingAndFeedback
     );
-    assert!(!texts(&window).contains("None are used"));
+    assert!(!texts(&window).contains("Not in use"));
     // The map beside the conditions has what they did off the axis.
     window.get_by_label_contains("19 responses not held, condition 3: mean J of magnitude");
     // The poles that move are drawn among those of the models.

@@ -37,7 +37,7 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
         ),
     ];
     choice_ui(ui, "Figure of the channels", &mut measure, &figures);
-    bars_switch_ui(ui, state, ("bars", "bars of the channels"), commands);
+    bars_switch_ui(ui, state, "bars of the channels", commands);
     if (measure, across) != shown {
         commands.push(DisplayCommand::ShowChannels(measure, across).into());
     }

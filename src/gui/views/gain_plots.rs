@@ -212,20 +212,15 @@ pub fn bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
     words
 }
 
-/// Draws the switch for error bars and bands.
-pub fn bars_switch_ui(
-    ui: &mut Ui,
-    state: &State,
-    names: (&str, &str),
-    commands: &mut Vec<Command>,
-) {
+/// Draws the switch for error bars and bands, with an accessible name.
+pub fn bars_switch_ui(ui: &mut Ui, state: &State, name: &str, commands: &mut Vec<Command>) {
     let shown = !state.display.gains.hide_bars;
     let level = 100.0 * state.study.settings.uncertainty.level;
     let hint = format!(
         "{level:.0} % bars: thick for the choice of the physics model (identification), thin with the unknown trim of the flight. \
          Bands: confidence of the schedule, and prediction for another condition"
     );
-    if toggle_ui(ui, names, shown, &hint) {
+    if toggle_ui(ui, ("bars", name), shown, &hint) {
         commands.push(DisplayCommand::ShowBars(!shown).into());
     }
 }

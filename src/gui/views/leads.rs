@@ -68,10 +68,12 @@ pub fn leads_view_ui(
 
 /// Builds the figure for the response in focus; empty if there are no leads.
 fn figure(state: &State) -> Figure {
-    let has_leads = state
-        .shown()
-        .is_some_and(|shown| shown.correction.leads.is_some());
-    let source = condition_source(state).filter(|_| has_leads);
+    let mut source = None;
+    if let Some(shown) = state.shown()
+        && shown.correction.leads.is_some()
+    {
+        source = condition_source(state);
+    }
     let pairs = vec![state.display.selection.pair];
     FigureRequest::new(FigureKind::Leads, pairs, Vec::new())
         .figure(None, source.as_ref())

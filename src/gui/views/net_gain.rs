@@ -54,7 +54,7 @@ pub fn net_gain_header_ui(
     if toggle_ui(ui, ("evidence", "evidence"), shown, hint) {
         commands.push(DisplayCommand::ShowEvidence(!shown).into());
     }
-    bars_switch_ui(ui, state, ("bars", "error bars"), commands);
+    bars_switch_ui(ui, state, "error bars", commands);
     if let Some((variant, _)) = overlaid_analysis(state) {
         let button = ui.small_button(
             RichText::new(format!("□ {variant} ×")).color(palette.name_of(palette.corrected)),
@@ -84,11 +84,8 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let pair = state.display.selection.pair;
     if state.display.gains.net_gain_pairs == PairSet::Picked {
         let picked = state.display.gains.picked_pairs.contains(&pair);
-        let (text, verb) = if picked {
-            ("−", "Remove")
-        } else {
-            ("+", "Pick")
-        };
+        let text = if picked { "−" } else { "+" };
+        let verb = if picked { "Remove" } else { "Pick" };
         let name = format!("{verb} {}", state.dataset().pair_name(pair));
         let button = ui.small_button(text);
         button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));

@@ -1,12 +1,12 @@
 //! Bode plot: magnitude over phase of every model of a condition for a pair, or the corresponding
 //! errors used by the fit.
 
-use egui::{CursorIcon, Pos2, Rect, Response, Ui, UiBuilder, Vec2, vec2};
+use egui::{CursorIcon, Pos2, Response, Ui, UiBuilder, Vec2, vec2};
 use egui_plot::PlotTransform;
 
 use super::band_handles::band_handles_ui;
 use super::bode_event::BodeEvent;
-use super::bode_headings::headings_ui;
+use super::bode_headings::BodeHeadings;
 use super::bode_layout::BodeLayout;
 use super::bode_pane::pane_ui;
 use super::bode_scene::BodeScene;
@@ -15,13 +15,13 @@ use super::curve_command::CurveCommand;
 use super::curve_layer::CurveLooks;
 use super::curve_menu::menu_ui;
 use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
-use super::legend::{Chips, ChipsResponse, role_chips};
+use super::legend::{Chips, role_chips};
 use super::navigation::pressed_digit;
 use super::painter::use_frame_colors;
 use super::pane_scene::PaneScene;
 use super::panel_text::message_ui;
 use super::picking::{Hit, nearest, touched};
-use super::reference_lines::distance_to_lines;
+use super::reference_lines::PaneLines;
 use super::thinning::is_finite;
 use crate::gui::widgets::palette::Palette;
 
@@ -64,17 +64,31 @@ pub fn bode_ui(
     let builder = UiBuilder::new().id_salt(scene.quantity.salt());
     ui.scope_builder(builder.max_rect(rect), |ui| {
         use_frame_colors(ui, palette);
-        let chips = chips_ui(ui, rect, scene, view, palette);
+        let mut chips = plot_chips(scene, view, palette);
+        if chips.width(ui) > rect.width() {
+            chips.tighten();
+        }
+        let chips = chips.ui(ui, rect, palette);
         events.extend(chips.event);
         let layout = BodeLayout::new(rect.with_min_y(rect.top() + chips.height), scene);
-        let panes = panes_ui(ui, &layout, &visible, view, palette);
+        let panes = Panes {
+            layout: &layout,
+            scene: &visible,
+            palette,
+        };
+        let panes = panes.ui(ui, view);
         events.extend(panes.events);
         if panes.has_focus
             && let Some(request) = pressed_role(ui, scene, palette)
         {
             events.push(BodeEvent::Display(request));
         }
-        headings_ui(ui, &layout, &visible, view, palette);
+        let headings = BodeHeadings {
+            scene: &visible,
+            view,
+            palette,
+        };
+        headings.ui(ui, &layout);
     });
     ui.advance_cursor_after_rect(rect);
     events
@@ -88,15 +102,9 @@ fn pressed_role(ui: &Ui, scene: &BodeScene<'_>, palette: &Palette) -> Option<Cur
     Some(CurveCommand::ToggleRole(chip.role))
 }
 
-/// Draws the switches for all curves, including hidden curves, and the current restrictions on the
-/// plot.
-fn chips_ui(
-    ui: &Ui,
-    rect: Rect,
-    scene: &BodeScene<'_>,
-    view: &BodeView,
-    palette: &Palette,
-) -> ChipsResponse {
+/// Returns the switches for all curves, including hidden curves, and the current restrictions on
+/// the plot.
+fn plot_chips<'a>(scene: &BodeScene<'a>, view: &BodeView, palette: &Palette) -> Chips<'a> {
     let mut roles = role_chips(scene.curves, scene.hidden_roles, palette);
     let hovered = view.hovered.as_ref();
     if let Some(curve) = scene.curves.iter().find(|curve| Some(&curve.id) == hovered) {
@@ -105,17 +113,13 @@ fn chips_ui(
             chip.lit |= chip.role == role;
         }
     }
-    let mut chips = Chips {
+    Chips {
         plot: scene.quantity.label_suffix(),
         roles,
         bands: scene.shows_bands,
         states: scene.chips,
         is_tight: false,
-    };
-    if chips.width(ui) > rect.width() {
-        chips.tighten();
     }
-    chips.ui(ui, rect, palette)
 }
 
 /// Returns whether a curve has a point that can be drawn.
@@ -132,58 +136,62 @@ struct PanesResponse {
     has_focus: bool,
 }
 
-/// Draws both panes and handles their interaction.
-fn panes_ui(
-    ui: &mut Ui,
-    layout: &BodeLayout,
-    scene: &BodeScene<'_>,
-    view: &mut BodeView,
-    palette: &Palette,
-) -> PanesResponse {
-    let mut events = Vec::new();
-    let pointing = Pointing::find(ui, scene, view);
-    let hit = pointing.and_then(|pointing| pointing.hit);
-    let pointed = hit.map(|hit| scene.curves[hit.curve].id.clone());
-    set_hovered(view, pointed.clone(), &mut events);
-    view.pointed_omega = pointing.map(|pointing| 10f64.powf(pointing.log_omega));
-    let cursor = match pointing {
-        Some(pointing) => Some(pointing.log_omega),
-        None => scene.cursor.map(f64::log10),
-    };
-    let icon = match hit {
-        Some(hit) if takes_clicks(scene, hit) => CursorIcon::PointingHand,
-        _ => CursorIcon::Crosshair,
-    };
-    let mut has_focus = false;
-    for pane in PANES {
-        let pane_scene = PaneScene {
-            pane,
-            rect: layout.panes[pane as usize],
-            scene,
-            looks: CurveLooks {
-                pointed: pointed.as_ref(),
-                raised: scene.raised,
-                is_stale: scene.stale,
-                is_miniature: false,
-            },
-            cursor,
-            palette,
+/// Both panes.
+struct Panes<'a> {
+    layout: &'a BodeLayout,
+    scene: &'a BodeScene<'a>,
+    palette: &'a Palette,
+}
+
+impl Panes<'_> {
+    /// Draws the panes and handles their interaction.
+    fn ui(&self, ui: &mut Ui, view: &mut BodeView) -> PanesResponse {
+        let scene = self.scene;
+        let mut events = Vec::new();
+        let pointing = Pointing::find(ui, scene, view);
+        let hit = pointing.and_then(|pointing| pointing.hit);
+        let pointed = hit.map(|hit| scene.curves[hit.curve].id.clone());
+        set_hovered(view, pointed.clone(), &mut events);
+        view.pointed_omega = pointing.map(|pointing| 10f64.powf(pointing.log_omega));
+        let cursor = match pointing {
+            Some(pointing) => Some(pointing.log_omega),
+            None => scene.cursor.map(f64::log10),
         };
-        let response = pane_ui(ui, pane_scene, view);
-        handle_click(pane, scene, &response, view, &mut events);
-        events.extend(band_handles_ui(ui, pane_scene, view));
-        open_menu(&response, scene, pointing, view);
-        has_focus |= response.has_focus();
-        menu_ui(&response, scene, view, palette, &mut events);
-        response.on_hover_cursor(icon);
+        let icon = match hit {
+            Some(hit) if takes_clicks(scene, hit) => CursorIcon::PointingHand,
+            _ => CursorIcon::Crosshair,
+        };
+        let mut has_focus = false;
+        for pane in PANES {
+            let pane_scene = PaneScene {
+                pane,
+                rect: self.layout.panes[pane as usize],
+                scene,
+                looks: CurveLooks {
+                    pointed: pointed.as_ref(),
+                    raised: scene.raised,
+                    is_stale: scene.stale,
+                    is_miniature: false,
+                },
+                cursor,
+                palette: self.palette,
+            };
+            let response = pane_ui(ui, pane_scene, view);
+            events.extend(handle_click(pane, scene, &response, view));
+            events.extend(band_handles_ui(ui, pane_scene, view));
+            open_menu(&response, scene, pointing, view);
+            has_focus |= response.has_focus();
+            events.extend(menu_ui(&response, scene, view, self.palette));
+            response.on_hover_cursor(icon);
+        }
+        if let Some(selection) = view.selection.take()
+            && let Some(transform) = view.transform(selection.pane)
+        {
+            let curves = touched(scene.curves, selection.pane, selection.area, transform);
+            events.push(BodeEvent::Boxed(curves));
+        }
+        PanesResponse { events, has_focus }
     }
-    if let Some(selection) = view.selection.take()
-        && let Some(transform) = view.transform(selection.pane)
-    {
-        let curves = touched(scene.curves, selection.pane, selection.area, transform);
-        events.push(BodeEvent::Boxed(curves));
-    }
-    PanesResponse { events, has_focus }
 }
 
 /// Opens the menu for the curve, or for the empty ground, on a secondary click.
@@ -245,7 +253,12 @@ fn curve_at(
     transform: &PlotTransform,
 ) -> Option<Hit> {
     let hit = nearest(scene.curves, pane, pointer, transform)?;
-    match distance_to_lines(scene.rules, pane, pointer, transform) {
+    let lines = PaneLines {
+        lines: scene.rules,
+        pane,
+        transform,
+    };
+    match lines.distance(pointer) {
         Some(distance) if distance <= hit.distance.max(ON_LINE) => None,
         _ => Some(hit),
     }
@@ -263,36 +276,33 @@ fn set_hovered(view: &mut BodeView, hovered: Option<CurveId>, events: &mut Vec<B
     }
 }
 
-/// Handles a click: it means the nearest curve, and nothing if this is the reference. The second
-/// click of a double click undoes the first if that was on a curve, and fits the plot on empty
-/// ground.
+/// Returns the event for a click. A click means the nearest curve, and nothing if this is the
+/// reference. The second click of a double click undoes the first if that was on a curve, and fits
+/// the plot on empty ground.
 fn handle_click(
     pane: Pane,
     scene: &BodeScene<'_>,
     response: &Response,
     view: &mut BodeView,
-    events: &mut Vec<BodeEvent>,
-) {
+) -> Option<BodeEvent> {
     if !response.clicked() {
-        return;
+        return None;
     }
     let clicked = clicked_curve(pane, scene, response, view);
     let before = view.last_clicked.take();
     if response.double_clicked() {
-        if let Some(before) = before {
-            events.push(BodeEvent::TakenBack(before));
-        } else if clicked.is_none() {
+        if before.is_none() && clicked.is_none() {
             view.request_fit();
             response.ctx.request_repaint();
         }
-        return;
+        return before.map(BodeEvent::TakenBack);
     }
-    let Some(id) = clicked else { return };
+    let id = clicked?;
     if response.ctx.input(|input| input.modifiers.alt) {
-        events.push(BodeEvent::Isolated(id));
+        Some(BodeEvent::Isolated(id))
     } else {
         view.last_clicked = Some(id.clone());
-        events.push(BodeEvent::Clicked(id));
+        Some(BodeEvent::Clicked(id))
     }
 }
 

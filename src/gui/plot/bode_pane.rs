@@ -12,13 +12,13 @@ use super::bode_view::{BodeView, SelectionBox};
 use super::cached_raster::StillImage;
 use super::curve_layer::{DrawnPane, STALE, add_curve_lines, lies_at_the_bottom};
 use super::drawn_curves::{BodeCurve, DrawnCurves, Pane, VisiblePart};
-use super::invalid_region::{add_hatching, paint_invalid_strip};
+use super::invalid_region::{InvalidStrip, add_hatching};
 use super::layers::{DrawnItem, add_area, add_dotted_vertical, add_shade, add_vertical};
 use super::navigation::{ZoomGesture, drawn_box_ui};
 use super::painter::{Gestures, PanelPainter};
 use super::pane_scene::PaneScene;
 use super::panel_axis::{PanelAxis, TICKS_HEIGHT};
-use super::reference_lines::paint_reference_lines;
+use super::reference_lines::PaneLines;
 use super::ticks::Ticks;
 use crate::gui::widgets::palette::Palette;
 
@@ -61,10 +61,20 @@ pub(super) fn pane_ui(ui: &mut Ui, pane: PaneScene<'_>, view: &mut BodeView) -> 
     zoom_by_scrolling(pane.pane, &shown.response, view);
     handle_keys(ui, pane.pane, &shown.response, view);
     axis_strips_ui(ui, pane, view);
-    paint_reference_lines(ui, scene.rules, pane.pane, &shown.transform, pane.palette);
+    let lines = PaneLines {
+        lines: scene.rules,
+        pane: pane.pane,
+        transform: &shown.transform,
+    };
+    lines.paint(ui, pane.palette);
     paint_strips(ui, scene.strips, &shown.transform, pane.palette);
     if let (Pane::Magnitude, Some(invalid)) = (pane.pane, scene.invalid) {
-        paint_invalid_strip(ui, scene.band.1, invalid, &shown.transform, pane.palette);
+        let strip = InvalidStrip {
+            band_end: scene.band.1,
+            invalid,
+            transform: &shown.transform,
+        };
+        strip.paint(ui, pane.palette);
     }
     shown.response
 }

@@ -69,7 +69,10 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
         // The lines were drawn for the view of the previous frame.
         ui.request_repaint();
     }
-    paint_title(ui, rect, *shown.transform.frame(), chart, palette);
+    let line = rect.with_max_y(rect.top() + TITLE_HEIGHT);
+    let frame = *shown.transform.frame();
+    let title = line.with_min_x(frame.left()).with_max_x(frame.right());
+    paint_title(ui, title, chart, palette);
     shown.response
 }
 
@@ -109,13 +112,13 @@ fn vertical_axis(chart: &Chart<'_>) -> PanelAxis {
     PanelAxis::new(ticks, VALUE_AXIS_WIDTH).labelled(chart.value_label)
 }
 
-/// Paints the title at the left above `frame`, the notes at the right.
-fn paint_title(ui: &Ui, rect: Rect, frame: Rect, chart: &Chart<'_>, palette: &Palette) {
+/// Paints the title at the left in a line, the notes at the right.
+fn paint_title(ui: &Ui, line: Rect, chart: &Chart<'_>, palette: &Palette) {
     let painter = ui.painter();
-    let mut at = pos2(frame.left(), rect.top() + 0.5 * TITLE_HEIGHT);
+    let mut at = pos2(line.left(), line.top() + 0.5 * TITLE_HEIGHT);
     let font = caption_font();
     painter.text(at, Align2::LEFT_CENTER, chart.title, font, palette.text);
-    at.x = frame.right();
+    at.x = line.right();
     for (words, color) in chart.notes.iter().rev() {
         let place = painter.text(at, Align2::RIGHT_CENTER, words, caption_font(), *color);
         at.x = place.left() - NOTE_GAP;

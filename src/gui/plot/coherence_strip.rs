@@ -15,44 +15,51 @@ const HIGHEST: f64 = 1.05;
 /// Distance between numbers and strip \[pt\].
 const BESIDE: f32 = 6.0;
 
-/// Draws the coherence over the same frequencies as the pane with this `transform`, with the least
-/// coherence that counts.
-pub(super) fn coherence_ui(
-    ui: &Ui,
-    strip: Rect,
-    scene: &BodeScene<'_>,
-    transform: &PlotTransform,
-    palette: &Palette,
-) {
-    let frame = *transform.frame();
-    let strip = strip.with_min_x(frame.left()).with_max_x(frame.right());
-    let painter = ui.painter();
-    let outline = Stroke::new(1.0, palette.line);
-    painter.rect_stroke(strip, 0.0, outline, StrokeKind::Inside);
-    paint_axis(painter, strip, palette);
-    let y = height_of(strip, scene.least_coherence);
-    let least = [pos2(strip.left(), y), pos2(strip.right(), y)];
-    let dashes = Stroke::new(1.0, palette.dim_text);
-    painter.extend(Shape::dashed_line(&least, dashes, 4.0, 3.0));
-    let painter = painter.with_clip_rect(strip.intersect(ui.clip_rect()));
-    for curve in scene.coherence {
-        let mut shapes = Vec::new();
-        palette
-            .role_style(curve.role, curve.rejected)
-            .in_miniature()
-            .add_shapes(path(curve, strip, transform), &mut shapes);
-        painter.extend(shapes);
+/// Coherence over the same frequencies as a pane.
+pub(super) struct CoherenceStrip<'a> {
+    pub(super) place: Rect,
+    pub(super) scene: &'a BodeScene<'a>,
+    /// Transform of the pane.
+    pub(super) transform: &'a PlotTransform,
+}
+
+impl CoherenceStrip<'_> {
+    /// Draws the coherence, with the least coherence that counts.
+    pub(super) fn ui(&self, ui: &Ui, palette: &Palette) {
+        let Self {
+            place,
+            scene,
+            transform,
+        } = *self;
+        let frame = *transform.frame();
+        let strip = place.with_min_x(frame.left()).with_max_x(frame.right());
+        let painter = ui.painter();
+        let outline = Stroke::new(1.0, palette.line);
+        painter.rect_stroke(strip, 0.0, outline, StrokeKind::Inside);
+        paint_axis(painter, strip, palette);
+        let y = height_of(strip, scene.least_coherence);
+        let least = [pos2(strip.left(), y), pos2(strip.right(), y)];
+        let dashes = Stroke::new(1.0, palette.dim_text);
+        painter.extend(Shape::dashed_line(&least, dashes, 4.0, 3.0));
+        let painter = painter.with_clip_rect(strip.intersect(ui.clip_rect()));
+        for curve in scene.coherence {
+            let mut shapes = Vec::new();
+            palette
+                .role_style(curve.role, curve.rejected)
+                .in_miniature()
+                .add_shapes(path(curve, strip, transform), &mut shapes);
+            painter.extend(shapes);
+        }
+        let name = format!(
+            "Coherence of {}{}",
+            scene.pair_title,
+            scene.quantity.label_suffix()
+        );
+        let response = ui.interact(strip, Id::unique(&name), Sense::hover());
+        named(response, egui::Role::Label, name).on_hover_text(
+            "γ²; below the dashed line a frequency does not count, or counts as a guess",
+        );
     }
-    let name = format!(
-        "Coherence of {}{}",
-        scene.pair_title,
-        scene.quantity.label_suffix()
-    );
-    let response = ui.interact(strip, Id::unique(&name), Sense::hover());
-    named(response, egui::Role::Label, name).on_hover_text(
-        "γ² of the measured responses; below the dashed line a frequency does not count, or is a \
-         guess",
-    );
 }
 
 /// Paints symbol and limits at the left.

@@ -14,38 +14,50 @@ use super::drawn_curves::{BodeCurve, CurveId};
 use super::quantity::{BodeQuantity, PhaseUnit};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Shows a pane's menu while it is open.
+/// Shows a pane's menu while it is open; returns the chosen action.
 pub(super) fn menu_ui(
     response: &Response,
     scene: &BodeScene<'_>,
     view: &mut BodeView,
     palette: &Palette,
-    events: &mut Vec<BodeEvent>,
-) {
-    let Some(mut subject) = view.menu_subject.take() else {
-        return;
-    };
-    let curve = subject
-        .curve
-        .as_ref()
-        .and_then(|id| scene.curves.iter().find(|curve| curve.id == *id));
+) -> Option<BodeEvent> {
+    let mut subject = view.menu_subject.take()?;
+    let curve = scene
+        .curves
+        .iter()
+        .find(|curve| subject.curve.as_ref() == Some(&curve.id));
     // A click into the field for the reason must not close the menu.
     let menu =
         Popup::context_menu(response).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    menu.show(|ui| match curve {
-        Some(curve) => {
-            name_ui(ui, curve, palette);
-            if reason_ui(ui, curve, &mut subject.reason) {
-                let reason = subject.reason.clone();
-                events.push(BodeEvent::RejectedBecause(curve.id.clone(), reason));
+    let mut chosen = None;
+    menu.show(|ui| {
+        chosen = match curve {
+            Some(curve) => {
+                name_ui(ui, curve, palette);
+                curve_menu_ui(ui, curve, scene.quantity, &mut subject.reason)
             }
-            if let Some(wish) = curve_wishes_ui(ui, curve, scene.quantity) {
-                events.push(BodeEvent::Wished(curve.id.clone(), wish));
-            }
-        }
-        None => ground_menu_ui(ui, scene, subject.omega, view, events),
+            None => ground_menu_ui(ui, scene, subject.omega, view),
+        };
     });
     view.menu_subject = Some(subject);
+    chosen
+}
+
+/// Draws the menu on a curve; returns the chosen action.
+fn curve_menu_ui(
+    ui: &mut Ui,
+    curve: &BodeCurve,
+    quantity: BodeQuantity<'_>,
+    reason: &mut String,
+) -> Option<BodeEvent> {
+    let mut chosen = None;
+    if reason_ui(ui, curve, reason) {
+        chosen = Some(BodeEvent::RejectedBecause(curve.id.clone(), reason.clone()));
+    }
+    if let Some(wish) = curve_wishes_ui(ui, curve, quantity) {
+        chosen = Some(BodeEvent::Wished(curve.id.clone(), wish));
+    }
+    chosen
 }
 
 /// Draws an entry; returns whether it was chosen.
@@ -81,7 +93,7 @@ fn reason_ui(ui: &mut Ui, curve: &BodeCurve, reason: &mut String) -> bool {
         WidgetInfo::labeled(WidgetRole::TextInput, true, "Reason of the rejection")
     });
     let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-    field.on_hover_text("Reason of the rejection, kept in the study; Enter rejects the model");
+    field.on_hover_text("Kept in the study; Enter rejects the model");
     let has_reason = !reason.trim().is_empty();
     let is_clicked = ui
         .add_enabled(has_reason, Button::new("Reject with reason"))
@@ -113,10 +125,18 @@ fn curve_wishes_ui(
     } = quantity
     {
         ui.separator();
-        if entry_ui(ui, "Phase +360°", "Draw this curve's phase 360° higher") {
+        if entry_ui(
+            ui,
+            "Phase +360°",
+            "Changes the drawing only, by a whole turn",
+        ) {
             wished = Some(CurveWish::Turn(1));
         }
-        if entry_ui(ui, "Phase −360°", "Draw this curve's phase 360° lower") {
+        if entry_ui(
+            ui,
+            "Phase −360°",
+            "Changes the drawing only, by a whole turn",
+        ) {
             wished = Some(CurveWish::Turn(-1));
         }
     }
@@ -131,9 +151,9 @@ pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWis
     }
     let mut wished = None;
     let is_chosen = if curve.rejected {
-        entry_ui(ui, "Restore model", "Return the model to its bundle")
+        entry_ui(ui, "Restore model", "Returns the model to its bundle")
     } else {
-        entry_ui(ui, "Reject model", "Take the model out of its bundle")
+        entry_ui(ui, "Reject model", "Removes the model from its bundle")
     };
     if is_chosen {
         wished = Some(CurveWish::RejectOrRestore);
@@ -147,7 +167,7 @@ pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWis
         && entry_ui(
             ui,
             "Use as representative",
-            "Use this model as the representative of its bundle instead of the medoid",
+            "Replaces the medoid as representative of the bundle",
         )
     {
         wished = Some(CurveWish::Pin);
@@ -155,40 +175,34 @@ pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWis
     if entry_ui(
         ui,
         "Isolate model",
-        "Only this model beside the representatives, or all again",
+        "Draws only this model and the representatives, or all again",
     ) {
         wished = Some(CurveWish::Isolate);
     }
-    if entry_ui(
-        ui,
-        "Hide curve",
-        "Do not draw this model; it still counts in every result",
-    ) {
+    if entry_ui(ui, "Hide curve", "The model still counts in every result") {
         wished = Some(CurveWish::Hide);
     }
     wished
 }
 
-/// Draws the menu on empty ground at `omega` \[rad/s\].
+/// Draws the menu on empty ground at `omega` \[rad/s\]; returns the chosen action.
 fn ground_menu_ui(
     ui: &mut Ui,
     scene: &BodeScene<'_>,
     omega: f64,
     view: &mut BodeView,
-    events: &mut Vec<BodeEvent>,
-) {
-    if entry_ui(ui, "Fit plot", "Bring every curve into view") {
+) -> Option<BodeEvent> {
+    let mut chosen = None;
+    if entry_ui(ui, "Fit plot", "Double click on empty ground") {
         view.request_fit();
     }
-    if entry_ui(
-        ui,
-        "Mark frequency",
-        "Mark this frequency; two marks show the change between them",
-    ) {
-        events.push(BodeEvent::Display(CurveCommand::PinCursor(omega)));
+    let hint = "Two marks show the change between them";
+    if entry_ui(ui, "Mark frequency", hint) {
+        chosen = Some(BodeEvent::Display(CurveCommand::PinCursor(omega)));
     }
     let has_marks = !(scene.pinned.is_empty() && scene.crossings.is_empty());
-    if has_marks && entry_ui(ui, "Remove marks", "Remove all frequency marks") {
-        events.push(BodeEvent::Display(CurveCommand::UnpinCursors));
+    if has_marks && entry_ui(ui, "Remove marks", "All marked frequencies") {
+        chosen = Some(BodeEvent::Display(CurveCommand::UnpinCursors));
     }
+    chosen
 }

@@ -80,8 +80,10 @@ impl DrawnCurves {
         let mut drawn = Vec::with_capacity(curves.len());
         for (index, curve) in curves.iter().enumerate() {
             let margin = margin(curve, palette);
-            let known = take_known(&mut kept, index, curve, pane, margin);
-            drawn.push(match known {
+            let place = kept_place(&kept, index, |drawn| {
+                drawn.is_drawn_from(curve, pane, margin)
+            });
+            drawn.push(match place.and_then(|place| kept[place].take()) {
                 Some(known) => known,
                 None => {
                     let points = curve.points_on(&mut axis, pane);
@@ -125,24 +127,18 @@ impl DrawnCurves {
     }
 }
 
-/// Takes the drawn `curve` out of `kept`. Usually the curves are those from the last frame, in
-/// the same order.
-fn take_known(
-    kept: &mut [Option<DrawnCurve>],
-    index: usize,
-    curve: &BodeCurve,
-    pane: Pane,
-    margin: f64,
-) -> Option<DrawnCurve> {
-    let is_known = |kept: &Option<DrawnCurve>| {
-        kept.as_ref()
-            .is_some_and(|drawn| drawn.is_drawn_from(curve, pane, margin))
-    };
-    if kept.get(index).is_some_and(is_known) {
-        return kept[index].take();
+/// Returns the place of the matching curve among those kept. Usually the curves are those from the
+/// last frame, in the same order, so that `likely` is tried first.
+fn kept_place(
+    kept: &[Option<DrawnCurve>],
+    likely: usize,
+    matches: impl Fn(&DrawnCurve) -> bool,
+) -> Option<usize> {
+    let is_match = |kept: &Option<DrawnCurve>| kept.as_ref().is_some_and(&matches);
+    if kept.get(likely).is_some_and(is_match) {
+        return Some(likely);
     }
-    let place = kept.iter().position(is_known)?;
-    kept[place].take()
+    kept.iter().position(is_match)
 }
 
 fn thin(run: &[[f64; 2]], pixel: Pixel) -> Vec<PlotPoint> {

@@ -42,38 +42,46 @@ fn hatch(region: Rect, stroke: Stroke, shapes: &mut Vec<Shape>) {
     }
 }
 
-/// Draws a strip over the upper edge from the band's upper end \[rad/s\], with the frequency
-/// above which the model is invalid; and the magnitude added by the leads.
-pub(super) fn paint_invalid_strip(
-    ui: &Ui,
-    band_end: f64,
-    invalid: &InvalidRegion,
-    transform: &PlotTransform,
-    palette: &Palette,
-) {
-    let frame = *transform.frame();
-    let left = transform
-        .position_from_point(&PlotPoint::new(band_end.log10(), 0.0))
-        .x
-        .max(frame.left());
-    let strip = Rect::from_min_max(
-        pos2(left, frame.top() + 1.0),
-        pos2(frame.right() - 1.0, frame.top() + 17.0),
-    );
-    if strip.width() < LEAST_STRIP {
-        return;
+/// Strip over the upper edge at the frequencies where the model is invalid.
+pub(super) struct InvalidStrip<'a> {
+    /// Upper end of the band \[rad/s\].
+    pub(super) band_end: f64,
+    pub(super) invalid: &'a InvalidRegion,
+    pub(super) transform: &'a PlotTransform,
+}
+
+impl InvalidStrip<'_> {
+    /// Paints the strip with the highest valid frequency, and the magnitude added by the leads.
+    pub(super) fn paint(&self, ui: &Ui, palette: &Palette) {
+        let Self {
+            band_end,
+            invalid,
+            transform,
+        } = *self;
+        let frame = *transform.frame();
+        let left = transform
+            .position_from_point(&PlotPoint::new(band_end.log10(), 0.0))
+            .x
+            .max(frame.left());
+        let strip = Rect::from_min_max(
+            pos2(left, frame.top() + 1.0),
+            pos2(frame.right() - 1.0, frame.top() + 17.0),
+        );
+        if strip.width() < LEAST_STRIP {
+            return;
+        }
+        ui.painter().rect_filled(strip, 0.0, palette.warning_ground);
+        let words = elided(ui, &invalid.words, strip.width() - 8.0, SMALL_SIZE);
+        let font = FontId::proportional(SMALL_SIZE);
+        ui.painter().text(
+            strip.center(),
+            Align2::CENTER_CENTER,
+            words,
+            font,
+            palette.warning,
+        );
+        paint_increase(ui, invalid, transform, palette);
     }
-    ui.painter().rect_filled(strip, 0.0, palette.warning_ground);
-    let words = elided(ui, &invalid.words, strip.width() - 8.0, SMALL_SIZE);
-    let font = FontId::proportional(SMALL_SIZE);
-    ui.painter().text(
-        strip.center(),
-        Align2::CENTER_CENTER,
-        words,
-        font,
-        palette.warning,
-    );
-    paint_increase(ui, invalid, transform, palette);
 }
 
 /// Draws a bracket between the magnitudes with and without leads at the end of the curves, if both

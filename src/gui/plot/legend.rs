@@ -242,7 +242,7 @@ impl Chips<'_> {
         };
         let response = row.chip_ui(ui, &face, palette);
         response
-            .on_hover_text("How far each identified response may lie from its curve")
+            .on_hover_text("Confidence interval for each identified response")
             .clicked()
     }
 
@@ -328,7 +328,19 @@ impl Row {
             None => WidgetInfo::labeled(egui::Role::Button, true, face.name),
         });
         let is_lit = face.is_lit || response.hovered() || response.has_focus();
-        paint_outline(ui, place, face, is_lit, palette);
+        let ground = match face.sample {
+            Some(_) => palette.panel,
+            None => palette.selected,
+        };
+        let color = if is_lit { palette.accent } else { palette.line };
+        let line = Stroke::new(1.0, color);
+        if face.is_hidden() {
+            paint_dashed_outline(ui, place, line);
+        } else {
+            let radius = 0.5 * place.height();
+            ui.painter()
+                .rect(place, radius, ground, line, StrokeKind::Inside);
+        }
         if let Some(sample) = face.sample {
             self.paint_sample(ui, place, sample);
         }
@@ -364,23 +376,11 @@ impl Row {
     }
 }
 
-/// Paints ground and outline; dashed if its curves are hidden.
-fn paint_outline(ui: &Ui, place: Rect, face: &ChipFace<'_>, is_lit: bool, palette: &Palette) {
-    let radius = 0.5 * place.height();
-    let color = if is_lit { palette.accent } else { palette.line };
-    let line = Stroke::new(1.0, color);
-    if face.is_hidden() {
-        let path = rounded(place.shrink(0.5), radius);
-        ui.painter()
-            .extend(egui::Shape::dashed_line(&path, line, 3.0, 3.0));
-        return;
-    }
-    let fill = match face.sample {
-        Some(_) => palette.panel,
-        None => palette.selected,
-    };
+/// Paints the outline of a chip whose curves are hidden.
+fn paint_dashed_outline(ui: &Ui, place: Rect, line: Stroke) {
+    let path = rounded(place.shrink(0.5), 0.5 * place.height());
     ui.painter()
-        .rect(place, radius, fill, line, StrokeKind::Inside);
+        .extend(egui::Shape::dashed_line(&path, line, 3.0, 3.0));
 }
 
 /// Returns a rectangle with semicircular ends, as a single path.

@@ -74,17 +74,11 @@ impl LimitsForm {
         }
         ui.horizontal(|ui| {
             let show = ui.button("Show limits");
-            if show
-                .on_hover_text("Show the range between the limits")
-                .clicked()
-            {
+            if show.on_hover_text("Enter").clicked() {
                 answer = FormAnswer::Show;
             }
             let fit = ui.button("Fit axis");
-            if fit
-                .on_hover_text("Show all of the curves on this axis")
-                .clicked()
-            {
+            if fit.on_hover_text("All curves on this axis").clicked() {
                 answer = FormAnswer::Fit;
             }
         });
@@ -105,7 +99,9 @@ impl LimitsForm {
             }
             is_entered =
                 field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
-            field.on_hover_text(format!("{name} of the visible range{unit}; Enter shows it"));
+            field.on_hover_text(format!(
+                "Limit of the visible range{unit}; Enter applies it"
+            ));
         });
         is_entered
     }

@@ -10,76 +10,74 @@ use super::end_labels::EndLabel;
 use super::picking::closest_point;
 use crate::gui::widgets::palette::Palette;
 
-/// Draws a pane's reference lines.
-pub(super) fn paint_reference_lines(
-    ui: &Ui,
-    lines: &[ReferenceLine],
-    pane: Pane,
-    transform: &PlotTransform,
-    palette: &Palette,
-) {
-    let painter = ui.painter().with_clip_rect(transform.frame().shrink(1.0));
-    let mut shapes = Vec::new();
-    for line in lines.iter().filter(|line| line.pane == pane) {
-        palette
-            .curve_style(line.kind.line())
-            .add_shapes(path(&line.level, transform), &mut shapes);
-    }
-    painter.extend(shapes);
+/// Reference lines in a pane.
+#[derive(Clone, Copy)]
+pub(super) struct PaneLines<'a> {
+    /// Lines in both panes.
+    pub(super) lines: &'a [ReferenceLine],
+    pub(super) pane: Pane,
+    pub(super) transform: &'a PlotTransform,
 }
 
-/// Returns the distance between `pointer` and a pane's nearest reference line \[pt\]; `None` if
-/// none is near.
-pub(super) fn distance_to_lines(
-    lines: &[ReferenceLine],
-    pane: Pane,
-    pointer: Pos2,
-    transform: &PlotTransform,
-) -> Option<f32> {
-    let mut least: Option<f32> = None;
-    for line in lines.iter().filter(|line| line.pane == pane) {
-        let points = visible_points(&line.level, transform);
-        if let Some(closest) = closest_point(points.into_iter(), pointer, transform) {
-            least = Some(match least {
-                Some(least) => least.min(closest.distance),
-                None => closest.distance,
-            });
+impl<'a> PaneLines<'a> {
+    fn iter(self) -> impl Iterator<Item = &'a ReferenceLine> {
+        self.lines.iter().filter(move |line| line.pane == self.pane)
+    }
+
+    /// Paints the lines.
+    pub(super) fn paint(self, ui: &Ui, palette: &Palette) {
+        let frame = self.transform.frame().shrink(1.0);
+        let mut shapes = Vec::new();
+        for line in self.iter() {
+            palette
+                .curve_style(line.kind.line())
+                .add_shapes(path(&line.level, self.transform), &mut shapes);
         }
+        ui.painter().with_clip_rect(frame).extend(shapes);
     }
-    least
-}
 
-/// Returns the labels for a pane's reference lines, each at the height where its line leaves
-/// the plot, with any further text below.
-pub(super) fn line_labels(
-    lines: &[ReferenceLine],
-    pane: Pane,
-    transform: &PlotTransform,
-    palette: &Palette,
-) -> Vec<EndLabel> {
-    let frame = *transform.frame();
-    let mut labels = Vec::new();
-    for line in lines.iter().filter(|line| line.pane == pane) {
-        let path = path(&line.level, transform);
-        let Some(end) = path.iter().rev().find(|at| frame.contains(**at)) else {
-            continue;
-        };
-        let color = palette.curve_style(line.kind.line()).color.to_opaque();
-        labels.push(EndLabel {
-            y: end.y,
-            text: line.label.clone(),
-            color: palette.name_of(color),
-        });
-        let note = line.note.trim_start_matches([',', ':', ' ']);
-        if !note.is_empty() {
+    /// Returns the distance between `pointer` and the nearest line \[pt\]; `None` if none is near.
+    pub(super) fn distance(self, pointer: Pos2) -> Option<f32> {
+        let mut least: Option<f32> = None;
+        for line in self.iter() {
+            let points = visible_points(&line.level, self.transform);
+            if let Some(closest) = closest_point(points.into_iter(), pointer, self.transform) {
+                least = Some(match least {
+                    Some(least) => least.min(closest.distance),
+                    None => closest.distance,
+                });
+            }
+        }
+        least
+    }
+
+    /// Returns the labels, each at the height where its line leaves the plot, with any further text
+    /// below.
+    pub(super) fn labels(self, palette: &Palette) -> Vec<EndLabel> {
+        let frame = *self.transform.frame();
+        let mut labels = Vec::new();
+        for line in self.iter() {
+            let path = path(&line.level, self.transform);
+            let Some(end) = path.iter().rev().find(|at| frame.contains(**at)) else {
+                continue;
+            };
+            let color = palette.curve_style(line.kind.line()).color.to_opaque();
             labels.push(EndLabel {
-                y: end.y + 0.1,
-                text: note.to_owned(),
-                color: palette.dim_text,
+                y: end.y,
+                text: line.label.clone(),
+                color: palette.name_of(color),
             });
+            let note = line.note.trim_start_matches([',', ':', ' ']);
+            if !note.is_empty() {
+                labels.push(EndLabel {
+                    y: end.y + 0.1,
+                    text: note.to_owned(),
+                    color: palette.dim_text,
+                });
+            }
         }
+        labels
     }
-    labels
 }
 
 /// Returns a line's points over the visible frequencies.

@@ -1,9 +1,9 @@
-//! Views of responses over frequency: the response in focus, large; its errors as used by the fit;
-//! the same response in every condition; and every response of a condition, small.
+//! Views over frequency: the response in focus, its errors as used by the fit, the same response in
+//! every condition, and all responses in a condition.
 
 use egui::{Align2, Pos2, Rect, Ui, vec2};
 
-use gdcm_model::dataset::Pair;
+use gdcm_model::dataset::{Band, Pair};
 use gdcm_model::number_format::decimals;
 use gdcm_model::units::{number, ratio_to_db, s_to_ms};
 use gdcm_plot::figure::ConditionSource;
@@ -16,8 +16,8 @@ use gdcm_study::stages::condition_curves::display_band;
 use gdcm_words::caution::undefined_text;
 
 use super::frequency::{
-    bode_curves, bode_options, condition_source, error_curves, error_reference, frequency_plot_ui,
-    wished,
+    FrequencyPlot, bode_curves, bode_options, condition_source, error_curves, error_reference,
+    wish_command,
 };
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
@@ -35,7 +35,7 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Draws magnitude and phase of the response in focus, for every model of the displayed condition.
+/// Draws magnitude and phase for the response in focus, for every model in the displayed condition.
 pub fn bode_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -56,25 +56,22 @@ pub fn bode_view_ui(
     };
     let band = state.study.settings.band;
     let bands = uncertainty_bands(state.dataset(), pair, &curves);
-    let shows_bands = (!bands.is_empty()).then_some(display.shows_bands);
+    let shows_bands = if bands.is_empty() {
+        None
+    } else {
+        Some(display.shows_bands)
+    };
     let options = bode_options(state);
     let unnoticed = muad_about(&curves, &options);
-    let source = condition_source(state);
-    let coherence = source
-        .as_ref()
-        .map(|source| source.coherence_curves(pair, &options))
-        .unwrap_or_default();
-    let least_coherence = source
-        .as_ref()
-        .map_or(0.0, ConditionSource::least_coherence);
-    let missing = missing_phase(&curves, (band.min(), band.max()));
+    let mut coherence = Vec::new();
+    let mut least_coherence = 0.0;
+    if let Some(source) = condition_source(state) {
+        coherence = source.coherence_curves(pair, &options);
+        least_coherence = source.least_coherence();
+    }
+    let missing = missing_phase(&curves, band);
     let invalid = invalid_region(state, &curves);
-    let notes = notes(state, pair);
-    let notes = notes
-        .as_ref()
-        .map_or([None; 2], |notes| [Some(&notes[0]), Some(&notes[1])]);
-    let band = (band.min(), band.max());
-    let message = state.curves_message();
+    let notes = effect_notes(state, pair);
     let scene = BodeScene {
         quantity,
         rules: &unnoticed,
@@ -84,68 +81,75 @@ pub fn bode_view_ui(
         shows_bands,
         missing: missing.as_ref(),
         invalid: invalid.as_ref(),
-        notes,
-        message,
-        ..BodeScene::new(&title, &curves, band)
+        notes: match &notes {
+            Some([magnitude, phase]) => [Some(magnitude), Some(phase)],
+            None => [None; 2],
+        },
+        message: state.curves_message(),
+        ..BodeScene::new(&title, &curves, (band.min(), band.max()))
     };
-    frequency_plot_ui(ui, state, (scene, &mut view), palette, commands);
+    let plot = FrequencyPlot {
+        state,
+        scene,
+        view: &mut view,
+        palette,
+    };
+    plot.ui(ui, commands);
     state.display.frequency.error.share_frequencies(&view);
     state.display.frequency.bode = view;
     state.display.frequency.drawn = curves;
 }
 
-/// Returns the region where curves only illustrate the price of leads; `None` without leads
+/// Returns the curve with this role, unless it is hidden.
+fn drawn_curve(curves: &[BodeCurve], role: Role) -> Option<&BodeCurve> {
+    curves
+        .iter()
+        .find(|curve| !curve.hidden && curve.role == role)
+}
+
+/// Returns the region where curves only illustrate the price paid for leads; `None` without leads
 /// (M15.6).
 fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> {
     let leads = &state.shown()?.compensated.as_ref()?.leads;
     leads.filters().iter().find_map(|(_, filter)| *filter)?;
-    let last = |role: Role| {
-        curves
-            .iter()
-            .find(|curve| !curve.hidden && curve.role == role)
-            .map(|curve| &curve.omega)
-    };
-    let up_to = *last(Role::Corrected)?.last()?;
-    let end = |role: Role| {
-        let curve = curves
-            .iter()
-            .find(|curve| !curve.hidden && curve.role == role)?;
-        curve.value_at(Pane::Magnitude, up_to)
-    };
-    let ends_db = end(Role::Corrected)
-        .zip(end(Role::WithoutLeads))
-        .map(|(with, without)| [with, without]);
-    let words = format!(
-        "not valid above {}",
-        unit_words(state, state.study.settings.band.max())
-    );
+    let corrected = drawn_curve(curves, Role::Corrected)?;
+    let up_to = *corrected.omega.last()?;
     Some(InvalidRegion {
         up_to,
-        words,
-        ends_db,
+        words: format!(
+            "not valid above {}",
+            frequency_words(state, state.study.settings.band.max())
+        ),
+        ends_db: lead_ends_db(corrected, curves, up_to),
     })
 }
 
-/// Returns the area between the phases of the corrected and of the identified model, within the
-/// band \[rad/s\].
-fn missing_phase(curves: &[BodeCurve], (min, max): (f64, f64)) -> Option<BodeBand> {
-    let of_role = |role: Role| {
-        curves
-            .iter()
-            .find(|curve| !curve.hidden && curve.role == role)
-    };
-    let corrected = of_role(Role::Corrected)?;
-    let identified = of_role(Role::IdentifiedRepresentative)?;
-    let within = corrected
-        .omega
-        .iter()
-        .copied()
-        .filter(|omega| (min..=max).contains(omega));
-    let omega: Vec<f64> = [min].into_iter().chain(within).chain([max]).collect();
-    let value = |curve: &BodeCurve, omega| curve.value_at(Pane::Phase, omega).unwrap_or(f64::NAN);
+/// Returns the magnitudes with and without leads at a frequency \[dB\].
+fn lead_ends_db(corrected: &BodeCurve, curves: &[BodeCurve], omega: f64) -> Option<[f64; 2]> {
+    let without = drawn_curve(curves, Role::WithoutLeads)?;
+    Some([
+        corrected.value_at(Pane::Magnitude, omega)?,
+        without.value_at(Pane::Magnitude, omega)?,
+    ])
+}
+
+/// Returns the area between corrected and identified phase within the band.
+fn missing_phase(curves: &[BodeCurve], band: Band) -> Option<BodeBand> {
+    let corrected = drawn_curve(curves, Role::Corrected)?;
+    let identified = drawn_curve(curves, Role::IdentifiedRepresentative)?;
+    let mut omega = vec![band.min()];
+    for &inner in corrected.omega.iter() {
+        if (band.min()..=band.max()).contains(&inner) {
+            omega.push(inner);
+        }
+    }
+    omega.push(band.max());
     let phase_deg = omega
         .iter()
-        .map(|omega| [value(corrected, *omega), value(identified, *omega)])
+        .map(|&omega| {
+            [corrected, identified]
+                .map(|curve| curve.value_at(Pane::Phase, omega).unwrap_or(f64::NAN))
+        })
         .collect();
     Some(BodeBand {
         magnitude_db: vec![[f64::NAN; 2]; omega.len()],
@@ -154,50 +158,65 @@ fn missing_phase(curves: &[BodeCurve], (min, max): (f64, f64)) -> Option<BodeBan
     })
 }
 
-/// Returns J of magnitude and phase before and after the correction, and the remainder in words.
-fn notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
+/// Remaining magnitude below which the magnitudes are called matched \[dB\].
+const MATCHED_DB: f64 = 0.05;
+/// Remaining delay below which the phases are called matched \[s\].
+const MATCHED_S: f64 = 0.5e-3;
+
+/// Returns the notes for magnitude and phase: J before and after the correction, and the remaining
+/// error.
+fn effect_notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
     let shown = state.shown()?;
     let change = shown.cost[pair]?;
-    let is_held = shown.held()[pair];
-    let cost =
-        |before: f64, after: f64| format!("J {} → {}", decimals(before, 1), decimals(after, 1));
+    let is_constrained = shown.held()[pair];
     let left_db = ratio_to_db(shown.wanted_gain(pair)? / shown.correction.net_gain(pair));
-    let magnitude = PaneNote {
-        cost: cost(change.uncorrected.magnitude, change.corrected.magnitude),
-        verdict: match left_db.abs() < 0.05 {
-            true => "matched".to_owned(),
-            false => format!("{} dB left", decimals(left_db, 1)),
-        },
-        warns: is_held && left_db.abs() >= 0.05,
-    };
     let left_s = shown.wanted_delay_s(pair)? - shown.correction.net_delay_s(pair);
-    let top = state.study.settings.band.max();
-    let verdict = if left_s.abs() < 0.5e-3 {
-        "matched".to_owned()
-    } else {
-        let verb = if left_s < 0.0 { "lags" } else { "leads" };
-        let at_top = decimals((left_s * top).to_degrees().abs(), 0);
-        format!(
-            "{verb} by {} ms, {at_top}° at {}",
-            decimals(s_to_ms(left_s.abs()), 0),
-            unit_words(state, top)
-        )
+    let magnitude = PaneNote {
+        cost: cost_change(change.uncorrected.magnitude, change.corrected.magnitude),
+        verdict: if left_db.abs() < MATCHED_DB {
+            "matched".to_owned()
+        } else {
+            format!("{} dB left", decimals(left_db, 1))
+        },
+        warns: is_constrained && left_db.abs() >= MATCHED_DB,
     };
     let phase = PaneNote {
-        cost: cost(change.uncorrected.phase, change.corrected.phase),
-        verdict,
-        warns: is_held && left_s.abs() >= 0.5e-3,
+        cost: cost_change(change.uncorrected.phase, change.corrected.phase),
+        verdict: delay_verdict(state, left_s),
+        warns: is_constrained && left_s.abs() >= MATCHED_S,
     };
     Some([magnitude, phase])
 }
 
-fn unit_words(state: &State, omega: f64) -> String {
+/// Formats "J 13.4 → 0.3".
+fn cost_change(before: f64, after: f64) -> String {
+    format!("J {} → {}", decimals(before, 1), decimals(after, 1))
+}
+
+/// Formats a remaining delay as "lags by 66 ms, 46° at 12 rad/s": the corrected model lags if
+/// `left_s` is negative.
+fn delay_verdict(state: &State, left_s: f64) -> String {
+    if left_s.abs() < MATCHED_S {
+        return "matched".to_owned();
+    }
+    let verb = if left_s < 0.0 { "lags" } else { "leads" };
+    let top = state.study.settings.band.max();
+    let at_top_deg = (left_s * top).to_degrees().abs();
+    format!(
+        "{verb} by {} ms, {}° at {}",
+        decimals(s_to_ms(left_s.abs()), 0),
+        decimals(at_top_deg, 0),
+        frequency_words(state, top)
+    )
+}
+
+/// Formats a frequency \[rad/s\] in the displayed unit.
+fn frequency_words(state: &State, omega: f64) -> String {
     let unit = state.display.curves.unit;
     format!("{} {}", number(unit.of_omega(omega)), unit.symbol())
 }
 
-/// Draws the errors of the response in focus for every kept physics model, beside the errors left
-/// by the correction.
+/// Draws the errors in the response in focus: every kept physics model, and the corrected model.
 pub fn error_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -208,9 +227,10 @@ pub fn error_view_ui(
     let mut view = std::mem::take(&mut state.display.frequency.error);
     let options = bode_options(state);
     let curves = error_curves(state, pair, &options);
-    let rules = condition_source(state)
-        .map(|source| source.error_references(pair, &options, &curves))
-        .unwrap_or_default();
+    let rules = match condition_source(state) {
+        Some(source) => source.error_references(pair, &options, &curves),
+        None => Vec::new(),
+    };
     let reference = error_reference(&curves);
     let strips = noticed(&curves, &options);
     let title = state.dataset().pair_name(pair);
@@ -219,31 +239,42 @@ pub fn error_view_ui(
         phase: options.phase_error,
     };
     let band = state.study.settings.band;
-    let grid = state.curves().map(|curves| curves.grid.omega());
+    let mut omega_range = None;
+    if let Some(curves) = state.curves()
+        && let (Some(first), Some(last)) = (curves.grid.omega().first(), curves.grid.omega().last())
+    {
+        omega_range = Some((*first, *last));
+    }
     let scene = BodeScene {
         quantity,
         rules: &rules,
         reference: reference.as_ref(),
         strips: &strips,
-        omega_range: grid.and_then(|omega| Some((*omega.first()?, *omega.last()?))),
+        omega_range,
         message: Some(&message),
         ..BodeScene::new(&title, &curves, (band.min(), band.max()))
     };
-    frequency_plot_ui(ui, state, (scene, &mut view), palette, commands);
+    let plot = FrequencyPlot {
+        state,
+        scene,
+        view: &mut view,
+        palette,
+    };
+    plot.ui(ui, commands);
     state.display.frequency.bode.share_frequencies(&view);
     state.display.frequency.error = view;
     state.display.frequency.drawn_errors = curves;
 }
 
-/// Draws the selection of the unit of phase differences.
+/// Draws the choice between phase differences in degrees and in milliseconds.
 pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let mut unit = state.display.curves.phase_error;
     let units = [
-        (PhaseErrorUnit::Degree, "Δφ", "Phase differences in degrees"),
+        (PhaseErrorUnit::Degree, "Δφ", "Phase differences [deg]"),
         (
             PhaseErrorUnit::Millisecond,
             "Δφ/ω",
-            "The delay [ms] that would make up for each phase difference",
+            "Equivalent delay of each phase difference [ms]",
         ),
     ];
     choice_ui(ui, "Phase error", &mut unit, &units);
@@ -254,32 +285,33 @@ pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
 
 /// Returns the message shown instead of missing errors.
 pub fn error_message(state: &State, pair: Pair) -> String {
-    match state.shown() {
-        Some(shown) if shown.comparison.undefined[pair] == Some(Undefined::NotCoherent) => {
+    let name = state.dataset().pair_name(pair);
+    let undefined = match state.shown() {
+        Some(shown) => shown.comparison.undefined[pair],
+        None => None,
+    };
+    match undefined {
+        Some(Undefined::NotCoherent) => {
             format!(
-                "{} is not compared: {}",
-                state.dataset().pair_name(pair),
+                "{name} is not compared: {}",
                 undefined_text(Undefined::NotCoherent)
             )
         }
-        Some(shown) if shown.comparison.undefined[pair].is_some() => {
-            let name = state.dataset().pair_name(pair);
-            format!(
-                "{name} is not compared: one of the representatives has no such response in the band"
-            )
+        Some(_) => {
+            format!("{name} is not compared: a representative has no such response in the band")
         }
-        _ => state
-            .curves_message()
-            .unwrap_or("Nothing to compare in the band")
-            .to_owned(),
+        None => match state.curves_message() {
+            Some(message) => message.to_owned(),
+            None => "Nothing to compare in the band".to_owned(),
+        },
     }
 }
 
-/// Steps of the colour key for airspeeds.
+/// Step count in the colour key for airspeeds.
 const KEY_STEPS: u8 = 24;
 const KEY_SIZE: egui::Vec2 = vec2(96.0, 8.0);
 
-/// Draws the selection of the model in each condition and the colour key, from right to left.
+/// Draws the choice between models and the colour key for airspeed, from right to left.
 pub fn across_header_ui(
     ui: &mut Ui,
     state: &State,
@@ -287,13 +319,7 @@ pub fn across_header_ui(
     commands: &mut Vec<Command>,
 ) {
     let mut role = state.display.frequency.across_role;
-    let roles = AcrossRole::ALL.map(|role| {
-        (
-            role,
-            role.name(),
-            "The model of each condition that is drawn",
-        )
-    });
+    let roles = AcrossRole::ALL.map(|role| (role, role.name(), "Model drawn for each condition"));
     choice_ui(ui, "Model of each condition", &mut role, &roles);
     if role != state.display.frequency.across_role {
         commands.push(DisplayCommand::ShowAcross(role).into());
@@ -320,7 +346,7 @@ fn paint_key(ui: &Ui, rect: Rect, palette: &Palette) {
     }
 }
 
-/// Draws magnitude and phase of the response in focus for a model of every condition; a click
+/// Draws magnitude and phase for the response in focus, with a model from every condition; a click
 /// selects a condition.
 pub fn across_view_ui(
     ui: &mut Ui,
@@ -346,16 +372,12 @@ pub fn across_view_ui(
             commands.push(SelectionCommand::SelectCondition(id.condition).into());
         }
     }
-    commands.extend(
-        pointed_words(&state.display.frequency.across, &curves, quantity, unit)
-            .map(|value| Command::Selection(SelectionCommand::Tell(value))),
-    );
-    if let Some(transform) = state
-        .display
-        .frequency
-        .across
-        .transform(Pane::Magnitude)
-        .filter(|_| !curves.is_empty())
+    let view = &state.display.frequency.across;
+    if let Some(words) = pointed_words(view, &curves, quantity, unit) {
+        commands.push(SelectionCommand::Tell(words).into());
+    }
+    if let Some(transform) = view.transform(Pane::Magnitude)
+        && !curves.is_empty()
     {
         let place = transform.frame().right_top() + vec2(-8.0, 6.0);
         ui.painter().text(
@@ -368,7 +390,7 @@ pub fn across_view_ui(
     }
 }
 
-/// Fits the plot across conditions once the curves of another response or model are available.
+/// Fits the plot after a change of response or model, once the new curves are available.
 fn fit_across(state: &mut State) {
     let asked = (
         state.display.selection.pair,
@@ -378,22 +400,18 @@ fn fit_across(state: &mut State) {
         return;
     }
     state.display.frequency.across.request_refit();
-    // Until then the previous models' curves are drawn.
-    let models = across_job(state).models;
-    if state
-        .results
-        .across
-        .as_ref()
-        .is_some_and(|(job, _)| job.models == models)
+    // Until then, the previous curves are drawn.
+    if let Some((job, _)) = &state.results.across
+        && job.models == across_job(state).models
     {
         state.display.frequency.across_fitted = Some(asked);
     }
 }
 
-/// Number of frequencies of each curve.
+/// Frequency count in each curve.
 const POINTS: usize = 300;
 
-/// Returns the job of the responses needed by the view: a model of each condition.
+/// Returns the job for the responses in the view: a model from each condition.
 pub fn across_job(state: &State) -> AcrossJob {
     let grid = (display_band(state.study.settings.band), POINTS);
     AcrossJob::of(
@@ -404,7 +422,7 @@ pub fn across_job(state: &State) -> AcrossJob {
     )
 }
 
-/// Returns the curves of the response in focus for a model of each condition; empty until the
+/// Returns the curves for the response in focus, with a model from each condition; empty until the
 /// responses are available.
 pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     let Some(curves) = state.across().cloned() else {
@@ -412,9 +430,9 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     };
     let pair = state.display.selection.pair;
     let mut cached = std::mem::take(&mut state.display.frequency.across_shapes);
-    let made_of = (state.dataset(), state.analysis());
+    let sources = (state.dataset(), state.analysis());
     let role = state.display.frequency.across_role;
-    let mut drawn = airspeed_curves(made_of, role, pair, &curves, &mut cached);
+    let mut drawn = airspeed_curves(sources, role, pair, &curves, &mut cached);
     for curve in &mut drawn {
         curve.highlighted =
             matches!(&curve.id, CurveId::Model(id) if id.condition == state.condition().id());
@@ -424,7 +442,7 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     drawn
 }
 
-/// Draws every response of the displayed condition; a click brings a response into focus.
+/// Draws every response in the displayed condition; a click shows a response in Bode.
 pub fn overview_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -432,15 +450,12 @@ pub fn overview_view_ui(
     commands: &mut Vec<Command>,
 ) {
     let pairs: Vec<Pair> = state.dataset().on_axis().pairs().collect();
-    let curves: Vec<Vec<BodeCurve>> = pairs
-        .iter()
-        .map(|&pair| {
-            bode_curves(state, pair)
-                .into_iter()
-                .filter(|curve| !curve.hidden)
-                .collect()
-        })
-        .collect();
+    let mut curves: Vec<Vec<BodeCurve>> = Vec::new();
+    for &pair in &pairs {
+        let mut drawn = bode_curves(state, pair);
+        drawn.retain(|curve| !curve.hidden);
+        curves.push(drawn);
+    }
     let cells: Vec<OverviewCell<'_>> = pairs
         .iter()
         .zip(&curves)
@@ -474,19 +489,23 @@ pub fn overview_view_ui(
             OverviewEvent::Isolated(CurveId::Model(id)) => {
                 commands.push(SelectionCommand::Isolate(id).into())
             }
-            OverviewEvent::Wished(id, wish) => commands.extend(wished(state, id, wish)),
+            OverviewEvent::Wished(id, wish) => commands.extend(wish_command(state, id, wish)),
             OverviewEvent::Hovered(_) | OverviewEvent::Isolated(_) => {}
         }
     }
 }
 
-/// Returns "J 75→61": J of the uncorrected physics representative and of the fully corrected model.
+/// Returns "J 75→61": J for the uncorrected physics representative, and for the fully corrected
+/// model. Empty unless both are known.
 fn cost_note(state: &State, pair: Pair) -> String {
-    let cost = state.shown().and_then(|shown| {
-        shown.before_couplings().representative.cost[pair]
-            .zip(shown.cost[pair].map(|change| change.corrected))
-    });
-    cost.map_or(String::new(), |(before, after)| {
-        format!("J {:.0}→{:.0}", before.total(), after.total())
-    })
+    let Some(shown) = state.shown() else {
+        return String::new();
+    };
+    let before = shown.before_couplings().representative.cost[pair];
+    match (before, shown.cost[pair]) {
+        (Some(before), Some(change)) => {
+            format!("J {:.0}→{:.0}", before.total(), change.corrected.total())
+        }
+        _ => String::new(),
+    }
 }

@@ -3,44 +3,41 @@
 use egui::{Align2, FontId, Rect, Ui, pos2, vec2};
 
 use gdcm_plot::figure::gains::{Across, GainQuantity, Measure, channels_figure, quieten};
-use gdcm_plot::figure::{MarkId, all_channels};
+use gdcm_plot::figure::{Figure, MarkId, all_channels};
 
 use super::gain_plots::{GainPlots, LEAST_PLOT, bars_switch_ui, gain_command, shown_uncertainty};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::plot::figure_view::{figure_within_ui, rows};
-use crate::gui::plot::{FigureScene, figure_ui};
+use crate::gui::plot::{FigureScene, FigureView, figure_ui};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Draws the selection of gains or delays and of airspeed or conditions, from right to left.
+/// Draws the choices between gains and delays and between airspeed and conditions, from right to
+/// left.
 pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.display.gains.channel_values;
     let (mut measure, mut across) = shown;
     let axes = [
         (Across::Airspeed, "over airspeed", "With the schedule"),
-        (
-            Across::Conditions,
-            "over conditions",
-            "Conditions side by side, in file order",
-        ),
+        (Across::Conditions, "over conditions", "In file order"),
     ];
     choice_ui(ui, "Horizontal axis of the channels", &mut across, &axes);
     let figures = [
         (
             Measure::Gain,
             "gains",
-            "Gain k of every channel, its bounds, and 1: no correction",
+            "Gain k with its bounds; 1: no correction",
         ),
         (
             Measure::Delay,
             "delays",
-            "Delay τ of every channel [ms], its bounds, and 0: no correction",
+            "Delay τ [ms] with its bounds; 0: no correction",
         ),
     ];
     choice_ui(ui, "Figure of the channels", &mut measure, &figures);
-    bars_switch_ui(ui, state, ("bars", "bars of the channels"), commands);
+    bars_switch_ui(ui, state, "bars of the channels", commands);
     if (measure, across) != shown {
         commands.push(DisplayCommand::ShowChannels(measure, across).into());
     }
@@ -49,7 +46,7 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
 const HEADING_HEIGHT: f32 = 20.0;
 const GAP: f32 = 8.0;
 
-/// Draws gain or delay of every channel over airspeed (Figures 3 and 4): inputs above, outputs
+/// Draws gain or delay for every channel over airspeed (Figures 3 and 4): inputs above, outputs
 /// below, on the same axes.
 pub fn channels_view_ui(
     ui: &mut Ui,
@@ -63,12 +60,11 @@ pub fn channels_view_ui(
     let mut outputs = plots.figure.clone();
     inputs.plots.truncate(state.dataset().inputs().len());
     outputs.plots.drain(..inputs.plots.len());
-    let is_compact = plots.across == Across::Airspeed;
-    if is_compact {
+    if plots.across == Across::Airspeed {
         let selected = MarkId::Condition(state.condition().id());
-        [&mut inputs, &mut outputs]
-            .into_iter()
-            .for_each(|figure| quieten(figure, &selected, false));
+        for figure in [&mut inputs, &mut outputs] {
+            quieten(figure, &selected, false);
+        }
     }
     if plots.figure.plots.is_empty() {
         let scene = plots.scene("channels", &plots.figure, state.results.absence());
@@ -78,75 +74,91 @@ pub fn channels_view_ui(
     // Each half gets the height required by its rows.
     let half = vec2(rect.width(), 0.5 * rect.height());
     let [above, below] = [&inputs, &outputs].map(|figure| rows(figure, half, LEAST_PLOT) as f32);
-    let (upper, lower) =
-        rect.split_top_bottom_at_y(rect.top() + rect.height() * above / (above + below).max(1.0));
-    for (name, rect, figure, first, view) in [
-        ("Input channels", upper, &inputs, 0, &mut view.inputs),
-        (
-            "Output channels",
-            lower,
-            &outputs,
-            inputs.plots.len(),
-            &mut view.outputs,
-        ),
-    ] {
-        if figure.plots.is_empty() {
-            continue;
+    let middle = rect.top() + rect.height() * above / (above + below).max(1.0);
+    let (upper, lower) = rect.split_top_bottom_at_y(middle);
+    let first_output = inputs.plots.len();
+    let halves = [
+        ChannelPlots {
+            name: "Input channels",
+            rect: upper,
+            figure: inputs,
+            first_plot: 0,
+            view: &mut view.inputs,
+        },
+        ChannelPlots {
+            name: "Output channels",
+            rect: lower,
+            figure: outputs,
+            first_plot: first_output,
+            view: &mut view.outputs,
+        },
+    ];
+    for half in halves {
+        if !half.figure.plots.is_empty() {
+            commands.extend(half.ui(ui, &plots, palette));
         }
-        let place = pos2(rect.left() + 2.0, rect.top() + 0.5 * HEADING_HEIGHT);
+    }
+    ui.advance_cursor_after_rect(rect);
+    state.display.gains.channels = view;
+}
+
+/// Plots for all inputs, or for all outputs.
+struct ChannelPlots<'a> {
+    name: &'static str,
+    rect: Rect,
+    figure: Figure,
+    /// Index among all channels.
+    first_plot: usize,
+    view: &'a mut FigureView,
+}
+
+impl ChannelPlots<'_> {
+    /// Draws the plots below their heading; returns the resulting commands.
+    fn ui(self, ui: &mut Ui, plots: &GainPlots<'_>, palette: &Palette) -> Vec<Command> {
+        let place = pos2(
+            self.rect.left() + 2.0,
+            self.rect.top() + 0.5 * HEADING_HEIGHT,
+        );
         ui.painter().text(
             place,
             Align2::LEFT_CENTER,
-            name,
+            self.name,
             FontId::proportional(SMALL_SIZE),
             palette.dim_text,
         );
         let inner = Rect::from_min_max(
-            rect.min + vec2(0.0, HEADING_HEIGHT),
-            rect.max - vec2(0.0, GAP),
+            self.rect.min + vec2(0.0, HEADING_HEIGHT),
+            self.rect.max - vec2(0.0, GAP),
         );
-        let scene = plots.scene(name, figure, state.results.absence());
+        let message = plots.state.results.absence();
         let scene = FigureScene {
-            is_compact,
-            words: &plots,
-            first_plot: first,
-            ..scene
+            is_compact: plots.across == Across::Airspeed,
+            words: plots,
+            first_plot: self.first_plot,
+            ..plots.scene(self.name, &self.figure, message)
         };
-        let events = figure_within_ui(ui, inner, &scene, view, palette);
-        commands.extend(
-            events
-                .into_iter()
-                .filter_map(|event| gain_command(state, event)),
-        );
+        let mut commands = Vec::new();
+        for event in figure_within_ui(ui, inner, &scene, self.view, palette) {
+            commands.extend(gain_command(plots.state, event));
+        }
+        commands
     }
-    ui.advance_cursor_after_rect(rect);
-    state.display.gains.channels = view;
 }
 
 /// Builds a plot for each channel, inputs first: gain or delay in each condition's optimum, and the
 /// schedule.
 pub fn channel_plots(state: &State) -> GainPlots<'_> {
     let (measure, across) = state.display.gains.channel_values;
-    let channels = if state.analysis().is_some() {
-        all_channels(state.dataset())
-    } else {
-        Vec::new()
-    };
-    let figure = state
-        .analysis()
-        .map(|analysis| {
-            channels_figure(
-                analysis,
-                shown_uncertainty(state),
-                &channels,
-                (measure, across),
-            )
-        })
-        .unwrap_or_default();
-    let quantities = channels
-        .into_iter()
-        .map(|channel| GainQuantity::of_channel(channel, measure))
-        .collect();
+    let mut figure = Figure::default();
+    let mut quantities = Vec::new();
+    if let Some(analysis) = state.analysis() {
+        let channels = all_channels(state.dataset());
+        let uncertainty = shown_uncertainty(state);
+        figure = channels_figure(analysis, uncertainty, &channels, (measure, across));
+        for channel in channels {
+            quantities.push(GainQuantity::of_channel(channel, measure));
+        }
+    }
     GainPlots {
         state,
         figure: figure.with_ranges(),

@@ -1,8 +1,8 @@
-//! Variants: named sets of decisions, compared with the present decisions.
+//! Variants (named decision sets) compared with the current decisions.
 
 use egui::{Align, Button, Layout, RichText, Role, Ui};
 
-use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_model::dataset::Pair;
 use gdcm_model::units::signed;
 use gdcm_study::decisions::study::Variant;
 use gdcm_study::jobs::analysis_jobs::VariantJob;
@@ -19,8 +19,7 @@ use crate::gui::widgets::controls::{is_entered, named, text_field_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{TableLook, table_ui};
 
-/// Draws the variants of the study, their differences from the present decisions, and the effects
-/// of these differences.
+/// Draws all variants, their differences from the current decisions, and the effects.
 pub fn compare_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -29,8 +28,8 @@ pub fn compare_view_ui(
 ) {
     keep_ui(ui, state, commands);
     if state.study.variants.is_empty() {
-        let words = "A variant is a set of decisions under a name. Keep the present ones, go on deciding, and both stand here \
-                     side by side, with what differs and what it does to J and to the net gains.";
+        let words = "A variant is a named set of decisions. Keep the current decisions as a variant and continue: the differences, \
+                     and their effect on J and on the net gains, are then listed here.";
         ui.label(RichText::new(words).color(palette.dim_text));
         return;
     }
@@ -39,31 +38,23 @@ pub fn compare_view_ui(
         variant_ui(ui, &variant, is_overlaid, commands);
     }
     ui.add_space(4.0);
-    let tables = [difference_table(state), figure_table(state)];
+    let tables = [difference_table(state), effect_table(state)];
     let half = 0.5 * ui.available_height();
     for (index, table) in tables.iter().enumerate() {
         ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
-        let room = if index == 0 {
+        let height = if index == 0 {
             half
         } else {
             ui.available_height()
         };
-        ui.allocate_ui(egui::vec2(ui.available_width(), room), |ui| {
-            let mut sorting = state.display.judging.compare_sorting[index];
-            table_ui(
-                ui,
-                table,
-                &mut sorting,
-                &TableLook::PLAIN,
-                palette,
-                commands,
-            );
-            state.display.judging.compare_sorting[index] = sorting;
+        ui.allocate_ui(egui::vec2(ui.available_width(), height), |ui| {
+            let sorting = &mut state.display.judging.compare_sorting[index];
+            table_ui(ui, table, sorting, &TableLook::PLAIN, palette, commands);
         });
     }
 }
 
-/// Draws the name field and the button that stores the present decisions under that name.
+/// Draws the name field and the button that stores the current decisions under that name.
 fn keep_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let name = &mut state.display.judging.variant_name;
@@ -77,102 +68,95 @@ fn keep_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
         let entered = is_entered(ui, &field);
         let keep = ui.add_enabled(!name.trim().is_empty(), Button::new("Keep as variant"));
         if keep
-            .on_hover_text("Keep the present decisions under this name")
+            .on_hover_text("Stores the current decisions under this name")
             .clicked()
             || entered
         {
-            commands.push(
-                Edit::KeepVariant {
-                    name: std::mem::take(name),
-                }
-                .into(),
-            );
+            let name = std::mem::take(name);
+            commands.push(Edit::KeepVariant { name }.into());
         }
     });
 }
 
+/// Draws a variant's name and, from right to left, its buttons.
 fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(&variant.name).strong());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let name = || variant.name.clone();
-            let mut button = |verb: &str, hint: &str, edit: Edit| {
-                let button = named(
-                    ui.small_button(verb),
-                    Role::Button,
-                    format!("{verb} variant {}", variant.name),
-                );
-                if button.on_hover_text(hint).clicked() {
-                    commands.push(edit.into());
-                }
-            };
-            let hint = "Forget this variant; undo brings it back";
-            button("Remove", hint, Edit::RemoveVariant { name: name() });
-            let hint = "Its decisions become the present ones; undo brings those back";
-            button("Take", hint, Edit::TakeVariant { name: name() });
-            let label = format!("Overlay variant {}", variant.name);
-            let hint =
-                "Its corrected model in Bode, and its net gains, dotted beside the present ones";
+            let name = variant.name.clone();
+            if variant_button_ui(ui, "Remove", &name, "Can be undone") {
+                commands.push(Edit::RemoveVariant { name: name.clone() }.into());
+            }
+            let hint = "Replaces the current decisions; can be undone";
+            if variant_button_ui(ui, "Take", &name, hint) {
+                commands.push(Edit::TakeVariant { name: name.clone() }.into());
+            }
+            let label = format!("Overlay variant {name}");
+            let hint = "Draws its corrected model in Bode, and its net gains, dotted";
             if toggle_ui(ui, ("Overlay", &label), is_overlaid, hint) {
-                commands.push(DisplayCommand::Overlay((!is_overlaid).then(name)).into());
+                let overlaid = if is_overlaid { None } else { Some(name) };
+                commands.push(DisplayCommand::Overlay(overlaid).into());
             }
         });
     });
 }
 
-/// Returns the analyses needed by the comparison.
-pub fn variant_jobs(state: &State) -> Vec<VariantJob> {
-    let studies = state
-        .study
-        .variants
-        .iter()
-        .filter_map(|variant| state.study.of_variant(&variant.name));
-    studies.map(|study| VariantJob { study }).collect()
+/// Draws a button for a variant; returns whether it was clicked.
+fn variant_button_ui(ui: &mut Ui, verb: &str, name: &str, hint: &str) -> bool {
+    let button = ui.small_button(verb);
+    named(button, Role::Button, format!("{verb} variant {name}"))
+        .on_hover_text(hint)
+        .clicked()
 }
 
-/// Returns the analysis of a variant, if available.
+/// Returns the analyses needed by the comparison.
+pub fn variant_jobs(state: &State) -> Vec<VariantJob> {
+    let mut jobs = Vec::new();
+    for variant in &state.study.variants {
+        jobs.extend(variant_job(state, &variant.name));
+    }
+    jobs
+}
+
+fn variant_job(state: &State, name: &str) -> Option<VariantJob> {
+    let study = state.study.of_variant(name)?;
+    Some(VariantJob { study })
+}
+
+/// Returns a variant's analysis, if available.
 pub fn variant_analysis<'a>(state: &'a State, variant: &Variant) -> Option<&'a Analysis> {
-    let job = VariantJob {
-        study: state.study.of_variant(&variant.name)?,
-    };
-    state
-        .results
-        .variants
-        .iter()
-        .find(|(known, _)| *known == job)
-        .map(|(_, analysis)| analysis.as_ref())
+    let job = variant_job(state, &variant.name)?;
+    for (known, analysis) in &state.results.variants {
+        if *known == job {
+            return Some(analysis.as_ref());
+        }
+    }
+    None
 }
 
 /// Returns the overlaid variant and its analysis, if available.
 pub fn overlaid_analysis(state: &State) -> Option<(&str, &Analysis)> {
-    let variant = state
-        .study
-        .variant(state.display.judging.overlaid.as_deref()?)?;
+    let name = state.display.judging.overlaid.as_deref()?;
+    let variant = state.study.variant(name)?;
     Some((&variant.name, variant_analysis(state, variant)?))
 }
 
-/// Returns the job of the overlaid analysis.
+/// Returns the job for the overlaid analysis.
 pub fn overlay_job(state: &State) -> Option<VariantJob> {
-    Some(VariantJob {
-        study: state
-            .study
-            .of_variant(state.display.judging.overlaid.as_deref()?)?,
-    })
+    variant_job(state, state.display.judging.overlaid.as_deref()?)
 }
 
-/// Builds the table of the decisions in which a variant differs from the present decisions.
-pub fn difference_table(state: &State) -> Table {
-    let mut table = Table::new(
-        "What differs",
-        ["variant", "decision", "in the variant", "now"],
-    );
+/// Builds the table with all decisions in which a variant differs from the current decisions.
+fn difference_table(state: &State) -> Table {
+    let columns = ["variant", "decision", "in the variant", "now"];
+    let mut table = Table::new("Different decisions", columns);
     for variant in &state.study.variants {
         let Some(study) = state.study.of_variant(&variant.name) else {
             continue;
         };
         let differences = decision_differences(&study, &state.study);
         if differences.is_empty() {
-            table.row([variant.name.as_str(), "nothing: the same decisions"]);
+            table.row([variant.name.as_str(), "none: the same decisions"]);
         }
         for difference in differences {
             table.row([
@@ -186,86 +170,107 @@ pub fn difference_table(state: &State) -> Table {
     table
 }
 
-/// Builds the table of effects, now and in each variant: net gain and J of the responses of the
-/// net-gain plots in the displayed condition, and the mean change of J of the scheduled correction
-/// over all conditions.
-pub fn figure_table(state: &State) -> Table {
+/// Builds the table with the effects now and in each variant.
+fn effect_table(state: &State) -> Table {
     let condition = state.condition().id();
-    let title =
-        format!("What it does: condition {condition}, and the schedule over all conditions");
-    let names = state
-        .study
-        .variants
-        .iter()
-        .map(|variant| variant.name.clone());
-    let mut table = Table::new(
-        title,
-        ["value".to_owned(), "now".to_owned()]
-            .into_iter()
-            .chain(names),
-    );
-    let analyses: Vec<Option<&Analysis>> = std::iter::once(state.analysis())
-        .chain(
-            state
-                .study
-                .variants
-                .iter()
-                .map(|variant| variant_analysis(state, variant)),
-        )
-        .collect();
-    let mut row = |name: String, figure: &dyn Fn(&Analysis) -> Option<String>| {
-        let cell = |analysis: &Option<&Analysis>| match analysis {
-            Some(analysis) => figure(analysis).unwrap_or_else(|| "–".to_owned()),
-            None => "…".to_owned(),
-        };
-        table.row(std::iter::once(name).chain(analyses.iter().map(cell)));
-    };
-    for pair in net_gain_pairs(state) {
-        let name = state.dataset().pair_name(pair);
-        row(format!("net gain {name}"), &|analysis| {
-            Some(format!(
-                "{:.4}",
-                analysis.condition(condition)?.correction.net_gain(pair)
-            ))
-        });
-        row(format!("J {name}"), &|analysis| {
-            cost(analysis, condition, pair)
-        });
+    let title = format!("Effect in condition {condition}, and of the schedule over all conditions");
+    let mut columns = vec!["value".to_owned(), "now".to_owned()];
+    let mut analyses = vec![state.analysis()];
+    for variant in &state.study.variants {
+        columns.push(variant.name.clone());
+        analyses.push(variant_analysis(state, variant));
     }
-    row("objective of the gains".to_owned(), &|analysis| {
-        analysis
-            .condition(condition)
-            .map(|result| format!("{:.4}", result.gains.objective))
-    });
-    row("mean ΔJ on-axis, scheduled".to_owned(), &|analysis| {
-        mean_change(state, analysis)
-    });
+    let mut table = Table::new(title, columns);
+    for effect in effects(state) {
+        let mut cells = vec![effect.name(state)];
+        for analysis in &analyses {
+            cells.push(match analysis {
+                Some(analysis) => effect
+                    .text(state, analysis)
+                    .unwrap_or_else(|| "–".to_owned()),
+                None => "…".to_owned(),
+            });
+        }
+        table.row(cells);
+    }
     table
 }
 
-fn cost(analysis: &Analysis, condition: ConditionId, pair: Pair) -> Option<String> {
-    let cost = analysis.condition(condition)?.cost[pair]?;
-    Some(format!(
-        "{:.1} → {:.1}",
-        cost.uncorrected.total(),
-        cost.corrected.total()
-    ))
+/// Value compared between variants.
+#[derive(Clone, Copy)]
+enum Effect {
+    /// Net gain in the displayed condition.
+    NetGain(Pair),
+    /// J in the displayed condition, before and after the correction.
+    Cost(Pair),
+    /// Gain objective in the displayed condition.
+    Objective,
+    /// Mean change of J over all on-axis responses and conditions, with the schedule.
+    MeanChange,
 }
 
-/// Returns the mean change of J of the nominal models' on-axis responses under the schedule, over
-/// the assessed conditions.
+fn effects(state: &State) -> Vec<Effect> {
+    let mut effects = Vec::new();
+    for pair in net_gain_pairs(state) {
+        effects.push(Effect::NetGain(pair));
+        effects.push(Effect::Cost(pair));
+    }
+    effects.push(Effect::Objective);
+    effects.push(Effect::MeanChange);
+    effects
+}
+
+impl Effect {
+    fn name(self, state: &State) -> String {
+        match self {
+            Self::NetGain(pair) => format!("net gain {}", state.dataset().pair_name(pair)),
+            Self::Cost(pair) => format!("J {}", state.dataset().pair_name(pair)),
+            Self::Objective => "objective of the gains".to_owned(),
+            Self::MeanChange => "mean ΔJ on-axis, scheduled".to_owned(),
+        }
+    }
+
+    /// Formats the value in an analysis; `None` where it is undefined.
+    fn text(self, state: &State, analysis: &Analysis) -> Option<String> {
+        let condition = state.condition().id();
+        match self {
+            Self::NetGain(pair) => {
+                let correction = &analysis.condition(condition)?.correction;
+                Some(format!("{:.4}", correction.net_gain(pair)))
+            }
+            Self::Cost(pair) => {
+                let cost = analysis.condition(condition)?.cost[pair]?;
+                Some(format!(
+                    "{:.1} → {:.1}",
+                    cost.uncorrected.total(),
+                    cost.corrected.total()
+                ))
+            }
+            Self::Objective => {
+                let gains = &analysis.condition(condition)?.gains;
+                Some(format!("{:.4}", gains.objective))
+            }
+            Self::MeanChange => mean_change(state, analysis),
+        }
+    }
+}
+
+/// Computes the mean change of J for the nominal models with the schedule, over the on-axis
+/// responses in all assessed conditions; `None` without an assessed response.
 fn mean_change(state: &State, analysis: &Analysis) -> Option<String> {
     let measuring = state.dataset().measuring_pairs();
-    let changes: Vec<f64> = analysis
-        .assessment
-        .values()
-        .flatten()
-        .flat_map(|changes| {
-            measuring
-                .marked()
-                .filter_map(|pair| Some(changes[pair]?.total()))
-        })
-        .collect();
+    let mut changes = Vec::new();
+    for assessed in analysis.assessment.values().flatten() {
+        for pair in measuring.marked() {
+            if let Some(change) = assessed[pair] {
+                changes.push(change.total());
+            }
+        }
+    }
     let mean = changes.iter().sum::<f64>() / changes.len() as f64;
-    mean.is_finite().then(|| signed(mean, 2))
+    if mean.is_finite() {
+        Some(signed(mean, 2))
+    } else {
+        None
+    }
 }

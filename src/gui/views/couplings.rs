@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use egui::{Label, Panel, RichText, ScrollArea, Ui, vec2};
+use egui::{Label, Panel, RichText, ScrollArea, Ui, Vec2, vec2};
 
 use gdcm_method::couplings::LEAST_CONDITIONS;
-use gdcm_model::dataset::Dataset;
-use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::telling;
+use gdcm_plot::figure::Figure;
 use gdcm_study::decisions::setting;
 use gdcm_study::jobs::analysis_jobs::CouplingsJob;
 use gdcm_study::results::couplings_assessment::{CouplingCost, CouplingsAssessment};
@@ -30,10 +29,12 @@ use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, medium};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
 
-/// Share of the width taken by words and tables.
+/// Least plot size \[pt\].
+const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
+/// Initial width of words and tables, as a share of the view's width.
 const WORDS_PART: f32 = 0.56;
 
-/// Draws the selection of the fitted couplings.
+/// Draws the choice between coupling corrections.
 pub fn couplings_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.study.settings.couplings;
     let mut chosen = shown;
@@ -41,17 +42,17 @@ pub fn couplings_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Comman
         (
             CouplingCorrection::None,
             "none",
-            "Gains, delays and leads of the channels alone (the paper)",
+            "Gains, delays and leads of the channels alone",
         ),
         (
             CouplingCorrection::Mixing,
             "mixing",
-            "Each input takes constant shares of the others (M16)",
+            "Constant shares of the other inputs are added to each input (M16)",
         ),
         (
             CouplingCorrection::MixingAndFeedback,
             "mixing and feedback",
-            "Inputs take shares of inputs and outputs (M16)",
+            "Constant shares of inputs and outputs are added to each input (M16)",
         ),
     ];
     choice_ui(ui, "Couplings of the physics models", &mut chosen, &choices);
@@ -68,45 +69,60 @@ pub fn couplings_job(state: &State) -> CouplingsJob {
     }
 }
 
-/// Returns whether couplings are assessed in every view: couplings in use, for their cost; unused
-/// couplings, once delays are matched or leads are requested and there are enough conditions (three
-/// or more), because they may be worth an offer.
+/// Returns whether the couplings are assessed in every view. Couplings in use are assessed for their
+/// cost; unused couplings once they may be worthwhile: with matched delays or requested leads, and
+/// with enough conditions.
 pub fn are_couplings_judged(state: &State) -> bool {
     let settings = &state.study.settings;
-    let Some(analysis) = state.analysis().filter(|_| !state.results.is_behind()) else {
+    let Some(analysis) = state.analysis() else {
         return false;
     };
-    let results = || analysis.conditions.values().flatten();
-    let is_left = match settings.phase {
+    if state.results.is_behind() {
+        return false;
+    }
+    if settings.couplings != CouplingCorrection::None {
+        return true;
+    }
+    let mut results = 0;
+    let mut are_delays_matched = true;
+    for result in analysis.conditions.values().flatten() {
+        results += 1;
+        are_delays_matched &= result.delays.matched;
+    }
+    let is_phase_corrected = match settings.phase {
         PhaseCorrection::None => false,
-        PhaseCorrection::Delay => results().all(|result| result.delays.matched),
+        PhaseCorrection::Delay => are_delays_matched,
         PhaseCorrection::Lead => true,
     };
-    settings.couplings != CouplingCorrection::None
-        || is_left && results().count() >= LEAST_CONDITIONS
+    is_phase_corrected && results >= LEAST_CONDITIONS
 }
 
-/// Returns the off-axis benefit of unused couplings, if worthwhile by J of left-out conditions.
+/// Returns the assessment and the off-axis benefit for unused couplings, if worthwhile by J in
+/// left-out conditions.
 pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, CouplingCost)> {
-    let is_used = state.study.settings.couplings != CouplingCorrection::None;
-    let assessment = state
-        .couplings()
-        .filter(|_| !is_used && are_couplings_judged(state))?
-        .as_ref()
-        .ok()?;
-    Some((
-        assessment,
-        assessment
-            .costs
-            .left_out
-            .filter(CouplingCost::is_worth_it)?,
-    ))
+    if are_couplings_used(state) || !are_couplings_judged(state) {
+        return None;
+    }
+    let assessment = state.couplings()?.as_ref().ok()?;
+    let cost = assessment.costs.left_out?;
+    if cost.is_worth_it() {
+        Some((assessment, cost))
+    } else {
+        None
+    }
 }
 
-/// Returns the assessment of the couplings in use, once known.
+/// Returns the assessment for couplings in use, once known.
 pub fn used_couplings(state: &State) -> Option<&Arc<CouplingsAssessment>> {
-    let is_used = state.study.settings.couplings != CouplingCorrection::None;
-    state.couplings().filter(|_| is_used)?.as_ref().ok()
+    if are_couplings_used(state) {
+        state.couplings()?.as_ref().ok()
+    } else {
+        None
+    }
+}
+
+fn are_couplings_used(state: &State) -> bool {
+    state.study.settings.couplings != CouplingCorrection::None
 }
 
 /// Draws words and tables at the left, the loop and the poles at the right.
@@ -116,14 +132,22 @@ pub fn couplings_view_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let found = state.couplings().cloned();
-    let assessment = match found {
+    let assessment = match state.couplings().cloned() {
         Some(Ok(assessment)) => assessment,
         Some(Err(why)) => {
             let why = why.words(&state.dataset().names_of_channels().0);
-            return drop(ui.add(Label::new(palette.dim(format!("No couplings: {why}."))).wrap()));
+            ui.add(Label::new(palette.dim(format!("No couplings: {why}"))).wrap());
+            return;
         }
-        None => return drop(ui.label(palette.dim(state.results.absence()))),
+        None => {
+            ui.label(palette.dim(state.results.absence()));
+            return;
+        }
+    };
+    let words = CouplingsWords {
+        state,
+        assessment: &assessment,
+        palette,
     };
     restore_panel_size(ui, "couplings");
     let width = WORDS_PART * ui.available_width();
@@ -136,181 +160,195 @@ pub fn couplings_view_ui(
             .id_salt("couplings in words")
             .auto_shrink(false)
             .show(ui, |ui| {
-                use_ui(ui, state, &assessment, palette, commands);
+                words.use_ui(ui, commands);
                 // The deciding figures come first.
-                let costs = Table {
-                    title: "J, mean over the conditions".to_owned(),
-                    ..coupling_cost_table(&assessment)
-                };
-                table_part_ui(ui, &costs, TableLook::PLAIN.color, palette, commands);
-                words_ui(ui, state, &assessment, palette);
-                tables_ui(ui, state, &assessment, palette, commands);
+                words.costs_ui(ui, commands);
+                words.remarks_ui(ui);
+                words.tables_ui(ui, commands);
             });
     });
-    let request = request(state, View::Couplings);
-    let figure = request
-        .and_then(|request| request.figure(None, condition_source(state).as_ref()))
-        .unwrap_or_default();
+    let mut figure = Figure::default();
+    if let Some(request) = request(state, View::Couplings)
+        && let Some(drawn) = request.figure(None, condition_source(state).as_ref())
+    {
+        figure = drawn;
+    }
     let mut view = state
         .display
         .figures
         .remove(&View::Couplings)
         .unwrap_or_default();
-    let scene = FigureScene::new(
-        "couplings",
-        &figure,
-        vec2(220.0, 150.0),
-        state.results.absence(),
-        &figure,
-    );
     let scene = FigureScene {
         zooms: true,
-        ..scene
+        ..FigureScene::new(
+            "couplings",
+            &figure,
+            LEAST_PLOT,
+            state.results.absence(),
+            &figure,
+        )
     };
     figure_legend_ui(ui, &figure, palette);
     figure_ui(ui, &scene, &mut view, palette);
     state.display.figures.insert(View::Couplings, view);
 }
 
-/// Draws whether the couplings are used, and the link that uses them, or removes them if they are
-/// not worthwhile.
-fn use_ui(
-    ui: &mut Ui,
-    state: &State,
-    assessment: &CouplingsAssessment,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    let is_used = state.study.settings.couplings != CouplingCorrection::None;
-    let (label, couplings) = if is_used {
-        (
-            "Switch the couplings off".to_owned(),
-            CouplingCorrection::None,
-        )
-    } else {
-        let name = assessment.couplings.name();
-        ui.label(palette.dim(format!("None are used. What {name} would do:")));
-        (format!("Use {name}"), assessment.couplings)
-    };
-    if is_used && assessment.deciding_cost().is_worth_it() {
-        return;
-    }
-    if ui
-        .button(label)
-        .on_hover_text("In every condition; undo takes it back")
-        .clicked()
-    {
-        commands.push(setting::COUPLINGS.to(couplings).into());
-    }
+/// Words and tables about the couplings.
+struct CouplingsWords<'a> {
+    state: &'a State,
+    assessment: &'a CouplingsAssessment,
+    palette: &'a Palette,
 }
 
-fn words_ui(ui: &mut Ui, state: &State, assessment: &CouplingsAssessment, palette: &Palette) {
-    ui.add_space(6.0);
-    for remark in coupling_remarks(assessment, state.dataset()) {
-        let words = match remark.kind {
-            RemarkKind::Good => RichText::new(&remark.text).color(palette.text),
-            _ => RichText::new(format!("⚠ {}", remark.text)).color(palette.warning),
+impl CouplingsWords<'_> {
+    /// Draws whether the couplings are used, and the button that uses them, or removes them if they
+    /// are not worthwhile.
+    fn use_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        if !are_couplings_used(self.state) {
+            let name = self.assessment.couplings.name();
+            let words = format!("Not in use. Effect of {name}:");
+            ui.label(self.palette.dim(words));
+            self.switch_ui(
+                ui,
+                &format!("Use {name}"),
+                self.assessment.couplings,
+                commands,
+            );
+        } else if !self.assessment.deciding_cost().is_worth_it() {
+            let label = "Switch the couplings off";
+            self.switch_ui(ui, label, CouplingCorrection::None, commands);
+        }
+    }
+
+    fn switch_ui(
+        &self,
+        ui: &mut Ui,
+        label: &str,
+        couplings: CouplingCorrection,
+        commands: &mut Vec<Command>,
+    ) {
+        let button = ui.button(label);
+        if button
+            .on_hover_text("In every condition; can be undone")
+            .clicked()
+        {
+            commands.push(setting::COUPLINGS.to(couplings).into());
+        }
+    }
+
+    fn costs_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let costs = Table {
+            title: "J, mean over the conditions".to_owned(),
+            ..coupling_cost_table(self.assessment)
         };
-        let words = if remark.kind == RemarkKind::Trouble {
-            words.font(medium(BODY_SIZE))
-        } else {
-            words
-        };
-        ui.add_space(2.0);
-        ui.add(Label::new(words).wrap());
+        self.table_ui(ui, &costs, TableLook::PLAIN, commands);
     }
-    if let Err(why) = assessment
-        .conditions
-        .get(&state.condition().id())
-        .map_or(Ok(()), |of| of.poles.as_ref().map(drop))
-    {
-        ui.add(Label::new(palette.dim(format!("Poles of this condition: {why}"))).wrap());
-    }
-}
 
-fn tables_ui(
-    ui: &mut Ui,
-    state: &State,
-    assessment: &CouplingsAssessment,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    for table in coupling_matrix_tables(assessment, state.dataset()) {
-        // Values within their error bar are indistinguishable from zero.
-        let dim = |row: usize, column: usize| {
-            table.rows[row][column]
-                .starts_with('(')
-                .then_some(palette.dim_text)
-        };
-        table_part_ui(ui, &table, &dim, palette, commands);
+    fn remarks_ui(&self, ui: &mut Ui) {
+        ui.add_space(6.0);
+        for remark in coupling_remarks(self.assessment, self.state.dataset()) {
+            let words = match remark.kind {
+                RemarkKind::Good => RichText::new(&remark.text).color(self.palette.text),
+                _ => RichText::new(format!("⚠ {}", remark.text)).color(self.palette.warning),
+            };
+            let words = match remark.kind {
+                RemarkKind::Trouble => words.font(medium(BODY_SIZE)),
+                _ => words,
+            };
+            ui.add_space(2.0);
+            ui.add(Label::new(words).wrap());
+        }
+        if let Some(condition) = self.assessment.conditions.get(&self.state.condition().id())
+            && let Err(why) = &condition.poles
+        {
+            let words = format!("Poles of this condition: {why}");
+            ui.add(Label::new(self.palette.dim(words)).wrap());
+        }
     }
-    let others = [
-        above_band_table(state.dataset(), assessment),
-        poles_of_condition(state, assessment),
-    ];
-    for table in others.iter().filter(|table| !table.rows.is_empty()) {
-        table_part_ui(ui, table, TableLook::PLAIN.color, palette, commands);
+
+    /// Draws the coupling matrices, then the loop and its poles.
+    fn tables_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        for table in coupling_matrix_tables(self.assessment, self.state.dataset()) {
+            // Values in parentheses are within their error bar, not distinguishable from zero.
+            let look = TableLook {
+                color: &|row, column| {
+                    if table.rows[row][column].starts_with('(') {
+                        Some(self.palette.dim_text)
+                    } else {
+                        None
+                    }
+                },
+                ..TableLook::PLAIN
+            };
+            self.table_ui(ui, &table, look, commands);
+        }
+        for table in [self.loop_table(), self.pole_table()] {
+            if !table.rows.is_empty() {
+                self.table_ui(ui, &table, TableLook::PLAIN, commands);
+            }
+        }
     }
-}
 
-fn table_part_ui(
-    ui: &mut Ui,
-    table: &Table,
-    color: &dyn Fn(usize, usize) -> Option<egui::Color32>,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    ui.add_space(10.0);
-    ui.add(Label::new(RichText::new(&table.title).font(medium(BODY_SIZE))).wrap());
-    let look = TableLook {
-        color,
-        ..TableLook::PLAIN
-    };
-    ScrollArea::horizontal()
-        .id_salt(("couplings", &table.title))
-        .show(ui, |ui| {
-            ui.spacing_mut().interact_size.y = 16.0;
-            table_grid_ui(ui, table, &mut Sorting::default(), &look, palette, commands);
-        });
-}
-
-/// Builds the table of the couplings' effect at ten times the band on the constrained responses of
-/// each condition, with the least singular value of its loop.
-fn above_band_table(dataset: &Dataset, assessment: &CouplingsAssessment) -> Table {
-    let columns = [
-        "condition",
-        "least singular value",
-        "at [rad/s]",
-        "above the band [dB]",
-        "of",
-    ];
-    let mut table = Table::new("The loop of each condition", columns);
-    for (id, of) in &assessment.conditions {
-        let margin = of
-            .margin
-            .map(|margin| [telling(margin.least, 2), telling(margin.omega_rad_s, 1)]);
-        let [least, at] = margin.unwrap_or_default();
-        let most = of.most_changed_above_band(dataset.on_axis());
-        let (change, pair) = most.map_or((String::new(), String::new()), |(pair, change_db)| {
-            (
-                with_minus_sign(&telling(change_db, 1)),
-                dataset.pair_name(pair),
-            )
-        });
-        table.row([id.to_string(), least, at, change, pair]);
+    /// Draws a table below its title, as high as its rows.
+    fn table_ui(
+        &self,
+        ui: &mut Ui,
+        table: &Table,
+        look: TableLook<'_>,
+        commands: &mut Vec<Command>,
+    ) {
+        ui.add_space(10.0);
+        ui.add(Label::new(RichText::new(&table.title).font(medium(BODY_SIZE))).wrap());
+        ScrollArea::horizontal()
+            .id_salt(("couplings", &table.title))
+            .show(ui, |ui| {
+                ui.spacing_mut().interact_size.y = 16.0;
+                let mut unsorted = Sorting::default();
+                table_grid_ui(ui, table, &mut unsorted, &look, self.palette, commands);
+            });
     }
-    table
-}
 
-/// Returns the pole table's rows of the displayed condition.
-fn poles_of_condition(state: &State, assessment: &CouplingsAssessment) -> Table {
-    let id = state.condition().id().to_string();
-    let mut table = pole_table(assessment);
-    table.rows.retain(|row| row[0] == id);
-    table.rows.iter_mut().for_each(|row| drop(row.remove(0)));
-    table.columns.remove(0);
-    Table {
-        title: format!("Poles of the physics representative of condition {id}"),
-        ..table
+    /// Builds the loop table: in each condition, the least singular value, and the largest effect
+    /// on a constrained response at ten times the band.
+    fn loop_table(&self) -> Table {
+        let dataset = self.state.dataset();
+        let columns = [
+            "condition",
+            "least singular value",
+            "at [rad/s]",
+            "above the band [dB]",
+            "response",
+        ];
+        let mut table = Table::new("The loop of each condition", columns);
+        for (id, condition) in &self.assessment.conditions {
+            let mut least = String::new();
+            let mut at = String::new();
+            if let Some(margin) = condition.margin {
+                least = telling(margin.least, 2);
+                at = telling(margin.omega_rad_s, 1);
+            }
+            let mut change = String::new();
+            let mut response = String::new();
+            if let Some((pair, change_db)) = condition.most_changed_above_band(dataset.on_axis()) {
+                change = telling(change_db, 1).replace('-', "\u{2212}");
+                response = dataset.pair_name(pair);
+            }
+            table.row([id.to_string(), least, at, change, response]);
+        }
+        table
+    }
+
+    /// Builds the pole table for the displayed condition.
+    fn pole_table(&self) -> Table {
+        let id = self.state.condition().id().to_string();
+        let mut table = pole_table(self.assessment);
+        table.title = format!("Poles of the physics representative of condition {id}");
+        table.rows.retain(|row| row[0] == id);
+        // All rows have the same condition.
+        for row in &mut table.rows {
+            row.remove(0);
+        }
+        table.columns.remove(0);
+        table
     }
 }

@@ -1,4 +1,4 @@
-//! Button that copies or saves the content of a view.
+//! Button that copies or saves a view's content.
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Role, Ui};
@@ -6,7 +6,7 @@ use egui::{Button, Role, Ui};
 use gdcm_plot::figure::FigureFormat;
 use gdcm_words::Table;
 
-use super::requirements::requirement_tables;
+use super::requirement_tables::requirement_tables;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::state::view::View;
@@ -15,12 +15,13 @@ use crate::gui::widgets::controls::named;
 
 /// Returns the tables that a view shows instead of a figure; `None` if it shows a figure.
 pub fn tables_in_place(state: &State, view: View) -> Option<Vec<Table>> {
-    (view == View::Requirements)
-        .then(|| requirement_tables(state))
-        .flatten()
+    match view {
+        View::Requirements => requirement_tables(state),
+        _ => None,
+    }
 }
 
-/// Draws the button that copies or saves the content of a view.
+/// Draws the button that copies or saves a view's content.
 pub fn figure_button_ui(ui: &mut Ui, state: &State, view: View, commands: &mut Vec<Command>) {
     if view.figure().is_none() {
         return;
@@ -35,10 +36,10 @@ pub fn figure_button_ui(ui: &mut Ui, state: &State, view: View, commands: &mut V
             commands.push(OutputCommand::CopyFigure(view).into());
             ui.close();
         }
-        for format in FigureFormat::ALL
-            .into_iter()
-            .filter(|format| has_figure || *format == FigureFormat::Csv)
-        {
+        for format in FigureFormat::ALL {
+            if !has_figure && format != FigureFormat::Csv {
+                continue;
+            }
             let text = format!("Save as {}…", format.extension().to_uppercase());
             if ui.button(text).on_hover_text(format.words()).clicked() {
                 commands.push(OutputCommand::AskSaveFigure(view, format).into());
@@ -51,5 +52,5 @@ pub fn figure_button_ui(ui: &mut Ui, state: &State, view: View, commands: &mut V
         Role::Button,
         format!("Save or copy {}", view.name()),
     );
-    button.on_hover_text("This plot on paper, or its numbers: copy, CSV, SVG, PNG, PDF");
+    button.on_hover_text("Plot as SVG, PNG or PDF, or its numbers as CSV");
 }

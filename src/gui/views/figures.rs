@@ -1,4 +1,4 @@
-//! Figures of the views for paper.
+//! Views as figures on paper.
 
 use std::sync::Arc;
 
@@ -15,42 +15,46 @@ use crate::gui::plot::drawn_curves::PANES;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 
-/// Returns the figure of a view; `None` until its results are available.
+/// Returns a view's figure; `None` until its results are available.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
-    let bars = !state.display.gains.hide_bars || view.figure().is_some_and(FigureKind::needs_bars);
-    let with_bars = if bars {
+    let needs_bars = match view.figure() {
+        Some(kind) => kind.needs_bars(),
+        None => false,
+    };
+    let analysis = if needs_bars || !state.display.gains.hide_bars {
         state.analysis_with_bars()
     } else {
         state.analysis().cloned()
     };
-    // The live answer does not depend on the inputs of the requirements and may be older than
-    // these.
-    let with_bars = with_bars.map(|analysis| analysis.asked_with(&state.study.requirements));
-    let analysis = with_bars.as_ref();
+    // The requirements' inputs may be newer than the analysis, which does not depend on them.
+    let analysis = analysis.map(|analysis| analysis.asked_with(&state.study.requirements));
     let source = condition_source(state);
-    request(state, view)?.figure(analysis, source.as_ref())
+    request(state, view)?.figure(analysis.as_ref(), source.as_ref())
 }
 
 /// Returns a file name for a view's figure: `bode-10-LON-Q`.
 pub fn figure_name(state: &State, view: View) -> String {
-    let kind = view.figure();
-    let mut parts: Vec<String> = kind.iter().map(|kind| kind.name().to_owned()).collect();
-    if kind.is_some_and(FigureKind::is_of_condition) {
-        parts.push(state.condition().id().to_string());
+    let mut parts = Vec::new();
+    if let Some(kind) = view.figure() {
+        parts.push(kind.name().to_owned());
+        if kind.is_of_condition() {
+            parts.push(state.condition().id().to_string());
+        }
     }
     if matches!(view, View::Bode | View::Error | View::Across | View::Leads) {
         let (output, input) = state.dataset().channel_names(state.display.selection.pair);
-        parts.extend([input, output]);
+        parts.push(input);
+        parts.push(output);
     }
-    let is_plain = |letter: char| letter.is_alphanumeric() || letter == '-';
-    parts
-        .join("-")
-        .chars()
-        .map(|letter| if is_plain(letter) { letter } else { '_' })
-        .collect()
+    let mut name = String::new();
+    for letter in parts.join("-").chars() {
+        let is_plain = letter.is_alphanumeric() || letter == '-';
+        name.push(if is_plain { letter } else { '_' });
+    }
+    name
 }
 
-/// Returns the figure request of a view, the same as of the command `gdcm figure`.
+/// Returns a view's figure request, as the command `gdcm figure` makes it.
 pub fn request(state: &State, view: View) -> Option<FigureRequest> {
     let kind = view.figure()?;
     let pairs = view_content(view).figure_pairs;
@@ -73,7 +77,10 @@ pub fn request(state: &State, view: View) -> Option<FigureRequest> {
     let usual = FigureRequest::new(kind, pairs(state), all_channels(state.dataset()));
     let requirements = shown_requirements(state, kind);
     let over_time = shown_over_time(state, kind);
-    let couplings = shown_couplings(state).filter(|_| view == View::Couplings);
+    let mut couplings = None;
+    if view == View::Couplings {
+        couplings = shown_couplings(state);
+    }
     Some(FigureRequest {
         measure,
         across,
@@ -87,15 +94,16 @@ pub fn request(state: &State, view: View) -> Option<FigureRequest> {
     })
 }
 
-/// Returns the assessment shown by the view.
+/// Returns the assessed couplings, once known.
 pub fn shown_couplings(state: &State) -> Option<Arc<CouplingsAssessment>> {
     state.couplings()?.as_ref().ok().cloned()
 }
 
-/// Returns the requirements for a figure.
+/// Returns the requirements for a figure; `None` for other figures, or until they are known.
 pub fn shown_requirements(state: &State, kind: FigureKind) -> Option<Arc<Requirements>> {
-    state
-        .requirements()
-        .filter(|_| kind == FigureKind::Requirements)
-        .cloned()
+    if kind == FigureKind::Requirements {
+        state.requirements().cloned()
+    } else {
+        None
+    }
 }

@@ -1,4 +1,4 @@
-//! Plots of gains and delays over airspeed, shared by the channels and the net gains.
+//! Plots of gains and delays over airspeed, shared by channels and net gains.
 
 use egui::{Ui, Vec2, vec2};
 
@@ -20,15 +20,16 @@ use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::toggle_ui;
 
-/// Least size of a plot \[pt\].
+/// Least plot size \[pt\].
 pub const LEAST_PLOT: Vec2 = vec2(122.0, 120.0);
 
-/// Returns the uncertainty of gains and delays, if error bars are shown.
+/// Returns the uncertainty in gains and delays, if error bars are shown.
 pub fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
-    state
-        .uncertainty()
-        .filter(|_| !state.display.gains.hide_bars)
-        .map(AsRef::as_ref)
+    if state.display.gains.hide_bars {
+        None
+    } else {
+        state.uncertainty().map(AsRef::as_ref)
+    }
 }
 
 /// Plots of gains or delays, with their subjects.
@@ -41,6 +42,7 @@ pub struct GainPlots<'a> {
 }
 
 impl GainPlots<'_> {
+    /// Returns the scene with marks at the displayed and at the pointed condition.
     pub fn scene<'b>(
         &'b self,
         name: &'static str,
@@ -62,9 +64,9 @@ impl GainPlots<'_> {
 
 impl FigureWords for GainPlots<'_> {
     fn plot(&self, plot: usize) -> String {
-        let of = &self.figure.plots[plot];
-        let dots: usize = of.panels.iter().map(|panel| panel.dots().count()).sum();
-        format!("{}, {dots} conditions", of.title)
+        let plot = &self.figure.plots[plot];
+        let dots: usize = plot.panels.iter().map(|panel| panel.dots().count()).sum();
+        format!("{}, {dots} conditions", plot.title)
     }
 
     fn dot(&self, plot: usize, id: &MarkId, [_, value]: [f64; 2]) -> Option<String> {
@@ -90,32 +92,40 @@ impl FigureWords for GainPlots<'_> {
         };
         let condition = self.state.dataset().condition(*id)?;
         let analysis = self.state.analysis()?;
-        let of = self.quantities[plot];
+        let quantity = self.quantities[plot];
+        let measure = quantity.measure();
         let airspeed_kt = condition.flight_state().airspeed_kt;
-        let text = |value: f64| of.measure().text(value);
-        let schedule = of.measure().schedule_of(analysis, self.across);
-        let scheduled = schedule
-            .map(|schedule| format!("scheduled {}", text(of.of(&schedule.at(airspeed_kt)))));
-        let bounds = analysis.condition(*id).and_then(|result| of.bounds(result));
-        let choice = analysis.study.choice(*id);
-        let state = match (choice.held_out, choice.is_in_schedule()) {
-            (true, _) => Some("held out of the schedule, to judge it".to_owned()),
-            (false, false) => Some("not in the schedule".to_owned()),
-            (false, true) => None,
-        };
-        let uncertainty = shown_uncertainty(self.state);
-        let bar =
-            uncertainty.and_then(|of_all| Some((of_all.bar(*id, of.scalar())?, of_all.level)));
-        let words = [
-            Some(format!("condition {id}, {airspeed_kt:.0} kt")),
-            Some(format!("{} {}", self.figure.plots[plot].title, text(value))),
-            bar.map(|(bar, level)| bar_words(bar, of.scalar(), level)),
-            scheduled,
-            bounds.map(|[lower, upper]| format!("bounds {} to {}", text(lower), text(upper))),
-            state,
-            Some("Ctrl+click: into the schedule, or out of it; right-click: explain".to_owned()),
+        let title = &self.figure.plots[plot].title;
+        let mut words = vec![
+            format!("condition {id}, {airspeed_kt:.0} kt"),
+            format!("{title} {}", measure.text(value)),
         ];
-        Some(words.into_iter().flatten().collect::<Vec<_>>().join(" · "))
+        if let Some(uncertainty) = shown_uncertainty(self.state)
+            && let Some(bar) = uncertainty.bar(*id, quantity.scalar())
+        {
+            words.push(bar_words(bar, quantity.scalar(), uncertainty.level));
+        }
+        if let Some(schedule) = measure.schedule_of(analysis, self.across) {
+            let scheduled = quantity.of(&schedule.at(airspeed_kt));
+            words.push(format!("scheduled {}", measure.text(scheduled)));
+        }
+        if let Some(result) = analysis.condition(*id)
+            && let Some([lower, upper]) = quantity.bounds(result)
+        {
+            words.push(format!(
+                "bounds {} to {}",
+                measure.text(lower),
+                measure.text(upper)
+            ));
+        }
+        let choice = analysis.study.choice(*id);
+        if choice.held_out {
+            words.push("held out of the schedule to validate it".to_owned());
+        } else if !choice.is_in_schedule() {
+            words.push("not in the schedule".to_owned());
+        }
+        words.push("Ctrl+click: add to the schedule or remove; right-click: explain".to_owned());
+        Some(words.join(" · "))
     }
 
     fn questions(&self, plot: usize, id: &MarkId) -> Vec<NamedFigure> {
@@ -123,12 +133,10 @@ impl FigureWords for GainPlots<'_> {
             return Vec::new();
         };
         match self.quantities[plot] {
-            GainQuantity::NetGain(pair) => {
-                vec![(
-                    format!("Net gain, condition {id}"),
-                    ExplainTarget::NetGain(id, pair),
-                )]
-            }
+            GainQuantity::NetGain(pair) => vec![(
+                format!("Net gain, condition {id}"),
+                ExplainTarget::NetGain(id, pair),
+            )],
             GainQuantity::Delay(channel) => vec![
                 ("Delay".to_owned(), ExplainTarget::Delay(id, channel)),
                 (
@@ -137,53 +145,44 @@ impl FigureWords for GainPlots<'_> {
                 ),
             ],
             GainQuantity::Gain(channel) => {
-                let airspeed_kt = self
-                    .state
-                    .dataset()
-                    .condition(id)
-                    .map(|of| of.flight_state().airspeed_kt);
-                let gain = [
+                let mut questions = vec![
                     ("Gain".to_owned(), ExplainTarget::Gain(id, channel)),
                     (
                         "Bounds of the gains".to_owned(),
                         ExplainTarget::GainBounds(id),
                     ),
                 ];
-                let scheduled = airspeed_kt.map(|at| {
-                    (
-                        "Scheduled gain".to_owned(),
-                        ExplainTarget::ScheduledGain(channel, at),
-                    )
-                });
-                gain.into_iter().chain(scheduled).collect()
+                if let Some(condition) = self.state.dataset().condition(id) {
+                    let airspeed_kt = condition.flight_state().airspeed_kt;
+                    let target = ExplainTarget::ScheduledGain(channel, airspeed_kt);
+                    questions.push(("Scheduled gain".to_owned(), target));
+                }
+                questions
             }
         }
     }
 }
 
-/// Returns the command of a click in a plot over airspeed.
+/// Returns the command for an event in a plot over airspeed.
 pub fn gain_command(state: &State, event: FigureEvent) -> Option<Command> {
     match event {
-        FigureEvent::Clicked(_, MarkId::Condition(condition), keys) if keys.command => {
-            let scheduled = !state.study.choice(condition).scheduled;
-            Some(
-                Edit::SetScheduled {
+        FigureEvent::Clicked(_, MarkId::Condition(condition), keys) => {
+            if keys.command {
+                let scheduled = !state.study.choice(condition).scheduled;
+                let edit = Edit::SetScheduled {
                     condition,
                     scheduled,
-                }
-                .into(),
-            )
+                };
+                Some(edit.into())
+            } else {
+                Some(SelectionCommand::SelectCondition(condition).into())
+            }
         }
-        FigureEvent::Clicked(_, MarkId::Condition(condition), _) => Some(Command::Selection(
-            SelectionCommand::SelectCondition(condition),
-        )),
-        FigureEvent::Asked(figure) => {
-            Some(Command::Selection(SelectionCommand::Explain(Some(figure))))
+        FigureEvent::Asked(figure) => Some(SelectionCommand::Explain(Some(figure)).into()),
+        FigureEvent::Told(words) => Some(SelectionCommand::Tell(words).into()),
+        FigureEvent::Pointed(MarkId::Condition(condition)) => {
+            Some(SelectionCommand::HoverCondition(condition).into())
         }
-        FigureEvent::Told(words) => Some(Command::Selection(SelectionCommand::Tell(words))),
-        FigureEvent::Pointed(MarkId::Condition(condition)) => Some(Command::Selection(
-            SelectionCommand::HoverCondition(condition),
-        )),
         FigureEvent::Clicked(..) | FigureEvent::Pointed(_) => None,
     }
 }
@@ -209,39 +208,40 @@ pub fn bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
         words.push_str(&format!("; {remarks}"));
     }
     if bar.left_out > 0 {
-        words.push_str(&format!("; {} swaps without this figure", bar.left_out));
+        words.push_str(&format!("; undefined in {} substitutions", bar.left_out));
     }
     words
 }
 
-/// Draws the switch of error bars and bands.
-pub fn bars_switch_ui(
-    ui: &mut Ui,
-    state: &State,
-    names: (&str, &str),
-    commands: &mut Vec<Command>,
-) {
+/// Draws the switch for error bars and bands, with an accessible name.
+pub fn bars_switch_ui(ui: &mut Ui, state: &State, name: &str, commands: &mut Vec<Command>) {
     let shown = !state.display.gains.hide_bars;
     let level = 100.0 * state.study.settings.uncertainty.level;
     let hint = format!(
-        "Bars of {level:.0} %: thick for the physics model chosen (identification), thin with not knowing the trim flown. Bands of the \
-         schedule: where it may lie, and where another condition would fall"
+        "{level:.0} % bars: thick for the choice of the physics model (identification), thin with the unknown trim of the flight. \
+         Bands: confidence of the schedule, and prediction for another condition"
     );
-    if toggle_ui(ui, names, shown, &hint) {
+    if toggle_ui(ui, ("bars", name), shown, &hint) {
         commands.push(DisplayCommand::ShowBars(!shown).into());
     }
 }
 
-/// Returns the responses of the net-gain plots, in the order of the matrix.
+/// Returns the responses in the net-gain plots, in matrix order.
 pub fn net_gain_pairs(state: &State) -> Vec<Pair> {
     let display = &state.display;
     let constrained = &state.study.settings.constrained;
-    let is_in = |pair: &Pair| match display.gains.net_gain_pairs {
-        PairSet::Held => constrained[*pair] || display.gains.once_held.contains(pair),
-        PairSet::Focused => display.selection.pair == *pair,
-        PairSet::OnAxis => state.dataset().measuring_pairs()[*pair],
-        PairSet::All => true,
-        PairSet::Picked => display.gains.picked_pairs.contains(pair),
-    };
-    constrained.pairs().filter(is_in).collect()
+    let mut pairs = Vec::new();
+    for pair in constrained.pairs() {
+        let is_shown = match display.gains.net_gain_pairs {
+            PairSet::Held => constrained[pair] || display.gains.once_held.contains(&pair),
+            PairSet::Focused => display.selection.pair == pair,
+            PairSet::OnAxis => state.dataset().measuring_pairs()[pair],
+            PairSet::All => true,
+            PairSet::Picked => display.gains.picked_pairs.contains(&pair),
+        };
+        if is_shown {
+            pairs.push(pair);
+        }
+    }
+    pairs
 }

@@ -1,13 +1,13 @@
 //! Requirements over time: flight records with their corridors and the models' responses; without
 //! records, a step or a doublet (M17.2).
 
-use egui::{CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
+use egui::{CollapsingHeader, Color32, Label, Panel, ScrollArea, Ui, Vec2, vec2};
 
 use gdcm_method::requirements::{TestInput, TestInputShape};
 use gdcm_model::units::number;
 use gdcm_plot::figure::{Figure, OverTime};
-use gdcm_study::results::condition_answers::RecordHistory;
 use gdcm_study::results::record_comparison::Trend;
+use gdcm_words::Table;
 use gdcm_words::time_histories::record_history_table;
 
 use super::figures::figure_of;
@@ -24,13 +24,13 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::controls::{number_entry_ui, restore_panel_size};
 use crate::gui::widgets::palette::Palette;
-use crate::gui::widgets::tables::{TableLook, table_grid_ui};
+use crate::gui::widgets::tables::{Sorting, TableLook, table_grid_ui};
 
-/// Least size of a plot \[pt\].
+/// Least plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 96.0);
-/// Least size of a record with the difference from flight below it \[pt\].
+/// Least plot size for a record, with the difference from flight below it \[pt\].
 const LEAST_RECORD: Vec2 = vec2(260.0, 190.0);
-/// Initial share of the height taken by the table.
+/// Initial table height, as a share of the view's height.
 const TABLE_PART: f32 = 0.32;
 
 /// Draws the flown record, or the test input, and the models' responses.
@@ -43,19 +43,33 @@ pub fn histories_ui(
     subject_ui(ui, state, palette, commands);
     let title = CollapsingHeader::new("Tolerances").id_salt("edited tolerances");
     title.show(ui, |ui| tolerances_ui(ui, state, palette, commands));
-    let found = match over_time(state) {
-        Some(Ok(found)) => found,
-        Some(Err(why)) => return drop(ui.label(palette.small_warning(why))),
-        None => return drop(ui.label(palette.dim(state.results.absence()))),
+    let responses = match over_time(state) {
+        Some(Ok(responses)) => responses,
+        Some(Err(why)) => {
+            ui.label(palette.small_warning(why));
+            return;
+        }
+        None => {
+            ui.label(palette.dim(state.results.absence()));
+            return;
+        }
     };
-    if let OverTime::Record(history, _) = &found {
+    if let OverTime::Record(history, _) = &responses {
         restore_panel_size(ui, "tolerances");
         let size = TABLE_PART * ui.available_height();
         let panel = Panel::bottom("tolerances")
             .resizable(true)
             .default_size(size)
             .min_size(60.0);
-        panel.show(ui, |ui| shares_ui(ui, state, history, palette, commands));
+        let table = record_history_table(history);
+        panel.show(ui, |ui| {
+            let shares = SharesTable {
+                table: &table,
+                palette,
+            };
+            let sorting = &mut state.display.judging.requirements_sorting[0];
+            shares.ui(ui, sorting, commands);
+        });
     }
     let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
     ui.add(Label::new(palette.small(&figure.caption)).wrap());
@@ -66,49 +80,40 @@ pub fn histories_ui(
         .remove(&View::Requirements)
         .unwrap_or_default();
     view.set_subject(&figure.title);
-    let accented = match &found {
-        OverTime::Test(_) => Some(1 + state.display.selection.pair.output),
-        OverTime::Record(..) => None,
-    };
-    let least = if accented.is_some() {
-        LEAST_PLOT
-    } else {
-        LEAST_RECORD
-    };
     let words = HistoryWords(&figure);
-    let scene = FigureScene::new(
-        "requirements in time",
-        &figure,
-        least,
-        "There is nothing to show",
-        &words,
-    );
-    let scene = FigureScene {
+    let mut scene = FigureScene {
         zooms: true,
-        accented,
-        ..scene
+        ..FigureScene::new(
+            "requirements in time",
+            &figure,
+            LEAST_RECORD,
+            "No response over time",
+            &words,
+        )
     };
+    if let OverTime::Test(_) = responses {
+        // The first plot is the input.
+        scene.accented = Some(1 + state.display.selection.pair.output);
+        scene.least = LEAST_PLOT;
+    }
     figure_ui(ui, &scene, &mut view, palette);
     state.display.figures.insert(View::Requirements, view);
 }
 
-/// Draws the selection of a record of the condition, or of a test input.
+/// Draws the choice between this condition's records and a test input.
 fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let records = state.records.conditions.get(&state.condition().id());
-    let rows = records.into_iter().flat_map(|records| records.used_rows());
-    let mut choices: Vec<(Option<usize>, &str, &str)> = rows
-        .map(|(index, row)| {
-            (
-                Some(index),
-                row.table.name.as_str(),
-                "A flight record of this condition",
-            )
-        })
-        .collect();
+    let mut choices: Vec<(Option<usize>, &str, &str)> = Vec::new();
+    if let Some(records) = records {
+        for (index, row) in records.used_rows() {
+            let name = row.table.name.as_str();
+            choices.push((Some(index), name, "A flight record of this condition"));
+        }
+    }
     if choices.is_empty() {
         let words = match &state.records.reading {
-            Some(reading) => format!("reading {} …", reading),
-            None => "No flight record of this condition is used (view Records): a test input in its place.".to_owned(),
+            Some(reading) => format!("reading {reading} …"),
+            None => "No flight record of this condition is used (view Records): the models answer a test input instead".to_owned(),
         };
         ui.label(palette.small(words));
     } else {
@@ -117,14 +122,17 @@ fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
             "test input",
             "A step or a doublet of the input in focus, from rest",
         ));
-        let shown = records
-            .map(|records| records.chosen)
-            .filter(|_| !state.display.judging.shows_test);
+        let mut shown = None;
+        if !state.display.judging.shows_test {
+            shown = records.map(|records| records.chosen);
+        }
         let mut chosen = shown;
-        choice_ui(ui, "What models answer to", &mut chosen, &choices);
+        choice_ui(ui, "Record or test input", &mut chosen, &choices);
         if chosen != shown {
             commands.push(DisplayCommand::ShowTest(chosen.is_none()).into());
-            commands.extend(chosen.map(|index| RecordsCommand::Choose(index).into()));
+            if let Some(index) = chosen {
+                commands.push(RecordsCommand::Choose(index).into());
+            }
         }
     }
     if record_job(state).is_none() {
@@ -132,108 +140,99 @@ fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     }
 }
 
-/// Draws the share of time inside the corridor and the largest excess of every quantity and model.
-fn shares_ui(
-    ui: &mut Ui,
-    state: &mut State,
-    history: &RecordHistory,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    let table = record_history_table(history);
-    let is_outside = |row: usize| table.rows[row][5] != "none";
-    let color = |row: usize, column: usize| match column {
-        4 | 5 => Some(if is_outside(row) {
-            palette.warning
-        } else {
-            palette.good
-        }),
-        7 if table.rows[row][7] == Trend::Opposite.name() => Some(palette.warning),
-        _ => None,
-    };
-    let look = TableLook {
-        color: &color,
-        ..TableLook::PLAIN
-    };
-    ScrollArea::vertical()
-        .id_salt("tolerances")
-        .auto_shrink(false)
-        .show(ui, |ui| {
-            ui.label(palette.small(&table.title));
-            let mut sorting = state.display.judging.requirements_sorting;
-            table_grid_ui(ui, &table, &mut sorting[0], &look, palette, commands);
-            state.display.judging.requirements_sorting = sorting;
-        });
+/// Columns with the share of time inside, the largest excess, and the trend.
+const SHARE: usize = 4;
+const EXCESS: usize = 5;
+const TREND: usize = 7;
+
+/// Table with the share of time inside the corridor and the largest excess, for every quantity and
+/// model.
+struct SharesTable<'a> {
+    table: &'a Table,
+    palette: &'a Palette,
 }
 
-/// Draws shape, size and duration of the test input.
+impl SharesTable<'_> {
+    fn ui(&self, ui: &mut Ui, sorting: &mut Sorting, commands: &mut Vec<Command>) {
+        let look = TableLook {
+            color: &|row, column| self.color(row, column),
+            ..TableLook::PLAIN
+        };
+        ScrollArea::vertical()
+            .id_salt("tolerances")
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                ui.label(self.palette.small(&self.table.title));
+                table_grid_ui(ui, self.table, sorting, &look, self.palette, commands);
+            });
+    }
+
+    /// Returns a cell's colour: a warning outside the corridor, and for an opposite trend.
+    fn color(&self, row: usize, column: usize) -> Option<Color32> {
+        let cells = &self.table.rows[row];
+        match column {
+            SHARE | EXCESS if cells[EXCESS] == "none" => Some(self.palette.good),
+            SHARE | EXCESS => Some(self.palette.warning),
+            TREND if cells[TREND] == Trend::Opposite.name() => Some(self.palette.warning),
+            _ => None,
+        }
+    }
+}
+
+/// Draws the test input: shape, size and duration.
 fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let test = state.study.requirements.test;
     let input = &state.dataset().inputs()[state.display.selection.pair.input];
-    let decide =
-        |what: &'static str, test: TestInput, commands: &mut Vec<Command>| match test.checked() {
-            Ok(test) => commands.push(decided(state, what, |settings| settings.test = test)),
-            Err(why) => commands.push(FormCommand::Refuse(why.to_string()).into()),
-        };
     ui.horizontal_wrapped(|ui| {
         let mut shape = test.shape;
         let choices = [
             (
                 TestInputShape::Step,
                 "step",
-                "Held for the whole of its duration, then back to trim",
+                "Constant for its whole duration, then back to trim",
             ),
             (
                 TestInputShape::Doublet,
                 "doublet",
-                "The first half of its duration to one side, the second to the other",
+                "One side for the first half of its duration, the other side for the second half",
             ),
         ];
         choice_ui(ui, "Course of the test input", &mut shape, &choices);
         if shape != test.shape {
-            decide(
-                "course of the test input",
-                TestInput { shape, ..test },
-                commands,
-            );
+            let changed = TestInput { shape, ..test };
+            commands.push(set_test_input(state, "course of the test input", changed));
         }
         ui.label(palette.small(format!("of {}, the input in focus, by", input.name)));
-        let size = number_entry_ui(
-            ui,
-            "Size of the test input",
-            &number(test.size),
-            "",
-            56.0,
-            commands,
-        );
-        if let Some(size) = size.flatten() {
-            decide(
-                "size of the test input",
-                TestInput { size, ..test },
-                commands,
-            );
+        let size = test_number_ui(ui, "Size of the test input", test.size, commands);
+        if let Some(size) = size {
+            let changed = TestInput { size, ..test };
+            commands.push(set_test_input(state, "size of the test input", changed));
         }
         ui.label(palette.small(format!("{} for", input.unit)));
-        let duration = number_entry_ui(
-            ui,
-            "Duration of the test input",
-            &number(test.duration_s),
-            "",
-            56.0,
-            commands,
-        );
-        if let Some(duration_s) = duration.flatten() {
-            decide(
-                "duration of the test input",
-                TestInput { duration_s, ..test },
-                commands,
-            );
+        let duration_s =
+            test_number_ui(ui, "Duration of the test input", test.duration_s, commands);
+        if let Some(duration_s) = duration_s {
+            let changed = TestInput { duration_s, ..test };
+            commands.push(set_test_input(state, "duration of the test input", changed));
         }
         ui.label(palette.small("s"));
     });
 }
 
-/// Descriptions of the plots over time.
+/// Draws a number field; returns the typed number.
+fn test_number_ui(ui: &mut Ui, name: &str, value: f64, commands: &mut Vec<Command>) -> Option<f64> {
+    number_entry_ui(ui, name, &number(value), "", 56.0, commands)?
+}
+
+/// Returns the command that changes the test input, or that reports why the input is refused.
+fn set_test_input(state: &State, name: &'static str, test: TestInput) -> Command {
+    match test.checked() {
+        Ok(test) => decided(state, name, |settings| settings.test = test),
+        Err(why) => FormCommand::Refuse(why.to_string()).into(),
+    }
+}
+
+/// Descriptions for the plots over time.
 struct HistoryWords<'a>(&'a Figure);
 
 impl FigureWords for HistoryWords<'_> {

@@ -1,4 +1,4 @@
-//! Effect of delay or lead in each channel of the condition, and the cost of leads above the band.
+//! Effect of delay or lead in each channel, and the price paid for leads above the band.
 
 use egui::{Panel, Ui, vec2};
 
@@ -17,10 +17,10 @@ use crate::gui::widgets::controls::restore_panel_size;
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Share of the width taken by the table.
+/// Initial table width, as a share of the view's width.
 const TABLE_PART: f32 = 0.5;
 
-/// Draws gain and phase of the leads up to ten times the band, and the table of the channels.
+/// Draws gain and phase added by leads up to ten times the band, and the channel table.
 pub fn leads_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -37,32 +37,24 @@ pub fn leads_view_ui(
         panel.show(ui, |ui| {
             let pair = Channel::of(state.display.selection.pair);
             let channels = all_channels(state.dataset());
-            let selected = |row: usize| {
-                channels
-                    .get(row)
-                    .is_some_and(|channel| pair.contains(channel))
-            };
             let look = TableLook {
-                selected: &selected,
+                selected: &|row| match channels.get(row) {
+                    Some(channel) => pair.contains(channel),
+                    None => false,
+                },
                 ..TableLook::PLAIN
             };
             ui.label(palette.small_warning(&table.title));
             ui.spacing_mut().interact_size.y = 16.0;
-            table_ui(
-                ui,
-                &table,
-                &mut Sorting::default(),
-                &look,
-                palette,
-                commands,
-            );
+            let mut unsorted = Sorting::default();
+            table_ui(ui, &table, &mut unsorted, &look, palette, commands);
         });
     }
     let figure = figure(state);
     let message = match state.study.settings.phase {
         PhaseCorrection::Lead => state.results.absence(),
         _ => {
-            "No leads: the phase is corrected by delays, or not at all. Settings, phase, \"delay or lead\""
+            "No leads: the phase is corrected by delays, or not at all (to change: Settings, phase, \"delay or lead\")"
         }
     };
     let mut view = state
@@ -75,31 +67,36 @@ pub fn leads_view_ui(
     state.display.figures.insert(View::Leads, view);
 }
 
-/// Builds the figure of the response in focus; without plots if there are no leads.
+/// Builds the figure for the response in focus; empty if there are no leads.
 fn figure(state: &State) -> Figure {
-    let has_leads = state
-        .shown()
-        .is_some_and(|shown| shown.correction.leads.is_some());
-    let source = condition_source(state).filter(|_| has_leads);
+    let mut source = None;
+    if let Some(shown) = state.shown()
+        && shown.correction.leads.is_some()
+    {
+        source = condition_source(state);
+    }
     let pairs = vec![state.display.selection.pair];
     FigureRequest::new(FigureKind::Leads, pairs, Vec::new())
         .figure(None, source.as_ref())
         .unwrap_or_default()
 }
 
-/// Builds the table of the channels: delay or lead, the lag removed by its lead at the end of the
-/// band, the replaced servo, and the price; the title gives the end of the corrected model's
-/// validity. `None` without leads.
+/// Builds the channel table: delay or lead, phase at the upper end of the band, replaced servo, and
+/// the gain paid above the band. The title gives the highest frequency at which the corrected model
+/// is valid. `None` without leads.
 pub fn leads_table(state: &State) -> Option<Table> {
     let leads = state.shown()?.correction.leads.as_ref()?;
     let price = LeadPrice::of(leads);
     let (inputs, outputs) = state.dataset().names_of_channels();
     let top = leads.design.band_top_rad_s();
-    let title = price.as_ref().map_or_else(
-        || "No channel has a lead filter".to_owned(),
-        LeadPrice::limit_words,
-    );
-    let above = price.as_ref().map_or(top, LeadPrice::above_rad_s);
+    let title = match &price {
+        Some(price) => price.limit_words(),
+        None => "No channel has a lead filter".to_owned(),
+    };
+    let above = match &price {
+        Some(price) => price.above_rad_s(),
+        None => top,
+    };
     let columns = [
         "channel".to_owned(),
         "lead [ms]".to_owned(),
@@ -111,18 +108,23 @@ pub fn leads_table(state: &State) -> Option<Table> {
     for channel in all_channels(state.dataset()) {
         let tau_s = leads.taus_s[channel];
         let filter = leads.filters()[channel];
-        let phase = filter.map_or(-top * tau_s.max(0.0), |filter| filter.phase(top));
-        let servo = filter.map_or_else(
-            || "–".to_owned(),
-            |filter| {
-                format!(
-                    "{} → {}",
-                    telling(filter.zero_rad_s(), 0),
-                    telling(filter.lag_rad_s(), 0)
-                )
-            },
-        );
-        let gain_db = price.as_ref().map_or(0.0, |price| price.gains_db[channel]);
+        // Without a filter, only a pure delay shifts the phase.
+        let phase = match filter {
+            Some(filter) => filter.phase(top),
+            None => -top * tau_s.max(0.0),
+        };
+        let servo = match filter {
+            Some(filter) => format!(
+                "{} → {}",
+                telling(filter.zero_rad_s(), 0),
+                telling(filter.lag_rad_s(), 0)
+            ),
+            None => "–".to_owned(),
+        };
+        let gain_db = match &price {
+            Some(price) => price.gains_db[channel],
+            None => 0.0,
+        };
         table.row([
             channel.name(&inputs, &outputs),
             signed(-s_to_ms(tau_s), 0),

@@ -1,5 +1,5 @@
-//! Views between the side panels, each with its header. A single list holds all views with their
-//! contents, commands and needs.
+//! Views between the side panels. [`view_content`] lists for each view its drawing, header, needed
+//! background results and figure.
 
 use std::sync::Arc;
 
@@ -14,10 +14,13 @@ use super::state::window_state::State;
 use super::widgets::palette::Palette;
 pub mod assembling;
 pub mod assessment;
+mod assessment_plots;
 pub mod bode;
 pub mod channels;
 pub mod compare;
 pub mod couplings;
+mod cursor_readout;
+mod curve_chips;
 pub mod evidence;
 pub mod figure_button;
 pub mod figures;
@@ -25,13 +28,16 @@ pub(in crate::gui) mod frequency;
 pub mod gain_plots;
 pub mod histories;
 pub mod leads;
+mod mode_table;
 pub mod need;
 pub mod net_gain;
 pub mod over_time;
 pub mod poles;
 pub mod records;
 pub mod requirement_limits;
+mod requirement_tables;
 pub mod requirements;
+mod schedule_evidence;
 pub mod setting_controls;
 
 use crate::gui::state::view::View;
@@ -50,6 +56,7 @@ use need::Need;
 use net_gain::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_view_ui, net_gain_words};
 use over_time::current;
 use poles::{poles_header_ui, poles_view_ui};
+use records::{records_header_ui, records_view_ui, simulation_jobs};
 use requirements::{
     NO_QUALIFICATION, requirements_header_ui, requirements_needs, requirements_view_ui,
 };
@@ -57,130 +64,23 @@ use requirements::{
 pub use compare::overlay_job;
 pub use couplings::{are_couplings_judged, couplings_job, offered_couplings, used_couplings};
 
-/// Returns the content of a view: drawing, background jobs and figures.
+/// Returns a view's content: drawing, header, background jobs and figures.
 pub fn view_content(view: View) -> ViewContent {
     match view {
-        View::Bode => ViewContent {
-            draw: bode_view_ui,
-            title: ViewTitle::Response,
-            figure_pairs: |state| vec![state.display.selection.pair],
-            ..ViewContent::PLAIN
-        },
-        View::Error => ViewContent {
-            draw: error_view_ui,
-            title: ViewTitle::Response,
-            tools: |ui, state, _, commands| error_header_ui(ui, state, commands),
-            tools_width: 160.0,
-            figure_pairs: |state| vec![state.display.selection.pair],
-            ..ViewContent::PLAIN
-        },
-        View::Overview => ViewContent {
-            draw: overview_view_ui,
-            title: ViewTitle::Condition,
-            ..ViewContent::PLAIN
-        },
-        View::Across => ViewContent {
-            draw: across_view_ui,
-            title: ViewTitle::Focus,
-            tools: across_header_ui,
-            tools_width: 330.0,
-            needs: |state| vec![Need::Across(across_job(state))],
-            figure_pairs: |state| vec![state.display.selection.pair],
-            ..ViewContent::PLAIN
-        },
-        View::Poles => ViewContent {
-            draw: poles_view_ui,
-            title: ViewTitle::Condition,
-            tools: |ui, state, _, commands| poles_header_ui(ui, state, commands),
-            tools_width: 180.0,
-            needs: |state| {
-                let condition = state.dataset().condition(state.condition().id());
-                condition
-                    .map(|of| {
-                        Need::Modes(ModesJob {
-                            condition: Arc::clone(of).into(),
-                        })
-                    })
-                    .into_iter()
-                    .collect()
-            },
-            ..ViewContent::PLAIN
-        },
-        View::Couplings => ViewContent {
-            draw: couplings_view_ui,
-            title: ViewTitle::Condition,
-            tools: |ui, state, _, commands| couplings_header_ui(ui, state, commands),
-            tools_width: 220.0,
-            needs: |state| vec![Need::Couplings(couplings_job(state))],
-            ..ViewContent::PLAIN
-        },
-        View::Records => ViewContent {
-            draw: self::records::records_view_ui,
-            title: ViewTitle::Condition,
-            tools: |ui, state, _, commands| self::records::records_header_ui(ui, state, commands),
-            tools_width: 380.0,
-            needs: |state| {
-                self::records::simulation_jobs(state)
-                    .into_iter()
-                    .map(Need::Simulation)
-                    .collect()
-            },
-            ..ViewContent::PLAIN
-        },
-        View::Channels => ViewContent {
-            draw: channels_view_ui,
-            tools: |ui, state, _, commands| channels_header_ui(ui, state, commands),
-            tools_width: 410.0,
-            ..ViewContent::PLAIN
-        },
-        View::Assessment => ViewContent {
-            draw: assessment_view_ui,
-            tools: |ui, state, _, commands| assessment_header_ui(ui, state, commands),
-            tools_width: 640.0,
-            needs: |state| {
-                let choice = state.assessment_choice();
-                let job = current(state).map(|analysis| AssessmentJob {
-                    analysis: analysis.into(),
-                    choice,
-                });
-                job.map(Need::Assessment).into_iter().collect()
-            },
-            figure_pairs: assessed_pairs,
-            ..ViewContent::PLAIN
-        },
-        // The figure button is in the first line of the view, so the view has no tools.
-        View::Evidence => ViewContent {
-            draw: evidence_view_ui,
-            figure_pairs: |state| state.dataset().measuring_pairs().marked().collect(),
-            ..ViewContent::PLAIN
-        },
-        View::Compare => ViewContent {
-            draw: compare_view_ui,
-            needs: |state| variant_jobs(state).into_iter().map(Need::Variant).collect(),
-            ..ViewContent::PLAIN
-        },
-        View::Requirements => ViewContent {
-            draw: requirements_view_ui,
-            title: ViewTitle::Words(|_| NO_QUALIFICATION.to_owned()),
-            tools: |ui, state, _, commands| requirements_header_ui(ui, state, commands),
-            tools_width: 270.0,
-            needs: requirements_needs,
-            ..ViewContent::PLAIN
-        },
-        View::Leads => ViewContent {
-            draw: leads_view_ui,
-            title: ViewTitle::Response,
-            figure_pairs: |state| vec![state.display.selection.pair],
-            ..ViewContent::PLAIN
-        },
-        View::NetGain => ViewContent {
-            draw: net_gain_view_ui,
-            title: ViewTitle::Words(net_gain_words),
-            tools: net_gain_header_ui,
-            tools_width: NET_GAIN_CONTROLS,
-            figure_pairs: net_gain_pairs,
-            ..ViewContent::PLAIN
-        },
+        View::Bode => BODE,
+        View::Error => ERROR,
+        View::Overview => OVERVIEW,
+        View::Across => ACROSS,
+        View::Poles => POLES,
+        View::Couplings => COUPLINGS,
+        View::Records => RECORDS,
+        View::Channels => CHANNELS,
+        View::Assessment => ASSESSMENT,
+        View::Evidence => EVIDENCE,
+        View::Compare => COMPARE,
+        View::Requirements => REQUIREMENTS,
+        View::Leads => LEADS,
+        View::NetGain => NET_GAIN,
     }
 }
 
@@ -188,15 +88,15 @@ pub fn view_content(view: View) -> ViewContent {
 #[derive(Clone, Copy)]
 pub struct ViewContent {
     pub draw: fn(&mut Ui, &mut State, &Palette, &mut Vec<Command>),
-    /// Additional text of the header.
+    /// Additional text in the header.
     pub title: ViewTitle,
     /// Controls in the header, laid out from right to left.
     pub tools: fn(&mut Ui, &State, &Palette, &mut Vec<Command>),
-    /// Width of the tools \[pt\]; the title takes the rest.
+    /// Tool width \[pt\]; the title takes the rest.
     pub tools_width: f32,
     /// Computations needed besides the live answer.
     pub needs: fn(&State) -> Vec<Need>,
-    /// Responses in the figure on paper; empty for a figure of all responses or of none.
+    /// Responses in the figure on paper; empty if it shows all responses or none.
     pub figure_pairs: fn(&State) -> Vec<Pair>,
 }
 
@@ -212,15 +112,154 @@ impl ViewContent {
     };
 }
 
-/// Text in the header of a view.
+/// Text in a view's header.
 #[derive(Clone, Copy, Debug)]
 pub enum ViewTitle {
     None,
-    /// The condition.
     Condition,
     /// The response in focus, and the condition.
     Response,
-    /// The response in focus.
+    /// The response in focus, for views of all conditions.
     Focus,
     Words(fn(&State) -> String),
+}
+
+const BODE: ViewContent = ViewContent {
+    draw: bode_view_ui,
+    title: ViewTitle::Response,
+    figure_pairs: focused_pair,
+    ..ViewContent::PLAIN
+};
+
+const ERROR: ViewContent = ViewContent {
+    draw: error_view_ui,
+    title: ViewTitle::Response,
+    tools: |ui, state, _, commands| error_header_ui(ui, state, commands),
+    tools_width: 160.0,
+    figure_pairs: focused_pair,
+    ..ViewContent::PLAIN
+};
+
+const OVERVIEW: ViewContent = ViewContent {
+    draw: overview_view_ui,
+    title: ViewTitle::Condition,
+    ..ViewContent::PLAIN
+};
+
+const ACROSS: ViewContent = ViewContent {
+    draw: across_view_ui,
+    title: ViewTitle::Focus,
+    tools: across_header_ui,
+    tools_width: 330.0,
+    needs: |state| vec![Need::Across(across_job(state))],
+    figure_pairs: focused_pair,
+    ..ViewContent::PLAIN
+};
+
+const POLES: ViewContent = ViewContent {
+    draw: poles_view_ui,
+    title: ViewTitle::Condition,
+    tools: |ui, state, _, commands| poles_header_ui(ui, state, commands),
+    tools_width: 180.0,
+    needs: modes_needs,
+    ..ViewContent::PLAIN
+};
+
+const COUPLINGS: ViewContent = ViewContent {
+    draw: couplings_view_ui,
+    title: ViewTitle::Condition,
+    tools: |ui, state, _, commands| couplings_header_ui(ui, state, commands),
+    tools_width: 220.0,
+    needs: |state| vec![Need::Couplings(couplings_job(state))],
+    ..ViewContent::PLAIN
+};
+
+const RECORDS: ViewContent = ViewContent {
+    draw: records_view_ui,
+    title: ViewTitle::Condition,
+    tools: |ui, state, _, commands| records_header_ui(ui, state, commands),
+    tools_width: 380.0,
+    needs: |state| {
+        simulation_jobs(state)
+            .into_iter()
+            .map(Need::Simulation)
+            .collect()
+    },
+    ..ViewContent::PLAIN
+};
+
+const CHANNELS: ViewContent = ViewContent {
+    draw: channels_view_ui,
+    tools: |ui, state, _, commands| channels_header_ui(ui, state, commands),
+    tools_width: 410.0,
+    ..ViewContent::PLAIN
+};
+
+const ASSESSMENT: ViewContent = ViewContent {
+    draw: assessment_view_ui,
+    tools: |ui, state, _, commands| assessment_header_ui(ui, state, commands),
+    tools_width: 640.0,
+    needs: assessment_needs,
+    figure_pairs: assessed_pairs,
+    ..ViewContent::PLAIN
+};
+
+const EVIDENCE: ViewContent = ViewContent {
+    draw: evidence_view_ui,
+    figure_pairs: |state| state.dataset().measuring_pairs().marked().collect(),
+    ..ViewContent::PLAIN
+};
+
+const COMPARE: ViewContent = ViewContent {
+    draw: compare_view_ui,
+    needs: |state| variant_jobs(state).into_iter().map(Need::Variant).collect(),
+    ..ViewContent::PLAIN
+};
+
+const REQUIREMENTS: ViewContent = ViewContent {
+    draw: requirements_view_ui,
+    title: ViewTitle::Words(|_| NO_QUALIFICATION.to_owned()),
+    tools: |ui, state, _, commands| requirements_header_ui(ui, state, commands),
+    tools_width: 270.0,
+    needs: requirements_needs,
+    ..ViewContent::PLAIN
+};
+
+const LEADS: ViewContent = ViewContent {
+    draw: leads_view_ui,
+    title: ViewTitle::Response,
+    figure_pairs: focused_pair,
+    ..ViewContent::PLAIN
+};
+
+const NET_GAIN: ViewContent = ViewContent {
+    draw: net_gain_view_ui,
+    title: ViewTitle::Words(net_gain_words),
+    tools: net_gain_header_ui,
+    tools_width: NET_GAIN_CONTROLS,
+    figure_pairs: net_gain_pairs,
+    ..ViewContent::PLAIN
+};
+
+fn focused_pair(state: &State) -> Vec<Pair> {
+    vec![state.display.selection.pair]
+}
+
+fn modes_needs(state: &State) -> Vec<Need> {
+    match state.dataset().condition(state.condition().id()) {
+        Some(condition) => vec![Need::Modes(ModesJob {
+            condition: Arc::clone(condition).into(),
+        })],
+        None => Vec::new(),
+    }
+}
+
+fn assessment_needs(state: &State) -> Vec<Need> {
+    match current(state) {
+        Some(analysis) => vec![Need::Assessment(AssessmentJob {
+            analysis: analysis.into(),
+            choice: state.assessment_choice(),
+        })],
+        None => Vec::new(),
+    }
 }

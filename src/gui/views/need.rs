@@ -10,16 +10,14 @@ use gdcm_study::jobs::requirement_jobs::{
 /// Computation needed by a view besides the live answer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Need {
-    /// Modes of the condition's models.
+    /// Modes for all models in the condition.
     Modes(ModesJob),
     Assessment(AssessmentJob),
-    /// A model of each condition.
+    /// Responses from a model in each condition.
     Across(AcrossJob),
-    /// Analysis of a variant.
     Variant(VariantJob),
-    /// Comparison of a model with a record in time.
+    /// Simulated response to a record.
     Simulation(SimulationJob),
-    /// Effect of couplings.
     Couplings(CouplingsJob),
     Requirements(RequirementsJob),
     /// Models' responses to the test input.

@@ -1,19 +1,19 @@
-//! Net gains over airspeed, and the form of the schedule.
+//! Net gains over airspeed, with the choice of the schedule.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
-use gdcm_plot::figure::MarkId;
 use gdcm_plot::figure::condition_source::schedule_words;
 use gdcm_plot::figure::gains::{Across, GainQuantity, add_variant, net_gain_figure, quieten};
+use gdcm_plot::figure::{Figure, MarkId};
 use gdcm_study::decisions::setting;
 
 use super::compare::overlaid_analysis;
-use super::evidence::{coefficient_table, forms_ui, lead_evidence_table, residual_table};
 use super::gain_plots::{
     GainPlots, bars_switch_ui, gain_command, net_gain_pairs, shown_uncertainty,
 };
-use super::setting_controls::setting_ui;
+use super::schedule_evidence::{FormsTable, coefficient_table, lead_degrees_table, residual_table};
+use super::setting_controls::SettingControls;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::plot::{FigureScene, figure_ui};
@@ -25,10 +25,10 @@ use crate::gui::widgets::controls::{named, restore_panel_size};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 use crate::gui::widgets::tables::{Sorting, TableLook, table_ui};
 
-/// Width of this view's controls in a single line \[pt\].
+/// Width required by the controls in a single line \[pt\].
 pub const NET_GAIN_CONTROLS: f32 = 410.0;
 
-/// Describes the content of the plots.
+/// Describes the plots.
 pub fn net_gain_words(state: &State) -> String {
     let level = 100.0 * state.study.settings.uncertainty.level;
     let bars = if state.display.gains.hide_bars {
@@ -42,7 +42,7 @@ pub fn net_gain_words(state: &State) -> String {
     )
 }
 
-/// Draws the selection of the responses and of the form of the schedule, from right to left.
+/// Draws the choices about responses and schedule, from right to left.
 pub fn net_gain_header_ui(
     ui: &mut Ui,
     state: &State,
@@ -50,18 +50,17 @@ pub fn net_gain_header_ui(
     commands: &mut Vec<Command>,
 ) {
     let shown = state.display.gains.show_evidence;
-    let hint = "Which pairs at one airspeed differ significantly, and what each form of the schedule misses, so that a degree is \
-                chosen on evidence";
+    let hint = "Significant differences at equal airspeed, and the error of each form of the schedule: evidence for its degree";
     if toggle_ui(ui, ("evidence", "evidence"), shown, hint) {
         commands.push(DisplayCommand::ShowEvidence(!shown).into());
     }
-    bars_switch_ui(ui, state, ("bars", "error bars"), commands);
+    bars_switch_ui(ui, state, "error bars", commands);
     if let Some((variant, _)) = overlaid_analysis(state) {
         let button = ui.small_button(
             RichText::new(format!("□ {variant} ×")).color(palette.name_of(palette.corrected)),
         );
-        let name = format!("Variant {variant} laid over");
-        let hint = "Hollow squares: the net gains of this variant. Click: take them away";
+        let name = format!("Overlaid variant {variant}");
+        let hint = "Hollow squares: net gains of this variant. Click: remove them";
         if named(button, Role::Button, &name)
             .on_hover_text(hint)
             .clicked()
@@ -71,27 +70,22 @@ pub fn net_gain_header_ui(
     }
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let form = schedule_words(&state.study.settings.schedule);
-    let text = format!(
-        "{} \u{25be}",
-        form.strip_prefix("polynomial of ").unwrap_or(&form)
-    );
+    let short_form = form.strip_prefix("polynomial of ").unwrap_or(&form);
+    let text = format!("{short_form} \u{25be}");
     let button = MenuButton::from_button(Button::new(text).frame(false)).config(config);
     let (button, _) = button.ui(ui, |ui| schedule_ui(ui, state, palette, commands));
     named(button, Role::Button, "Form of the schedule")
-        .on_hover_text("The form of the schedule over airspeed");
+        .on_hover_text("Degree, scheduled quantity, delays and airspeed tolerance");
     pair_set_ui(ui, state, commands);
 }
 
-/// Draws the selection of the displayed responses, from right to left.
+/// Draws the choice between displayed responses, from right to left.
 fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let pair = state.display.selection.pair;
     if state.display.gains.net_gain_pairs == PairSet::Picked {
         let picked = state.display.gains.picked_pairs.contains(&pair);
-        let (text, verb) = if picked {
-            ("−", "Let go")
-        } else {
-            ("+", "Pick")
-        };
+        let text = if picked { "−" } else { "+" };
+        let verb = if picked { "Remove" } else { "Pick" };
         let name = format!("{verb} {}", state.dataset().pair_name(pair));
         let button = ui.small_button(text);
         button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
@@ -110,7 +104,7 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
-/// Draws the net gain of the selected responses over airspeed.
+/// Draws the net gain over airspeed for each displayed response.
 pub fn net_gain_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -155,41 +149,53 @@ pub fn net_gain_view_ui(
         ..plots.scene("net gain", &plots.figure, message)
     };
     let events = figure_ui(ui, &scene, &mut view, palette);
-    commands.extend(
-        events
-            .into_iter()
-            .filter_map(|event| gain_command(state, event)),
-    );
+    for event in events {
+        commands.extend(gain_command(state, event));
+    }
     state.display.figures.insert(View::NetGain, view);
 }
 
-/// Draws the evidence for each form of the schedule; a click on a form selects it.
+/// Draws the evidence for each form of the schedule; a click selects a form.
 fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let mut cached = std::mem::take(&mut state.display.gains.evidence);
     cached.refresh(state);
     let mut sorting = state.display.gains.evidence_sorting;
-    ScrollArea::vertical().show(ui, |ui| match cached.found() {
-        None => {
+    ScrollArea::vertical().show(ui, |ui| {
+        let Some(evidence) = cached.evidence() else {
             ui.label(palette.dim(state.results.absence()));
-        }
-        Some((conditions, evidence)) => {
-            let hint = "fit: residuals of the conditions that the schedule is made of; unseen: of each condition under the \
-                        schedule that is made without it (root mean square of ln of the net gain)";
-            ui.label(RichText::new("Error of each form [% of the net gain]").size(SMALL_SIZE).strong()).on_hover_text(hint);
-            forms_ui(ui, state, evidence, (&mut sorting, palette), commands);
-            let leads = lead_evidence_table(state, cached.leads());
-            let residuals = residual_table(state, conditions, evidence);
-            for table in leads.into_iter().chain(residuals).chain(coefficient_table(state)) {
-                ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
-                table_ui(ui, &table, &mut Sorting::default(), &TableLook::PLAIN, palette, commands);
-            }
+            return;
+        };
+        let hint = "fit: root mean square of the residuals of ln(net gain); unseen: the same for each condition under the schedule \
+                    fitted without it";
+        ui.label(
+            RichText::new("Error of each form [% of the net gain]")
+                .size(SMALL_SIZE)
+                .strong(),
+        )
+        .on_hover_text(hint);
+        let forms = FormsTable {
+            state,
+            forms: evidence.forms,
+            palette,
+        };
+        forms.ui(ui, &mut sorting, commands);
+        let tables = [
+            lead_degrees_table(state, &cached.leads),
+            residual_table(state, evidence),
+            coefficient_table(state),
+        ];
+        for table in tables.into_iter().flatten() {
+            ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
+            let mut unsorted = Sorting::default();
+            let look = TableLook::PLAIN;
+            table_ui(ui, &table, &mut unsorted, &look, palette, commands);
         }
     });
     state.display.gains.evidence = cached;
     state.display.gains.evidence_sorting = sorting;
 }
 
-/// Draws the parameters of the schedule's form, line by line.
+/// Draws the settings for the schedule, line by line.
 fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let rows = [
         &setting::SCHEDULE,
@@ -203,40 +209,40 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         .num_columns(2)
         .spacing([12.0, 6.0])
         .show(ui, |ui| {
-            for setting in rows
-                .into_iter()
-                .filter(|setting| (setting.control.applies)(&state.study))
-            {
+            for setting in rows {
+                if !(setting.control.applies)(&state.study) {
+                    continue;
+                }
                 ui.label(palette.dim(setting.control.label));
-                setting_ui(ui, state, setting, palette, commands);
+                let mut controls = SettingControls {
+                    ui,
+                    state,
+                    palette,
+                    commands,
+                };
+                controls.control_ui(setting);
                 ui.end_row();
             }
         });
 }
 
-/// Builds a plot for each response of the displayed set: the net gain of each condition's optimum,
-/// and the schedule.
+/// Builds a plot for each displayed response: net gain at each condition's optimum, and the
+/// schedule.
 pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
-    let pairs = if state.analysis().is_some() {
-        net_gain_pairs(state)
-    } else {
-        Vec::new()
-    };
-    let figure = state
-        .analysis()
-        .map(|analysis| net_gain_figure(analysis, shown_uncertainty(state), &pairs));
-    let mut figure = figure.unwrap_or_default();
+    let mut pairs = Vec::new();
+    let mut figure = Figure::default();
+    if let Some(analysis) = state.analysis() {
+        pairs = net_gain_pairs(state);
+        figure = net_gain_figure(analysis, shown_uncertainty(state), &pairs);
+    }
     let quantities: Vec<GainQuantity> = pairs.iter().copied().map(GainQuantity::NetGain).collect();
     if let Some((name, analysis)) = overlaid_analysis(state) {
         add_variant(&mut figure, &quantities, analysis, name);
     }
-    for (plot, pair) in figure
-        .plots
-        .iter_mut()
-        .zip(&pairs)
-        .filter(|(_, pair)| !state.study.settings.constrained[**pair])
-    {
-        plot.title = format!("{} (free)", state.dataset().pair_name(*pair));
+    for (plot, pair) in figure.plots.iter_mut().zip(&pairs) {
+        if !state.study.settings.constrained[*pair] {
+            plot.title = format!("{} (free)", state.dataset().pair_name(*pair));
+        }
     }
     GainPlots {
         state,

@@ -4,23 +4,22 @@ use std::sync::Arc;
 
 use gdcm_plot::figure::{FigureKind, OverTime};
 use gdcm_study::Analysis;
-use gdcm_study::jobs::requirement_jobs::{RecordHistoryJob, TestAnswersJob};
+use gdcm_study::jobs::requirement_jobs::{RecordHistoryJob, TestAnswersJob, TimeHistoriesJob};
 use gdcm_study::results::time_histories::HistoryRecord;
 
 use super::need::Need;
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::window_state::State;
 
-/// Returns the job of the record shown over time; `None` without a record, or if a test is shown
+/// Returns the job for the record shown over time; `None` without a record, or if a test is shown
 /// instead.
 pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
     let analysis = current(state)?;
     let condition = state.condition().id();
-    let records = state
-        .records
-        .conditions
-        .get(&condition)
-        .filter(|_| !state.display.judging.shows_test)?;
+    if state.display.judging.shows_test {
+        return None;
+    }
+    let records = state.records.conditions.get(&condition)?;
     let row = records.rows.get(records.chosen)?;
     let record = HistoryRecord {
         flight: Arc::clone(row.used_flight()?).into(),
@@ -36,31 +35,42 @@ pub fn record_job(state: &State) -> Option<RecordHistoryJob> {
     })
 }
 
+/// Returns the job for all models' responses to all records; `None` without records.
+pub fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
+    let analysis = current(state)?;
+    let records = state.records.history_records();
+    if records.is_empty() {
+        return None;
+    }
+    Some(TimeHistoriesJob {
+        analysis: analysis.into(),
+        records,
+        tolerances: state.study.requirements.tolerances.clone(),
+    })
+}
+
+/// Returns the job for the responses to the test input.
 fn test_job(state: &State) -> Option<TestAnswersJob> {
-    let condition = state.condition().id();
-    let input = state.display.selection.pair.input;
     Some(TestAnswersJob {
         analysis: current(state)?.into(),
-        condition,
-        input,
+        condition: state.condition().id(),
+        input: state.display.selection.pair.input,
         test: state.study.requirements.test,
     })
 }
 
-/// Returns the analysis of the present settings, if available.
+/// Returns the analysis by the current settings; `None` while it is being computed.
 pub fn current(state: &State) -> Option<Arc<Analysis>> {
-    state
-        .results
-        .analysis
-        .clone()
-        .filter(|_| state.analysis().is_some())
+    state.analysis()?;
+    state.results.analysis.clone()
 }
 
-/// Returns the computation needed over time.
+/// Returns the computation needed for the responses over time.
 pub fn over_time_need(state: &State) -> Option<Need> {
-    record_job(state)
-        .map(Need::RecordHistory)
-        .or_else(|| test_job(state).map(Need::TestAnswers))
+    match record_job(state) {
+        Some(job) => Some(Need::RecordHistory(job)),
+        None => test_job(state).map(Need::TestAnswers),
+    }
 }
 
 /// Returns the models' responses over time, or the reason for their absence; `None` until computed.
@@ -74,9 +84,13 @@ pub fn over_time(state: &State) -> Option<Result<OverTime, String>> {
     }
 }
 
-/// Returns the same for a figure, if it is shown.
+/// Returns the models' responses over time for a figure; `None` if the figure does not show them.
 pub fn shown_over_time(state: &State, kind: FigureKind) -> Option<OverTime> {
     let is_shown = kind == FigureKind::Requirements
         && state.display.judging.requirements_page == RequirementsPage::Histories;
-    over_time(state).filter(|_| is_shown)?.ok()
+    if is_shown {
+        over_time(state)?.ok()
+    } else {
+        None
+    }
 }

@@ -1,5 +1,5 @@
-//! Editable tables of the requirements: tolerances of time histories and of modes, limits of the
-//! overview (M17).
+//! Fields for requirements: tolerances for time histories and for modes, limits in the overview
+//! (M17).
 
 use std::sync::Arc;
 
@@ -18,56 +18,12 @@ use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{button_ui, number_entry_ui};
 use crate::gui::widgets::palette::Palette;
 
-/// Width of a field \[pt\].
+/// Field width \[pt\].
 const FIELD: f32 = 56.0;
 
-/// Rounds away the last digits introduced by a unit conversion.
-fn shown(value: f64) -> String {
-    number((1e9 * value).round() / 1e9)
-}
-
-/// Factors from the stored to the displayed number, and to the typed number.
-const AS_IT_IS: [f64; 2] = [1.0, 1.0];
-const IN_PERCENT: [f64; 2] = [100.0, 0.01];
-const IN_MILLISECONDS: [f64; 2] = [1e3, 1e-3];
-
-/// Draws a number field; returns the typed number.
-fn field_ui(
-    ui: &mut Ui,
-    name: &str,
-    value: &mut f64,
-    [to, from]: [f64; 2],
-    commands: &mut Vec<Command>,
-) {
-    if let Some(typed) =
-        number_entry_ui(ui, name, &shown(to * *value), "", FIELD, commands).flatten()
-    {
-        *value = from * typed;
-    }
-}
-
-/// As `field_ui`, for a field that may be empty.
-fn optional_field_ui(
-    ui: &mut Ui,
-    name: &str,
-    value: &mut Option<f64>,
-    [to, from]: [f64; 2],
-    commands: &mut Vec<Command>,
-) {
-    let text = value.map_or_else(String::new, |value| shown(to * value));
-    if let Some(typed) = number_entry_ui(ui, name, &text, "none", FIELD, commands) {
-        *value = typed.map(|typed| from * typed);
-    }
-}
-
-/// Draws every row of the tolerances of time histories.
+/// Draws the tolerances for time histories, row by row.
 pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let table = &state.study.requirements.tolerances;
-    let to = |tolerances: ToleranceTable| {
-        decided(state, "tolerances", |settings| {
-            settings.tolerances = tolerances
-        })
-    };
     ui.horizontal_wrapped(|ui| {
         ui.label(palette.small(format!("Source: {}", table.source())));
         let is_default = *table == ToleranceTable::default();
@@ -75,24 +31,19 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
             .add_enabled(!is_default, Button::new("Default tolerances").small())
             .clicked()
         {
-            commands.push(to(ToleranceTable::default()));
+            commands.push(set_tolerances(state, ToleranceTable::default()));
         }
-        let hint = "Take the tolerances of a file into the study";
-        let ask = Command::File(FileCommand::AskRequirementTable(
-            RequirementTable::Tolerances,
-        ));
         button_ui(
             ui,
             Button::new("Open tolerances…").small(),
-            hint,
-            ask,
+            "Reads the tolerances from a file into the study",
+            FileCommand::AskRequirementTable(RequirementTable::Tolerances),
             commands,
         );
-        let hint = "Write them to a file of their own, for other studies";
         button_ui(
             ui,
             Button::new("Save tolerances…").small(),
-            hint,
+            "Writes the tolerances to a file for other studies",
             FileCommand::AskWriteTolerances,
             commands,
         );
@@ -103,34 +54,31 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
         .show(ui, |ui| {
             for (row, place) in rows.iter_mut().zip(1..) {
                 ui.label(palette.small(format!("{} of {}", row.quantity, row.channel)));
-                field_ui(
-                    ui,
-                    &format!("Absolute tolerance {place}"),
-                    &mut row.absolute,
-                    AS_IT_IS,
-                    commands,
-                );
+                let absolute = LimitField::new(format!("Absolute tolerance {place}"));
+                absolute.ui(ui, &mut row.absolute, commands);
                 ui.label(palette.small(&row.unit));
-                optional_field_ui(
-                    ui,
-                    &format!("Relative tolerance {place}"),
-                    &mut row.relative,
-                    IN_PERCENT,
-                    commands,
-                );
+                let relative = LimitField::in_percent(format!("Relative tolerance {place}"));
+                relative.optional_ui(ui, &mut row.relative, commands);
                 ui.label(palette.small(format!("% of the change · {}", row.entry)));
                 ui.end_row();
             }
         });
     if rows != table.rows() {
         commands.push(match ToleranceTable::new("edited", rows) {
-            Ok(table) => to(table),
-            Err(why) => Command::Form(FormCommand::Refuse(why.to_string())),
+            Ok(table) => set_tolerances(state, table),
+            Err(why) => FormCommand::Refuse(why.to_string()).into(),
         });
     }
 }
 
-/// Draws every row of the tolerances of modes.
+/// Returns the command that changes the tolerances for time histories.
+fn set_tolerances(state: &State, tolerances: ToleranceTable) -> Command {
+    decided(state, "tolerances", |settings| {
+        settings.tolerances = tolerances;
+    })
+}
+
+/// Draws the tolerances for modes, row by row.
 pub fn mode_tolerances_ui(
     ui: &mut Ui,
     state: &State,
@@ -138,20 +86,10 @@ pub fn mode_tolerances_ui(
     commands: &mut Vec<Command>,
 ) {
     let table = &state.study.requirements.mode_tolerances;
-    let to = |table: ModeToleranceTable| {
-        decided(state, "tolerances of modes", |settings| {
-            settings.mode_tolerances = table
-        })
-    };
     let is_default = *table == ModeToleranceTable::default();
-    if ui
-        .add_enabled(
-            !is_default,
-            Button::new("Default tolerances of modes").small(),
-        )
-        .clicked()
-    {
-        commands.push(to(ModeToleranceTable::default()));
+    let button = Button::new("Default tolerances of modes").small();
+    if ui.add_enabled(!is_default, button).clicked() {
+        commands.push(set_mode_tolerances(state, ModeToleranceTable::default()));
     }
     let mut rows = table.rows().to_vec();
     Grid::new("tolerances of modes in fields")
@@ -169,28 +107,32 @@ pub fn mode_tolerances_ui(
             ui.end_row();
             for (row, place) in rows.iter_mut().zip(1..) {
                 ui.label(palette.small(format!("{} · {}", row.response, row.entry)));
-                field_ui(
-                    ui,
-                    &format!("Tolerance of the period {place}"),
-                    &mut row.period,
-                    IN_PERCENT,
-                    commands,
-                );
-                let name = format!("Tolerance of the period {place} in seconds");
-                optional_field_ui(ui, &name, &mut row.period_s, AS_IT_IS, commands);
-                let name = format!("Tolerance of the time to half {place}");
-                field_ui(ui, &name, &mut row.amplitude_time, IN_PERCENT, commands);
-                let name = format!("Tolerance of the damping ratio {place}");
-                field_ui(ui, &name, &mut row.damping_ratio, AS_IT_IS, commands);
+                let period = LimitField::in_percent(format!("Tolerance of the period {place}"));
+                period.ui(ui, &mut row.period, commands);
+                let period_s =
+                    LimitField::new(format!("Tolerance of the period {place} in seconds"));
+                period_s.optional_ui(ui, &mut row.period_s, commands);
+                let amplitude_time =
+                    LimitField::in_percent(format!("Tolerance of the time to half {place}"));
+                amplitude_time.ui(ui, &mut row.amplitude_time, commands);
+                let damping = LimitField::new(format!("Tolerance of the damping ratio {place}"));
+                damping.ui(ui, &mut row.damping_ratio, commands);
                 ui.end_row();
             }
         });
     if rows != table.rows() {
         commands.push(match ModeToleranceTable::try_from(rows) {
-            Ok(table) => to(table),
-            Err(why) => Command::Form(FormCommand::Refuse(why.to_string())),
+            Ok(table) => set_mode_tolerances(state, table),
+            Err(why) => FormCommand::Refuse(why.to_string()).into(),
         });
     }
+}
+
+/// Returns the command that changes the tolerances for modes.
+fn set_mode_tolerances(state: &State, tolerances: ModeToleranceTable) -> Command {
+    decided(state, "tolerances of modes", |settings| {
+        settings.mode_tolerances = tolerances;
+    })
 }
 
 /// Draws the limits beyond which the overview reports that a corrected model is far from the
@@ -204,54 +146,107 @@ pub fn overview_limits_ui(
     let limits = state.study.requirements.overview;
     let mut changed = limits;
     ui.horizontal_wrapped(|ui| {
-        ui.label(palette.small("Of no standard: bandwidth ±"));
-        field_ui(
-            ui,
-            "Limit of the bandwidth",
-            &mut changed.bandwidth,
-            IN_PERCENT,
-            commands,
-        );
+        ui.label(palette.small("Limits of this program, not of a standard: bandwidth ±"));
+        let bandwidth = LimitField::in_percent("Limit of the bandwidth");
+        bandwidth.ui(ui, &mut changed.bandwidth, commands);
         ui.label(palette.small("%, phase delay ±"));
-        field_ui(
-            ui,
-            "Limit of the phase delay",
-            &mut changed.phase_delay_s,
-            IN_MILLISECONDS,
-            commands,
-        );
+        let phase_delay = LimitField::in_ms("Limit of the phase delay");
+        phase_delay.ui(ui, &mut changed.phase_delay_s, commands);
         ui.label(palette.small("ms, time inside at least"));
-        field_ui(
-            ui,
-            "Least time inside",
-            &mut changed.share_inside,
-            IN_PERCENT,
-            commands,
-        );
+        let share_inside = LimitField::in_percent("Least time inside");
+        share_inside.ui(ui, &mut changed.share_inside, commands);
         ui.label(palette.small("%"));
     });
     if changed != limits {
         commands.push(match changed.checked() {
-            Ok(limits) => decided(state, "limits of the overview", |settings| {
-                settings.overview = limits
-            }),
-            Err(why) => Command::Form(FormCommand::Refuse(why.to_string())),
+            Ok(limits) => set_overview_limits(state, limits),
+            Err(why) => FormCommand::Refuse(why.to_string()).into(),
         });
     }
     if limits != OverviewLimits::default() && ui.small_button("Default limits").clicked() {
-        commands.push(decided(state, "limits of the overview", |settings| {
-            settings.overview = OverviewLimits::default()
-        }));
+        commands.push(set_overview_limits(state, OverviewLimits::default()));
     }
 }
 
-/// Returns the command that changes the inputs of the requirements.
+/// Returns the command that changes the limits in the overview.
+fn set_overview_limits(state: &State, limits: OverviewLimits) -> Command {
+    decided(state, "limits of the overview", |settings| {
+        settings.overview = limits;
+    })
+}
+
+/// Field for a limit.
+struct LimitField {
+    /// Accessible name.
+    name: String,
+    /// Factor from the stored to the displayed number.
+    to_shown: f64,
+    /// Factor from the typed to the stored number.
+    to_stored: f64,
+}
+
+impl LimitField {
+    /// Creates a field in the stored unit.
+    fn new(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            to_shown: 1.0,
+            to_stored: 1.0,
+        }
+    }
+
+    fn in_percent(name: impl Into<String>) -> Self {
+        Self {
+            to_shown: 100.0,
+            to_stored: 0.01,
+            ..Self::new(name)
+        }
+    }
+
+    /// Creates a field in milliseconds for a number stored in seconds.
+    fn in_ms(name: impl Into<String>) -> Self {
+        Self {
+            to_shown: 1e3,
+            to_stored: 1e-3,
+            ..Self::new(name)
+        }
+    }
+
+    /// Draws the field, and changes `value` after an entry.
+    fn ui(&self, ui: &mut Ui, value: &mut f64, commands: &mut Vec<Command>) {
+        let text = self.text(*value);
+        let entry = number_entry_ui(ui, &self.name, &text, "", FIELD, commands);
+        if let Some(Some(typed)) = entry {
+            *value = self.to_stored * typed;
+        }
+    }
+
+    /// As [`ui`](Self::ui), for a field that may be empty.
+    fn optional_ui(&self, ui: &mut Ui, value: &mut Option<f64>, commands: &mut Vec<Command>) {
+        let text = match value {
+            Some(value) => self.text(*value),
+            None => String::new(),
+        };
+        let entry = number_entry_ui(ui, &self.name, &text, "none", FIELD, commands);
+        if let Some(typed) = entry {
+            *value = typed.map(|typed| self.to_stored * typed);
+        }
+    }
+
+    /// Formats a stored value without the last digits, which a unit conversion introduces.
+    fn text(&self, value: f64) -> String {
+        number((1e9 * (self.to_shown * value)).round() / 1e9)
+    }
+}
+
+/// Returns the command that changes the requirements' inputs; `name` is for the history of
+/// decisions.
 pub fn decided(
     state: &State,
-    what: &'static str,
+    name: &'static str,
     change: impl FnOnce(&mut RequirementSettings),
 ) -> Command {
     let mut settings = RequirementSettings::clone(&state.study.requirements);
     change(&mut settings);
-    Edit::SetRequirements(what, Arc::new(settings)).into()
+    Edit::SetRequirements(name, Arc::new(settings)).into()
 }

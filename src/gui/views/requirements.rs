@@ -1,33 +1,28 @@
-//! Requirements: the questions of a qualification beyond J, for physics, corrected, scheduled and
-//! identified models side by side (M17).
+//! Requirements beyond J as in a qualification, for physics, corrected, scheduled and identified
+//! models side by side (M17).
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{Button, CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
 
-use gdcm_method::fidelity::ACCEPTABLE;
-use gdcm_method::requirements::{AttitudeOutput, LevelBoundaries, ModeVerdict};
+use gdcm_method::requirements::{AttitudeOutput, LevelBoundaries};
 use gdcm_model::dataset::{ConditionId, Pair};
-use gdcm_model::units::{s_to_ms, telling};
-use gdcm_plot::figure::drawing::Hue;
+use gdcm_model::units::telling;
 use gdcm_plot::figure::requirements::{bandwidth_pairs, bandwidth_place};
 use gdcm_plot::figure::{Color, Figure, MarkId};
-use gdcm_study::decisions::requirement_settings::RequirementSettings;
-use gdcm_study::jobs::requirement_jobs::{RequirementsJob, TimeHistoriesJob};
+use gdcm_study::jobs::requirement_jobs::RequirementsJob;
+use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
 use gdcm_words::Table;
-use gdcm_words::requirements::{
-    RequirementsOverview, bandwidth_table, mode_table, mode_verdict_words, summary_of_row,
-    summary_table,
-};
 
 use super::figures::figure_of;
 use super::histories::histories_ui;
 use super::need::Need;
-use super::over_time::{current, over_time_need};
+use super::over_time::{current, over_time_need, time_histories_job};
 use super::requirement_limits::{decided, mode_tolerances_ui, overview_limits_ui};
+use super::requirement_tables::page_tables;
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::file::FileCommand;
@@ -45,31 +40,32 @@ use crate::gui::widgets::controls::{button_ui, restore_panel_size};
 use crate::gui::widgets::palette::Palette;
 use crate::gui::widgets::tables::{TableClick, TableLook, table_grid_ui};
 
-/// Text at the top of every page.
-pub(super) const NO_QUALIFICATION: &str = "Of the models, not of the aircraft: these numbers are no qualification. Sources in docs/requirements.md.";
-/// Least size of a plot \[pt\].
+/// Text above every page.
+pub(super) const NO_QUALIFICATION: &str =
+    "Models, not aircraft: these numbers are no qualification (docs/requirements.md)";
+/// Least plot size \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
-/// Initial share of the height taken by the table.
+/// Initial table height, as a share of the view's height.
 const TABLE_PART: f32 = 0.34;
 
-/// Draws the tabs of the pages, from right to left.
+/// Draws the page tabs, from right to left.
 pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.display.judging.requirements_page;
     let pages = [
         (
             RequirementsPage::Summary,
             "summary",
-            "Corrected against identified in every condition; mean J, shares inside the MUAD envelopes, errors over time",
+            "Corrected against identified models: mean J, shares inside the MUAD envelopes, errors over time",
         ),
         (
             RequirementsPage::Modes,
             "modes",
-            "Modes of the condition, against their tolerances",
+            "Modes of the condition and their tolerances",
         ),
         (
             RequirementsPage::Histories,
             "in time",
-            "Flight records within tolerances, or answers to a step or a doublet",
+            "Flight records with tolerances, or responses to a step or a doublet",
         ),
         (
             RequirementsPage::Bandwidth,
@@ -79,12 +75,13 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
     ];
     for (page, name, purpose) in pages {
         let (_, is_clicked) = page_tab_ui(ui, page == shown, name, (name, purpose));
-        commands
-            .extend(is_clicked.then_some(Command::Display(DisplayCommand::ShowRequirements(page))));
+        if is_clicked {
+            commands.push(DisplayCommand::ShowRequirements(page).into());
+        }
     }
 }
 
-/// Returns the job of the displayed requirements; `None` until there is an analysis.
+/// Returns the job for the displayed requirements; `None` until there is an analysis.
 pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
     let analysis = current(state)?;
     Some(RequirementsJob {
@@ -97,30 +94,16 @@ pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
 
 /// Returns the computations needed by the selected page.
 pub fn requirements_needs(state: &State) -> Vec<Need> {
-    match state.display.judging.requirements_page {
-        RequirementsPage::Histories => over_time_need(state).into_iter().collect(),
-        page => {
-            let of_records =
-                time_histories_job(state).filter(|_| page == RequirementsPage::Summary);
-            let asked = requirements_job(state).map(Need::Requirements);
-            asked
-                .into_iter()
-                .chain(of_records.map(Need::TimeHistories))
-                .collect()
-        }
+    let page = state.display.judging.requirements_page;
+    if page == RequirementsPage::Histories {
+        return over_time_need(state).into_iter().collect();
     }
-}
-
-/// Returns the job of all models' responses to all records; `None` without records.
-fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
-    let analysis = current(state)?;
-    let records = state.records.history_records();
-    let tolerances = state.study.requirements.tolerances.clone();
-    (!records.is_empty()).then_some(TimeHistoriesJob {
-        analysis: analysis.into(),
-        records,
-        tolerances,
-    })
+    let mut needs = Vec::new();
+    needs.extend(requirements_job(state).map(Need::Requirements));
+    if page == RequirementsPage::Summary {
+        needs.extend(time_histories_job(state).map(Need::TimeHistories));
+    }
+    needs
 }
 
 /// Draws the selected page below the notes that concern all pages.
@@ -134,375 +117,307 @@ pub fn requirements_view_ui(
         return histories_ui(ui, state, palette, commands);
     }
     let Some(requirements) = state.requirements().cloned() else {
-        return drop(ui.label(palette.dim(state.results.absence())));
+        ui.label(palette.dim(state.results.absence()));
+        return;
     };
-    known_ui(ui, &requirements, palette);
+    let view = RequirementsView {
+        requirements: &requirements,
+        palette,
+    };
+    view.reservations_ui(ui);
     match state.display.judging.requirements_page {
-        RequirementsPage::Bandwidth => asked_ui(ui, state, palette, commands),
+        RequirementsPage::Bandwidth => {
+            bandwidth_inputs_ui(ui, state, palette, commands);
+            restore_panel_size(ui, "requirements");
+            let size = TABLE_PART * ui.available_height();
+            let panel = Panel::bottom("requirements")
+                .resizable(true)
+                .default_size(size)
+                .min_size(60.0);
+            panel.show(ui, |ui| view.tables_ui(ui, state, commands));
+            view.plots_ui(ui, state, commands);
+        }
         RequirementsPage::Modes => {
             let title =
                 CollapsingHeader::new("Tolerances of modes").id_salt("edited tolerances of modes");
             title.show(ui, |ui| mode_tolerances_ui(ui, state, palette, commands));
-            return requirements_tables_ui(ui, state, &requirements, palette, commands);
+            view.tables_ui(ui, state, commands);
         }
         RequirementsPage::Histories | RequirementsPage::Summary => {
             let title = CollapsingHeader::new("Limits of the overview")
                 .id_salt("edited limits of the overview");
             title.show(ui, |ui| overview_limits_ui(ui, state, palette, commands));
-            return requirements_tables_ui(ui, state, &requirements, palette, commands);
+            view.tables_ui(ui, state, commands);
         }
     }
-    restore_panel_size(ui, "requirements");
-    let size = TABLE_PART * ui.available_height();
-    let panel = Panel::bottom("requirements")
-        .resizable(true)
-        .default_size(size)
-        .min_size(60.0);
-    panel.show(ui, |ui| {
-        requirements_tables_ui(ui, state, &requirements, palette, commands)
-    });
-    plots_ui(ui, state, &requirements, palette, commands);
 }
 
-/// Draws the missing answers, and the reservations about the others.
-fn known_ui(ui: &mut Ui, requirements: &Requirements, palette: &Palette) {
-    let missing = requirements.missing.iter().map(|missing| {
-        let condition = missing
-            .condition
-            .map_or_else(String::new, |id| format!("Condition {id}: "));
-        format!("{condition}no {}: {}", missing.what, missing.why)
-    });
-    let cautions = requirements
-        .cautions
-        .iter()
-        .map(|of| format!("⚠ Condition {}: {}", of.condition, of.text));
-    for words in missing.chain(cautions) {
-        ui.add(Label::new(palette.small_warning(&words)).truncate())
-            .on_hover_text(words);
-    }
-}
-
-/// Draws the inputs of the bandwidths: the sticks that command an attitude, and the engineer's
-/// levels.
-fn asked_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let settings = &state.study.requirements;
-    let decided = |what, change: &dyn Fn(&mut RequirementSettings)| decided(state, what, change);
+/// Draws the inputs for bandwidths: the sticks that command an attitude, and the engineer's levels.
+fn bandwidth_inputs_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         ui.label(palette.small("attitude command:"));
-        let outputs = state.dataset().measuring_pairs().marked().map(|pair| pair.output).collect::<BTreeSet<_>>();
-        for output in outputs {
-            let name = &state.dataset().outputs()[output].name;
-            if AttitudeOutput::of(&state.dataset().outputs()[output]).is_err() {
-                continue;
-            }
-            let is_on = settings.attitude_command.contains(name);
-            let hint =
-                "The stick commands the attitude, not its rate: the bandwidth is then that of the phase margin alone";
-            if let Some(is_on) = check_ui(ui, is_on, format!("attitude of {name}"), hint) {
-                commands.push(decided("attitude command", &|settings| {
-                    if is_on {
-                        settings.attitude_command.insert(name.clone());
-                    } else {
-                        settings.attitude_command.remove(name);
-                    }
-                }));
-            }
-        }
+        attitude_commands_ui(ui, state, commands);
         ui.separator();
-        let levels = settings.levels.all().len();
-        ui.label(palette.small(if levels == 0 { "levels: none".to_owned() } else { format!("levels: {levels}") }));
-        if levels > 0 && ui.small_button("Remove levels").clicked() {
-            commands.push(decided("levels", &|settings| settings.levels = LevelBoundaries::default()));
-        }
-        let hint = "Take the levels of a file: none is built in, for they depend on the task and the category (docs/requirements.md)";
-        let ask = Command::File(FileCommand::AskRequirementTable(RequirementTable::Levels));
-        button_ui(ui, Button::new("Levels…").small(), hint, ask, commands);
+        levels_ui(ui, state, palette, commands);
     });
 }
 
-fn plots_ui(
-    ui: &mut Ui,
-    state: &mut State,
-    requirements: &Requirements,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
-    let pairs = bandwidth_pairs(requirements);
-    figure_legend_ui(ui, &figure, palette);
-    let mut view = state
-        .display
-        .figures
-        .remove(&View::Requirements)
-        .unwrap_or_default();
-    let message = "No on-axis response is of an angle or its rate, or none crosses −135° and −180°: the table says why";
-    let words = BandwidthWords {
-        state,
-        requirements,
-        pairs: &pairs,
-    };
-    let scene = FigureScene {
-        selected: Some(MarkId::Condition(state.condition().id())),
-        zooms: true,
-        accented: pairs
-            .iter()
-            .position(|pair| *pair == state.display.selection.pair),
-        ..FigureScene::new("requirements", &figure, LEAST_PLOT, message, &words)
-    };
-    for event in figure_ui(ui, &scene, &mut view, palette) {
-        if let FigureEvent::Clicked(plot, MarkId::Condition(id), _) = event
-            && let Some(pair) = pairs.get(plot)
-        {
-            let role = view
-                .pointed_at()
-                .and_then(|at| role_at(requirements, (*pair, id), at));
-            commands.extend(marked_in_bode(
-                requirements,
-                (*pair, id),
-                role.unwrap_or(RequirementRole::Corrected),
-            ));
+/// Draws a check box for each attitude that a stick may command.
+fn attitude_commands_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let mut outputs = BTreeSet::new();
+    for pair in state.dataset().measuring_pairs().marked() {
+        outputs.insert(pair.output);
+    }
+    for output in outputs {
+        let channel = &state.dataset().outputs()[output];
+        if AttitudeOutput::of(channel).is_err() {
+            continue;
+        }
+        let name = &channel.name;
+        let is_on = state.study.requirements.attitude_command.contains(name);
+        let hint = "The stick commands the attitude instead of its rate; the phase margin alone then determines the bandwidth";
+        if let Some(is_on) = check_ui(ui, is_on, format!("attitude of {name}"), hint) {
+            commands.push(decided(state, "attitude command", |settings| {
+                if is_on {
+                    settings.attitude_command.insert(name.clone());
+                } else {
+                    settings.attitude_command.remove(name);
+                }
+            }));
         }
     }
-    state.display.figures.insert(View::Requirements, view);
 }
 
-/// Returns the model whose mark is at a place of a plot.
+/// Draws the level count, and the buttons that remove the levels or read them from a file.
+fn levels_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let levels = state.study.requirements.levels.all().len();
+    let text = if levels == 0 {
+        "levels: none".to_owned()
+    } else {
+        format!("levels: {levels}")
+    };
+    ui.label(palette.small(text));
+    if levels > 0 && ui.small_button("Remove levels").clicked() {
+        commands.push(decided(state, "levels", |settings| {
+            settings.levels = LevelBoundaries::default();
+        }));
+    }
+    let hint = "Reads levels from a file. None are built in, because they depend on the task and the category (docs/requirements.md)";
+    let ask = FileCommand::AskRequirementTable(RequirementTable::Levels);
+    button_ui(ui, Button::new("Levels…").small(), hint, ask, commands);
+}
+
+/// View with known requirements.
+struct RequirementsView<'a> {
+    requirements: &'a Requirements,
+    palette: &'a Palette,
+}
+
+impl RequirementsView<'_> {
+    /// Draws the missing results, and the reservations about the others.
+    fn reservations_ui(&self, ui: &mut Ui) {
+        let mut lines = Vec::new();
+        for missing in &self.requirements.missing {
+            let condition = match missing.condition {
+                Some(id) => format!("Condition {id}: "),
+                None => String::new(),
+            };
+            lines.push(format!("{condition}no {}: {}", missing.what, missing.why));
+        }
+        for caution in &self.requirements.cautions {
+            lines.push(format!(
+                "⚠ Condition {}: {}",
+                caution.condition, caution.text
+            ));
+        }
+        for line in lines {
+            ui.add(Label::new(self.palette.small_warning(&line)).truncate())
+                .on_hover_text(line);
+        }
+    }
+
+    /// Draws phase delay over bandwidth; a click shows the response in Bode.
+    fn plots_ui(&self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
+        let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
+        let pairs = bandwidth_pairs(self.requirements);
+        figure_legend_ui(ui, &figure, self.palette);
+        let mut view = state
+            .display
+            .figures
+            .remove(&View::Requirements)
+            .unwrap_or_default();
+        let message = "No on-axis response is an angle or its rate, or none crosses −135° and −180°: the table lists the reasons";
+        let words = BandwidthWords {
+            state,
+            requirements: self.requirements,
+            pairs: &pairs,
+        };
+        let scene = FigureScene {
+            selected: Some(MarkId::Condition(state.condition().id())),
+            zooms: true,
+            accented: pairs
+                .iter()
+                .position(|pair| *pair == state.display.selection.pair),
+            ..FigureScene::new("requirements", &figure, LEAST_PLOT, message, &words)
+        };
+        for event in figure_ui(ui, &scene, &mut view, self.palette) {
+            if let FigureEvent::Clicked(plot, MarkId::Condition(condition), _) = event
+                && let Some(pair) = pairs.get(plot)
+            {
+                let mut model = BandwidthModel {
+                    condition,
+                    pair: *pair,
+                    role: RequirementRole::Corrected,
+                };
+                if let Some(place) = view.pointed_at()
+                    && let Some(role) = role_at(self.requirements, model, place)
+                {
+                    model.role = role;
+                }
+                commands.extend(bode_commands(self.requirements, model));
+            }
+        }
+        state.display.figures.insert(View::Requirements, view);
+    }
+
+    /// Draws the tables on the page; a click on a row shows its subject.
+    fn tables_ui(&self, ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
+        let condition = state.condition().id();
+        let mut sortings = state.display.judging.requirements_sorting;
+        ScrollArea::both()
+            .id_salt("requirement tables")
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                let pages = page_tables(state, self.requirements);
+                for (page, sorting) in pages.into_iter().zip(&mut sortings) {
+                    let table = &page.table;
+                    ui.add(Label::new(self.palette.small(&table.title)).extend());
+                    if table.rows.is_empty() {
+                        ui.label(self.palette.dim(self.absence_of_rows(state)));
+                        continue;
+                    }
+                    let look = TableLook {
+                        color: &|row, column| {
+                            let hue = page.hue(row, column)?;
+                            Some(self.palette.color(Color::of(hue)))
+                        },
+                        selected: &|row| {
+                            table.columns[0] == "condition"
+                                && table.rows[row][0] == condition.to_string()
+                        },
+                    };
+                    let click = table_grid_ui(ui, table, sorting, &look, self.palette, commands);
+                    if let Some(click) = click {
+                        commands.extend(self.click_commands(state, table, click));
+                    }
+                    ui.add_space(8.0);
+                }
+            });
+        state.display.judging.requirements_sorting = sortings;
+    }
+
+    /// Returns the reason for a table without rows.
+    fn absence_of_rows(&self, state: &State) -> &str {
+        if state.display.judging.requirements_page == RequirementsPage::Modes
+            && let Some(why) = self.requirements.no_modes(state.condition().id())
+        {
+            return why;
+        }
+        "No condition has a result"
+    }
+
+    /// Returns the commands for a click on a row.
+    fn click_commands(&self, state: &State, table: &Table, click: TableClick) -> Vec<Command> {
+        match state.display.judging.requirements_page {
+            RequirementsPage::Bandwidth => match self.requirements.bandwidth.get(click.row) {
+                Some(finding) => bode_commands(self.requirements, BandwidthModel::new(finding)),
+                None => Vec::new(),
+            },
+            RequirementsPage::Histories | RequirementsPage::Summary => {
+                match clicked_condition(table, click) {
+                    Some(id) => vec![SelectionCommand::SelectCondition(id).into()],
+                    None => Vec::new(),
+                }
+            }
+            RequirementsPage::Modes => vec![LayoutCommand::ShowView(View::Poles).into()],
+        }
+    }
+}
+
+/// Returns the clicked condition: conditions are rows in the summary and columns in the overview.
+fn clicked_condition(table: &Table, click: TableClick) -> Option<ConditionId> {
+    if let Some(cells) = table.rows.get(click.row)
+        && let Ok(id) = cells[0].parse()
+    {
+        return Some(ConditionId(id));
+    }
+    table.columns[click.column].parse().ok().map(ConditionId)
+}
+
+/// Model with a bandwidth: condition, response and role.
+#[derive(Clone, Copy)]
+struct BandwidthModel {
+    condition: ConditionId,
+    pair: Pair,
+    role: RequirementRole,
+}
+
+impl BandwidthModel {
+    fn new(finding: &BandwidthFinding) -> Self {
+        Self {
+            condition: finding.condition,
+            pair: finding.pair,
+            role: finding.role,
+        }
+    }
+
+    fn finding(self, requirements: &Requirements) -> Option<&BandwidthFinding> {
+        requirements.bandwidth_of(self.condition, self.pair, self.role)
+    }
+}
+
+/// Returns the role marked at a place \[rad/s, ms\] in a response's plot; among marks at the same
+/// place, the topmost.
 fn role_at(
     requirements: &Requirements,
-    (pair, id): (Pair, ConditionId),
-    at: [f64; 2],
+    model: BandwidthModel,
+    place: [f64; 2],
 ) -> Option<RequirementRole> {
-    let is_at = |role: &RequirementRole| {
-        requirements
-            .bandwidth_of(id, pair, *role)
-            .and_then(bandwidth_place)
-            .is_some_and(|place| place == at)
-    };
-    // Of marks at the same place, the topmost.
-    RequirementRole::ALL.into_iter().rev().find(is_at)
+    for role in RequirementRole::ALL.into_iter().rev() {
+        let finding = BandwidthModel { role, ..model }.finding(requirements);
+        if finding.and_then(bandwidth_place) == Some(place) {
+            return Some(role);
+        }
+    }
+    None
 }
 
-/// Shows the response in focus in Bode, with marks at the frequencies that define the bandwidth and
-/// phase delay of a model.
-fn marked_in_bode(
-    requirements: &Requirements,
-    (pair, id): (Pair, ConditionId),
-    role: RequirementRole,
-) -> Vec<Command> {
-    let mut commands = vec![
-        Command::Selection(SelectionCommand::SelectCondition(id)),
-        Command::Selection(SelectionCommand::FocusPair(pair)),
+/// Shows the response in Bode, with marks at the frequencies that define its bandwidth and phase
+/// delay.
+fn bode_commands(requirements: &Requirements, model: BandwidthModel) -> Vec<Command> {
+    let mut commands: Vec<Command> = vec![
+        SelectionCommand::SelectCondition(model.condition).into(),
+        SelectionCommand::FocusPair(model.pair).into(),
         CurveCommand::UnpinCursors.into(),
     ];
-    if let Some(of) = requirements.bandwidth_of(id, pair, role) {
-        let crossings = [
-            ("ω_phase", of.omega_phase_rad_s),
-            ("ω_gain", of.omega_gain_rad_s),
-            ("ω180", of.omega_180_rad_s),
-        ];
-        let known = crossings
-            .into_iter()
-            .filter_map(|(name, omega)| Some((name, omega?)));
-        commands.push(CurveCommand::MarkCrossings(known.collect()).into());
+    if let Some(finding) = model.finding(requirements) {
+        let mut crossings = Vec::new();
+        for (name, omega) in [
+            ("ω_phase", finding.omega_phase_rad_s),
+            ("ω_gain", finding.omega_gain_rad_s),
+            ("ω180", finding.omega_180_rad_s),
+        ] {
+            if let Some(omega) = omega {
+                crossings.push((name, omega));
+            }
+        }
+        commands.push(CurveCommand::MarkCrossings(crossings).into());
     }
     commands.push(LayoutCommand::ShowView(View::Bode).into());
     commands
 }
 
-/// Table of the displayed page, with the colours of its cells.
-struct ShownTable<'a> {
-    table: Table,
-    color: Box<dyn Fn(usize, usize) -> Option<Hue> + 'a>,
-}
-
-/// Returns the tables of the displayed page.
-fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> Vec<ShownTable<'a>> {
-    let dataset = state.dataset();
-    match state.display.judging.requirements_page {
-        RequirementsPage::Bandwidth => {
-            let table = bandwidth_table(requirements, dataset);
-            vec![ShownTable {
-                table,
-                color: Box::new(|row, column| bandwidth_look(requirements, (row, column))),
-            }]
-        }
-        RequirementsPage::Modes => {
-            let table = mode_table(requirements, state.condition().id());
-            let of_table = table.clone();
-            vec![ShownTable {
-                table,
-                color: Box::new(move |row, column| mode_look(&of_table, (row, column))),
-            }]
-        }
-        RequirementsPage::Histories | RequirementsPage::Summary => {
-            let histories = state
-                .time_histories()
-                .filter(|_| time_histories_job(state).is_some())
-                .map(Arc::as_ref);
-            let overview = RequirementsOverview::new(
-                requirements,
-                dataset,
-                histories,
-                &state.study.requirements.overview,
-            );
-            let is_outside = {
-                let overview = overview.clone();
-                move |row, column| overview.is_outside(row, column).then_some(Hue::Warning)
-            };
-            let table = summary_table(requirements, histories);
-            let of_table = table.clone();
-            let of_summary =
-                move |row, column| summary_look(requirements, &of_table, (row, column));
-            vec![
-                ShownTable {
-                    table: overview.table,
-                    color: Box::new(is_outside),
-                },
-                ShownTable {
-                    table,
-                    color: Box::new(of_summary),
-                },
-            ]
-        }
-    }
-}
-
-/// Returns the tables of the displayed page if it has no figure; `None` if it has a figure, or if
-/// nothing is known yet.
-pub fn requirement_tables(state: &State) -> Option<Vec<Table>> {
-    let is_table = matches!(
-        state.display.judging.requirements_page,
-        RequirementsPage::Modes | RequirementsPage::Summary
-    );
-    let requirements = state.requirements().filter(|_| is_table)?;
-    Some(
-        page_tables(state, requirements)
-            .into_iter()
-            .map(|shown| shown.table)
-            .collect(),
-    )
-}
-
-fn requirements_tables_ui(
-    ui: &mut Ui,
-    state: &mut State,
-    requirements: &Requirements,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    let id = state.condition().id();
-    let mut sorting = state.display.judging.requirements_sorting;
-    ScrollArea::both()
-        .id_salt("requirement tables")
-        .auto_shrink(false)
-        .show(ui, |ui| {
-            for (ShownTable { table, color }, sorting) in page_tables(state, requirements)
-                .into_iter()
-                .zip(&mut sorting)
-            {
-                ui.add(Label::new(palette.small(&table.title)).extend());
-                if table.rows.is_empty() {
-                    let page = state.display.judging.requirements_page;
-                    let why = requirements
-                        .no_modes(id)
-                        .filter(|_| page == RequirementsPage::Modes);
-                    ui.label(palette.dim(why.unwrap_or("Nothing: no condition has a result.")));
-                    continue;
-                }
-                let color = |row: usize, column: usize| {
-                    color(row, column).map(|hue| palette.color(Color::of(hue)))
-                };
-                let selected = |row: usize| {
-                    table.columns[0] == "condition" && table.rows[row][0] == id.to_string()
-                };
-                let look = TableLook {
-                    color: &color,
-                    selected: &selected,
-                };
-                if let Some(click) = table_grid_ui(ui, &table, sorting, &look, palette, commands) {
-                    commands.extend(went_to(state, requirements, (&table, click)));
-                }
-                ui.add_space(8.0);
-            }
-        });
-    state.display.judging.requirements_sorting = sorting;
-}
-
-/// Returns the command of a click on a row.
-fn went_to(
-    state: &State,
-    requirements: &Requirements,
-    (table, click): (&Table, TableClick),
-) -> Vec<Command> {
-    let TableClick { row, column } = click;
-    match state.display.judging.requirements_page {
-        RequirementsPage::Bandwidth => {
-            let of = requirements.bandwidth.get(row);
-            of.map(|of| marked_in_bode(requirements, (of.pair, of.condition), of.role))
-                .unwrap_or_default()
-        }
-        RequirementsPage::Histories | RequirementsPage::Summary => {
-            // Conditions are columns of the overview and rows of the other table.
-            let of_row = table.rows.get(row).and_then(|cells| cells[0].parse().ok());
-            let id = of_row.or_else(|| table.columns[column].parse().ok());
-            id.map(|id| Command::Selection(SelectionCommand::SelectCondition(ConditionId(id))))
-                .into_iter()
-                .collect()
-        }
-        RequirementsPage::Modes => vec![Command::Layout(LayoutCommand::ShowView(View::Poles))],
-    }
-}
-
-/// Returns grey for values that depend on the model above the band.
-fn bandwidth_look(requirements: &Requirements, (row, column): (usize, usize)) -> Option<Hue> {
-    let names = [
-        "omega_bw_rad_s",
-        "omega_phase_rad_s",
-        "omega_gain_rad_s",
-        "omega_180_rad_s",
-        "phase_delay_s",
-    ];
-    let name = column.checked_sub(4).and_then(|at| names.get(at));
-    let (name, of) = name.zip(requirements.bandwidth.get(row))?;
-    of.rests_above(name).then_some(Hue::DimText)
-}
-
-/// Returns the colour of a mode inside or outside its tolerance; grey without a verdict.
-fn mode_look(table: &Table, (row, column): (usize, usize)) -> Option<Hue> {
-    if !table.columns[column].ends_with(": tolerance") {
-        return None;
-    }
-    let is =
-        |verdict: ModeVerdict| table.rows[row][column].starts_with(mode_verdict_words(verdict));
-    Some(match (is(ModeVerdict::Within), is(ModeVerdict::Outside)) {
-        (true, _) => Hue::Good,
-        (_, true) => Hue::Warning,
-        _ => Hue::DimText,
-    })
-}
-
-/// Returns the colour of a mean J beyond the acceptable limit; there is no limit for the rms error.
-fn summary_look(
-    requirements: &Requirements,
-    table: &Table,
-    (row, column): (usize, usize),
-) -> Option<Hue> {
-    let of = summary_of_row(requirements, &table.rows[row]);
-    let cost = match table.columns[column].as_str() {
-        "J on-axis" => of.and_then(|of| of.mean_j_on_axis),
-        "J of all" => of.and_then(|of| of.mean_j_all),
-        _ => None,
-    };
-    cost.map(|cost| {
-        if cost > ACCEPTABLE {
-            Hue::Warning
-        } else {
-            Hue::Good
-        }
-    })
-}
-
-/// Descriptions of the bandwidth plots.
+/// Descriptions for the bandwidth plots.
 struct BandwidthWords<'a> {
     state: &'a State,
     requirements: &'a Requirements,
@@ -511,34 +426,31 @@ struct BandwidthWords<'a> {
 
 impl FigureWords for BandwidthWords<'_> {
     fn plot(&self, plot: usize) -> String {
-        let name = self
-            .pairs
-            .get(plot)
-            .map_or_else(String::new, |pair| self.state.dataset().pair_name(*pair));
+        let name = match self.pairs.get(plot) {
+            Some(pair) => self.state.dataset().pair_name(*pair),
+            None => String::new(),
+        };
         format!("Phase delay over bandwidth of {name}")
     }
 
     fn pointed(&self, plot: usize, id: &MarkId, _: [f64; 2]) -> Option<String> {
-        let (MarkId::Condition(id), pair) = (id, self.pairs.get(plot)?) else {
+        let pair = self.pairs.get(plot)?;
+        let MarkId::Condition(id) = id else {
             return None;
         };
-        let of_role = |role: RequirementRole| {
-            let of = self.requirements.bandwidth_of(*id, *pair, role)?;
-            let (bandwidth, delay_s) = of.omega_bw_rad_s.zip(of.phase_delay_s)?;
-            Some(format!(
-                "{} {} rad/s, {} ms",
-                role.name(),
-                telling(bandwidth, 2),
-                telling(s_to_ms(delay_s), 0)
-            ))
-        };
-        let roles: Vec<String> = RequirementRole::ALL
-            .into_iter()
-            .filter_map(of_role)
-            .collect();
-        Some(format!(
-            "condition {id} · {} · click: marked in Bode",
-            roles.join(" · ")
-        ))
+        let mut words = vec![format!("condition {id}")];
+        for role in RequirementRole::ALL {
+            let finding = self.requirements.bandwidth_of(*id, *pair, role);
+            if let Some([bandwidth_rad_s, delay_ms]) = finding.and_then(bandwidth_place) {
+                words.push(format!(
+                    "{} {} rad/s, {} ms",
+                    role.name(),
+                    telling(bandwidth_rad_s, 2),
+                    telling(delay_ms, 0)
+                ));
+            }
+        }
+        words.push("click: mark in Bode".to_owned());
+        Some(words.join(" · "))
     }
 }

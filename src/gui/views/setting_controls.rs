@@ -1,4 +1,4 @@
-//! A control for each row of the settings table.
+//! A control for each row in the settings table.
 
 use egui::{Role, Slider, Ui, WidgetInfo};
 
@@ -23,37 +23,20 @@ const SLIDER_START: f64 = 1e-3;
 const LABEL_WIDTH: f32 = 60.0;
 const TYPED_WIDTH: f32 = 62.0;
 
-/// Summary of M15 in five lines.
+/// M15 in five steps.
 const LEADS_IN_SHORT: &str = "Delay or lead:\n\
-    1  For each response, one straight line through the origin is fitted to the phase that is missing over the band: its slope is \
-    a delay or, where negative, a lead.\n\
-    2  Each channel gets one signed delay τ, so that the held responses get exactly theirs.\n\
-    3  A positive τ is a pure delay; a negative τ is a filter that acts as a faster servo or sensor put in place of a slower one.\n\
-    4  Then the gains are found as before, on what is left.\n\
-    5  The price is gain above the band: it is told in dB.";
-
-/// Draws the control of a setting inside the view it concerns.
-pub fn setting_ui(
-    ui: &mut Ui,
-    state: &State,
-    setting: &'static Setting,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    SettingControls {
-        ui,
-        state,
-        palette,
-        commands,
-    }
-    .control_ui(setting);
-}
+    1  For each response, a straight line through the origin is fitted to the missing phase over the band. Its slope is a delay or, \
+    if negative, a lead.\n\
+    2  Each channel gets one signed delay τ, so that every held response gets exactly the delay or lead of its line.\n\
+    3  A positive τ is a pure delay. A negative τ is a filter that replaces a slow servo or sensor by a faster one.\n\
+    4  The gains are then computed as without leads, for the remaining error.\n\
+    5  The price is gain above the band [dB].";
 
 /// Returns the value determined by the program for an automatic setting.
 fn found_value(state: &State, setting: &Setting) -> Option<Value> {
     let shown = state.shown()?;
     if *setting == setting::GAIN_BOUNDS {
-        Some(Some(shown.gain_bounds()).into())
+        Some(Value::from(Some(shown.gain_bounds())))
     } else if *setting == setting::DELAY_UPPER {
         Some(shown.delay_upper_s().into())
     } else {
@@ -61,7 +44,7 @@ fn found_value(state: &State, setting: &Setting) -> Option<Value> {
     }
 }
 
-/// Draws the controls of settings, and pushes the decisions taken with them.
+/// Draws controls for settings, and pushes the decisions taken with them.
 pub struct SettingControls<'a, 'c> {
     pub ui: &'a mut Ui,
     pub state: &'a State,
@@ -76,16 +59,15 @@ impl SettingControls<'_, '_> {
 
     /// Reports why an entry is refused, and completes the decision.
     fn end(&mut self, entered: Entered) {
-        self.commands.extend(
-            entered
-                .refusal
-                .map(|value| Command::Form(FormCommand::Refuse(value))),
-        );
+        if let Some(refusal) = entered.refusal {
+            self.commands.push(FormCommand::Refuse(refusal).into());
+        }
         if entered.is_ended {
             self.commands.push(StudyCommand::EndEdit.into());
         }
     }
 
+    /// Draws the caption; for the phase correction, with a summary as tooltip.
     pub fn caption_ui(&mut self, setting: &Setting) {
         let label = self.ui.label(self.palette.dim(setting.control.caption));
         if *setting == setting::PHASE {
@@ -97,6 +79,7 @@ impl SettingControls<'_, '_> {
         self.ui.label(self.palette.small(text));
     }
 
+    /// Draws several settings in a line, each but the first with its caption in front.
     pub fn controls_ui(&mut self, line: &[&'static Setting]) {
         for (place, setting) in line.iter().enumerate() {
             if place > 0 && !setting.control.caption.is_empty() {
@@ -121,44 +104,25 @@ impl SettingControls<'_, '_> {
         }
     }
 
+    /// Draws the control that fits the kind of setting.
     pub fn control_ui(&mut self, setting: &'static Setting) {
-        match (setting.kind, setting.value(&self.state.study.settings)) {
+        let value = setting.value(&self.state.study.settings);
+        match (setting.kind, value) {
             (Kind::Number { range, .. }, Value::Number(value)) => {
-                self.number_ui(setting, value, range)
+                self.number_ui(setting, value, range);
             }
-            (
-                Kind::Optional {
-                    range,
-                    on: Some(on),
-                    ..
-                },
-                value,
-            ) => self.threshold_ui(setting, value, on, range),
-            (Kind::Optional { range, .. }, value) => {
-                self.automatic_number_ui(setting, value, range)
-            }
-            (
-                Kind::Range {
-                    range,
-                    ends,
-                    nothing,
-                    ..
-                },
-                value,
-            ) => {
-                self.range_ui(setting, value, ends, range, nothing.is_some());
-            }
-            (Kind::Flag { .. }, Value::Flag(mut flag)) => {
-                let response = self.ui.checkbox(&mut flag, setting.control.label);
-                if response.on_hover_text(setting.help).changed() {
-                    self.set(setting, flag);
-                }
-            }
+            (Kind::Optional { range, on, .. }, value) => match on {
+                Some(initial) => self.threshold_ui(setting, value, initial, range),
+                None => self.automatic_number_ui(setting, value, range),
+            },
+            (Kind::Range { .. }, value) => self.range_ui(setting, value),
+            (Kind::Flag { .. }, Value::Flag(flag)) => self.flag_ui(setting, flag),
             (Kind::Choice { words, .. }, Value::Choice(index)) => {
                 let mut chosen = index;
-                let choices: Vec<_> = (0..words.len())
-                    .map(|index| (index, words[index][1], words[index][2]))
-                    .collect();
+                let mut choices = Vec::new();
+                for (index, [_, text, hint]) in words.iter().enumerate() {
+                    choices.push((index, *text, *hint));
+                }
                 choice_ui(self.ui, setting.control.label, &mut chosen, &choices);
                 if chosen != index {
                     self.set(setting, Value::Choice(chosen));
@@ -168,13 +132,21 @@ impl SettingControls<'_, '_> {
         }
     }
 
-    fn number_ui(&mut self, setting: &'static Setting, value: f64, range: [f64; 2]) {
-        let field = field_of(setting, setting.control.label, range);
-        let entered = field.ui(self.ui, setting.unit.scale * value);
-        self.take(setting, entered);
+    fn flag_ui(&mut self, setting: &'static Setting, mut flag: bool) {
+        let response = self.ui.checkbox(&mut flag, setting.control.label);
+        if response.on_hover_text(setting.help).changed() {
+            self.set(setting, flag);
+        }
     }
 
-    fn take(&mut self, setting: &'static Setting, entered: Entered) {
+    fn number_ui(&mut self, setting: &'static Setting, value: f64, range: [f64; 2]) {
+        let field = number_field(setting, setting.control.label, range);
+        let entered = field.ui(self.ui, setting.unit.scale * value);
+        self.apply(setting, entered);
+    }
+
+    /// Applies a typed or dragged number, in display units.
+    fn apply(&mut self, setting: &'static Setting, entered: Entered) {
         if let Some(value) = entered.value {
             self.set(setting, value / setting.unit.scale);
         }
@@ -183,9 +155,10 @@ impl SettingControls<'_, '_> {
 
     /// Draws a number on a slider, with a field beside it.
     pub fn slider_ui(&mut self, setting: &'static Setting) {
-        let (Kind::Number { range, .. }, Value::Number(now)) =
-            (setting.kind, setting.value(&self.state.study.settings))
-        else {
+        let Kind::Number { range, .. } = setting.kind else {
+            return;
+        };
+        let Value::Number(now) = setting.value(&self.state.study.settings) else {
             return;
         };
         let mut value = now;
@@ -193,7 +166,7 @@ impl SettingControls<'_, '_> {
         let field = NumberField {
             step: 0.01 * now.max(0.01),
             width: TYPED_WIDTH,
-            ..field_of(setting, label, range)
+            ..number_field(setting, label, range)
         };
         let (slider, typed) = self
             .ui
@@ -221,11 +194,18 @@ impl SettingControls<'_, '_> {
             self.commands.push(StudyCommand::EndEdit.into());
         }
         slider.on_hover_text(setting.help);
-        self.take(setting, typed);
+        self.apply(setting, typed);
     }
 
-    /// Draws a box that enables a threshold, and the threshold; `on` is its initial value.
-    fn threshold_ui(&mut self, setting: &'static Setting, value: Value, on: f64, range: [f64; 2]) {
+    /// Draws a box that enables a threshold, and the threshold; `initial` is its value when it is
+    /// enabled.
+    fn threshold_ui(
+        &mut self,
+        setting: &'static Setting,
+        value: Value,
+        initial: f64,
+        range: [f64; 2],
+    ) {
         let mut counts = value != Value::Nothing;
         let response = self.ui.checkbox(&mut counts, "from");
         let response = named_switch(
@@ -235,82 +215,76 @@ impl SettingControls<'_, '_> {
             format!("{} counts", setting.control.caption),
         );
         let clicked = response.on_hover_text(setting.help).changed();
-        let shown = if let Value::Number(value) = value {
-            value
-        } else {
-            on
+        let shown = match value {
+            Value::Number(value) => value,
+            _ => initial,
         };
-        let field = field_of(setting, setting.control.label, range);
+        let field = number_field(setting, setting.control.label, range);
         let entered = self
             .ui
             .add_enabled_ui(counts, |ui| field.ui(ui, shown))
             .inner;
         if clicked {
-            self.set(setting, counts.then_some(on));
+            let enabled = if counts { Some(initial) } else { None };
+            self.set(setting, enabled);
             // Two clicks are two decisions.
             self.commands.push(StudyCommand::EndEdit.into());
         }
-        self.take(setting, entered);
+        self.apply(setting, entered);
     }
 
     /// Draws a number that the program determines unless it is set by hand.
     fn automatic_number_ui(&mut self, setting: &'static Setting, value: Value, range: [f64; 2]) {
-        let by_hand = value != Value::Nothing;
-        let shown = if by_hand {
-            Some(value)
-        } else {
-            found_value(self.state, setting)
-        };
-        let Some(Value::Number(number)) = shown else {
+        let Some(Value::Number(number)) = self.shown_value(setting, value) else {
             return self.small_ui("…");
         };
-        let field = field_of(setting, setting.control.label, range);
+        let field = number_field(setting, setting.control.label, range);
         let typed = field.ui(self.ui, setting.unit.scale * number);
-        let automatic = self.automatic_ui(setting, by_hand);
-        if let Some(automatic) = automatic.filter(|_| typed.value.is_none()) {
-            self.set(setting, (!automatic).then_some(number));
+        let switched = self.automatic_ui(setting, value);
+        if typed.value.is_none() {
+            match switched {
+                Some(Automatic::On) => self.set(setting, None::<f64>),
+                Some(Automatic::Off) => self.set(setting, Some(number)),
+                None => {}
+            }
         }
-        self.take(setting, typed);
+        self.apply(setting, typed);
     }
 
-    /// Draws both ends of a range, which the program determines, where it can, unless they are set
-    /// by hand.
-    fn range_ui(
-        &mut self,
-        setting: &'static Setting,
-        value: Value,
-        [low_name, high_name]: [&'static str; 2],
-        [least, most]: [f64; 2],
-        is_optional: bool,
-    ) {
-        let by_hand = value != Value::Nothing;
-        let shown = if by_hand {
-            Some(value)
-        } else {
+    /// Returns a value set by hand, or else the value determined by the program.
+    fn shown_value(&self, setting: &Setting, value: Value) -> Option<Value> {
+        if value == Value::Nothing {
             found_value(self.state, setting)
+        } else {
+            Some(value)
+        }
+    }
+
+    /// Draws both ends of a range. If the range is optional, the program determines it unless it is
+    /// set by hand.
+    fn range_ui(&mut self, setting: &'static Setting, value: Value) {
+        let Kind::Range {
+            range: [least, most],
+            ends: [low_name, high_name],
+            nothing,
+            ..
+        } = setting.kind
+        else {
+            return;
         };
-        let Some(Value::Range([lower, upper])) = shown else {
+        let Some(Value::Range([lower, upper])) = self.shown_value(setting, value) else {
             return self.small_ui("…");
         };
-        let low = NumberField {
-            shows_unit: false,
-            ..field_of(setting, low_name, [least, upper])
-        }
-        .ui(self.ui, lower);
+        let low = self.end_ui(setting, low_name, [least, upper], lower);
         self.small_ui("–");
-        let high = NumberField {
-            shows_unit: false,
-            ..field_of(setting, high_name, [lower, most])
-        }
-        .ui(self.ui, upper);
+        let high = self.end_ui(setting, high_name, [lower, most], upper);
         if !setting.unit.shown.is_empty() {
             self.small_ui(setting.unit.shown);
         }
-        let automatic = if is_optional {
-            self.automatic_ui(setting, by_hand)
-        } else {
-            None
-        };
+        let mut switched = None;
+        if nothing.is_some() {
+            switched = self.automatic_ui(setting, value);
+        }
         if low.value.is_some() || high.value.is_some() {
             let ends = Value::Range([low.value.unwrap_or(lower), high.value.unwrap_or(upper)]);
             match setting.check(ends) {
@@ -321,34 +295,59 @@ impl SettingControls<'_, '_> {
                     .commands
                     .push(FormCommand::Refuse(error.to_string()).into()),
             }
-        } else if let Some(automatic) = automatic {
-            self.set(
-                setting,
-                if automatic {
-                    Value::Nothing
-                } else {
-                    Value::Range([lower, upper])
-                },
-            );
+        } else {
+            match switched {
+                Some(Automatic::On) => self.set(setting, Value::Nothing),
+                Some(Automatic::Off) => self.set(setting, Value::Range([lower, upper])),
+                None => {}
+            }
         }
         self.end(low);
         self.end(high);
     }
 
-    /// Draws the box that returns a value to the program; returns its new state after a click.
-    fn automatic_ui(&mut self, setting: &Setting, by_hand: bool) -> Option<bool> {
-        let mut automatic = !by_hand;
-        let response = self.ui.checkbox(&mut automatic, "auto");
+    fn end_ui(
+        &mut self,
+        setting: &'static Setting,
+        name: &'static str,
+        limits: [f64; 2],
+        value: f64,
+    ) -> Entered {
+        let field = NumberField {
+            shows_unit: false,
+            ..number_field(setting, name, limits)
+        };
+        field.ui(self.ui, value)
+    }
+
+    /// Draws the box that lets the program determine a value; returns its new state after a click.
+    fn automatic_ui(&mut self, setting: &Setting, value: Value) -> Option<Automatic> {
+        let mut is_automatic = value == Value::Nothing;
+        let response = self.ui.checkbox(&mut is_automatic, "auto");
         let name = format!("{} automatic", setting.control.caption);
-        let hint =
-            "From the quantiles of each condition; off: set by hand, the same for every condition";
-        let response = named_switch(response, Role::CheckBox, automatic, name).on_hover_text(hint);
-        response.changed().then_some(automatic)
+        let hint = "On: from the quantiles of each condition. Off: set by hand, the same for every condition";
+        let response =
+            named_switch(response, Role::CheckBox, is_automatic, name).on_hover_text(hint);
+        if !response.changed() {
+            return None;
+        }
+        Some(if is_automatic {
+            Automatic::On
+        } else {
+            Automatic::Off
+        })
     }
 }
 
-/// Creates the number field of a setting, in display units.
-fn field_of(
+/// Whether the program determines a value.
+#[derive(Clone, Copy)]
+enum Automatic {
+    On,
+    Off,
+}
+
+/// Creates a setting's number field in display units; the limits are in stored units.
+fn number_field(
     setting: &'static Setting,
     name: &'static str,
     [least, most]: [f64; 2],

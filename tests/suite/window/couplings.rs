@@ -54,7 +54,7 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
     assessed(&mut window);
     let said = texts(&window);
     assert!(
-        said.contains("None are used. What mixing and feedback would do:"),
+        said.contains("Not in use. Effect of mixing and feedback:"),
         "{said}"
     );
     assert!(
@@ -76,8 +76,8 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
         state(&window).study.settings.couplings,
         CouplingCorrection::MixingAndFeedback
     );
-    assert!(!texts(&window).contains("None are used"));
-    // The map beside the conditions shows their effect on off-axis responses.
+    assert!(!texts(&window).contains("Not in use"));
+    // The map beside the conditions has what they did off the axis.
     window.get_by_label_contains("19 responses not held, condition 3: mean J of magnitude");
     // The poles that move are drawn among those of the models.
     show(&mut window, View::Poles);

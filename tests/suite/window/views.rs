@@ -115,7 +115,7 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
         .filter_map(|model| model.order())
         .sum();
     assert_eq!(marks.len(), order, "a mark for each state of each model");
-    let (table, _) = state(&window).display.poles.modes.table();
+    let table = &state(&window).display.poles.modes.table;
     // One row a real pole and one a pair of the reference model.
     let reference = condition.model(
         BundleKind::Physics,
@@ -248,13 +248,10 @@ fn a_degree_is_chosen_on_evidence() {
     let before = state(&window).study.clone();
     click(&mut window, "evidence");
     let evidence = state(&window).analysis().unwrap().compare_forms().unwrap();
-    let (conditions, shown) = state(&window)
-        .display
-        .gains
-        .evidence
-        .found()
-        .expect("the evidence is there");
-    assert_eq!((conditions.len(), shown), (11, &evidence));
+    let cached = &state(&window).display.gains.evidence;
+    let (conditions, shown) = cached.found.as_ref().expect("the evidence is there");
+    assert_eq!(conditions.len(), 11);
+    assert_eq!(shown, &evidence);
     click(
         &mut window,
         "Sort Errors of each form of the schedule by unseen [%]",

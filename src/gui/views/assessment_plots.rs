@@ -1,0 +1,308 @@
+//! Stacked bars for the change of J in each condition.
+
+use gdcm_method::schedule::CostChange;
+use gdcm_model::dataset::{ConditionId, Dataset, Pair};
+use gdcm_model::number_format::decimals;
+use gdcm_plot::figure::axis::Axis;
+use gdcm_plot::figure::drawing::{Hue, Stroke};
+use gdcm_plot::figure::figure::{Bars, Curve, Note, Place, Rule, Spans};
+use gdcm_plot::figure::{Color, MarkId, Panel, Range};
+use gdcm_study::AssessmentTable;
+use gdcm_words::assessment::{missing_cost_text, not_assessed_text};
+use gdcm_words::derivation::ExplainTarget;
+
+use crate::gui::plot::FigureWords;
+use crate::gui::plot::questions::NamedFigure;
+use crate::gui::state::window_state::State;
+
+/// Bar width, relative to the distance between conditions.
+const BAR: f64 = 0.6;
+/// Half the length of the line at the sum of both parts, in the same unit.
+const HALF_TOTAL: f64 = 0.38;
+/// Colour strength for the phase part, relative to the magnitude part \[%\].
+pub(super) const PHASE_PERCENT: u8 = 45;
+/// Space above and below the bars, relative to their height.
+const MARGIN: f64 = 0.12;
+/// Distance between a number and its bar, relative to the visible range.
+const NUMBER_GAP: f64 = 0.05;
+/// Value from which a number has no decimals: 9.95 rounds to 10.0.
+const WHOLE_FROM: f64 = 9.95;
+
+/// Plots of the change of J, one for each response.
+pub(super) struct AssessmentPlots<'a> {
+    pub(super) state: &'a State,
+    pub(super) table: &'a AssessmentTable,
+    pub(super) pairs: Vec<Pair>,
+}
+
+/// Change of J at a place on the condition axis.
+#[derive(Clone, Copy)]
+struct PlacedChange {
+    at: f64,
+    change: CostChange,
+}
+
+/// Part of J.
+#[derive(Clone, Copy, PartialEq)]
+enum BarPart {
+    Magnitude,
+    Phase,
+}
+
+impl PlacedChange {
+    fn value(&self, part: BarPart) -> f64 {
+        match part {
+            BarPart::Magnitude => self.change.magnitude(),
+            BarPart::Phase => self.change.phase(),
+        }
+    }
+
+    /// Returns the value at which a part begins. The phase part is stacked on the magnitude part if
+    /// both have the same sign; otherwise they lie on either side of zero.
+    fn foot(&self, part: BarPart) -> f64 {
+        let is_stacked =
+            part == BarPart::Phase && self.change.magnitude() * self.change.phase() > 0.0;
+        if is_stacked {
+            self.change.magnitude()
+        } else {
+            0.0
+        }
+    }
+
+    /// Returns the end values for both parts, and zero.
+    fn ends(&self) -> [f64; 3] {
+        [
+            self.change.magnitude(),
+            self.foot(BarPart::Phase) + self.change.phase(),
+            0.0,
+        ]
+    }
+
+    /// Returns the total as a number: above the bar if positive, below if negative.
+    fn number(&self, range: Range) -> Note {
+        let total = self.change.total();
+        let furthest = if total > 0.0 { f64::max } else { f64::min };
+        let end = self.ends().into_iter().fold(0.0, furthest);
+        let gap = NUMBER_GAP * range.width();
+        let digits = if total.abs() < WHOLE_FROM { 1 } else { 0 };
+        Note {
+            at: Place::Value {
+                x: self.at,
+                y: end + gap.copysign(total),
+                upright: false,
+            },
+            text: decimals(total, digits),
+        }
+    }
+}
+
+impl AssessmentPlots<'_> {
+    /// Returns the change in a condition; `None` if it is left out.
+    fn change(&self, condition: ConditionId, pair: Pair) -> Option<CostChange> {
+        self.table.change(condition, pair)
+    }
+
+    /// Builds a response's panel: in each condition a bar with magnitude and phase part, and a line
+    /// across at their sum.
+    pub(super) fn panel(&self, pair: Pair) -> Panel {
+        let mut found = Vec::new();
+        let mut left_out = Vec::new();
+        let mut names = Vec::new();
+        for (index, condition) in self.state.dataset().conditions().iter().enumerate() {
+            let at = index as f64;
+            names.push(condition.id().to_string());
+            match self.change(condition.id(), pair) {
+                Some(change) => found.push(PlacedChange { at, change }),
+                None => left_out.push(at),
+            }
+        }
+        let range = visible_range(&found);
+        let value_axis = Axis::linear("").showing(Some(range));
+        Panel::new(Axis::named("Condition", names), value_axis)
+            .with(left_out_ground(&left_out, range))
+            .with_all(bars(&found))
+            .with(Rule::horizontal(0.0, Stroke::solid(Color::DIM, 0.6)))
+            .with(total_lines(&found))
+            .with_all(self.numbers(&found, range))
+            .with_all(left_out.iter().map(|at| left_out_note(*at, range)))
+    }
+
+    /// Returns the numbers for the displayed condition and for the largest change, unless these are
+    /// neighbours. Numbers on every bar would overlap; the status line shows the others.
+    fn numbers(&self, found: &[PlacedChange], range: Range) -> Vec<Note> {
+        let largest = found
+            .iter()
+            .max_by(|a, b| a.change.total().abs().total_cmp(&b.change.total().abs()))
+            .map(|placed| placed.at);
+        let displayed = self.state.condition().id();
+        let conditions = self.state.dataset().conditions();
+        let displayed = conditions
+            .iter()
+            .position(|condition| condition.id() == displayed)
+            .unwrap_or(0) as f64;
+        let mut numbers = Vec::new();
+        for placed in found {
+            let is_largest = Some(placed.at) == largest && (placed.at - displayed).abs() > 1.0;
+            if placed.at == displayed || is_largest {
+                numbers.push(placed.number(range));
+            }
+        }
+        numbers
+    }
+}
+
+fn visible_range(found: &[PlacedChange]) -> Range {
+    Range::of(found.iter().flat_map(PlacedChange::ends))
+        .unwrap_or(Range::new(-1.0, 1.0))
+        .with_margin(MARGIN, 1.0)
+}
+
+/// Returns the bars for each part: improvements, then deteriorations.
+fn bars(found: &[PlacedChange]) -> Vec<Bars> {
+    let mut bars = Vec::new();
+    for part in [BarPart::Magnitude, BarPart::Phase] {
+        for hue in [Hue::Good, Hue::Warning] {
+            bars.push(bars_of_hue(found, part, hue));
+        }
+    }
+    bars
+}
+
+/// Returns the bars with this colour: positive changes are warnings.
+fn bars_of_hue(found: &[PlacedChange], part: BarPart, hue: Hue) -> Bars {
+    let mut bars = Vec::new();
+    let mut feet = Vec::new();
+    for placed in found {
+        let value = placed.value(part);
+        if (value > 0.0) == (hue == Hue::Warning) {
+            bars.push([placed.at, value]);
+            feet.push(placed.foot(part));
+        }
+    }
+    let strength = match part {
+        BarPart::Magnitude => 100,
+        BarPart::Phase => PHASE_PERCENT,
+    };
+    Bars {
+        name: String::new(),
+        color: Color::of(hue).tint(strength),
+        width: BAR,
+        bars,
+        feet,
+        beside: 0.0,
+    }
+}
+
+/// Returns a line across each bar at the total; NaN separates the lines.
+fn total_lines(found: &[PlacedChange]) -> Curve {
+    let points = found.iter().flat_map(|placed| {
+        let total = placed.change.total();
+        [
+            [placed.at - HALF_TOTAL, total],
+            [placed.at + HALF_TOTAL, total],
+            [f64::NAN, f64::NAN],
+        ]
+    });
+    Curve::through("ΔJ", Stroke::solid(Color::INK, 1.1), points)
+}
+
+fn left_out_ground(left_out: &[f64], range: Range) -> Spans {
+    Spans {
+        name: String::new(),
+        color: Color::of(Hue::Rejected).tint(13),
+        width: 0.7,
+        spans: left_out
+            .iter()
+            .map(|at| [*at, range.min, range.max])
+            .collect(),
+    }
+}
+
+fn left_out_note(at: f64, range: Range) -> Note {
+    Note {
+        at: Place::Value {
+            x: at,
+            y: range.middle(),
+            upright: true,
+        },
+        text: "left out".to_owned(),
+    }
+}
+
+/// Returns the reason for a missing change of J.
+fn absence_reason(
+    table: &AssessmentTable,
+    dataset: &Dataset,
+    condition: ConditionId,
+    pair: Pair,
+) -> String {
+    for left_out in &table.left_out {
+        if left_out.condition == condition {
+            return not_assessed_text(&left_out.why, dataset);
+        }
+    }
+    for assessed in &table.conditions {
+        if assessed.condition != condition {
+            continue;
+        }
+        for (missing, why) in &assessed.missing {
+            if *missing == pair {
+                return missing_cost_text(*why);
+            }
+        }
+    }
+    "not computed".to_owned()
+}
+
+impl FigureWords for AssessmentPlots<'_> {
+    fn plot(&self, plot: usize) -> String {
+        let pair = self.pairs[plot];
+        let mut words = Vec::new();
+        for condition in self.state.dataset().conditions() {
+            let id = condition.id();
+            words.push(match self.change(id, pair) {
+                Some(change) => format!("{id} {}", decimals(change.total(), 1)),
+                None => format!("{id} left out"),
+            });
+        }
+        format!(
+            "Change of J, {}: {}",
+            self.state.dataset().pair_name(pair),
+            words.join(", ")
+        )
+    }
+
+    fn pointed(&self, plot: usize, id: &MarkId, _: [f64; 2]) -> Option<String> {
+        let MarkId::Condition(id) = id else {
+            return None;
+        };
+        let pair = self.pairs[plot];
+        let subject = format!("{}, condition {id}", self.state.dataset().pair_name(pair));
+        let Some(change) = self.change(*id, pair) else {
+            return Some(format!(
+                "{subject} · left out: {}",
+                absence_reason(self.table, self.state.dataset(), *id, pair)
+            ));
+        };
+        Some(format!(
+            "{subject} · ΔJ {}: magnitude {}, phase {} · J {} → {}",
+            decimals(change.total(), 1),
+            decimals(change.magnitude(), 1),
+            decimals(change.phase(), 1),
+            decimals(change.uncorrected.total(), 1),
+            decimals(change.corrected.total(), 1)
+        ))
+    }
+
+    fn questions(&self, plot: usize, id: &MarkId) -> Vec<NamedFigure> {
+        let MarkId::Condition(id) = *id else {
+            return Vec::new();
+        };
+        let pair = self.pairs[plot];
+        if self.change(id, pair).is_none() {
+            return Vec::new();
+        }
+        let target = ExplainTarget::CostChange(id, pair, self.table.choice);
+        vec![("Change of J".to_owned(), target)]
+    }
+}

@@ -11,7 +11,8 @@ use gdcm_study::stages::condition_responses::ConditionCurves;
 use gdcm_study::{Analysis, Study};
 
 use super::GdcmApp;
-use super::background_jobs::{AnalysisJob, BackgroundJobs, Proof};
+use super::analysis_job::{AnalysisJob, Proof};
+use super::background_jobs::BackgroundJobs;
 use super::outputs::ReportJob;
 use super::threads::{Fault, Reply, ReplySender};
 use crate::gui::state::notices::Bar;
@@ -105,7 +106,7 @@ impl GdcmApp {
         }
         let now = self.now();
         let results = &mut self.state.results;
-        results.background = self.work.jobs.told();
+        results.background = self.work.jobs.running_work();
         results.background.proofs.extend(
             self.work
                 .proven

@@ -1,5 +1,6 @@
 //! The window: the only module that uses eframe, file dialogs and threads.
 
+mod analysis_job;
 mod background_jobs;
 mod computation;
 mod computing_commands;
@@ -11,6 +12,8 @@ mod document_files;
 mod file_commands;
 mod files;
 mod form_commands;
+mod job_kind;
+mod job_pool;
 mod job_queue;
 mod keyboard;
 mod launch;

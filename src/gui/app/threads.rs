@@ -19,13 +19,6 @@ pub(super) struct Mailbox<T> {
 }
 
 impl<T> Mailbox<T> {
-    pub(super) fn new(content: T) -> Self {
-        Self {
-            content: Mutex::new(content),
-            changed: Condvar::new(),
-        }
-    }
-
     /// Locks the content for reading.
     pub(super) fn lock(&self) -> MutexGuard<'_, T> {
         // The content is consistent even after a panic under the lock.

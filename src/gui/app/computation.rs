@@ -13,7 +13,7 @@ use gdcm_study::{Analysis, Study};
 use super::GdcmApp;
 use super::analysis_job::{AnalysisJob, Proof};
 use super::background_jobs::BackgroundJobs;
-use super::outputs::ReportJob;
+use super::report_job::ReportJob;
 use super::threads::{Fault, Reply, ReplySender};
 use crate::gui::state::notices::Bar;
 use crate::gui::views::need::Need;

@@ -134,8 +134,9 @@ impl GdcmApp {
         read: impl FnOnce(&ReadingBudget<'_>) -> Result<Opened, FileError> + Send + 'static,
     ) {
         self.state.opening = Some(name);
-        let (number, stop) = self.readers.opener.begin();
-        let read = move || read(&ReadingBudget::default().stopped_by(stop));
+        let reading = self.readers.opener.begin();
+        let number = reading.number;
+        let read = move || read(&ReadingBudget::default().stopped_by(reading.stop));
         self.in_thread("the reading of a file", read, move |app, opened| {
             if !app.readers.opener.is_newest(number) {
                 return;

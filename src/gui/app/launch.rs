@@ -20,7 +20,8 @@ use gdcm_model::message_text::{sanitized, sanitized_path, shortened_message};
 use gdcm_study::Engine;
 use gdcm_study::stages::engine::LIVE_PROOF;
 
-use super::recovery::{Autosave, LAST_WAIT, end_words};
+use super::autosave::Autosave;
+use super::recovery::{LAST_WAIT, end_words};
 use super::threads::{Fault, caught};
 use super::window::PREFERENCES;
 use super::{EngineMaker, GdcmApp, threads};

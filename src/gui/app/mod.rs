@@ -1,6 +1,7 @@
 //! The window: the only module that uses eframe, file dialogs and threads.
 
 mod analysis_job;
+mod autosave;
 mod background_jobs;
 mod computation;
 mod computing_commands;
@@ -22,9 +23,15 @@ pub mod model_import;
 mod output_commands;
 mod outputs;
 mod readers;
-pub mod record_import;
+mod record_commands;
+mod record_dataset;
+mod record_identification;
+mod record_import;
+mod record_reading;
 mod recovery;
 mod reload;
+mod report_job;
+mod requirement_files;
 mod selection_commands;
 mod study_commands;
 pub mod threads;

@@ -133,11 +133,12 @@ impl GdcmApp {
     /// Reads models in a thread; tables are read with the headings given for them.
     fn read_models(&mut self, sources: Sources) {
         let headings = self.said().map(|rules| rules.headings).unwrap_or_default();
-        let (number, stop) = self.readers.models.begin();
+        let reading = self.readers.models.begin();
+        let number = reading.number;
         let teller = Teller {
             number,
             replies: self.work.replies.clone(),
-            stop,
+            stop: reading.stop,
             told: Cell::new(0),
         };
         let read = move || {

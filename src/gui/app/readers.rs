@@ -12,23 +12,38 @@ pub(super) struct Reader {
     stop: Arc<AtomicBool>,
 }
 
+/// A reading under way.
+pub(super) struct Reading {
+    /// Number of the reading; its answer counts while this is the newest number.
+    pub(super) number: u64,
+    /// Set once the reading should stop.
+    pub(super) stop: Arc<AtomicBool>,
+}
+
 impl Reader {
-    /// Starts a reading that replaces the current one; returns its number and its stop flag.
-    pub(super) fn begin(&mut self) -> (u64, Arc<AtomicBool>) {
+    /// Starts a reading that replaces the current one.
+    pub(super) fn begin(&mut self) -> Reading {
         self.give_up();
         self.stop = Arc::default();
-        (self.newest, Arc::clone(&self.stop))
+        self.current()
     }
 
-    /// Starts a reading beside the current one; returns the common number and stop flag.
-    pub(super) fn join(&mut self) -> (u64, Arc<AtomicBool>) {
+    /// Starts a reading beside the current one; both have the same number and stop together.
+    pub(super) fn join(&mut self) -> Reading {
         if self.is_stopped() {
             return self.begin();
         }
-        (self.newest, Arc::clone(&self.stop))
+        self.current()
     }
 
-    /// Returns whether the answer of this thread still counts.
+    fn current(&self) -> Reading {
+        Reading {
+            number: self.newest,
+            stop: Arc::clone(&self.stop),
+        }
+    }
+
+    /// Returns whether the answer of a reading still counts.
     pub(super) fn is_newest(&self, number: u64) -> bool {
         self.newest == number
     }
@@ -57,9 +72,9 @@ impl Drop for Reader {
 }
 
 /// Progress of a reading that can be stopped but reports nothing.
-pub(super) struct Untold(pub(super) Arc<AtomicBool>);
+pub(super) struct SilentProgress(pub(super) Arc<AtomicBool>);
 
-impl FolderProgress for Untold {
+impl FolderProgress for SilentProgress {
     fn reading(&self, _: usize, _: usize, _: &str) {}
 
     fn stop(&self) -> Arc<AtomicBool> {

@@ -13,6 +13,7 @@ use gdcm_io::files::study_file::holds_models;
 use gdcm_io::files::user_state::is_first_start;
 use gdcm_model::dataset::BundleKind;
 
+use super::autosave::Autosave;
 use super::background_jobs::BackgroundJobs;
 use super::computation::Computation;
 use super::dialogs::{Dialogs, PendingAction};
@@ -21,7 +22,7 @@ use super::document_files::DocumentFiles;
 use super::keyboard::KeyOrder;
 use super::layout_commands::NextFocus;
 use super::readers::Readers;
-use super::recovery::{Autosave, LAST_WAIT, Recovery};
+use super::recovery::{LAST_WAIT, Recovery};
 use super::threads::ReplySender;
 use super::{Setup, keyboard};
 use crate::gui::commands::assembling::AssemblingCommand;

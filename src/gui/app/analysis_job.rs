@@ -34,6 +34,13 @@ pub(super) struct AnalysisJob {
 }
 
 impl AnalysisJob {
+    /// Returns whether the request contains a proof of this very problem.
+    pub(super) fn has_proof_of(&self, problem: &Arc<Problem>) -> bool {
+        self.proofs
+            .iter()
+            .any(|(proven, _)| Arc::ptr_eq(problem, proven))
+    }
+
     /// Shows the result of the displayed condition before the whole analysis is complete.
     fn send_first(&self, outcome: &Result<ConditionAnalysis, ConditionFailure>) {
         let first = FirstResult {

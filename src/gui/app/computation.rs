@@ -47,11 +47,9 @@ impl GdcmApp {
         let now = self.now();
         let study = &self.state.study;
         let condition = self.state.condition().id();
-        if self
-            .work
-            .requested
-            .as_ref()
-            .is_some_and(|(of, at)| *at == condition && asks_the_same(of, study))
+        if let Some((requested, at)) = &self.work.requested
+            && *at == condition
+            && needs_same_results(requested, study)
         {
             return;
         }
@@ -68,17 +66,17 @@ impl GdcmApp {
         let Some((study, condition)) = self.work.requested.clone() else {
             return;
         };
-        let number = self.work.asked.as_ref().map_or(0, |job| job.number + 1);
-        let generation = self.state.results.requested;
-        let proofs = self.work.proven.clone();
-        let replies = self.work.replies.clone();
+        let number = match &self.work.asked {
+            Some(job) => job.number + 1,
+            None => 0,
+        };
         self.work.asked = Some(AnalysisJob {
             number,
-            generation,
+            generation: self.state.results.requested,
             study,
             condition,
-            proofs,
-            replies,
+            proofs: self.work.proven.clone(),
+            replies: self.work.replies.clone(),
         });
     }
 
@@ -107,24 +105,19 @@ impl GdcmApp {
         let now = self.now();
         let results = &mut self.state.results;
         results.background = self.work.jobs.running_work();
-        results.background.proofs.extend(
-            self.work
-                .proven
-                .iter()
-                .map(|(problem, _)| Arc::clone(problem)),
-        );
-        results.background_since = results
-            .background
-            .is_busy()
-            .then(|| results.background_since.unwrap_or(now));
+        for (problem, _) in &self.work.proven {
+            results.background.proofs.push(Arc::clone(problem));
+        }
+        if results.background.is_busy() {
+            results.background_since.get_or_insert(now);
+        } else {
+            results.background_since = None;
+        }
     }
 
     /// Shows an analysis and requests the jobs that it leaves open.
-    pub(super) fn answered(
-        &mut self,
-        job: AnalysisJob,
-        (analysis, elapsed_ms): (Arc<Analysis>, f64),
-    ) {
+    pub(super) fn answered(&mut self, job: AnalysisJob, answer: (Arc<Analysis>, f64)) {
+        let (analysis, elapsed_ms) = answer;
         let now = self.now();
         let results = &mut self.state.results;
         // A job repeated with a proof has the request number of the original job and took no time.
@@ -135,10 +128,14 @@ impl GdcmApp {
         results.analysis = Some(analysis);
         results.first = None;
         results.stopped &= results.is_behind();
-        results.waiting_since = results.is_waiting().then_some(now);
+        results.waiting_since = if results.is_waiting() {
+            Some(now)
+        } else {
+            None
+        };
         self.work
             .proven
-            .retain(|(of, _)| !job.proofs.iter().any(|(proven, _)| Arc::ptr_eq(of, proven)));
+            .retain(|(problem, _)| !job.has_proof_of(problem));
         self.want_jobs();
     }
 
@@ -161,10 +158,10 @@ impl GdcmApp {
         }
     }
 
-    /// Reports a panic: its effect, the decisions kept, and the details to send.
-    pub(super) fn tell_fault(&mut self, ended: &str, fault: &Fault) {
+    /// Reports a panic: the ended work, the decisions kept, and the details to send.
+    pub(super) fn report_fault(&mut self, work: &str, fault: &Fault) {
         let sentence = format!(
-            "A fault in the program ended {ended}; your decisions are kept and can be saved: please send this message, the \
+            "A fault in the program ended {work}; your decisions are kept and can be saved: please send this message, the \
              saved study and the dataset {} to the program's authors (gdcm {}: {}).",
             self.files.loaded.origin,
             env!("CARGO_PKG_VERSION"),
@@ -180,6 +177,6 @@ impl GdcmApp {
 /// Returns whether two studies need the same results for the identical dataset. Datasets are
 /// compared by pointer: comparing values would take time in every frame, and results belong to one
 /// dataset even if another is equal.
-fn asks_the_same(a: &Study, b: &Study) -> bool {
+fn needs_same_results(a: &Study, b: &Study) -> bool {
     Arc::ptr_eq(&a.dataset, &b.dataset) && a.settings == b.settings && a.choices == b.choices
 }

@@ -127,7 +127,7 @@ impl<'a> JobKinds<'a> {
                     if let Some(withdraw) = withdraw {
                         withdraw(app);
                     }
-                    app.tell_fault("the computation", &fault);
+                    app.report_fault("the computation", &fault);
                 }
             });
         };

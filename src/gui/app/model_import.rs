@@ -23,7 +23,7 @@ use crate::gui::state::assembling::{AssemblyState, Reading};
 use crate::gui::state::forms::FormKind;
 
 /// Bytes of values between two progress reports while a file is read.
-const TOLD_EVERY: u64 = 16 << 20;
+const REPORT_EVERY: u64 = 16 << 20;
 
 /// Files to read: additional ones, or all of them again with other headings.
 #[derive(Clone, Debug)]
@@ -40,23 +40,21 @@ impl Sources {
 }
 
 /// Reports to the window which file is being read.
-struct Teller {
+struct ReadingReport {
     number: u64,
     replies: ReplySender,
     stop: Arc<AtomicBool>,
     /// Bytes of the file's values at the last progress report.
-    told: Cell<u64>,
+    reported: Cell<u64>,
 }
 
-impl Teller {
-    fn tell(&self, change: impl FnOnce(&mut Option<Reading>) + Send + 'static) {
+impl ReadingReport {
+    /// Changes the displayed progress, unless a newer reading has begun.
+    fn send(&self, change: impl FnOnce(&mut Option<Reading>) + Send + 'static) {
         let number = self.number;
         self.replies.send(move |app| {
-            if let Some(bench) = app
-                .state
-                .assembling
-                .as_mut()
-                .filter(|_| app.readers.models.is_newest(number))
+            if app.readers.models.is_newest(number)
+                && let Some(bench) = &mut app.state.assembling
             {
                 change(&mut bench.reading);
             }
@@ -64,22 +62,26 @@ impl Teller {
     }
 }
 
-impl FolderProgress for Teller {
+impl FolderProgress for ReadingReport {
     fn reading(&self, number: usize, of: usize, name: &str) {
-        self.told.set(0);
+        self.reported.set(0);
         let reading = Reading {
             number,
             of,
             name: name.to_owned(),
             taken: 0,
         };
-        self.tell(|shown| *shown = Some(reading));
+        self.send(|shown| *shown = Some(reading));
     }
 
     fn taken(&self, taken: u64) {
-        if taken >= self.told.get() + TOLD_EVERY {
-            self.told.set(taken);
-            self.tell(move |shown| shown.iter_mut().for_each(|reading| reading.taken = taken));
+        if taken >= self.reported.get() + REPORT_EVERY {
+            self.reported.set(taken);
+            self.send(move |shown| {
+                if let Some(reading) = shown {
+                    reading.taken = taken;
+                }
+            });
         }
     }
 
@@ -132,29 +134,30 @@ impl GdcmApp {
 
     /// Reads models in a thread; tables are read with the headings given for them.
     fn read_models(&mut self, sources: Sources) {
-        let headings = self.said().map(|rules| rules.headings).unwrap_or_default();
+        let headings = match self.import_rules() {
+            Some(rules) => rules.headings,
+            None => Default::default(),
+        };
         let reading = self.readers.models.begin();
         let number = reading.number;
-        let teller = Teller {
+        let report = ReadingReport {
             number,
             replies: self.work.replies.clone(),
             stop: reading.stop,
-            told: Cell::new(0),
+            reported: Cell::new(0),
         };
         let read = move || {
-            let found = read_models(sources.paths(), &headings, &teller);
+            let found = read_models(sources.paths(), &headings, &report);
             (sources, found)
         };
         if let Some(bench) = &mut self.state.assembling {
             bench.reading = Some(Reading::default());
         }
         self.in_thread("the reading of models", read, move |app, read| {
-            let Some(bench) = app
-                .state
-                .assembling
-                .as_mut()
-                .filter(|_| app.readers.models.is_newest(number))
-            else {
+            if !app.readers.models.is_newest(number) {
+                return;
+            }
+            let Some(bench) = &mut app.state.assembling else {
                 return;
             };
             bench.reading = None;
@@ -165,6 +168,7 @@ impl GdcmApp {
         });
     }
 
+    /// Adds the models read to the import.
     fn take_models(&mut self, sources: Sources, found: FoundModels) {
         let Some(bench) = &mut self.state.assembling else {
             return;
@@ -179,14 +183,14 @@ impl GdcmApp {
                 paths
             }
         };
-        let name = paths
-            .first()
-            .and_then(|path| path.file_name())
-            .map(|name| name.to_string_lossy().into_owned());
+        let name = match paths.first().and_then(|path| path.file_name()) {
+            Some(name) => name.to_string_lossy().into_owned(),
+            None => String::new(),
+        };
         let models = found.models.len();
         let files = found.files;
         bench.unused.extend(found.unused_words());
-        bench.add(&name.unwrap_or_default(), found.models);
+        bench.add(&name, found.models);
         bench.faults.extend(found.faults);
         bench.ignored.extend(found.ignored);
         bench.tables.extend(found.tables);
@@ -199,14 +203,15 @@ impl GdcmApp {
                 .display()
                 .to_string();
         }
-        let new = paths
-            .into_iter()
-            .filter(|path| !bench.sources.contains(path))
-            .collect::<Vec<_>>();
-        bench.sources.extend(new);
+        for path in paths {
+            if !bench.sources.contains(&path) {
+                bench.sources.push(path);
+            }
+        }
         self.done(format!("{models} models in {files} files"));
     }
 
+    /// Reads rules from a file.
     fn take_rules(&mut self, path: PathBuf) {
         let path = self.files.at_home(path);
         let Some((rules, cautions)) = self.unless_error(load_rules(&path)) else {
@@ -215,26 +220,23 @@ impl GdcmApp {
         if let Some(bench) = &mut self.state.assembling {
             bench.change(rules);
         }
-        let cautions: String = cautions
-            .iter()
-            .map(|caution| format!("; {caution}"))
-            .collect();
-        self.done(format!(
-            "took the rules of {}{cautions}",
-            sanitized_path(&path)
-        ));
+        let mut message = format!("took the rules of {}", sanitized_path(&path));
+        for caution in cautions {
+            message.push_str(&format!("; {caution}"));
+        }
+        self.done(message);
     }
 
-    fn said(&self) -> Option<Rules> {
-        self.state
-            .assembling
-            .as_ref()
-            .map(|bench| bench.assembly().rules().clone())
+    fn import_rules(&self) -> Option<Rules> {
+        let bench = self.state.assembling.as_ref()?;
+        Some(bench.assembly().rules().clone())
     }
 
     /// Writes the rules; asks before overwriting a file.
     fn save_rules(&mut self, path: PathBuf) {
-        let Some(rules) = self.said() else { return };
+        let Some(rules) = self.import_rules() else {
+            return;
+        };
         let path = self.files.at_home(path);
         let saved = self.write_all(&[], |outputs| add_rules(&rules, &path, outputs));
         self.saved_to(

@@ -1,6 +1,7 @@
 //! Recovery of unsaved decisions: the next start offers the decisions of a window that ended
 //! without saving.
 
+use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, SystemTime};
 
@@ -28,6 +29,16 @@ pub(super) struct Recovery {
     pub(super) drawn: Arc<OnceLock<Autosave>>,
     /// Lost studies by the number of the offer, until restored or discarded.
     pub(super) offers: Vec<Option<LostStudy>>,
+}
+
+impl Recovery {
+    /// Returns the number of the offer whose recovery file is `path`.
+    pub(super) fn offer_of(&self, path: &Path) -> Option<usize> {
+        self.offers.iter().position(|offer| match offer {
+            Some(lost) => lost.path() == path,
+            None => false,
+        })
+    }
 }
 
 impl GdcmApp {

@@ -1,6 +1,5 @@
-//! Tools shared by the window and its threads: mailboxes, replies, and panics, which are caught and
-//! reported as sentences instead of raw traces; also the reading threads, which can be stopped, and
-//! of which only the newest for each purpose counts.
+//! Tools shared by the window and its threads: mailboxes, replies, threads for a single task, and
+//! panics, which are caught and reported as sentences instead of raw traces.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
@@ -77,11 +76,11 @@ impl ReplySender {
 }
 
 impl GdcmApp {
-    /// Runs `work`, described by `what`, in its own thread, and lets the window take the result:
-    /// `None` after a fault, or if no thread could be started, both of which are reported first.
+    /// Runs `work` in a thread called `name`, and lets the window take the result: `None` after a
+    /// fault, or if no thread could be started. Both are reported first.
     pub(super) fn in_thread<T: Send + 'static, Work, Take>(
         &self,
-        what: &'static str,
+        name: &'static str,
         work: Work,
         take: Take,
     ) where
@@ -95,22 +94,22 @@ impl GdcmApp {
             let Ok((work, take)) = ordered.recv() else {
                 return;
             };
-            let made = caught(work);
-            replies.send(move |app| {
-                made.as_ref()
-                    .err()
-                    .iter()
-                    .for_each(|fault| app.tell_fault(what, fault));
-                take(app, made.ok());
+            let outcome = caught(work);
+            replies.send(move |app| match outcome {
+                Ok(result) => take(app, Some(result)),
+                Err(fault) => {
+                    app.report_fault(name, &fault);
+                    take(app, None);
+                }
             });
         };
-        match std::thread::Builder::new()
-            .name(what.to_owned())
-            .spawn(thread)
-        {
+        let thread = std::thread::Builder::new()
+            .name(name.to_owned())
+            .spawn(thread);
+        match thread {
             Ok(_) => drop(order.send((work, take))),
             Err(error) => self.work.replies.send(move |app| {
-                app.notify_error(format!("{what} cannot begin: {error}"));
+                app.notify_error(format!("{name} cannot begin: {error}"));
                 take(app, None);
             }),
         }
@@ -189,15 +188,17 @@ pub(super) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
     })
 }
 
+/// Returns the message of a panic, on one line.
 fn message_of(payload: &(dyn Any + Send)) -> String {
-    let text = payload
-        .downcast_ref::<String>()
-        .map(String::as_str)
-        .or_else(|| payload.downcast_ref::<&str>().copied());
-    text.unwrap_or("a fault without a message")
-        .split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ")
+    let text = if let Some(text) = payload.downcast_ref::<String>() {
+        text
+    } else if let Some(text) = payload.downcast_ref::<&str>() {
+        text
+    } else {
+        "a fault without a message"
+    };
+    let words: Vec<&str> = text.split_whitespace().collect();
+    words.join(" ")
 }
 
 #[cfg(test)]
@@ -212,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn the_place_is_told_where_it_is_known() {
+    fn the_place_is_named_if_known() {
         let fault = Fault {
             message: "no".to_owned(),
             place: Some("src/a.rs:3".to_owned()),

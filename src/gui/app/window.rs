@@ -115,16 +115,18 @@ impl GdcmApp {
             next_focus: None,
             title: String::new(),
         };
-        let begins_there =
-            app.state.is_example && app.state.display.layout.opens_with == OpensWith::StartPage;
-        app.state.on_start_page = begins_there && setup.trouble.is_none();
-        setup
-            .trouble
-            .into_iter()
-            .for_each(|words| app.notify_error(words));
-        let is_first =
-            setup.offers_tour && app.files.directory.as_deref().is_some_and(is_first_start);
-        app.state.tour = is_first.then_some(0);
+        app.state.on_start_page = app.state.is_example
+            && app.state.display.layout.opens_with == OpensWith::StartPage
+            && setup.trouble.is_none();
+        if let Some(trouble) = setup.trouble {
+            app.notify_error(trouble);
+        }
+        if setup.offers_tour
+            && let Some(directory) = &app.files.directory
+            && is_first_start(directory)
+        {
+            app.state.tour = Some(0);
+        }
         app.look_for_recent();
         Ok(app)
     }
@@ -134,6 +136,7 @@ impl GdcmApp {
         &self.state
     }
 
+    /// Opens or imports the files dropped on the window.
     fn take_dropped_files(&mut self, commands: &mut Vec<Command>) {
         let dropped = self.ctx.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<PathBuf> = dropped
@@ -142,26 +145,22 @@ impl GdcmApp {
             .collect();
         // A single dataset or study is opened; several files, a folder, and files of other programs
         // are imported as models.
+        let is_importing = self.state.assembling.is_some();
+        let arrangement = &self.state.display.layout.arrangement;
         match paths.as_slice() {
             [] => {}
-            [path] if self.state.assembling.is_none() && !holds_models(path) => {
+            [path] if !is_importing && !holds_models(path) => {
                 commands.push(FileCommand::Open(path.clone()).into())
             }
             // While the records of a condition are shown, dropped files are added to them.
-            _ if self.state.assembling.is_none()
-                && self
-                    .state
-                    .display
-                    .layout
-                    .arrangement
-                    .is_shown(View::Records) =>
-            {
+            _ if !is_importing && arrangement.is_shown(View::Records) => {
                 commands.push(RecordsCommand::Add(paths).into());
             }
             _ => commands.push(AssemblingCommand::Add(paths).into()),
         }
     }
 
+    /// Asks before a closing window loses unsaved decisions.
     fn guard_closing(&mut self) {
         if self.ctx.input(|input| input.viewport().close_requested())
             && self.state.unsaved
@@ -182,6 +181,7 @@ impl GdcmApp {
         }
     }
 
+    /// Draws the bars, the side panels and the middle, or the page that covers them.
     fn panels_ui(&mut self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
         let bar = Frame::new()
             .fill(palette.panel)
@@ -207,25 +207,8 @@ impl GdcmApp {
                 .show(ui, |ui| start_page::start_ui(ui, state, palette, commands));
             return;
         }
-        let is_wide = state.display.layout.is_wide;
         left_ui(ui, state, palette, commands);
-        // The panel's name distinguishes the window widths for which its width was dragged.
-        let (name, width) = if is_wide {
-            ("answer", 352.0)
-        } else {
-            ("answer beside the rail", 320.0)
-        };
-        let side = Frame::new().fill(palette.panel);
-        restore_panel_size(ui, name);
-        let panel = Panel::right(name)
-            .frame(side)
-            .default_size(width)
-            .size_range(300.0..=520.0);
-        panel.show(ui, |ui| {
-            steady_ui(ui, |ui| {
-                answer_panel::answer_ui(ui, state, palette, commands)
-            })
-        });
+        right_ui(ui, state, palette, commands);
         let middle = Frame::new();
         let centre = ui.available_rect_before_wrap();
         CentralPanel::default()
@@ -295,6 +278,26 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
     });
 }
 
+/// Draws the answer.
+fn right_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    // A dragged width applies to windows of the same class of width, hence two names.
+    let (name, width) = if state.display.layout.is_wide {
+        ("answer", 352.0)
+    } else {
+        ("answer beside the rail", 320.0)
+    };
+    restore_panel_size(ui, name);
+    let panel = Panel::right(name)
+        .frame(Frame::new().fill(palette.panel))
+        .default_size(width)
+        .size_range(300.0..=520.0);
+    panel.show(ui, |ui| {
+        steady_ui(ui, |ui| {
+            answer_panel::answer_ui(ui, state, palette, commands)
+        })
+    });
+}
+
 /// Draws content that fills the available space without growing it, so that a panel keeps its
 /// dragged width.
 fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
@@ -307,13 +310,11 @@ fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 
 /// Draws the sheets over the middle of the window.
 fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let asked = state
-        .display
-        .selection
-        .asked
-        .as_ref()
-        .map(|_| Sheet::Derivation);
-    let Some(sheet) = asked.or(state.display.layout.sheet) else {
+    let sheet = if state.display.selection.asked.is_some() {
+        Sheet::Derivation
+    } else if let Some(sheet) = state.display.layout.sheet {
+        sheet
+    } else {
         return;
     };
     let is_closed = sheet_ui(ui, centre, sheet, palette, |ui| match sheet {

@@ -27,6 +27,13 @@ pub enum Reach {
     WithoutFocus,
 }
 
+/// Ctrl, or Command on macOS.
+pub(super) const CTRL: Modifiers = Modifiers::COMMAND;
+pub(super) const CTRL_SHIFT: Modifiers = Modifiers {
+    shift: true,
+    ..Modifiers::COMMAND
+};
+
 /// Entry of a menu or of the palette.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
@@ -50,19 +57,18 @@ impl Entry {
         meaning: &'static str,
         command: impl Into<Command>,
     ) -> Self {
-        let shortcuts = Vec::new();
-        let reach = Reach::Everywhere;
         Self {
             name: name.into(),
             meaning,
-            shortcuts,
-            reach,
+            shortcuts: Vec::new(),
+            reach: Reach::Everywhere,
             menu: None,
             enabled: true,
             command: command.into(),
         }
     }
 
+    /// Adds a shortcut.
     pub fn keys(mut self, modifiers: Modifiers, key: Key) -> Self {
         self.shortcuts.push(KeyboardShortcut::new(modifiers, key));
         self
@@ -74,6 +80,7 @@ impl Entry {
         self.keys(Modifiers::NONE, key)
     }
 
+    /// Puts the entry into a group of a menu.
     pub fn within(mut self, menu: Menu, group: u8) -> Self {
         self.menu = Some((menu, group));
         self
@@ -83,4 +90,15 @@ impl Entry {
         self.enabled = enabled;
         self
     }
+}
+
+/// Puts entries into a group of a menu.
+pub(super) fn group<const N: usize>(
+    menu: Menu,
+    group: u8,
+    entries: [Entry; N],
+) -> impl Iterator<Item = Entry> {
+    entries
+        .into_iter()
+        .map(move |entry| entry.within(menu, group))
 }

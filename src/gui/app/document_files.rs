@@ -59,16 +59,12 @@ impl DocumentFiles {
         format!("{}.{STUDY_EXTENSION}", self.stem())
     }
 
-    /// Returns the stem of the names of files about the dataset.
+    /// Returns the common stem of file names about the dataset.
     pub(super) fn stem(&self) -> String {
-        let stem = self
-            .loaded
-            .path()
-            .and_then(Path::file_stem)
-            .map(|stem| stem.to_string_lossy().into_owned());
-        stem.unwrap_or_else(|| "example".to_owned())
-            .trim_end_matches(".json")
-            .to_owned()
+        match self.loaded.path().and_then(Path::file_stem) {
+            Some(stem) => stem.to_string_lossy().trim_end_matches(".json").to_owned(),
+            None => "example".to_owned(),
+        }
     }
 
     /// Returns the input files, which results never overwrite.

@@ -40,7 +40,8 @@ impl GdcmApp {
             LayoutCommand::SetTheme(theme) => self.ctx.set_theme(theme),
             LayoutCommand::FocusField(name) => {
                 // A collapsed field must be open before it can receive the focus.
-                (display.layout.settings_open, display.layout.advanced_open) = (true, true);
+                display.layout.settings_open = true;
+                display.layout.advanced_open = true;
                 self.focus_next(NextFocus::Field(name));
             }
             LayoutCommand::LeaveRegion { forward } => {
@@ -49,7 +50,7 @@ impl GdcmApp {
             LayoutCommand::StartTour => self.state.tour = Some(0),
             LayoutCommand::ShowTourStep(step) => self.state.tour = step,
             LayoutCommand::ShowStart(is_shown) => self.state.on_start_page = is_shown,
-            LayoutCommand::BeginWith(what) => display.layout.opens_with = what,
+            LayoutCommand::BeginWith(choice) => display.layout.opens_with = choice,
         }
     }
 

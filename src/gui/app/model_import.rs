@@ -203,11 +203,9 @@ impl GdcmApp {
                 .display()
                 .to_string();
         }
-        for path in paths {
-            if !bench.sources.contains(&path) {
-                bench.sources.push(path);
-            }
-        }
+        let mut new = paths;
+        new.retain(|path| !bench.sources.contains(path));
+        bench.sources.extend(new);
         self.done(format!("{models} models in {files} files"));
     }
 

@@ -38,7 +38,8 @@ impl GdcmApp {
 
     /// Reads the dataset's file again; the open dataset stays until it is read.
     pub(super) fn reload(&mut self) {
-        if let Some(path) = self.files.loaded.path().map(ToOwned::to_owned) {
+        if let Some(path) = self.files.loaded.path() {
+            let path = path.to_owned();
             let name = path.display().to_string();
             self.read(ReadFor::Reloading, name, move |budget| {
                 load_dataset_within(&path, budget).map(Opened::Dataset)
@@ -75,13 +76,13 @@ impl GdcmApp {
     /// Selects the file of the study's dataset, after a reload or an undo or redo across one.
     pub(super) fn follow_dataset(&mut self) {
         let dataset = self.state.study.file_dataset();
-        if let Some(index) = self
+        let earlier = self
             .files
             .earlier
-            .iter()
-            .position(|loaded| Arc::ptr_eq(&loaded.dataset, dataset))
-        {
-            std::mem::swap(&mut self.files.loaded, &mut self.files.earlier[index]);
+            .iter_mut()
+            .find(|loaded| Arc::ptr_eq(&loaded.dataset, dataset));
+        if let Some(earlier) = earlier {
+            std::mem::swap(&mut self.files.loaded, earlier);
             self.state
                 .file_cautions
                 .clone_from(&self.files.loaded.cautions);

@@ -14,15 +14,16 @@ impl GdcmApp {
             StudyCommand::Edit(edit) => self.decide(&edit),
             StudyCommand::EndEdit => self.state.history.seal(),
             StudyCommand::Undo => self.take_study(|history, study, records| {
-                history.undo(study, |of| records.exchange(of))
+                history.undo(study, |before| records.exchange(before))
             }),
             StudyCommand::Forget(edit) => self.take_study(|history, _, _| history.forget(&edit)),
             StudyCommand::Redo => self.take_study(|history, study, records| {
-                history.redo(study, |of| records.exchange(of))
+                history.redo(study, |before| records.exchange(before))
             }),
         }
     }
 
+    /// Applies a decision to the study and adds it to the history; reports a refusal.
     pub(super) fn decide(&mut self, edit: &Edit) {
         let before = self.state.study.clone();
         match self.state.study.apply(edit) {

@@ -58,7 +58,7 @@ impl GdcmApp {
         let requested = self.state.results.requested;
         let name = loaded.origin.to_string();
         state.recent = std::mem::take(&mut self.state.recent);
-        Preferences::of(&self.state.display).apply(&mut state.display);
+        Preferences::from_display(&self.state.display).apply(&mut state.display);
         // Offers to restore lost decisions stay; the other bars concern the previous study.
         state.bars = std::mem::take(&mut self.state.bars);
         state.bars.retain(|bar| matches!(bar, Bar::Recovery { .. }));

@@ -352,7 +352,11 @@ pub(super) const PREFERENCES: &str = "preferences";
 
 impl eframe::App for GdcmApp {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        eframe::set_value(storage, PREFERENCES, &Preferences::of(&self.state.display));
+        eframe::set_value(
+            storage,
+            PREFERENCES,
+            &Preferences::from_display(&self.state.display),
+        );
     }
 
     fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {

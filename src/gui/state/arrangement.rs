@@ -23,10 +23,9 @@ pub struct Arrangement {
 
 impl Default for Arrangement {
     fn default() -> Self {
-        let of_groups = [View::Bode, View::Poles, View::Channels, View::Assessment];
         Self {
             group: ViewGroup::Response,
-            of_groups,
+            of_groups: [View::Bode, View::Poles, View::Channels, View::Assessment],
             beside: None,
             dock: View::NetGain,
             dock_open: None,
@@ -52,10 +51,11 @@ impl Arrangement {
 
     /// Returns the view in the dock; `None` if the view in front takes its room.
     pub fn dock(&self) -> Option<View> {
-        let is_free = !self.view().facts().takes_dock
-            && self.view() != self.dock
-            && self.beside() != Some(self.dock);
-        is_free.then_some(self.dock)
+        let is_shown_above = self.view() == self.dock || self.beside() == Some(self.dock);
+        if self.view().facts().takes_dock || is_shown_above {
+            return None;
+        }
+        Some(self.dock)
     }
 
     /// Returns whether the dock is unfolded, given whether the window has room for it.
@@ -112,8 +112,12 @@ impl Arrangement {
 
     /// Returns this stored arrangement if every group shows a view of its own.
     pub fn if_whole(self) -> Option<Self> {
-        let is_of_group = |group: ViewGroup| self.of_groups[group as usize].facts().group == group;
-        ViewGroup::ALL.into_iter().all(is_of_group).then_some(self)
+        for group in ViewGroup::ALL {
+            if self.of_groups[group as usize].facts().group != group {
+                return None;
+            }
+        }
+        Some(self)
     }
 }
 
@@ -122,7 +126,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_view_stands_in_one_group_and_every_group_has_views() {
+    fn every_view_belongs_to_one_group_and_every_group_has_views() {
         let views: Vec<View> = ViewGroup::ALL
             .into_iter()
             .flat_map(ViewGroup::views)
@@ -169,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn an_arrangement_is_kept_and_one_that_mixes_the_groups_up_is_not_taken() {
+    fn a_stored_arrangement_is_restored_unless_it_mixes_the_groups_up() {
         let mut arrangement = Arrangement::default();
         arrangement.show(View::Evidence);
         arrangement.show_beside(Some(View::Bode));

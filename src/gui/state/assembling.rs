@@ -18,7 +18,7 @@ const MOST_STEPS: usize = 200;
 pub struct Reading {
     /// Number of the current file, from 1.
     pub number: usize,
-    /// Total number of files.
+    /// Total file count.
     pub of: usize,
     /// Name of the current file.
     pub name: String,
@@ -33,7 +33,7 @@ pub struct AssemblyState {
     earlier: Vec<Rules>,
     later: Vec<Rules>,
     /// Whether the engineer changed the rules; otherwise they are proposed.
-    are_said: bool,
+    are_changed: bool,
     /// The requested files and folders.
     pub sources: Vec<PathBuf>,
     /// Messages about content that could not be read.
@@ -70,17 +70,14 @@ impl AssemblyState {
     /// Adds models; rules that the engineer has not changed are proposed again. A model found
     /// before replaces its earlier version.
     pub fn add(&mut self, name: &str, found: Vec<FoundModel>) {
-        let mut models: Vec<FoundModel> = self
-            .assembly
-            .parts()
-            .iter()
-            .map(|part| part.found.clone())
-            .collect();
+        let known = self.assembly.parts().iter();
+        let mut models: Vec<FoundModel> = known.map(|part| part.found.clone()).collect();
         models.retain(|model| !found.iter().any(|new| new.key() == model.key()));
         models.extend(found);
-        let rules = match self.are_said {
-            true => self.assembly.rules().clone(),
-            false => proposed_rules(name, &models),
+        let rules = if self.are_changed {
+            self.assembly.rules().clone()
+        } else {
+            proposed_rules(name, &models)
         };
         self.assembly = Assembly::new(models, rules);
         self.selected = self
@@ -133,17 +130,21 @@ impl AssemblyState {
     }
 
     fn put(&mut self, rules: Rules) {
-        self.are_said = true;
+        self.are_changed = true;
         self.assembly = self.assembly.with_rules(rules);
     }
 
     /// Returns the tables, including this one, that need the same units under the same headings.
     pub fn tables_alike(&self, file: &str) -> Vec<&String> {
-        let of = |file: &str| (self.tables.get(file), self.unsaid.get(file));
-        self.tables
-            .keys()
-            .filter(|other| of(other.as_str()) == of(file))
-            .collect()
+        let mut alike = Vec::new();
+        for (other, headings) in &self.tables {
+            if Some(headings) == self.tables.get(file)
+                && self.unsaid.get(other) == self.unsaid.get(file)
+            {
+                alike.push(other);
+            }
+        }
+        alike
     }
 
     /// Returns the indices of the models in table order.

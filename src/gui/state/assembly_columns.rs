@@ -29,16 +29,7 @@ pub const COLUMNS: [Column; 9] = [
     Column {
         heading: "role",
         share: 0.08,
-        cell: |part| {
-            Some(
-                if part.row.left_out {
-                    "not included"
-                } else {
-                    part.row.role?.word()
-                }
-                .to_owned(),
-            )
-        },
+        cell: role_text,
     },
     Column {
         heading: "name",
@@ -79,14 +70,18 @@ pub const COLUMNS: [Column; 9] = [
 
 /// "roll_deg +5, airspeed_kt -10".
 fn trim_text(part: &Part) -> String {
-    let offset = |(coordinate, by): (&String, &f64)| {
-        let sign = if *by > 0.0 { "+" } else { "" };
-        format!("{coordinate} {sign}{}", number(*by))
-    };
-    part.row
-        .perturbation
-        .iter()
-        .map(offset)
-        .collect::<Vec<_>>()
-        .join(", ")
+    let mut offsets = Vec::new();
+    for (coordinate, offset) in &part.row.perturbation {
+        let sign = if *offset > 0.0 { "+" } else { "" };
+        offsets.push(format!("{coordinate} {sign}{}", number(*offset)));
+    }
+    offsets.join(", ")
+}
+
+/// Returns the role of a model, or whether it is left out.
+fn role_text(part: &Part) -> Option<String> {
+    if part.row.left_out {
+        return Some("not included".to_owned());
+    }
+    Some(part.row.role?.word().to_owned())
 }

@@ -87,10 +87,8 @@ impl CurveDisplay {
                 }
             }
             CurveCommand::ShowRoleAlone(role) => {
-                let others: BTreeSet<Role> = Role::ALL
-                    .into_iter()
-                    .filter(|other| *other != role)
-                    .collect();
+                let mut others = BTreeSet::from(Role::ALL);
+                others.remove(&role);
                 self.hidden_roles = if self.hidden_roles == others {
                     Self::hidden_at_first()
                 } else {
@@ -98,7 +96,11 @@ impl CurveDisplay {
                 };
             }
             CurveCommand::RaiseRole(role) => {
-                self.raised = (self.raised != Some(role)).then_some(role)
+                self.raised = if self.raised == Some(role) {
+                    None
+                } else {
+                    Some(role)
+                };
             }
             CurveCommand::ShowBands(wanted) => self.shows_bands = wanted,
             CurveCommand::HideModel(model) => {
@@ -154,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_role_can_be_shown_alone_and_in_front_and_again_as_usual() {
+    fn a_role_is_shown_alone_and_in_front_and_a_second_command_restores_the_others() {
         let mut display = CurveDisplay::default();
         for command in [
             CurveCommand::ShowRoleAlone(Role::Corrected),
@@ -177,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_role_is_a_switch_and_everything_hidden_comes_back_at_once() {
+    fn a_role_is_a_switch_and_a_single_command_shows_everything_hidden() {
         let mut display = CurveDisplay::default();
         display.carry_out(CurveCommand::ToggleRole(Role::Perturbed));
         assert!(display.hidden_roles.contains(&Role::Perturbed));

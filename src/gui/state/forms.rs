@@ -35,9 +35,9 @@ pub enum FormKind {
     Reason,
     /// Path for a table.
     SaveTable,
-    /// What to make of imported models.
+    /// Dataset to make from imported models.
     Models,
-    /// Channels of the records that a dataset consists of, and the path.
+    /// Channels and path of a dataset made from records.
     RecordDataset,
     /// Path and width of a figure.
     SaveFigure,

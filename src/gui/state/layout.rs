@@ -10,7 +10,7 @@ pub struct Layout {
     pub arrangement: Arrangement,
     /// Whether the window is wide enough for full names and words.
     pub is_wide: bool,
-    /// What the program opens with.
+    /// Content of the window at the next start.
     pub opens_with: OpensWith,
     /// Whether the left panel is shown in full; `None` follows the width of the window.
     pub left_open: Option<bool>,

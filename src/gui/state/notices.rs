@@ -5,7 +5,7 @@
 pub enum Bar {
     /// A computation panicked.
     Fault {
-        /// What happened, what was preserved, and what to send to whom.
+        /// The ended work, the kept decisions, and the details to send.
         sentence: String,
     },
     /// Decisions of an earlier window that ended without saving them.

@@ -20,7 +20,7 @@ use crate::gui::widgets::palette::PlotStyle;
 #[serde(default)]
 pub struct Preferences {
     pub arrangement: Option<Arrangement>,
-    /// What the program opens with.
+    /// Content of the window at the next start.
     pub opens_with: OpensWith,
     /// Whether the left panel is shown in full, if chosen.
     pub left_open: Option<bool>,
@@ -41,7 +41,7 @@ pub struct Preferences {
 
 impl Preferences {
     /// Returns the current preferences of a window.
-    pub fn of(display: &Display) -> Self {
+    pub fn from_display(display: &Display) -> Self {
         Self {
             arrangement: Some(display.layout.arrangement.clone()),
             opens_with: display.layout.opens_with,

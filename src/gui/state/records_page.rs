@@ -45,12 +45,12 @@ impl RecordsPage {
             Self::Histories => (
                 "Time",
                 "Time",
-                "Every channel of the chosen record over time; what was bridged or cut is marked",
+                "Every channel of the chosen record over time; bridged and cut samples are marked",
             ),
             Self::Inputs => (
                 "Inputs",
                 "Inputs",
-                "Which input was moved in which record, and up to which frequency",
+                "Excited inputs of each record, and the highest frequency of the excitation",
             ),
             Self::Response => (
                 "Response",
@@ -60,7 +60,7 @@ impl RecordsPage {
             Self::Stabilisation => (
                 "Stabilisation",
                 "Orders",
-                "Poles of the models of every order: those that stay are the aircraft's",
+                "Poles over the model order: poles that stay are the aircraft's",
             ),
             Self::Poles => (
                 "Identified poles",
@@ -70,17 +70,17 @@ impl RecordsPage {
             Self::Fit => (
                 "Fit",
                 "Fit",
-                "How well the model fits each record and output, in frequency and in time",
+                "Fit of the model to each record and output, in frequency and in time",
             ),
             Self::Columns => (
                 "Columns",
                 "Columns",
-                "Which columns of the chosen record are its time and its channels",
+                "Columns of the chosen record with its time and its channels",
             ),
             Self::Conditions => (
                 "Conditions",
                 "Conditions",
-                "What was identified in every condition; a click goes there",
+                "Identified models of every condition; a click shows the condition",
             ),
         }
     }

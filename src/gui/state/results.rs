@@ -39,13 +39,13 @@ impl<'a> Sureness<'a> {
 
     /// Returns the half-width of the error bar: relative, for delays in \[s\].
     pub fn half(&self, scalar: Scalar) -> Option<f64> {
-        self.bar(scalar)
-            .and_then(|(bar, level)| bar.half_width(level))
+        let (bar, level) = self.bar(scalar)?;
+        bar.half_width(level)
     }
 
     /// Returns the confidence level of all error bars.
     pub fn level(&self) -> Option<f64> {
-        self.uncertainty.map(|of| of.level)
+        self.uncertainty.map(|uncertainty| uncertainty.level)
     }
 }
 
@@ -109,7 +109,8 @@ pub struct Results {
     pub analysis: Option<Arc<Analysis>>,
     /// Displayed condition, if it is ahead of that analysis.
     pub first: Option<FirstResult>,
-    /// Costs of constraining or releasing each response of a condition, with their job; see `State::toggles`.
+    /// Costs of constraining or releasing each response of a condition, with their job; see
+    /// `State::toggles`.
     pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
     /// Responses for drawing, with their job; see `State::curves`.
     pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
@@ -191,31 +192,34 @@ impl Results {
     /// Returns whether the displayed condition's result has newer settings than the analysis of all
     /// conditions.
     pub fn first_is_ahead(&self) -> bool {
-        self.analysis.is_some()
-            && self
-                .first
-                .as_ref()
-                .is_some_and(|first| first.generation > self.received)
+        match &self.first {
+            Some(first) => self.analysis.is_some() && first.generation > self.received,
+            None => false,
+        }
     }
 
     /// Returns whether background work has lasted long enough at `now` to be reported.
     pub fn is_background_told(&self, now: f64) -> bool {
-        self.background_since
-            .is_some_and(|since| now - since > BACKGROUND_AFTER_S)
+        match self.background_since {
+            Some(since) => now - since > BACKGROUND_AFTER_S,
+            None => false,
+        }
     }
 
     /// Returns whether the displayed results should be marked as stale at `now` \[s of the window's
     /// clock\].
     pub fn is_stale(&self, now: f64) -> bool {
-        self.stopped
-            || self
-                .waiting_since
-                .is_some_and(|since| now - since > STALE_AFTER_S)
+        let is_late = match self.waiting_since {
+            Some(since) => now - since > STALE_AFTER_S,
+            None => false,
+        };
+        self.stopped || is_late
     }
 }
 
-/// Describes the progress of the error bars.
-pub fn bar_words((done, total): (usize, usize)) -> String {
+/// Describes the progress of the error bars: completed steps, total.
+pub fn bar_words(progress: (usize, usize)) -> String {
+    let (done, total) = progress;
     if total == 0 {
         "error bars …".to_owned()
     } else {

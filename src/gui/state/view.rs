@@ -122,7 +122,7 @@ impl View {
             },
             Self::Error => ViewFacts {
                 name: "Error",
-                purpose: "What the fit sees: the ratio and the phase difference of the response in focus, and G, D and bounds",
+                purpose: "Data of the fit: magnitude ratio and phase difference of the response in focus, with G, D and bounds",
                 figure: Some(FigureKind::Error),
                 ..ViewFacts::PLAIN
             },
@@ -147,7 +147,7 @@ impl View {
             },
             Self::Couplings => ViewFacts {
                 name: "Couplings",
-                purpose: "What mixes the inputs and feeds outputs back, what that is worth, and what it does to the loop",
+                purpose: "Input mixing and output feedback, their benefit, and their effect on the loop",
                 group: ViewGroup::Models,
                 takes_dock: true,
                 is_of_all_conditions: true,
@@ -171,7 +171,7 @@ impl View {
             },
             Self::Assessment => ViewFacts {
                 name: "Assessment",
-                purpose: "What the correction is worth, condition by condition",
+                purpose: "Benefit of the correction, condition by condition",
                 group: ViewGroup::Judge,
                 is_of_all_conditions: true,
                 figure: Some(FigureKind::Assessment),
@@ -179,7 +179,7 @@ impl View {
             },
             Self::Evidence => ViewFacts {
                 name: "Evidence",
-                purpose: "What the scatter of the net gains is made of, which differences are significant, and what the schedule needs",
+                purpose: "Sources of the scatter of the net gains, significant differences, and variables of the schedule",
                 group: ViewGroup::Schedule,
                 takes_dock: true,
                 is_of_all_conditions: true,
@@ -188,13 +188,13 @@ impl View {
             },
             Self::Compare => ViewFacts {
                 name: "Compare",
-                purpose: "Variants: decisions kept under names, beside the present ones",
+                purpose: "Variants: decisions kept under names, beside the present decisions",
                 group: ViewGroup::Judge,
                 ..ViewFacts::PLAIN
             },
             Self::Requirements => ViewFacts {
                 name: "Requirements",
-                purpose: "What a qualification asks of the models: bandwidth and phase delay, modes, summary costs",
+                purpose: "Requirements of a qualification: bandwidth and phase delay, modes, summary costs",
                 group: ViewGroup::Judge,
                 takes_dock: true,
                 is_of_all_conditions: true,
@@ -203,7 +203,7 @@ impl View {
             },
             Self::Leads => ViewFacts {
                 name: "Leads",
-                purpose: "What leads do in each channel, and their price above the band",
+                purpose: "Effect of the leads in each channel, and their price above the band",
                 group: ViewGroup::Schedule,
                 is_docked: true,
                 figure: Some(FigureKind::Leads),

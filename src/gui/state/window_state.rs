@@ -18,12 +18,11 @@ use gdcm_study::stages::uncertainty::Uncertainty;
 use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis, CouplingCorrection, Study};
 
 use super::assembling::AssemblyState;
-use super::assessed_figures::AssessedFigures;
 use super::display::Display;
 use super::forms::Forms;
 use super::notices::{Bar, Notice};
 use super::records::{RecordsBefore, RecordsState};
-use super::results::{FirstResult, Results, Sureness};
+use super::results::{Results, Sureness};
 
 /// Recently opened or saved file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,7 +59,6 @@ pub struct State {
     pub file_cautions: Vec<String>,
     /// Differences between the dataset and the dataset of the saved study.
     pub differences: Vec<Difference>,
-    /// Message shown.
     pub notice: Option<Notice>,
     /// Persistent messages, in bars below the menu.
     pub bars: Vec<Bar>,
@@ -125,7 +123,6 @@ impl State {
         )
     }
 
-    /// Returns the dataset.
     pub fn dataset(&self) -> &Dataset {
         &self.study.dataset
     }
@@ -157,85 +154,106 @@ impl State {
     /// Returns the newest outcome of the displayed condition for this dataset.
     pub fn outcome(&self) -> Option<&Result<ConditionAnalysis, ConditionFailure>> {
         let condition = self.condition().id();
-        let first = self.results.first.as_ref().filter(|first| {
-            first.condition == condition && Arc::ptr_eq(&first.dataset, &self.study.dataset)
-        });
-        first
-            .map(|first| &first.outcome)
-            .or_else(|| self.analysis()?.conditions.get(&condition))
+        if let Some(first) = &self.results.first
+            && first.condition == condition
+            && self.is_shown_dataset(&first.dataset)
+        {
+            return Some(&first.outcome);
+        }
+        self.analysis()?.conditions.get(&condition)
     }
 
     /// Returns whether the results of the other conditions, and everything derived from them,
     /// belong to older settings than the displayed condition's; this is reported beside each of
     /// them.
     pub fn others_are_older(&self) -> bool {
-        let of_this_dataset =
-            |first: &FirstResult| Arc::ptr_eq(&first.dataset, &self.study.dataset);
-        self.results.first_is_ahead()
-            && self.results.first.as_ref().is_some_and(of_this_dataset)
-            && self.analysis().is_some()
+        match &self.results.first {
+            Some(first) => {
+                self.results.first_is_ahead()
+                    && self.is_shown_dataset(&first.dataset)
+                    && self.analysis().is_some()
+            }
+            None => false,
+        }
+    }
+
+    /// Returns whether a result belongs to the displayed dataset. Datasets are compared by pointer:
+    /// results belong to one dataset even if another is equal.
+    fn is_shown_dataset(&self, dataset: &Arc<Dataset>) -> bool {
+        Arc::ptr_eq(dataset, &self.study.dataset)
     }
 
     /// Returns the costs of constraining or releasing each response, if they belong to the
     /// displayed result.
     pub fn toggles(&self) -> Option<&Toggles> {
         let (job, toggles) = self.results.toggles.as_ref()?;
-        job.is_of(self.shown()?).then_some(toggles)
+        if !job.is_of(self.shown()?) {
+            return None;
+        }
+        Some(toggles)
     }
 
     /// Returns the responses of the displayed condition, for drawing.
     pub fn curves(&self) -> Option<&Arc<ConditionCurves>> {
         let (job, curves) = self.results.curves.as_ref()?;
-        let fits = job.condition == self.condition().id()
-            && Arc::ptr_eq(&job.dataset, &self.study.dataset);
-        fits.then_some(curves)
+        if job.condition != self.condition().id() || !self.is_shown_dataset(&job.dataset) {
+            return None;
+        }
+        Some(curves)
     }
 
     /// Returns the modes of every model of the displayed condition.
     pub fn modes(&self) -> Option<&Arc<ConditionModes>> {
         let (job, modes) = self.results.modes.as_ref()?;
-        Arc::ptr_eq(&job.condition, self.condition()).then_some(modes)
+        if !Arc::ptr_eq(&job.condition, self.condition()) {
+            return None;
+        }
+        Some(modes)
     }
 
     /// Returns the requested assessment; until it is ready, an assessment of an older analysis of
     /// the same dataset.
     pub fn assessment(&self) -> Option<&Arc<AssessmentTable>> {
         let (job, table) = self.results.assessment.as_ref()?;
-        let of_this = Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset);
-        (of_this && job.choice == self.assessment_choice()).then_some(table)
+        if !self.is_shown_dataset(&job.analysis.study.dataset)
+            || job.choice != self.assessment_choice()
+        {
+            return None;
+        }
+        Some(table)
     }
 
     /// Returns the assessment to compute.
     pub fn assessment_choice(&self) -> AssessmentChoice {
-        let AssessedFigures {
-            model,
-            correction,
-            average,
-            ..
-        } = self.display.judging.assessed;
+        let assessed = &self.display.judging.assessed;
         AssessmentChoice {
-            model,
-            correction,
-            average: average.unwrap_or(self.study.settings.cost_average),
+            model: assessed.model,
+            correction: assessed.correction,
+            average: assessed.average.unwrap_or(self.study.settings.cost_average),
         }
     }
 
     /// Returns the requirements; until they are ready, those of an older analysis of the same
     /// dataset.
     pub fn requirements(&self) -> Option<&Arc<Requirements>> {
-        let (job, found) = self.results.requirements.as_ref()?;
-        Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset).then_some(found)
+        let (job, requirements) = self.results.requirements.as_ref()?;
+        if !self.is_shown_dataset(&job.analysis.study.dataset) {
+            return None;
+        }
+        Some(requirements)
     }
 
     /// Returns the responses of the displayed condition's models to the test input, or the reason
     /// for their absence; until they are ready, those of an older analysis of the same condition.
     pub fn test_answers(&self) -> Option<&Result<Arc<TestAnswers>, String>> {
-        let (job, found) = self.results.test_answers.as_ref()?;
-        let of_this = Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset);
-        (of_this
-            && (job.condition, job.input)
-                == (self.condition().id(), self.display.selection.pair.input))
-            .then_some(found)
+        let (job, answers) = self.results.test_answers.as_ref()?;
+        if !self.is_shown_dataset(&job.analysis.study.dataset)
+            || job.condition != self.condition().id()
+            || job.input != self.display.selection.pair.input
+        {
+            return None;
+        }
+        Some(answers)
     }
 
     /// Returns the comparison of a job's record with the tolerances, or the reason for its absence;
@@ -244,15 +262,21 @@ impl State {
         &self,
         job: &RecordHistoryJob,
     ) -> Option<&Result<Arc<RecordHistory>, String>> {
-        let (known, found) = self.results.record_history.as_ref()?;
-        (known.condition == job.condition && known.record == job.record).then_some(found)
+        let (known, history) = self.results.record_history.as_ref()?;
+        if known.condition != job.condition || known.record != job.record {
+            return None;
+        }
+        Some(history)
     }
 
     /// Returns the models' responses to all records; until they are ready, those of an older
     /// analysis of the same records.
     pub fn time_histories(&self) -> Option<&Arc<TimeHistories>> {
-        let (job, found) = self.results.time_histories.as_ref()?;
-        (job.records == self.records.history_records()).then_some(found)
+        let (job, histories) = self.results.time_histories.as_ref()?;
+        if job.records != self.records.history_records() {
+            return None;
+        }
+        Some(histories)
     }
 
     /// Returns the couplings requested by the study; if there are none, mixing and feedback, which
@@ -260,7 +284,7 @@ impl State {
     pub fn assessed_couplings(&self) -> CouplingCorrection {
         match self.study.settings.couplings {
             CouplingCorrection::None => CouplingCorrection::MixingAndFeedback,
-            asked => asked,
+            requested => requested,
         }
     }
 
@@ -268,25 +292,35 @@ impl State {
     /// effect under older settings.
     pub fn couplings(&self) -> Option<&AssessedCouplings> {
         let (known, assessed) = self.results.couplings.as_ref()?;
-        let of_this = Arc::ptr_eq(&known.study.dataset, &self.study.dataset);
-        (of_this && known.couplings == self.assessed_couplings()).then_some(assessed)
+        if !self.is_shown_dataset(&known.study.dataset)
+            || known.couplings != self.assessed_couplings()
+        {
+            return None;
+        }
+        Some(assessed)
     }
 
     /// Returns the responses of a model of each condition; until they are ready, those of older
     /// settings.
     pub fn across(&self) -> Option<&Arc<AcrossCurves>> {
         let (job, curves) = self.results.across.as_ref()?;
-        Arc::ptr_eq(&job.dataset, &self.study.dataset).then_some(curves)
+        if !self.is_shown_dataset(&job.dataset) {
+            return None;
+        }
+        Some(curves)
     }
 
     /// Returns the message shown instead of missing curves, or while curves are being renewed.
     pub fn curves_message(&self) -> Option<&'static str> {
         let results = &self.results;
-        match self.curves() {
-            _ if results.is_behind() => Some(results.absence()),
-            Some(_) => None,
-            None if results.background.stopped => Some("not computed"),
-            None => Some("computing …"),
+        if results.is_behind() {
+            Some(results.absence())
+        } else if self.curves().is_some() {
+            None
+        } else if results.background.stopped {
+            Some("not computed")
+        } else {
+            Some("computing …")
         }
     }
 
@@ -298,7 +332,10 @@ impl State {
     /// Returns the newest analysis, if it belongs to the displayed dataset.
     pub fn analysis(&self) -> Option<&Analysis> {
         let analysis = self.results.analysis.as_deref()?;
-        Arc::ptr_eq(&analysis.study.dataset, &self.study.dataset).then_some(analysis)
+        if !self.is_shown_dataset(&analysis.study.dataset) {
+            return None;
+        }
+        Some(analysis)
     }
 
     /// Returns the uncertainty of the newest analysis; `None` until it is computed, besides the
@@ -306,13 +343,20 @@ impl State {
     pub fn uncertainty(&self) -> Option<&Arc<Uncertainty>> {
         let (job, uncertainty) = self.results.uncertainty.as_ref()?;
         self.analysis()?;
-        Arc::ptr_eq(&job.analysis, self.results.analysis.as_ref()?).then_some(uncertainty)
+        if !Arc::ptr_eq(&job.analysis, self.results.analysis.as_ref()?) {
+            return None;
+        }
+        Some(uncertainty)
     }
 
     /// Returns the uncertainty of the displayed condition's values; empty until it is computed, or
     /// if it belongs to older settings.
     pub fn sureness(&self) -> Sureness<'_> {
-        let uncertainty = self.uncertainty().filter(|_| !self.others_are_older());
+        let uncertainty = if self.others_are_older() {
+            None
+        } else {
+            self.uncertainty()
+        };
         Sureness {
             condition: self.condition().id(),
             uncertainty: uncertainty.map(AsRef::as_ref),
@@ -360,15 +404,11 @@ impl State {
         self.display.frequency.fit();
     }
 
-    /// Returns the number of kept models in a bundle of the displayed condition: "14 of 19".
+    /// Counts the kept models in a bundle of the displayed condition: "14 of 19".
     pub fn kept_words(&self, kind: BundleKind) -> String {
         let count = self.condition().bundle(kind).len();
-        let rejected = self
-            .study
-            .choice(self.condition().id())
-            .bundle(kind)
-            .rejected
-            .len();
+        let choice = self.study.choice(self.condition().id());
+        let rejected = choice.bundle(kind).rejected.len();
         format!("{} of {count}", count - rejected)
     }
 
@@ -387,7 +427,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stop_before_the_first_result_leaves_none_and_one_after_it_leaves_that() {
+    fn after_a_stop_the_results_of_this_dataset_stay() {
         let study = Study::new(embedded_example().unwrap().dataset);
         let mut state = State::new(study.clone(), String::new(), Vec::new());
         assert_eq!(state.after_stop(), "there are no results yet");
@@ -403,7 +443,7 @@ mod tests {
         assert_eq!(
             state.after_stop(),
             "there are no results yet",
-            "of the dataset that is shown now"
+            "no results of the displayed dataset"
         );
     }
 }

@@ -1,4 +1,4 @@
-//! The job of the live answer.
+//! The live answer as a job.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -20,28 +20,28 @@ pub(super) type Proof = (Arc<Problem>, Arc<Solution>);
 /// Live answer to the current study and condition. All parts are shared, so a request is cheap.
 #[derive(Clone)]
 pub(super) struct AnalysisJob {
-    /// Number of the job: a proof that arrives later creates another job for the same request.
+    /// Job number: a proof that arrives later creates another job for the same request.
     pub(super) number: u64,
-    /// Number of the request; the newest is the greatest.
+    /// Request number; the newest is the greatest.
     pub(super) generation: u64,
     pub(super) study: Study,
     /// The displayed condition, whose result and curves come first.
     pub(super) condition: ConditionId,
     /// Problems proven since the last answer.
     pub(super) proofs: Vec<Proof>,
-    /// Receives the result of the displayed condition, ahead of the others.
+    /// Receives the displayed condition's result, ahead of the others.
     pub(super) replies: ReplySender,
 }
 
 impl AnalysisJob {
-    /// Returns whether the request contains a proof of this very problem.
+    /// Returns whether the request contains a proof for this very problem.
     pub(super) fn has_proof_of(&self, problem: &Arc<Problem>) -> bool {
         self.proofs
             .iter()
             .any(|(proven, _)| Arc::ptr_eq(problem, proven))
     }
 
-    /// Shows the result of the displayed condition before the whole analysis is complete.
+    /// Shows the displayed condition's result before the whole analysis is complete.
     fn send_first(&self, outcome: &Result<ConditionAnalysis, ConditionFailure>) {
         let first = FirstResult {
             generation: self.generation,
@@ -53,7 +53,7 @@ impl AnalysisJob {
             .send(move |app| app.state.results.first = Some(first));
     }
 
-    /// Returns whether both jobs compare the models at the same frequencies of one condition.
+    /// Returns whether both jobs compare the models at the same frequencies in the same condition.
     fn compares_the_same(&self, other: &Self) -> bool {
         let settings = &self.study.settings;
         let others = &other.study.settings;
@@ -96,7 +96,7 @@ impl Job for AnalysisJob {
         if self.generation == newer.generation {
             return true;
         }
-        // The last step of each condition is its optimum, which depends on other settings too.
+        // The last step in each condition is its optimum, which depends on other settings too.
         let is_compared = total > 0 && done + self.study.dataset.conditions().len() >= total;
         !is_compared && self.compares_the_same(newer)
     }

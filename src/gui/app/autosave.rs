@@ -11,7 +11,7 @@ use gdcm_study::Study;
 
 use super::threads::ReplySender;
 
-/// Folder of the recovery files in the program's directory.
+/// Folder for recovery files in the program's directory.
 const FOLDER: &str = "recovery";
 /// Delay before a retry after a failure, such as a full disk.
 const AGAIN_AFTER: Duration = Duration::from_secs(10);
@@ -30,7 +30,7 @@ pub(super) struct Unsaved {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Kept {
     pub path: PathBuf,
-    /// Time of the decisions in the file.
+    /// Time at which the decisions in the file were taken.
     pub at: SystemTime,
 }
 
@@ -58,7 +58,7 @@ impl Remains {
     }
 }
 
-/// Task of the recovery thread.
+/// Task for the recovery thread.
 pub(super) enum Task {
     /// Keep these decisions, taken at this time.
     Keep(Box<Unsaved>, SystemTime),
@@ -80,7 +80,7 @@ pub struct Autosave {
     tasks: Sender<Task>,
     /// Decisions last kept; `None` once they are saved.
     kept: Arc<Mutex<Option<Kept>>>,
-    /// State of the decisions when the window, and with it the thread, ended.
+    /// Remaining decisions when the window, and with it the thread, ended.
     at_end: Arc<OnceLock<Remains>>,
 }
 
@@ -168,12 +168,12 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 /// Decisions that wait to be kept.
 struct Pending {
     unsaved: Box<Unsaved>,
-    /// Time of the decisions.
+    /// Time at which they were taken.
     decided: SystemTime,
     due: Instant,
 }
 
-/// State of the recovery thread.
+/// Recovery thread.
 struct Keeper {
     folder: Option<PathBuf>,
     keep_after: Duration,
@@ -232,7 +232,7 @@ impl Keeper {
         });
     }
 
-    /// Clears the kept decisions and removes the files of restored ones.
+    /// Clears the kept decisions and removes the files behind restored decisions.
     fn clear(&mut self) -> Result<(), FileError> {
         self.pending = None;
         *locked(&self.kept) = None;
@@ -275,8 +275,8 @@ impl Keeper {
         }
     }
 
-    /// Removes the files of restored decisions, which are kept anew or saved; stops at the first
-    /// fault.
+    /// Removes the files behind restored decisions, which are kept anew or saved; stops at the
+    /// first fault.
     fn remove_restored(&mut self) -> Result<(), FileError> {
         for lost in self.restored.drain(..) {
             lost.remove()?;

@@ -1,20 +1,20 @@
 //! The live answer and the window's other jobs. One table, [`BackgroundJobs::start`], lists every
-//! kind of job with its tools, its trigger and the destination of its output.
+//! kind of job with its tools, its trigger and its destination.
 //!
-//! The kinds share one pool of threads. Order of urgency, and its reasons:
+//! The kinds share a thread pool. Order of urgency, and its reasons:
 //!
-//! | class  | kinds                                   | reason                                     |
-//! |--------|-----------------------------------------|--------------------------------------------|
-//! | answer | live answer                             | follows every drag                         |
-//! | short  | curves, modes                           | first picture of the displayed condition   |
-//! | short  | assessment, conditions, requirements    | tables and plots of the visible views      |
-//! | short  | test input, record in time, simulation  | time responses of the displayed condition  |
-//! | long   | costs of constraining and releasing     | seconds; hints beside the displayed matrix |
-//! | long   | variants, proofs                        | complete the displayed results             |
-//! | long   | couplings, responses to all records     | views with a progress bar                  |
-//! | long   | report                                  | ordered by hand; the study waits in it     |
-//! | long   | error bars                              | repeated after every change                |
-//! | long   | identification                          | minutes; blocks its thread longest         |
+//! | class  | kinds                                  | reason                              |
+//! |--------|----------------------------------------|-------------------------------------|
+//! | answer | live answer                            | follows every drag                  |
+//! | short  | curves, modes                          | first picture of the condition      |
+//! | short  | assessment, conditions, requirements   | tables and plots in visible views   |
+//! | short  | test input, record in time, simulation | time responses in visible views     |
+//! | long   | costs of constraining and releasing    | seconds; hints beside the matrix    |
+//! | long   | variants, proofs                       | complete the displayed results      |
+//! | long   | couplings, responses to all records    | views that show their progress      |
+//! | long   | report                                 | requested explicitly; seconds       |
+//! | long   | error bars                             | repeated after every change         |
+//! | long   | identification                         | minutes; occupies a thread longest  |
 
 use std::io;
 use std::rc::Rc;
@@ -41,7 +41,7 @@ use crate::gui::views::{are_couplings_judged, couplings_job, overlay_job, view_c
 /// Creates an engine, at the start and after a panic, which may leave its caches inconsistent.
 pub type EngineMaker = Arc<dyn Fn() -> Engine + Send + Sync>;
 
-/// Returns the jobs of one kind needed by the visible views.
+/// Returns the jobs, by kind, needed by the visible views.
 macro_rules! needed_jobs {
     ($app:expr, $kind:ident) => {
         $app.work
@@ -103,14 +103,14 @@ impl BackgroundJobs {
     }
 }
 
-/// Makes the engines of the kinds of jobs.
+/// Makes an engine for each kind of job.
 struct Engines {
     make: EngineMaker,
     known: KnownModels,
 }
 
 impl Engines {
-    /// Returns a maker for kinds that work on the current study, which share one response of each
+    /// Returns a maker for kinds that work on the current study, which share the responses of each
     /// model.
     fn sharing(&self) -> impl Fn() -> Engine + Send + Sync + 'static + use<> {
         let make = Arc::clone(&self.make);
@@ -125,7 +125,7 @@ impl Engines {
     }
 }
 
-/// Returns the processor's cores as the tool of a job.
+/// Returns the processor's cores as a tool for jobs.
 fn cores() -> Box<dyn Executor> {
     Box::new(Pool)
 }
@@ -290,7 +290,7 @@ fn needs(state: &State) -> Vec<Need> {
     needs
 }
 
-/// Drops the kept outputs of jobs that are not in `jobs`.
+/// Drops the kept outputs whose job is not in `jobs`.
 fn keep_wanted<J: Job>(kept: &mut Vec<(J, J::Output)>, jobs: &[J]) {
     kept.retain(|(known, _)| jobs.contains(known));
 }
@@ -310,7 +310,7 @@ fn toggles_job(state: &State) -> Option<TogglesJob> {
     Some(TogglesJob { condition })
 }
 
-/// Returns the unproven problems, those of the displayed condition first.
+/// Returns the unproven problems, the displayed condition first.
 fn proof_jobs(state: &State) -> Vec<ProofJob> {
     let Some(analysis) = state.analysis() else {
         return Vec::new();
@@ -331,8 +331,8 @@ fn proof_jobs(state: &State) -> Vec<ProofJob> {
     jobs
 }
 
-/// Returns the job for the error bars of the displayed results. While these are recomputed, or
-/// drawn for the first time, the live answer has all cores.
+/// Returns the job for the displayed results' error bars. While these are recomputed, or drawn for
+/// the first time, the live answer has all cores.
 fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
     let results = &state.results;
     state.analysis()?;

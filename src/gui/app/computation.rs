@@ -1,4 +1,4 @@
-//! Requests for results, and the answers of the threads.
+//! Requests for results, and the answers from the threads.
 
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
@@ -27,7 +27,7 @@ pub(super) struct Computation {
     pub(super) proven: Vec<Proof>,
     /// Jobs needed by the visible views, beside the live answer.
     pub(super) needs: Vec<Need>,
-    /// Study and condition of the newest request.
+    /// Study and condition in the newest request.
     pub(super) requested: Option<(Study, ConditionId)>,
     /// Report being written.
     pub(super) reporting: Option<ReportJob>,
@@ -97,7 +97,7 @@ impl GdcmApp {
         self.work.jobs.resume();
     }
 
-    /// Applies the replies of the threads.
+    /// Applies the replies from the threads.
     pub(super) fn receive(&mut self) {
         while let Ok(reply) = self.work.received.try_recv() {
             reply(self);
@@ -120,7 +120,7 @@ impl GdcmApp {
         let (analysis, elapsed_ms) = answer;
         let now = self.now();
         let results = &mut self.state.results;
-        // A job repeated with a proof has the request number of the original job and took no time.
+        // A job repeated with a proof has the original job's request number and took no time.
         if results.received != job.generation {
             results.elapsed_ms = elapsed_ms;
         }
@@ -148,7 +148,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stores the curves of a condition if they belong to the displayed condition and dataset.
+    /// Stores curves if they belong to the displayed condition and dataset.
     pub(super) fn take_curves(&mut self, job: CurvesJob, curves: Option<Arc<ConditionCurves>>) {
         let Some(curves) = curves else { return };
         let study = &self.state.study;
@@ -175,8 +175,8 @@ impl GdcmApp {
 }
 
 /// Returns whether two studies need the same results for the identical dataset. Datasets are
-/// compared by pointer: comparing values would take time in every frame, and results belong to one
-/// dataset even if another is equal.
+/// compared by pointer: comparing values would take time in every frame, and results belong to a
+/// single dataset even if another is equal.
 fn needs_same_results(a: &Study, b: &Study) -> bool {
     Arc::ptr_eq(&a.dataset, &b.dataset) && a.settings == b.settings && a.choices == b.choices
 }

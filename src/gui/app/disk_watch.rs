@@ -1,4 +1,4 @@
-//! Thread that detects changes of the open dataset's file.
+//! Thread that detects changes in the open dataset's file.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -8,7 +8,7 @@ use gdcm_io::source::{FileStamp, file_sha256};
 
 use super::threads::ReplySender;
 
-/// New content of a file.
+/// New file content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Seen {
     pub(super) path: PathBuf,
@@ -45,13 +45,13 @@ impl DiskWatch {
     }
 }
 
-/// Known state of the watched file.
+/// Known state for the watched file.
 #[derive(Default)]
 struct Known {
     path: PathBuf,
     /// Stamp at the last check.
     stamp: Option<FileStamp>,
-    /// Stamp at the last read of its bytes.
+    /// Stamp when its bytes were last read.
     read: Option<FileStamp>,
     sha256: Option<String>,
 }

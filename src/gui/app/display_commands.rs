@@ -1,4 +1,4 @@
-//! Carries out changes to the content of the views.
+//! Carries out changes to view contents.
 
 use super::GdcmApp;
 use crate::gui::commands::display::DisplayCommand;

@@ -1,4 +1,4 @@
-//! Opening and saving, the desktop's file dialogs, and the list of recent files. Slow operations
+//! Opening and saving, the desktop's file dialogs, and the recent-files list. Slow operations
 //! run in threads, so the window never blocks.
 
 use std::path::{Path, PathBuf};
@@ -74,14 +74,14 @@ impl GdcmApp {
         self.done(format!("opened {name}"));
     }
 
-    /// Puts the open study, or else the open dataset, first in the list of recent files.
+    /// Puts the open study, or else the open dataset, first in the recent-files list.
     pub(super) fn look_for_recent(&self) {
         let study = self.files.saved.path.as_deref();
         let newest = study.or(self.files.loaded.path());
         self.read_recent(newest.map(Path::to_owned));
     }
 
-    /// Reads the list of recent files and checks which of them exist; puts `newest` first. Runs in
+    /// Reads the recent-files list and checks which files exist; puts `newest` first. Runs in
     /// its own thread, because a network drive may be slow.
     pub(super) fn read_recent(&self, newest: Option<PathBuf>) {
         let Some(directory) = self.files.directory.clone() else {
@@ -96,7 +96,7 @@ impl GdcmApp {
     }
 
     /// Opens a dataset or a study; the open study stays until the file is read. `moved` is the new
-    /// path of a study's dataset.
+    /// path for a study's dataset.
     pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>) {
         let path = self.files.at_home(path);
         let moved = moved.map(|dataset| self.files.at_home(dataset));
@@ -118,7 +118,7 @@ impl GdcmApp {
         });
     }
 
-    /// Reads a file in its own thread, within the budget of a file; replaces a reading under way.
+    /// Reads a file in its own thread, within the budget for a file; replaces a reading under way.
     pub(super) fn read(
         &mut self,
         purpose: ReadFor,
@@ -191,7 +191,7 @@ impl GdcmApp {
         self.save();
     }
 
-    /// Carries out the action postponed because of unsaved decisions.
+    /// Carries out the action that unsaved decisions have postponed.
     pub(super) fn go_on(&mut self) {
         self.dialogs.goes_on_once_saved = false;
         match self.dialogs.postponed.take() {
@@ -214,7 +214,7 @@ impl GdcmApp {
         }
     }
 
-    /// Opens a file dialog of the desktop unless one is open; a save dialog proposes `file_name`.
+    /// Opens a desktop file dialog unless a dialog is open; a save dialog proposes `file_name`.
     pub(super) fn ask_path(&mut self, purpose: DialogPurpose, file_name: String) {
         if self.dialogs.dialog_open {
             return;
@@ -325,7 +325,7 @@ impl GdcmApp {
     }
 }
 
-/// Puts `newest` first in the list of recent files, and reads the list.
+/// Puts `newest` first in the recent-files list, and reads the list.
 fn read_recent_files(
     directory: &Path,
     newest: Option<&Path>,
@@ -339,7 +339,7 @@ fn read_recent_files(
         .collect())
 }
 
-/// Returns the file name of a study, or a substitute.
+/// Returns a study's file name, or a substitute.
 pub(super) fn study_name(path: Option<&Path>) -> String {
     match path.and_then(Path::file_name) {
         Some(name) => sanitized(&name.to_string_lossy()),
@@ -347,7 +347,7 @@ pub(super) fn study_name(path: Option<&Path>) -> String {
     }
 }
 
-/// Adds the extension of studies, unless the name ends in ".json".
+/// Adds the study extension, unless the name ends in ".json".
 fn with_study_extension(path: PathBuf) -> PathBuf {
     let name = path
         .file_name()
@@ -374,7 +374,7 @@ fn recent_file(path: PathBuf) -> RecentFile {
     }
 }
 
-/// Shows a file dialog of the desktop; returns `None` if nothing was chosen.
+/// Shows a desktop file dialog; returns `None` if nothing was chosen.
 fn dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
     let dialog = rfd::FileDialog::new();
     match purpose {

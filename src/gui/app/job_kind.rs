@@ -1,4 +1,4 @@
-//! A kind of job: its trigger, the destination of its output, and its queue.
+//! A kind of job: its trigger, the destination for its output, and its queue.
 
 use gdcm_study::jobs::job::Job;
 
@@ -8,17 +8,17 @@ use super::job_queue::{Ending, JobQueue};
 use super::threads::ReplySender;
 use crate::gui::state::results::Background;
 
-/// One kind of job.
+/// A kind of job.
 pub(super) struct JobKind<J: Job> {
     /// Returns the jobs needed by the current display, the most urgent first; jobs no longer needed
     /// are cancelled.
     pub(super) wanted: fn(&mut GdcmApp) -> Vec<J>,
-    /// Stores the output of a job.
+    /// Stores a job's output.
     pub(super) store: fn(&mut GdcmApp, J, J::Output),
     /// Reports running work.
     pub(super) report: fn(&JobQueue<J>, &mut Background),
-    /// Withdraws the request of a job with its own trigger after a stop or a fault; that trigger,
-    /// not "Compute", starts it again.
+    /// Withdraws a request with its own trigger after a stop or a fault; that trigger, not
+    /// "Compute", starts it again.
     pub(super) withdraw: Option<fn(&mut GdcmApp)>,
 }
 
@@ -37,20 +37,20 @@ impl<J: Job> JobKind<J> {
         }
     }
 
-    /// Replaces the report of running work.
+    /// Replaces the report about running work.
     pub(super) fn with_report(mut self, report: fn(&JobQueue<J>, &mut Background)) -> Self {
         self.report = report;
         self
     }
 
-    /// Gives the jobs a trigger of their own, which `withdraw` resets.
+    /// Gives the jobs their own trigger, which `withdraw` resets.
     pub(super) fn with_withdrawal(mut self, withdraw: fn(&mut GdcmApp)) -> Self {
         self.withdraw = Some(withdraw);
         self
     }
 }
 
-/// Common interface of all kinds of jobs.
+/// Interface common to all kinds of jobs.
 pub(super) trait AnyJobKind {
     /// Requests exactly the jobs that the display needs.
     fn want(&self, app: &mut GdcmApp);
@@ -90,7 +90,7 @@ impl<J: Job> AnyJobKind for QueuedKind<J> {
     }
 }
 
-/// The kinds of jobs in one pool, in the order of urgency.
+/// The kinds of jobs in a pool, the most urgent first.
 pub(super) struct JobKinds<'a> {
     pool: &'a JobPool,
     replies: &'a ReplySender,
@@ -106,8 +106,8 @@ impl<'a> JobKinds<'a> {
         }
     }
 
-    /// Adds a kind that is less urgent than every earlier one. `make_tools` creates the tools of
-    /// its jobs.
+    /// Adds a kind that is less urgent than all before. `make_tools` creates the tools for its
+    /// jobs.
     pub(super) fn add<J: Job>(
         &mut self,
         class: LaneClass,

@@ -1,5 +1,5 @@
-//! Pool of threads for the window's background work. Each kind of job waits in a lane of its own,
-//! and a free thread runs the next job of the most urgent waiting lane that it may serve.
+//! Thread pool for the window's background work. Each kind of job waits in its own lane, and a free
+//! thread runs the next job of the most urgent waiting lane that it may serve.
 
 use std::num::NonZero;
 use std::sync::Arc;
@@ -7,16 +7,16 @@ use std::{io, thread};
 
 use super::threads::Mailbox;
 
-/// Queue of jobs that run one after the other.
+/// Queue whose jobs run in sequence.
 pub(super) trait Lane: Send + Sync {
-    /// Starts the next job; returns `false` if no job waits, or if a job of this lane is running.
+    /// Starts the next job; returns `false` if no job waits, or if a job from this lane is running.
     fn begin(&self) -> bool;
 
     /// Runs the started job to its end.
     fn run(&self);
 }
 
-/// Class of a lane by the duration of its jobs; decides which threads serve it.
+/// Lane class by job duration; decides which threads serve it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LaneClass {
     /// The live answer.
@@ -27,7 +27,7 @@ pub(super) enum LaneClass {
     Long,
 }
 
-/// Threads of a pool by the lanes that they serve.
+/// Pool threads by the lanes that they serve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Server {
     /// Reserved for the live answer.
@@ -53,7 +53,7 @@ struct PooledLane {
     lane: Arc<dyn Lane>,
 }
 
-/// Lanes of a pool, the most urgent first.
+/// Lanes in a pool, the most urgent first.
 #[derive(Default)]
 struct Schedule {
     lanes: Vec<PooledLane>,
@@ -72,14 +72,14 @@ impl Schedule {
     }
 }
 
-/// Wakes the threads of a pool.
+/// Wakes the pool's threads.
 #[derive(Clone)]
 pub(super) struct Waker {
     schedule: Arc<Mailbox<Schedule>>,
 }
 
 impl Waker {
-    /// Lets the free threads look for waiting jobs. The caller holds no lock of a lane, because a
+    /// Lets the free threads look for waiting jobs. The caller holds no lane's lock, because a
     /// thread locks the schedule first and a lane second.
     pub(super) fn wake(&self) {
         self.schedule.change(|_| ());
@@ -93,8 +93,8 @@ pub(super) struct JobPool {
 }
 
 impl JobPool {
-    /// Starts one thread for the live answer, one for short jobs, and one per processor core for
-    /// all lanes but the live answer.
+    /// Starts a thread for the live answer, a thread for short jobs, and a thread per processor
+    /// core for all lanes but the live answer.
     ///
     /// # Errors
     /// The operating system's reason, if a thread cannot be started.
@@ -124,7 +124,7 @@ impl JobPool {
         Ok(())
     }
 
-    /// Adds a lane that is less urgent than every earlier one; returns the waker to call when a job
+    /// Adds a lane that is less urgent than all before; returns the waker to call when a job
     /// waits in it.
     pub(super) fn add_lane(&self, class: LaneClass, lane: Arc<dyn Lane>) -> Waker {
         let pooled = PooledLane { class, lane };

@@ -1,5 +1,5 @@
-//! Queue for the jobs of one kind: a lane of the job pool, in which they run one after the other.
-//! Equal jobs are identical: running, finished and stopped jobs are recognised by equality.
+//! Queue for a kind of job: a lane in the job pool, whose jobs run in sequence. Equal jobs are
+//! identical: running, finished and stopped jobs are recognised by equality.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -11,13 +11,13 @@ use gdcm_study::jobs::job::Job;
 use super::job_pool::{JobPool, Lane, LaneClass, Waker};
 use super::threads::{Fault, caught};
 
-/// Output of a job, or the fault that ended it; a cancelled job has no ending.
+/// A job's output, or the fault that ended it; a cancelled job has no ending.
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
 
 /// How long an unwanted job may continue: during a drag, every output is worth showing.
 const CANCEL_GRACE: Duration = Duration::from_millis(60);
 
-/// Progress of a job, and whether it is still wanted.
+/// Progress, and whether the job is still wanted.
 #[derive(Debug)]
 struct Run {
     started: Instant,
@@ -38,7 +38,7 @@ impl Run {
         }
     }
 
-    /// Returns the number of completed steps and the total.
+    /// Returns completed and total steps.
     fn steps(&self) -> (usize, usize) {
         (
             self.done.load(Ordering::Relaxed),
@@ -98,7 +98,7 @@ impl<J: Job> Orders<J> {
             .filter(|job| !self.done.contains(job) && !self.stopped.contains(job))
     }
 
-    /// Returns the job to start next, once the last one has ended and its ending is delivered.
+    /// Returns the job to start next, once the last job's ending is delivered.
     fn next_job(&self) -> Option<&J> {
         if self.closed || self.is_served {
             return None;
@@ -113,10 +113,10 @@ impl<J: Job> Orders<J> {
     }
 }
 
-/// Orders, tools and delivery of the jobs of one kind.
+/// Orders, tools and delivery for a kind of job.
 struct JobLane<J: Job> {
     orders: Mutex<Orders<J>>,
-    /// Tools kept from one job to the next; `None` before the first job and during a job.
+    /// Tools kept between jobs; `None` before the first job and during a job.
     tools: Mutex<Option<J::Tools>>,
     make_tools: Box<dyn Fn() -> J::Tools + Send + Sync>,
     deliver: Box<dyn Fn(J, Ending<J>) + Send + Sync>,
@@ -145,7 +145,7 @@ impl<J: Job> JobLane<J> {
         Ok(outcome)
     }
 
-    /// Records the end of the running job: complete, stopped by a fault, or cancelled.
+    /// Records that the running job has ended: complete, stopped by a fault, or cancelled.
     fn finish(&self, job: &J, ending: Option<&Ending<J>>) {
         let mut orders = self.orders();
         orders.running = None;
@@ -192,7 +192,7 @@ where
     }
 }
 
-/// Queue for the jobs of one kind. Dropping it cancels the running job without waiting.
+/// Queue for a kind of job. Dropping it cancels the running job without waiting.
 pub(super) struct JobQueue<J: Job> {
     lane: Arc<JobLane<J>>,
     waker: Waker,

@@ -1,4 +1,4 @@
-//! Keys: the shortcuts of the command table, and typed text, which reaches the intended field
+//! Keys: the shortcuts in the command table, and typed text, which reaches the intended field
 //! however slow the frames are.
 
 use std::cmp::Reverse;
@@ -11,13 +11,13 @@ use crate::gui::commands::entry::Reach;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::focus::was_focused;
 
-/// Returns the commands of the keys pressed since the last frame.
+/// Returns the commands for keys pressed since the last frame.
 pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {
     if !is_any_key_pressed(ctx) {
         return Vec::new();
     }
     let mut shortcuts = active_shortcuts(ctx, state);
-    // A shortcut without Shift or Alt also matches the keys of a shortcut with them, so shortcuts
+    // A shortcut without Shift or Alt also matches the keys for a shortcut with them, so shortcuts
     // with more modifiers come first.
     shortcuts.sort_by_key(|active| {
         let modifiers = active.keys.modifiers;
@@ -47,7 +47,7 @@ struct ActiveShortcut {
     command: Command,
 }
 
-/// Returns the shortcuts of the enabled entries that are within reach of the focus.
+/// Returns the shortcuts of enabled entries that the focus allows.
 fn active_shortcuts(ctx: &Context, state: &State) -> Vec<ActiveShortcut> {
     let is_focused = ctx.memory(|memory| memory.focused().is_some());
     let is_free = !is_focused
@@ -76,8 +76,8 @@ fn active_shortcuts(ctx: &Context, state: &State) -> Vec<ActiveShortcut> {
 
 /// Forwards keyboard and pointer events in their original order.
 ///
-/// If a frame takes long, "3", Tab and "4" arrive in one frame, in which only one field has the
-/// focus. Events that move the focus therefore get a frame of their own, and text typed after them
+/// If a frame takes long, "3", Tab and "4" arrive in the same frame, in which a single field has
+/// the focus. Events that move the focus therefore get their own frame, and text typed after them
 /// goes to a later frame. After Tab another frame passes: a widget that receives the focus
 /// backwards learns of it only in the next frame, and selects its text, to be replaced, at the end
 /// of that frame.
@@ -100,7 +100,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// Returns the kind of an event; `None` for events that may come in any frame.
+    /// Returns an event's kind; `None` for events that may come in any frame.
     fn from_event(event: &Event) -> Option<Self> {
         match event {
             Event::Key {

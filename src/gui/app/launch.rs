@@ -31,26 +31,26 @@ use crate::gui::commands::file::FileCommand;
 use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::preferences::Preferences;
 
-/// Application id on the desktop, and name of the data directory.
+/// Application id on the desktop, and data directory.
 pub(super) const APP_ID: &str = "gdcm";
 /// Exit status if the window could not be opened or panicked.
 const NO_WINDOW: u8 = 1;
 /// Exit status for a wrong file.
 const WRONG_FILE: u8 = 2;
 
-/// Setup of a window; tests use other values than the program.
+/// Window setup; tests use other values than the program.
 #[derive(Clone)]
 pub struct Setup {
     pub engine: EngineMaker,
-    /// Directory of the recovery files and of the list of recent files; `None` keeps neither.
+    /// Directory for recovery files and the recent-files list; `None` keeps neither.
     pub directory: Option<PathBuf>,
-    /// Expansion of `~` in typed paths; without it, `~` stays.
+    /// Expansion for `~` in typed paths; without it, `~` stays.
     pub home: Option<PathBuf>,
     /// Whether the first start offers the guided tour.
     pub offers_tour: bool,
     /// Maximum delay between a change and its copy in the recovery file.
     pub keep_after: Duration,
-    /// Interval between checks of the dataset's file.
+    /// Interval between checks on the dataset's file.
     pub look_every: Duration,
     pub preferences: Preferences,
     /// Problem found before the window was opened; shown first.
@@ -75,7 +75,7 @@ impl Default for Setup {
 }
 
 impl Setup {
-    /// Returns the setup of the program, with the directories given by the platform.
+    /// Returns the program's setup, with the directories given by the platform.
     pub(super) fn of_program() -> Self {
         Self {
             directory: eframe::storage_dir(APP_ID),
@@ -92,7 +92,7 @@ impl Setup {
 /// Without a display, or if the window cannot be created, one line on standard error reports it and
 /// names the headless command.
 ///
-/// A folder, or a file of another program, is opened to import its models.
+/// A folder, or a file from another program, is opened to import its models.
 pub fn open(path: Option<PathBuf>) -> ExitCode {
     let request = Request::new(path);
     let command = request.headless_command();
@@ -130,11 +130,11 @@ fn fail(message: &str) -> ExitCode {
     ExitCode::from(NO_WINDOW)
 }
 
-/// Path of the command line, by its use.
+/// Path from the command line, by its use.
 struct Request {
     /// A dataset or a study; `None` opens the example.
     dataset: Option<PathBuf>,
-    /// A folder, or a file of another program, to import its models.
+    /// A folder, or a file from another program, to import its models.
     models: Option<PathBuf>,
 }
 
@@ -198,9 +198,9 @@ fn ending(
 
 /// The requested study, or else the example.
 struct Loaded {
-    /// The study to open, or the fault of the example.
+    /// The study to open, or the fault in the example.
     opened: Result<Opened, String>,
-    /// Fault of the requested file, in which case the window opens the example.
+    /// Fault in the requested file, in which case the window opens the example.
     trouble: Option<String>,
 }
 
@@ -311,7 +311,7 @@ fn last_opened(setup: &Setup) -> Option<PathBuf> {
         .find(|path| file_exists(path))
 }
 
-/// Usable zoom factors of a window.
+/// Usable zoom factors.
 const ZOOM: RangeInclusive<f64> = 0.2..=5.0;
 
 /// Replaces an unusable zoom factor in the preferences with 1; returns a caution about it.

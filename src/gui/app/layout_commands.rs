@@ -1,4 +1,4 @@
-//! Carries out changes to the places of views, panels and the focus.
+//! Carries out changes to the layout and the focus.
 
 use super::GdcmApp;
 use crate::gui::commands::layout::LayoutCommand;
@@ -6,12 +6,12 @@ use crate::gui::state::arrangement::Arrangement;
 use crate::gui::widgets::controls::focus_field;
 use crate::gui::widgets::focus::leave_region;
 
-/// Target of the focus.
+/// Focus target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NextFocus {
     /// The field with this name.
     Field(&'static str),
-    /// The next or the previous region of the window.
+    /// The next or the previous window region.
     Region { forward: bool },
 }
 

@@ -1,4 +1,4 @@
-//! Importing models from files: reads them in a thread and applies the commands of the assembling
+//! Importing models from files: reads them in a thread and applies the commands from the assembling
 //! view.
 
 use std::cell::Cell;
@@ -22,10 +22,10 @@ use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::state::assembling::{AssemblyState, Reading};
 use crate::gui::state::forms::FormKind;
 
-/// Bytes of values between two progress reports while a file is read.
+/// Bytes read between two progress reports.
 const REPORT_EVERY: u64 = 16 << 20;
 
-/// Files to read: additional ones, or all of them again with other headings.
+/// Files to read: additional files, or all files again with other headings.
 #[derive(Clone, Debug)]
 enum Sources {
     More(Vec<PathBuf>),
@@ -44,7 +44,7 @@ struct ReadingReport {
     number: u64,
     replies: ReplySender,
     stop: Arc<AtomicBool>,
-    /// Bytes of the file's values at the last progress report.
+    /// Bytes read at the last progress report.
     reported: Cell<u64>,
 }
 
@@ -91,7 +91,7 @@ impl FolderProgress for ReadingReport {
 }
 
 impl GdcmApp {
-    /// Carries out a command of the assembling view.
+    /// Carries out a command from the assembling view.
     pub(super) fn assemble(&mut self, command: AssemblingCommand) {
         let bench = self
             .state

@@ -23,7 +23,7 @@ use crate::gui::views::figure_button::tables_in_place;
 use crate::gui::views::figures::{figure_name, figure_of};
 
 impl GdcmApp {
-    /// Writes the corrections of the conditions selected in the form.
+    /// Writes the corrections for the conditions selected in the form.
     pub(super) fn export(&mut self) {
         let Some(analysis) = self.complete_results() else {
             return;
@@ -95,7 +95,7 @@ impl GdcmApp {
         );
     }
 
-    /// Returns the proven analysis of the current study, with the error bars computed so far;
+    /// Returns the current study's proven analysis, with the error bars computed so far;
     /// reports an error if it is incomplete.
     fn complete_results(&mut self) -> Option<Arc<Analysis>> {
         let analysis = self.unless_error(self.analysis_to_write("export"))?;
@@ -119,7 +119,7 @@ impl GdcmApp {
         }
     }
 
-    /// Returns the suffix of `absent_bars` for a view; figures show error bars as soon as they are
+    /// Returns the `absent_bars` suffix for a view; figures show error bars as soon as they are
     /// computed.
     fn absent_bars_of(&self, view: View) -> &'static str {
         let shows_bars = view.figure().is_some_and(FigureKind::takes_bars)
@@ -127,7 +127,7 @@ impl GdcmApp {
         self.absent_bars(!shows_bars || self.state.uncertainty().is_some())
     }
 
-    /// Returns the complete analysis of the current decisions, or a sentence that explains why
+    /// Returns the complete analysis for the current decisions, or a sentence that explains why
     /// there is none. `action` is to be repeated later.
     pub(super) fn analysis_to_write(&self, action: &str) -> Result<Arc<Analysis>, String> {
         let results = &self.state.results;
@@ -150,7 +150,7 @@ impl GdcmApp {
         }
     }
 
-    /// Copies the numbers of a view to the clipboard.
+    /// Copies a view's numbers to the clipboard.
     pub(super) fn copy_figure(&mut self, view: View) {
         let tables = match tables_in_place(&self.state, view) {
             Some(tables) => tables,
@@ -167,7 +167,7 @@ impl GdcmApp {
         ));
     }
 
-    /// Asks where to save a view; proposes the folder of the last figure.
+    /// Asks where to save a view; proposes the last figure's folder.
     pub(super) fn ask_save_figure(&mut self, view: View, format: FigureFormat) {
         // Tables are saved as numbers, whatever the figure format.
         let format = if tables_in_place(&self.state, view).is_some() {
@@ -215,7 +215,7 @@ impl GdcmApp {
         self.written(written.map(|()| message), FormKind::SaveFigure, again);
     }
 
-    /// Returns the figure of a view; reports an error if there is none yet.
+    /// Returns a view's figure; reports an error if there is none yet.
     fn figure_of(&mut self, view: View) -> Option<Figure> {
         let figure = figure_of(&self.state, view);
         if figure.is_none() {
@@ -239,7 +239,7 @@ impl GdcmApp {
         self.state.forms.shown = Some(FormKind::SaveTable);
     }
 
-    /// Saves a table of the window as CSV; asks before overwriting a file.
+    /// Saves a table as CSV; asks before overwriting a file.
     pub(super) fn save_table(&mut self, table: Arc<Table>, path: PathBuf) {
         let path = self.files.at_home(path);
         let written = save_tables(std::slice::from_ref(&*table), &path, self.outputs());

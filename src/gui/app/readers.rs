@@ -1,11 +1,11 @@
-//! Threads that read files, each replaceable by a newer one.
+//! Threads that read files; a newer reading may replace an older reading.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use gdcm_io::FolderProgress;
 
-/// The newest reading thread for one purpose, or several in parallel.
+/// The newest reading thread for a purpose, or several in parallel.
 #[derive(Default)]
 pub(super) struct Reader {
     newest: u64,
@@ -14,21 +14,21 @@ pub(super) struct Reader {
 
 /// A reading under way.
 pub(super) struct Reading {
-    /// Number of the reading; its answer counts while this is the newest number.
+    /// Reading number; the answer counts while this is the newest.
     pub(super) number: u64,
     /// Set once the reading should stop.
     pub(super) stop: Arc<AtomicBool>,
 }
 
 impl Reader {
-    /// Starts a reading that replaces the current one.
+    /// Starts a reading that replaces the current reading.
     pub(super) fn begin(&mut self) -> Reading {
         self.give_up();
         self.stop = Arc::default();
         self.current()
     }
 
-    /// Starts a reading beside the current one; both have the same number and stop together.
+    /// Starts a reading beside the current reading; both have the same number and stop together.
     pub(super) fn join(&mut self) -> Reading {
         if self.is_stopped() {
             return self.begin();
@@ -43,7 +43,7 @@ impl Reader {
         }
     }
 
-    /// Returns whether the answer of a reading still counts.
+    /// Returns whether a reading's answer still counts.
     pub(super) fn is_newest(&self, number: u64) -> bool {
         self.newest == number
     }
@@ -71,7 +71,7 @@ impl Drop for Reader {
     }
 }
 
-/// Progress of a reading that can be stopped but reports nothing.
+/// Progress for a reading that can be stopped but reports nothing.
 pub(super) struct SilentProgress(pub(super) Arc<AtomicBool>);
 
 impl FolderProgress for SilentProgress {
@@ -82,7 +82,7 @@ impl FolderProgress for SilentProgress {
     }
 }
 
-/// Readers of the window, one for each kind of file.
+/// The window's readers, by kind of file.
 #[derive(Default)]
 pub(super) struct Readers {
     /// Reads imported models.

@@ -1,4 +1,4 @@
-//! Carries out the commands of the Records view. Edits of records are undoable.
+//! Carries out the commands from the Records view. Edits are undoable.
 
 use std::sync::Arc;
 
@@ -63,7 +63,7 @@ impl GdcmApp {
         }
     }
 
-    /// Applies an edit to the records of a condition as one undoable step.
+    /// Applies an edit to a condition's records as an undoable step.
     fn edit_records(&mut self, condition: ConditionId, command: RecordsCommand) {
         let channels = self.record_channels(condition);
         let before = self.state.records.before([condition]);
@@ -82,14 +82,14 @@ impl GdcmApp {
         }
     }
 
-    /// Adds an edit of records to the history.
+    /// Adds an edit to the history.
     pub(super) fn record_edited(&mut self, label: String, before: RecordsBefore) {
         let study = self.state.study.clone();
         self.state.history.record_beside(study, label, before);
         self.state.notice = None;
     }
 
-    /// Applies a layout to one record, and to every record whose columns have the same names.
+    /// Applies a layout to a record, and to every record whose columns have the same names.
     fn set_layout(&mut self, condition: ConditionId, index: usize, layout: RecordLayout) {
         let Some(records) = self.state.records.conditions.get(&condition) else {
             return;
@@ -116,7 +116,7 @@ impl GdcmApp {
         self.edit_layouts(label, |_, row| Some(row.layout.in_units_of_channels()));
     }
 
-    /// Changes the layouts of records in all conditions as one undoable step; `layout_for` returns
+    /// Changes record layouts in all conditions as an undoable step; `layout_for` returns
     /// `None` for a record that keeps its layout.
     fn edit_layouts(
         &mut self,
@@ -156,8 +156,7 @@ impl GdcmApp {
         self.dispatch(SelectionCommand::SelectCondition(id));
     }
 
-    /// Resamples the topics of a condition to the clock that its band requires, if that has
-    /// changed.
+    /// Resamples a condition's topics to the clock that its band requires, if that has changed.
     pub(super) fn follow_band(&mut self, condition: ConditionId) {
         let [_, end] = self.identified_band(condition);
         let Some(records) = self.state.records.conditions.get(&condition) else {
@@ -172,7 +171,7 @@ impl GdcmApp {
         }
     }
 
-    /// Returns the channels expected from the records of a condition: the dataset's, located as
+    /// Returns the channels expected in a condition's records: the dataset's, located as
     /// specified when the dataset was made from records. Topics are resampled for the
     /// identification band.
     pub(super) fn record_channels(&self, condition: ConditionId) -> RecordChannels {
@@ -194,9 +193,9 @@ impl GdcmApp {
     }
 }
 
-/// A new layout of one record, to be followed by similar records.
+/// A record's new layout, to be followed by similar records.
 struct LayoutChange {
-    /// Condition of the edited record.
+    /// Condition with the edited record.
     condition: ConditionId,
     /// The edited record.
     table: Arc<RecordTable>,
@@ -208,8 +207,8 @@ struct LayoutChange {
 }
 
 impl LayoutChange {
-    /// Returns the new layout of a record. Records named in the dataset follow its layout, so a
-    /// change spreads only among the named records of one condition, or only among unnamed records.
+    /// Returns a record's new layout. Records named in the dataset follow its layout, so a
+    /// change spreads only among the named records in a condition, or only among unnamed records.
     fn layout_for(&self, id: ConditionId, row: &LaidOutRecord) -> Option<RecordLayout> {
         if Arc::ptr_eq(&row.table, &self.table) && row.layout == self.former {
             return Some(self.layout.clone());
@@ -224,7 +223,7 @@ impl LayoutChange {
     }
 }
 
-/// Changes the layouts of rows; returns whether a row has changed. Rows that become readable may be
+/// Changes row layouts; returns whether a row has changed. Rows that become readable may be
 /// copies of others, which are then left out.
 fn change_layouts(
     rows: &mut [LaidOutRecord],
@@ -251,7 +250,7 @@ fn change_layouts(
     is_changed
 }
 
-/// Returns the undo label of an edit of records.
+/// Returns an edit's undo label.
 fn edit_label(records: &ConditionRecords, command: &RecordsCommand) -> String {
     match command {
         RecordsCommand::SetKind(index, kind) => {
@@ -286,7 +285,7 @@ fn record_name(records: &ConditionRecords, index: usize) -> &str {
     }
 }
 
-/// Applies an edit to the records of a condition; returns whether the command is such an edit.
+/// Applies an edit to a condition's records; returns whether the command is such an edit.
 ///
 /// # Errors
 /// A message, if the edit is impossible.
@@ -332,7 +331,7 @@ fn apply_edit(
     Ok(true)
 }
 
-/// Sets the remedies of channels in a single record.
+/// Sets channel remedies in a single record.
 fn set_remedies(
     row: &mut LaidOutRecord,
     remedies: &[(Signal, ChannelRemedy)],

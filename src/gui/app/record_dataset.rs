@@ -15,15 +15,15 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::forms::FormKind;
 use crate::gui::state::wanted_dataset::WantedDataset;
 
-/// Maximum number of reported problems.
+/// Maximum count of reported problems.
 const MOST_PROBLEMS: usize = 6;
 
-/// Sources and settings of a dataset to be made from records.
+/// Sources and settings for a dataset to be made from records.
 struct DatasetRequest {
     sources: Vec<PathBuf>,
     channels: RecordChannels,
     band: Band,
-    /// Path of the dataset's file.
+    /// Path to the dataset's file.
     path: PathBuf,
 }
 
@@ -42,7 +42,7 @@ impl GdcmApp {
             .filter(|made| self.files.loaded.path() == Some(&made.path))
     }
 
-    /// Asks for the channels of a new dataset, with a proposal based on the displayed record.
+    /// Asks for a new dataset's channels, with a proposal based on the displayed record.
     pub(super) fn ask_record_dataset(&mut self) {
         let condition = self.state.condition().id();
         let Some(records) = self.state.records.conditions.get(&condition) else {
@@ -112,11 +112,11 @@ impl GdcmApp {
 }
 
 impl DatasetRequest {
-    /// Builds a dataset from the records that contain the requested channels; fills in the units of
-    /// the channels.
+    /// Builds a dataset from the records that contain the requested channels; fills in the units
+    /// for the channels.
     ///
     /// # Errors
-    /// Problems of the records, if none of them is suitable, or the fault of the dataset.
+    /// Problems in the records, if no record is suitable, or the dataset's fault.
     fn make(self, progress: &SilentProgress) -> Result<MadeDataset, Vec<String>> {
         let Self {
             sources,

@@ -1,4 +1,4 @@
-//! Identification of models from flight records: starts and stops the jobs, and takes the models
+//! Model identification from flight records: starts and stops the jobs, and takes the models
 //! into the study.
 
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use super::GdcmApp;
 use crate::gui::state::records_page::RecordsPage;
 
 impl GdcmApp {
-    /// Returns the identification band \[rad/s\] of a condition: its own, or the study's.
+    /// Returns a condition's identification band \[rad/s\]: its own, or the study's.
     pub(super) fn identified_band(&self, condition: ConditionId) -> [f64; 2] {
         let records = self.state.records.conditions.get(&condition);
         if let Some(own) = records.and_then(|records| records.band) {
@@ -23,7 +23,8 @@ impl GdcmApp {
         [band.min(), band.max()]
     }
 
-    /// Requests the identification of conditions; a waiting job of the same condition is replaced.
+    /// Requests identification in these conditions; a waiting job for the same condition is
+    /// replaced.
     pub(super) fn identify_conditions(&mut self, conditions: &[ConditionId]) {
         if self.state.records.running.is_empty() {
             self.state.records.asked = 0;
@@ -62,7 +63,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stores the outcome of an identification, unless it was stopped in the meantime.
+    /// Stores an identification's outcome, unless it was stopped in the meantime.
     pub(super) fn identified(
         &mut self,
         job: IdentifyJob,
@@ -85,7 +86,7 @@ impl GdcmApp {
         }
     }
 
-    /// Takes the identified models of conditions into the study.
+    /// Takes these conditions' identified models into the study.
     pub(super) fn take_identified(&mut self, conditions: &[ConditionId], offered: OfferedModels) {
         let adopted = self.adopted_models(conditions, offered);
         if adopted.is_empty() {

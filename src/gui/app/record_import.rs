@@ -16,9 +16,9 @@ use crate::gui::state::condition_records::{AddedRecord, ConditionRecords};
 use crate::gui::state::requirements_page::RequirementsPage;
 use crate::gui::state::view::View;
 
-/// State of the window when a reading of records began.
+/// Window state when a reading began.
 struct ReadingStart {
-    /// End of the band \[rad/s\] used to choose the clock of resampled topics.
+    /// Upper band limit \[rad/s\] that sets the clock for resampled topics.
     clock_band_end: Option<f64>,
     /// Files and folders added earlier.
     sources: Vec<PathBuf>,
@@ -61,7 +61,7 @@ impl GdcmApp {
             || arrangement.is_shown(View::Requirements) && is_compared
     }
 
-    /// Returns the source of the records that belong to conditions.
+    /// Returns the source for records that belong to conditions.
     fn own_records(&self) -> OwnRecords {
         OwnRecords {
             dataset: Arc::clone(&self.state.study.dataset),
@@ -69,7 +69,7 @@ impl GdcmApp {
         }
     }
 
-    /// Reads the records of files and folders, and adds them to their conditions.
+    /// Reads records from files and folders, and adds them to their conditions.
     pub(super) fn add_records(&mut self, paths: Vec<PathBuf>) {
         let paths: Vec<PathBuf> = paths
             .into_iter()
@@ -126,7 +126,7 @@ impl GdcmApp {
         });
     }
 
-    /// Returns the records of a condition, initially empty.
+    /// Returns a condition's records, initially empty.
     pub(super) fn records_of(&mut self, id: ConditionId) -> &mut ConditionRecords {
         self.state
             .records
@@ -157,7 +157,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stores the own records of conditions that have no loaded records.
+    /// Stores the records that belong to conditions without loaded records.
     fn store_own_records(
         &mut self,
         own: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
@@ -175,7 +175,7 @@ impl GdcmApp {
         }
     }
 
-    /// Adds records to their conditions as one undoable step.
+    /// Adds records to their conditions as an undoable step.
     fn store_added_records(
         &mut self,
         added: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
@@ -217,7 +217,7 @@ impl GdcmApp {
     }
 }
 
-/// Counts of added records by outcome, and of conditions with new records.
+/// Counts added records by outcome, and conditions with new records.
 #[derive(Default)]
 struct AddedCounts {
     new: usize,

@@ -24,11 +24,11 @@ pub(super) struct ReadRecords {
     /// Records from the added files.
     pub(super) added: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
     pub(super) faults: Vec<String>,
-    /// Paths of the files, by SHA-256.
+    /// File paths, by SHA-256.
     pub(super) read_from: BTreeMap<String, PathBuf>,
 }
 
-/// Source of the records that belong to conditions.
+/// Source for records that belong to conditions.
 #[derive(Clone)]
 pub(super) struct OwnRecords {
     pub(super) dataset: Arc<Dataset>,
@@ -42,7 +42,7 @@ struct NamedRecord<'a> {
 }
 
 impl OwnRecords {
-    /// Returns whether a condition may have records of its own.
+    /// Returns whether a condition may have its own records.
     pub(super) fn has_some(&self, id: ConditionId) -> bool {
         match &self.origin {
             DatasetOrigin::EmbeddedExample => true,
@@ -57,11 +57,11 @@ impl OwnRecords {
         }
     }
 
-    /// Reads the records of conditions: those named by the dataset, or the embedded records of the
+    /// Reads the conditions' records: those named by the dataset, or the records embedded in the
     /// example. Every condition gets an entry, even an empty one.
     ///
     /// # Errors
-    /// The fault of an embedded record; faults of files are collected in `found`.
+    /// The fault in an embedded record; faults in files are collected in `found`.
     pub(super) fn read(
         &self,
         ids: &[ConditionId],
@@ -87,8 +87,7 @@ impl OwnRecords {
         Ok(())
     }
 
-    /// Groups the named records of conditions by file, so that a file with several records is read
-    /// once.
+    /// Groups named records by file, so that a file with several records is read once.
     fn records_by_file(&self, ids: &[ConditionId]) -> BTreeMap<&str, Vec<NamedRecord<'_>>> {
         let mut by_file: BTreeMap<&str, Vec<NamedRecord<'_>>> = BTreeMap::new();
         for id in ids {
@@ -104,7 +103,7 @@ impl OwnRecords {
     }
 }
 
-/// Reads the named records of a single file into `found`.
+/// Reads the named records in a single file into `found`.
 fn read_named_records(
     path: &Path,
     records: &[NamedRecord<'_>],
@@ -155,11 +154,11 @@ pub(super) struct AddedFiles {
 }
 
 impl AddedFiles {
-    /// Reads the records of the files and assigns each to the condition in its name, or else to the
-    /// displayed one. Also reads the own records of these conditions if they are not loaded yet.
+    /// Reads the records in the files and assigns each to the condition in its name, or else to the
+    /// displayed condition. Also reads these conditions' own records if they are not loaded yet.
     ///
     /// # Errors
-    /// The fault of a path; faults of single files are collected.
+    /// The fault in a path; faults in single files are collected.
     pub(super) fn read(
         &self,
         channels: &RecordChannels,
@@ -190,7 +189,7 @@ impl AddedFiles {
     }
 }
 
-/// Lays out a record, following the dataset's entry for it if there is one.
+/// Lays out a record, following the dataset's entry for it if there is such a state.
 fn laid_out(
     table: RecordTable,
     channels: &RecordChannels,

@@ -1,4 +1,4 @@
-//! Recovery of unsaved decisions: the next start offers the decisions of a window that ended
+//! Recovers unsaved decisions: the next start offers the decisions from a window that ended
 //! without saving.
 
 use std::path::Path;
@@ -21,18 +21,18 @@ use crate::gui::state::notices::Bar;
 /// Maximum time that a closing window waits for the disk to store the latest decisions.
 pub(super) const LAST_WAIT: Duration = Duration::from_secs(2);
 
-/// Protection against the loss of unsaved decisions.
+/// Protects unsaved decisions.
 pub(super) struct Recovery {
     pub(super) autosave: Autosave,
     /// Set once the window has drawn a frame; gives the caller that opened the window access to the
     /// autosave.
     pub(super) drawn: Arc<OnceLock<Autosave>>,
-    /// Lost studies by the number of the offer, until restored or discarded.
+    /// Lost studies by offer number, until restored or discarded.
     pub(super) offers: Vec<Option<LostStudy>>,
 }
 
 impl Recovery {
-    /// Returns the number of the offer whose recovery file is `path`.
+    /// Returns the offer number for the recovery file `path`.
     pub(super) fn offer_of(&self, path: &Path) -> Option<usize> {
         self.offers.iter().position(|offer| match offer {
             Some(lost) => lost.path() == path,

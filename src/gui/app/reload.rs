@@ -1,4 +1,4 @@
-//! Reload of a dataset whose file changes on the disk while open.
+//! Reloads a dataset whose file changes on the disk while open.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use super::document_files::ReadFor;
 use crate::gui::state::notices::Bar;
 
 impl GdcmApp {
-    /// Watches the file of the open dataset.
+    /// Watches the open dataset's file.
     pub(super) fn watch_disk(&mut self) {
         self.files.disk.watch(self.files.loaded.path());
     }
@@ -47,7 +47,7 @@ impl GdcmApp {
         }
     }
 
-    /// Shows the reloaded dataset with every decision that still applies, as one undoable step.
+    /// Shows the reloaded dataset with every decision that still applies, as an undoable step.
     pub(super) fn show_reloaded(&mut self, loaded: LoadedDataset) {
         if loaded.path() != self.files.loaded.path() {
             // Another file was opened in the meantime.
@@ -73,7 +73,8 @@ impl GdcmApp {
         }
     }
 
-    /// Selects the file of the study's dataset, after a reload or an undo or redo across one.
+    /// Selects the file behind the study's dataset, after a reload, or an undo or redo across a
+    /// reload.
     pub(super) fn follow_dataset(&mut self) {
         let dataset = self.state.study.file_dataset();
         let earlier = self

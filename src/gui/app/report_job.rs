@@ -1,4 +1,4 @@
-//! The report of the window: asks for its path, and writes it in a job.
+//! The report: asks for its path, and writes it in a job.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -58,7 +58,7 @@ impl GdcmApp {
         });
     }
 
-    /// Reports the outcome of writing a report.
+    /// Reports that a report is written, or its fault.
     pub(super) fn report_written(&mut self, job: ReportJob, outcome: Result<(), FileError>) {
         self.work.reporting = None;
         match outcome {
@@ -91,7 +91,7 @@ pub struct ReportJob {
     pub known: KnownPoles,
     pub source: ReportSource,
     pub path: PathBuf,
-    /// Treatment of an existing file.
+    /// Treatment for an existing file.
     pub existing: Existing,
     /// Input files, which are never replaced.
     pub inputs: Vec<PathBuf>,

@@ -36,8 +36,8 @@ impl GdcmApp {
         }
     }
 
-    /// Restores another state of the study, and of the records beside it, from its history, if
-    /// there is one.
+    /// Restores another state of the study, and of the records beside it, from the history, if
+    /// there is such a state.
     fn take_study(
         &mut self,
         find: impl FnOnce(&mut History<RecordsBefore>, &Study, &mut RecordsState) -> Option<Study>,

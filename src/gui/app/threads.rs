@@ -49,7 +49,7 @@ impl<T> Mailbox<T> {
 /// A thread's reply, applied to the window.
 pub(super) type Reply = Box<dyn FnOnce(&mut GdcmApp) + Send>;
 
-/// Sender for the replies of threads; each reply wakes the window.
+/// Sender for replies from threads; each reply wakes the window.
 #[derive(Clone)]
 pub struct ReplySender {
     sender: Sender<Reply>,
@@ -115,7 +115,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stops the work shown next to the Stop button: the reading of files, or else the computation.
+    /// Stops the work shown next to the Stop button: a reading, or else the computation.
     pub(super) fn stop_work(&mut self) {
         let opening = self.state.opening.take();
         let records = self.state.records.reading.take();
@@ -135,7 +135,7 @@ impl GdcmApp {
 /// A panic: its message and its source location.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// The message, on one line.
+    /// The message, on a single line.
     pub message: String,
     /// "src/study/engine.rs:49"; `None` if the location was not recorded.
     pub place: Option<String>,
@@ -154,10 +154,10 @@ impl Fault {
 /// Recorded faults not reported yet. Only the hook knows a panic's location, and another thread may
 /// catch the panic.
 static NOTED: Mutex<Vec<Fault>> = Mutex::new(Vec::new());
-/// Maximum number of recorded faults; uncaught panics are rare.
+/// Maximum count of recorded faults; uncaught panics are rare.
 const MOST_NOTED: usize = 50;
 
-/// Records the message and the location of a panic; called by the process's panic hook.
+/// Records a panic's message and location; called by the process's panic hook.
 pub fn note(panic: &PanicHookInfo<'_>) {
     let place = panic
         .location()
@@ -188,7 +188,7 @@ pub(super) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
     })
 }
 
-/// Returns the message of a panic, on one line.
+/// Returns a panic's message, on a single line.
 fn message_of(payload: &(dyn Any + Send)) -> String {
     let text = if let Some(text) = payload.downcast_ref::<String>() {
         text

@@ -20,13 +20,13 @@ struct Pointed {
 }
 
 impl GdcmApp {
-    /// Carries out one command, like a click or a key.
+    /// Carries out a command, like a click or a key.
     pub fn dispatch(&mut self, command: impl Into<Command>) {
         self.carry_out_one(command.into());
         self.ctx.request_repaint();
     }
 
-    /// Carries out the commands of one frame.
+    /// Carries out the commands from a frame.
     pub(super) fn carry_out(&mut self, commands: Vec<Command>) {
         let before = self.take_pointed();
         for command in commands {
@@ -58,7 +58,7 @@ impl GdcmApp {
             && self.state.display.curves.cursor == before.cursor
     }
 
-    /// Carries out one command, without a new frame.
+    /// Carries out a command, without a new frame.
     pub(super) fn carry_out_one(&mut self, command: Command) {
         match command {
             Command::Study(command) => self.carry_out_study(command),
@@ -75,7 +75,7 @@ impl GdcmApp {
         }
     }
 
-    /// Notifies the engineer of a completed action.
+    /// Reports a completed action.
     pub(super) fn done(&mut self, text: String) {
         self.state.notice = Some(Notice {
             kind: NoticeKind::Done,
@@ -83,7 +83,7 @@ impl GdcmApp {
         });
     }
 
-    /// Returns the value of a success; reports an error to the engineer.
+    /// Returns the value, or reports the error.
     pub(super) fn unless_error<T, E: Display>(&mut self, made: Result<T, E>) -> Option<T> {
         match made {
             Ok(value) => Some(value),
@@ -94,7 +94,7 @@ impl GdcmApp {
         }
     }
 
-    /// Notifies the engineer of a failed action.
+    /// Reports a failed action.
     pub(super) fn notify_error(&mut self, text: String) {
         self.state.notice = Some(Notice {
             kind: NoticeKind::Trouble,

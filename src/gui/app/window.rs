@@ -55,7 +55,7 @@ pub struct GdcmApp {
     pub(super) readers: Readers,
     pub(super) work: Computation,
     pub(super) recovery: Recovery,
-    /// Target of the focus in the next frame.
+    /// Focus target in the next frame.
     pub(super) next_focus: Option<NextFocus>,
     /// Last window title set.
     title: String,
@@ -143,8 +143,8 @@ impl GdcmApp {
             .iter()
             .map(|file| file.path().to_path_buf())
             .collect();
-        // A single dataset or study is opened; several files, a folder, and files of other programs
-        // are imported as models.
+        // A single dataset or study is opened; several files, a folder, and files from other
+        // programs are imported as models.
         let is_importing = self.state.assembling.is_some();
         let arrangement = &self.state.display.layout.arrangement;
         match paths.as_slice() {
@@ -152,7 +152,7 @@ impl GdcmApp {
             [path] if !is_importing && !holds_models(path) => {
                 commands.push(FileCommand::Open(path.clone()).into())
             }
-            // While the records of a condition are shown, dropped files are added to them.
+            // While a condition's records are shown, dropped files are added to them.
             _ if !is_importing && arrangement.is_shown(View::Records) => {
                 commands.push(RecordsCommand::Add(paths).into());
             }
@@ -280,7 +280,7 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
 
 /// Draws the answer.
 fn right_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    // A dragged width applies to windows of the same class of width, hence two names.
+    // A dragged width applies to windows in the same width class, hence two names.
     let (name, width) = if state.display.layout.is_wide {
         ("answer", 352.0)
     } else {
@@ -308,7 +308,7 @@ fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     ui.advance_cursor_after_rect(room);
 }
 
-/// Draws the sheets over the middle of the window.
+/// Draws the sheets over the views.
 fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let sheet = if state.display.selection.asked.is_some() {
         Sheet::Derivation
@@ -347,7 +347,7 @@ impl Drop for GdcmApp {
     }
 }
 
-/// Storage key of the preferences.
+/// Storage key for the preferences.
 pub(super) const PREFERENCES: &str = "preferences";
 
 impl eframe::App for GdcmApp {

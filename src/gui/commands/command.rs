@@ -1,4 +1,4 @@
-//! Commands: requests of the engineer to the window.
+//! Commands: requests to the window.
 
 use gdcm_study::Edit;
 
@@ -17,8 +17,8 @@ use crate::gui::state::forms::FormKind;
 use crate::gui::widgets::controls::RefusedEntry;
 use crate::gui::widgets::tables::TableRequest;
 
-/// Action of the engineer: a click, a key or a menu entry, grouped by responsibility. Views push
-/// commands; the window carries them out.
+/// A click, a key or a menu entry, grouped by responsibility. Views push commands; the window
+/// carries them out.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     Study(StudyCommand),

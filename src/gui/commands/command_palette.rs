@@ -1,4 +1,4 @@
-//! Command palette: finds every command by a few letters of its name.
+//! Command palette: finds every command by a few letters from its name.
 
 use std::cmp::Reverse;
 
@@ -106,7 +106,7 @@ fn field_ui(ui: &mut Ui, query: &mut String, opens: bool) -> bool {
     response.changed()
 }
 
-/// Draws a row with the name and the shortcut of an entry.
+/// Draws a row with an entry's name and shortcut.
 fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui::Response {
     let (row, response) = row_ui(ui, palette, chosen, false, &entry.name);
     let color = if entry.enabled {
@@ -133,11 +133,11 @@ pub struct AnswerScore {
     /// Whether the name is no undo or redo, or the query asks for these: they are named after the
     /// last decision, whose words they would otherwise answer.
     is_asked: bool,
-    /// Sum of the scores of the query's words.
+    /// Sum of the word scores.
     words: usize,
     /// The same sum for the command without its arguments.
     words_of_command: usize,
-    /// Letters of the name; the shorter name is better.
+    /// Letter count; the shorter name is better.
     length: Reverse<usize>,
 }
 
@@ -188,7 +188,7 @@ fn word_score(name: &str, word: &str) -> Option<usize> {
     }
 }
 
-/// Returns the indices of the names that answer the query, best first; all of them in their own
+/// Returns the indices of the names that answer the query, best first; all names in their own
 /// order for an empty query.
 pub fn answers<'a>(names: impl Iterator<Item = &'a str>, query: &str) -> Vec<usize> {
     let mut found: Vec<(AnswerScore, usize)> = names
@@ -205,7 +205,7 @@ fn words_of(name: &str) -> impl Iterator<Item = &str> {
     name.split(|letter: char| !letter.is_alphanumeric())
 }
 
-/// Returns whether a word of the name begins with `word`.
+/// Returns whether a word in the name begins with `word`.
 fn starts_a_word(name: &str, word: &str) -> bool {
     name.match_indices(word)
         .any(|(at, _)| match name[..at].chars().next_back() {
@@ -214,7 +214,7 @@ fn starts_a_word(name: &str, word: &str) -> bool {
         })
 }
 
-/// Returns whether the name contains the letters of `word` in the same order.
+/// Returns whether the name contains the letters from `word` in the same order.
 fn has_letters(name: &str, word: &str) -> bool {
     let mut letters = name.chars();
     word.chars()

@@ -1,4 +1,4 @@
-//! Table of all commands: the source of the menus, the shortcuts, the palette and the page of keys.
+//! Table of all commands, the source for menus, shortcuts, the palette and the page about keys.
 
 use egui::{Key, Modifiers};
 
@@ -25,7 +25,7 @@ use crate::gui::state::tables::TableKind;
 use crate::gui::state::view::{View, views_with_figure};
 use crate::gui::state::window_state::State;
 
-/// Returns the commands of the menus and keys, in the order of the menus and of the page of keys.
+/// Returns the commands for menus and keys, in menu order.
 pub fn command_table(state: &State) -> Vec<Entry> {
     let mut entries = file_entries(state);
     entries.extend(edit_entries(state));
@@ -73,7 +73,7 @@ fn figure_entries(view: View) -> [Entry; 2] {
     ]
 }
 
-/// Returns the actions on the flight records of the displayed condition.
+/// Returns the actions on the displayed condition's flight records.
 fn record_entries(state: &State) -> [Entry; 4] {
     let condition = state.condition().id();
     let in_use = state.records.conditions_in_use();
@@ -111,7 +111,7 @@ fn record_entries(state: &State) -> [Entry; 4] {
     ]
 }
 
-/// Returns an entry for every choice of every setting, and for every field of a setting.
+/// Returns an entry for every choice and every field in the settings.
 fn setting_entries(state: &State) -> Vec<Entry> {
     let mut entries = Vec::new();
     for setting in SETTINGS {
@@ -140,7 +140,7 @@ fn setting_entries(state: &State) -> Vec<Entry> {
     entries
 }
 
-/// Returns the entry that focuses the field of a number.
+/// Returns the entry that focuses a number field.
 fn field_entry(name: &str, option: &str, label: &'static str) -> Entry {
     Entry::new(
         format!("Set the {name} ({option})…"),
@@ -177,8 +177,7 @@ fn help_entries() -> impl Iterator<Item = Entry> {
     group(Menu::Help, 0, help).chain(group(Menu::Help, 1, about))
 }
 
-/// Returns the commands of the table, and an entry for each condition, response, model and recent
-/// file.
+/// Returns the command table, and an entry for each condition, response, model and recent file.
 pub fn every_command(state: &State) -> Vec<Entry> {
     let palette = Command::show_form(FormKind::Palette);
     let mut entries = command_table(state);

@@ -1,4 +1,4 @@
-//! Entries of the command table for curves: units, read-outs, styles, visibility.
+//! Command-table entries for curves: units, read-outs, styles, visibility.
 
 use egui::Key;
 
@@ -151,7 +151,7 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
         SelectionCommand::EndIsolation,
     );
     vec![
-        // Fields and menus lose the key of an entry whether or not the entry is enabled, so it has
+        // Fields and menus lose an entry's key whether or not the entry is enabled, so it has
         // the key only if there is something to end.
         if is_isolated {
             isolation.free_key(Key::Escape)

@@ -1,4 +1,4 @@
-//! Entries of the command table for decisions: history, rejections, held responses, models.
+//! Command-table entries for decisions: history, rejections, held responses, models.
 
 use egui::Key;
 
@@ -11,7 +11,7 @@ use super::form::FormCommand;
 use super::study::StudyCommand;
 use crate::gui::state::window_state::State;
 
-/// Returns the entries of the Edit menu.
+/// Returns the Edit menu.
 pub(super) fn edit_entries(state: &State) -> Vec<Entry> {
     let condition = state.condition().id();
     let scheduled = state.study.choice(condition).scheduled;
@@ -73,7 +73,7 @@ fn step_name(verb: &str, label: Option<&str>) -> String {
     }
 }
 
-/// Returns the entries that reject the suggested models of the displayed condition, and restore all
+/// Returns the entries that reject the displayed condition's suggested models, and restore all
 /// of them.
 fn rejection_entries(state: &State) -> [Entry; 2] {
     let condition = state.condition().id();
@@ -126,7 +126,7 @@ pub(super) fn hold_entry(state: &State, pair: Pair) -> Entry {
     .enabled(held || !is_undefined)
 }
 
-/// Returns the actions on each model of the displayed condition.
+/// Returns the actions on each model in the displayed condition.
 pub(super) fn model_entries(state: &State) -> Vec<Entry> {
     let condition = state.condition();
     let mut entries = Vec::new();
@@ -145,7 +145,7 @@ pub(super) fn model_entries(state: &State) -> Vec<Entry> {
     entries
 }
 
-/// Tooltip of the entries that ask for a reason.
+/// Tooltip for entries that ask for a reason.
 const REASON: &str = "In words, kept in the study";
 
 fn rejected_model_entries(id: ModelId) -> [Entry; 2] {

@@ -1,10 +1,10 @@
-//! Entry of the table of commands: name, keys, place in a menu.
+//! Entry in the command table: name, keys, place in a menu.
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::command::Command;
 
-/// Menu of the bar at the top.
+/// Menu in the top bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Menu {
     /// Opening, saving, exporting.
@@ -12,7 +12,7 @@ pub enum Menu {
     Edit,
     /// Displayed content and its form.
     View,
-    /// Style of curves: a submenu of `View`.
+    /// Curve style: a submenu in `View`.
     Curves,
     Help,
 }
@@ -34,7 +34,7 @@ pub(super) const CTRL_SHIFT: Modifiers = Modifiers {
     ..Modifiers::COMMAND
 };
 
-/// Entry of a menu or of the palette.
+/// Entry in a menu or in the palette.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     /// Name in menus and in the palette.
@@ -80,7 +80,7 @@ impl Entry {
         self.keys(Modifiers::NONE, key)
     }
 
-    /// Puts the entry into a group of a menu.
+    /// Puts the entry into a menu group.
     pub fn within(mut self, menu: Menu, group: u8) -> Self {
         self.menu = Some((menu, group));
         self
@@ -92,7 +92,7 @@ impl Entry {
     }
 }
 
-/// Puts entries into a group of a menu.
+/// Puts entries into a menu group.
 pub(super) fn group<const N: usize>(
     menu: Menu,
     group: u8,

@@ -1,4 +1,4 @@
-//! Entries of the command table for files: opening, saving, exporting.
+//! Command-table entries for files: opening, saving, exporting.
 
 use egui::Key;
 
@@ -13,7 +13,7 @@ use crate::gui::state::forms::FormKind;
 use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::window_state::State;
 
-/// Returns the entries of the File menu.
+/// Returns the File menu.
 pub(super) fn file_entries(state: &State) -> Vec<Entry> {
     let open = [
         Entry::new(

@@ -1,4 +1,4 @@
-//! Commands of the window: one table for menu, keys and palette.
+//! Commands: a single table for menu, keys and palette.
 
 pub mod assembling;
 pub mod command;

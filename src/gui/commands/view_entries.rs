@@ -1,4 +1,4 @@
-//! Entries of the command table for the layout of the window: views, panels, steps, themes.
+//! Command-table entries for the layout of the window: views, panels, steps, themes.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::{View, ViewGroup};
 use crate::gui::state::window_state::State;
 
-/// Returns the entries of the View menu.
+/// Returns the View menu.
 pub(super) fn view_entries(state: &State) -> Vec<Entry> {
     let (unit_name, unit) = match state.display.curves.unit {
         FrequencyUnit::RadPerSecond => ("Frequencies in Hz", FrequencyUnit::Hertz),
@@ -50,7 +50,7 @@ pub(super) fn view_entries(state: &State) -> Vec<Entry> {
         .collect()
 }
 
-/// Tooltip of the steps from region to region.
+/// Tooltip for the steps from region to region.
 const PARTS: &str =
     "Plots, dock, verdict, result, matrix, settings, conditions, models; each remembers its focus";
 
@@ -91,7 +91,7 @@ fn theme_entries() -> [Entry; 3] {
     ]
 }
 
-/// Returns the entries for groups of views, their neighbours, panels and folds.
+/// Returns the entries for view groups, neighbours, panels and folds.
 fn layout_entries(state: &State) -> impl Iterator<Item = Entry> {
     view_group_entries()
         .into_iter()
@@ -181,7 +181,7 @@ fn fold_entries(state: &State) -> [Entry; 5] {
     ]
 }
 
-/// Returns the steps to the neighbours of the displayed condition and response.
+/// Returns the steps from the displayed condition and response to their neighbours.
 fn steps(state: &State) -> [Entry; 4] {
     let conditions = state.dataset().conditions();
     let shown = state.condition().id();

@@ -1,23 +1,23 @@
-//! Places of the views in the middle of the window: one at a time in groups, a second view beside
-//! it, and the dock below.
+//! Places of the views between the side panels: the view in front of its group, a second view
+//! beside it, and the dock below.
 
 use serde::{Deserialize, Serialize};
 
 use super::view::{View, ViewGroup};
 
-/// Arrangement of the views in the middle of the window.
+/// Arrangement of the views between the side panels.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Arrangement {
     /// Group in front.
     group: ViewGroup,
-    /// View shown by each group, in the order of the groups.
+    /// View shown by each group, in group order.
     of_groups: [View; 4],
     /// View beside the view in front.
     beside: Option<View>,
     /// View in the dock.
     dock: View,
-    /// Whether the dock is unfolded; `None` follows the height of the window.
+    /// Whether the dock is unfolded; `None` follows the window height.
     dock_open: Option<bool>,
 }
 
@@ -73,7 +73,7 @@ impl Arrangement {
         self.group = group;
     }
 
-    /// Brings a view to the front; a view of the dock is unfolded there instead, unless it is in
+    /// Brings a view to the front; a docked view is unfolded there instead, unless it is in
     /// front already.
     pub fn show(&mut self, view: View) {
         let group = view.facts().group;
@@ -110,7 +110,7 @@ impl Arrangement {
         self.view() == view || self.beside() == Some(view) || self.dock() == Some(view)
     }
 
-    /// Returns this stored arrangement if every group shows a view of its own.
+    /// Returns this stored arrangement if every group shows its own view.
     pub fn if_whole(self) -> Option<Self> {
         for group in ViewGroup::ALL {
             if self.of_groups[group as usize].facts().group != group {

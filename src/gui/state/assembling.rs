@@ -1,4 +1,4 @@
-//! State of an import: the models found, their rules, and the displayed parts of both.
+//! Import state: the models found, their rules, and the displayed parts.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -10,19 +10,19 @@ use super::assembly_columns::COLUMNS;
 use crate::gui::plot::{BodeCurve, BodeView};
 use crate::gui::widgets::tables::Sorting;
 
-/// Maximum number of undo steps.
+/// Maximum count of undo steps.
 const MOST_STEPS: usize = 200;
 
 /// Progress of reading files.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Reading {
-    /// Number of the current file, from 1.
+    /// Current file, counted from 1.
     pub number: usize,
     /// Total file count.
     pub of: usize,
     /// Name of the current file.
     pub name: String,
-    /// Bytes of the current file's values read so far.
+    /// Bytes read so far from the values in the current file.
     pub taken: u64,
 }
 
@@ -40,7 +40,7 @@ pub struct AssemblyState {
     pub faults: Vec<String>,
     /// Messages about content that is no model.
     pub ignored: Vec<String>,
-    /// Unused content of files with models, one line each.
+    /// Unused content of model files, a line each.
     pub unused: Vec<String>,
     /// The tables among the files, with the headings used to read them.
     pub tables: Headings,
@@ -147,7 +147,7 @@ impl AssemblyState {
         alike
     }
 
-    /// Returns the indices of the models in table order.
+    /// Returns the model indices in table order.
     pub fn order(&self) -> Vec<usize> {
         let parts = self.assembly.parts();
         self.sorting
@@ -158,7 +158,7 @@ impl AssemblyState {
 /// Displayed response, cached while the model and the selection stay the same.
 #[derive(Debug, Default)]
 pub struct Preview {
-    /// Index of the response: `output * inputs + input`, in the file's own order.
+    /// Response index `output * inputs + input`, in file order.
     pub response: usize,
     pub view: BodeView,
     pub drawn: Option<(String, usize, Vec<BodeCurve>)>,

@@ -1,4 +1,4 @@
-//! Columns of the table of imported models.
+//! Table columns of imported models.
 
 use gdcm_model::assembly::assembly::Part;
 use gdcm_model::units::number;
@@ -8,12 +8,12 @@ pub struct Column {
     pub heading: &'static str,
     /// Share of the table's width.
     pub share: f32,
-    /// Text of a model's cell; `None` if it must be completed.
+    /// Cell text; `None` if it must be completed.
     pub cell: fn(&Part) -> Option<String>,
 }
 
 impl Column {
-    /// Returns the text of a model's cell; "?" if it must be completed.
+    /// Returns the cell text; "?" if it must be completed.
     pub fn text(&self, part: &Part) -> String {
         (self.cell)(part).unwrap_or_else(|| "?".to_owned())
     }
@@ -78,7 +78,7 @@ fn trim_text(part: &Part) -> String {
     offsets.join(", ")
 }
 
-/// Returns the role of a model, or whether it is left out.
+/// Returns the role, or "not included" for a model left out.
 fn role_text(part: &Part) -> Option<String> {
     if part.row.left_out {
         return Some("not included".to_owned());

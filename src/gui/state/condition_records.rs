@@ -1,4 +1,4 @@
-//! Flight records of one condition, and the models identified from them.
+//! Flight records in a condition, and the models identified from them.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -16,7 +16,7 @@ use gdcm_sysid::identification::{
 };
 use gdcm_sysid::records::{ColumnUse, LaidOutRecord, RecordChannels, RecordSource};
 
-/// Outcome of adding a record.
+/// Result when a record is added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AddedRecord {
     New,
@@ -26,19 +26,19 @@ pub enum AddedRecord {
     KnownAlready,
 }
 
-/// Records of one condition, and the models identified from them.
+/// Records in a condition, and the models identified from them.
 #[derive(Clone, Debug, Default)]
 pub struct ConditionRecords {
     pub rows: Vec<LaidOutRecord>,
     /// Index of the displayed record.
     pub chosen: usize,
-    /// Preparation of the inputs, if changed.
+    /// Input preparation, if changed.
     pub inputs: Vec<ChannelPreparation>,
-    /// Preparation of the outputs.
+    /// Output preparation.
     pub outputs: Vec<ChannelPreparation>,
     /// Band \[rad/s\]; `None` takes the study's.
     pub band: Option<[f64; 2]>,
-    /// Columns of recorded references that excited the loop externally (M14.15).
+    /// Columns with recorded references that excited the loop externally (M14.15).
     pub references: Vec<String>,
     /// Search settings that replace the defaults.
     pub search: SearchSpace,
@@ -49,7 +49,7 @@ pub struct ConditionRecords {
     )>,
     /// Whether the settings have changed since.
     pub changed: bool,
-    /// End of the band \[rad/s\] used to choose the clock of resampled topics; `None` if unknown
+    /// Upper band limit \[rad/s\] that sets the clock for resampled topics; `None` if unknown
     /// for some records.
     pub clock_band_end: Option<f64>,
     /// Records that the engineer has left out, whether or not they have parts.
@@ -57,7 +57,7 @@ pub struct ConditionRecords {
 }
 
 impl ConditionRecords {
-    /// Creates the records of a condition of `dataset`.
+    /// Creates the records for a condition in `dataset`.
     pub fn new(rows: Vec<LaidOutRecord>, dataset: &Dataset) -> Self {
         let (inputs, outputs) = dataset.names_of_channels();
         Self {
@@ -81,8 +81,7 @@ impl ConditionRecords {
         true
     }
 
-    /// Adds a part of a record as a record behind it; the whole is no longer used, because evidence
-    /// counts once.
+    /// Adds a part behind its record; the whole is no longer used, because evidence counts once.
     ///
     /// # Errors
     /// A message, if the record has no samples at that time.
@@ -128,7 +127,7 @@ impl ConditionRecords {
         }
     }
 
-    /// Returns whether some records are parts of this one.
+    /// Returns whether the record has parts.
     fn has_parts(&self, source: &RecordSource) -> bool {
         self.rows
             .iter()
@@ -165,7 +164,7 @@ impl ConditionRecords {
         AddedRecord::New
     }
 
-    /// Numbers the name of a record that another record has too.
+    /// Numbers the name if another record has it too.
     fn give_free_name(&self, row: &mut LaidOutRecord) {
         let plain = row.table.name.clone();
         let mut number = 1;
@@ -258,12 +257,12 @@ impl ConditionRecords {
         self.chosen = index.min(self.rows.len().saturating_sub(1));
     }
 
-    /// Returns the row of a record of the identification.
+    /// Returns the row for a record number in the identification.
     pub fn row_of_record(&self, record: usize) -> Option<usize> {
         self.used_rows().nth(record).map(|(index, _)| index)
     }
 
-    /// Returns the preparation of a channel for editing.
+    /// Returns the channel's preparation for editing.
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
         match signal.role {
             ChannelSide::Input => self.inputs.get_mut(signal.index),
@@ -271,7 +270,7 @@ impl ConditionRecords {
         }
     }
 
-    /// Returns the preparation of the channels.
+    /// Returns the preparation for all channels.
     pub fn preparation(&self) -> Preparation {
         Preparation {
             inputs: self.inputs.clone(),
@@ -348,7 +347,7 @@ impl ConditionRecords {
         Some(Arc::new(AdoptedModels::of(found, offered, entries)))
     }
 
-    /// Returns the job of the latest identification.
+    /// Returns the latest identification job.
     fn latest_job(&self) -> Option<&IdentifyJob> {
         let (job, _) = self.found.as_ref()?;
         Some(job)

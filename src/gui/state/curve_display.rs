@@ -1,4 +1,4 @@
-//! Display options of the plots over frequency: units, hidden curves, cursors. None of them changes
+//! Display options for plots over frequency: units, hidden curves, cursors. None of them changes
 //! a result.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,7 +11,7 @@ use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::plot::{CurveId, Role};
 use crate::gui::widgets::palette::PlotStyle;
 
-/// Display options of the plots over frequency.
+/// Display options for plots over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveDisplay {
     pub unit: FrequencyUnit,
@@ -32,7 +32,7 @@ pub struct CurveDisplay {
     pub crossings: Vec<(&'static str, f64)>,
     /// Whether the values at the cursor are listed.
     pub lists_values: bool,
-    /// Whether Bode and the plot of errors show the envelopes of maximum unnoticeable added
+    /// Whether the Bode and error plots show the envelopes of maximum unnoticeable added
     /// dynamics.
     pub shows_muad: bool,
     /// Models selected by drawing a box.
@@ -67,7 +67,7 @@ impl Default for CurveDisplay {
 }
 
 impl CurveDisplay {
-    /// Most marked frequencies: of two, the difference is reported.
+    /// Maximum count of marked frequencies; the difference between two is reported.
     const MOST_PINNED: usize = 2;
 
     /// Returns the roles hidden by default: couplings alone are an intermediate step, not a result.
@@ -132,7 +132,7 @@ impl CurveDisplay {
         }
     }
 
-    /// Drops everything that refers to models of another dataset.
+    /// Drops everything that refers to models in another dataset.
     pub fn forget_models(&mut self) {
         self.hidden_models.clear();
         self.turns.clear();

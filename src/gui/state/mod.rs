@@ -1,4 +1,4 @@
-//! State of the window: document, display, results.
+//! Window state: document, display, results.
 
 pub mod arrangement;
 pub mod assembling;

@@ -1,4 +1,4 @@
-//! State of the Records view: flight records by condition.
+//! Records view: flight records by condition.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ pub use super::records_page::{RecordsPage, TimeModel};
 pub use super::wanted_dataset::WantedDataset;
 use crate::gui::widgets::tables::Sorting;
 
-/// Target of an undo or redo step: the records of conditions on the other side of an edit. Only the
+/// Target of an undo or redo step: the records on the other side of an edit, by condition. Only the
 /// conditions changed by the edit are included.
 #[derive(Clone, Debug, Default)]
 pub struct RecordsBefore {
@@ -24,7 +24,7 @@ pub struct RecordsBefore {
     pub sources: Option<Vec<PathBuf>>,
 }
 
-/// State of the Records view. Not saved: records stay in their files.
+/// Records view. Not saved: records stay in their files.
 #[derive(Clone, Debug, Default)]
 pub struct RecordsState {
     /// Records by condition; no entry means that the condition's records are not loaded yet.
@@ -32,21 +32,21 @@ pub struct RecordsState {
     /// Whether the dataset is the example, which has embedded records.
     pub is_example: bool,
     pub page: RecordsPage,
-    /// Sorting of the table of conditions.
+    /// Sorting in the table of conditions.
     pub sorting: Sorting,
     /// Models whose responses to the same inputs are drawn.
     pub time_models: BTreeSet<TimeModel>,
     /// Whether dragging in the time charts selects parts.
     pub chooses_parts: bool,
-    /// Input of the displayed spectrogram.
+    /// Input shown by the spectrogram.
     pub spectrogram: Option<usize>,
     /// Search field to focus.
     pub advanced_field: Option<&'static str>,
-    /// Path of files, as typed.
+    /// Path to files, as typed.
     pub path: String,
     /// The added files and folders.
     pub sources: Vec<PathBuf>,
-    /// Paths of the files read, by SHA-256, to read records of changed files again.
+    /// Paths of the files read, by SHA-256, to recognise changed files.
     pub read_from: BTreeMap<String, PathBuf>,
     /// Form for a dataset made from the displayed records.
     pub wanted: WantedDataset,
@@ -56,12 +56,12 @@ pub struct RecordsState {
     pub faults: Vec<String>,
     /// Running and waiting identification jobs.
     pub running: Vec<IdentifyJob>,
-    /// Number of conditions requested since the queue was last empty.
+    /// Count of conditions requested since the queue was last empty.
     pub asked: usize,
 }
 
 impl RecordsState {
-    /// Returns a copy of the records of these conditions.
+    /// Returns a copy of these conditions' records.
     pub fn before(&self, conditions: impl IntoIterator<Item = ConditionId>) -> RecordsBefore {
         let conditions = conditions
             .into_iter()
@@ -90,7 +90,7 @@ impl RecordsState {
         now
     }
 
-    /// Returns the channels that lack a unit, with the numbers of affected records and conditions.
+    /// Returns the channels that lack a unit, with counts of affected records and conditions.
     pub fn open_units(&self) -> Option<OpenUnits> {
         let mut open = OpenUnits::default();
         for (id, records) in &self.conditions {
@@ -130,7 +130,7 @@ impl RecordsState {
             .collect()
     }
 
-    /// Returns the flight records in use of every condition.
+    /// Returns the flight records in use, by condition.
     pub fn history_records(&self) -> Vec<HistoryRecords> {
         let mut histories = Vec::new();
         for (id, records) in &self.conditions {
@@ -142,7 +142,7 @@ impl RecordsState {
         histories
     }
 
-    /// Adds an identification job; it replaces a waiting or running job of the same condition.
+    /// Adds an identification job; it replaces a waiting or running job for the same condition.
     pub fn request_job(&mut self, job: IdentifyJob) {
         let before = self.running.len();
         self.running
@@ -153,7 +153,7 @@ impl RecordsState {
         self.running.push(job);
     }
 
-    /// Returns the running or waiting job of a condition.
+    /// Returns the running or waiting job for a condition.
     pub fn running(&self, condition: ConditionId) -> Option<&IdentifyJob> {
         self.running.iter().find(|job| job.condition == condition)
     }
@@ -163,7 +163,7 @@ impl RecordsState {
         self.running.iter().find(|job| !job.told().step.is_empty())
     }
 
-    /// Returns the identification jobs, that of the displayed condition first.
+    /// Returns the identification jobs, the displayed condition first.
     pub fn by_urgency(&self, shown: ConditionId) -> Vec<IdentifyJob> {
         let mut jobs = self.running.clone();
         jobs.sort_by_key(|job| job.condition != shown);
@@ -171,16 +171,16 @@ impl RecordsState {
     }
 }
 
-/// Missing units in the records of all conditions.
+/// Missing units in all records.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct OpenUnits {
     /// Channels with their units in the dataset.
     pub channels: Vec<(String, String)>,
-    /// Count of records that lack some of these units.
+    /// Count of affected records.
     pub records: usize,
-    /// Count of these records' conditions.
+    /// Count of affected conditions.
     pub conditions: usize,
-    /// The first of these conditions.
+    /// The first affected condition.
     pub first: Option<ConditionId>,
 }
 

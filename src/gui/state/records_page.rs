@@ -7,22 +7,22 @@ use crate::gui::widgets::palette::Palette;
 /// A page of the Records view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RecordsPage {
-    /// Every channel of the selected record over time.
+    /// Every channel in the selected record over time.
     #[default]
     Histories,
-    /// Excitation of the inputs, and its highest frequency.
+    /// Input excitation, and its highest frequency.
     Inputs,
     /// The measured response with the models.
     Response,
     /// Poles over the model order.
     Stabilisation,
-    /// Poles of the recommended model with their standard deviations.
+    /// Poles with standard deviations, for the recommended model.
     Poles,
-    /// Fit of the model to each record and output.
+    /// Fit quality for each record and output.
     Fit,
-    /// Assignment of columns to channels.
+    /// Columns assigned to channels.
     Columns,
-    /// Results of identification in every condition.
+    /// Identification results in every condition.
     Conditions,
 }
 
@@ -110,7 +110,7 @@ impl TimeModel {
         }
     }
 
-    /// Returns the colour of the model's lines.
+    /// Returns the line colour.
     pub fn color(self, palette: &Palette) -> Color32 {
         match self {
             Self::Identified => palette.accent,

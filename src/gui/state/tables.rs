@@ -1,4 +1,4 @@
-//! Tables of the window as text, to be copied and saved.
+//! Tables as text, to be copied and saved.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::SUGGESTION_RATIO;
@@ -11,23 +11,23 @@ use gdcm_study::Table;
 use super::results::Sureness;
 use super::window_state::State;
 
-/// Table of the window.
+/// Table that can be copied and saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableKind {
     /// Every condition with its flight state and its open tasks.
     Conditions,
-    /// Physics models of the displayed condition.
+    /// Physics models in the displayed condition.
     PhysicsModels,
-    /// Identified models of the displayed condition.
+    /// Identified models in the displayed condition.
     IdentifiedModels,
-    /// G, D and J of every response.
+    /// G, D and J for every response.
     Matrix,
-    /// Gain and delay of every channel.
+    /// Gain and delay for every channel.
     Channels,
 }
 
 impl TableKind {
-    /// Every table, in the order of the window.
+    /// Every table, in display order.
     pub const ALL: [TableKind; 5] = [
         Self::Conditions,
         Self::PhysicsModels,
@@ -36,7 +36,7 @@ impl TableKind {
         Self::Channels,
     ];
 
-    /// Returns the title of the table.
+    /// Returns the title.
     pub fn name(self) -> &'static str {
         match self {
             Self::Conditions => "conditions",
@@ -47,7 +47,7 @@ impl TableKind {
         }
     }
 
-    /// Returns the table of a bundle's models.
+    /// Returns the table for a bundle.
     pub fn of_bundle(bundle: BundleKind) -> Self {
         match bundle {
             BundleKind::Physics => Self::PhysicsModels,
@@ -80,7 +80,7 @@ fn yes_or_no(value: bool) -> String {
     if value { "yes" } else { "no" }.to_owned()
 }
 
-/// Returns the title of a table about the displayed condition.
+/// Returns the title for a table about the displayed condition.
 pub fn title(state: &State, subject: &str) -> String {
     let condition = state.condition();
     format!(
@@ -91,7 +91,7 @@ pub fn title(state: &State, subject: &str) -> String {
     )
 }
 
-/// Row of a table: headings with their cells.
+/// Table row: headings with their cells.
 type Row = Vec<(&'static str, String)>;
 
 /// Builds a table from rows with the same headings.
@@ -107,7 +107,7 @@ fn table_of_rows(title: String, rows: Vec<Row>) -> Table {
     table
 }
 
-/// Builds the table of conditions: flight state, and counts of open tasks.
+/// Builds the condition table: flight state, and counts of open tasks.
 fn conditions(state: &State) -> Table {
     let mut rows = Vec::new();
     for condition in state.dataset().conditions() {
@@ -142,7 +142,7 @@ fn condition_row(state: &State, condition: &Condition) -> Row {
     ]
 }
 
-/// Builds the table of a bundle's models in the displayed condition.
+/// Builds the table with a bundle's models in the displayed condition.
 fn models(state: &State, bundle: BundleKind) -> Table {
     let mut rows = Vec::new();
     for model in state.condition().bundle(bundle) {
@@ -197,7 +197,7 @@ fn title_with_bars(state: &State, kind: TableKind) -> String {
 #[derive(Clone, Copy, Default)]
 struct HalfWidths {
     whole: Option<f64>,
-    /// Part of the identification: the inner bar, "for this physics model".
+    /// Share from the identification: the inner bar, "for this physics model".
     inner: Option<f64>,
 }
 
@@ -223,7 +223,7 @@ fn displayed_half(scalar: Scalar, half: Option<f64>) -> Option<f64> {
     }
 }
 
-/// Builds the table of G, D, net gain, each with error bars, net delay, and J, J_mag and J_phase
+/// Builds the table with G, D, net gain, each with error bars, net delay, and J, J_mag and J_phase
 /// before and after.
 fn matrix(state: &State) -> Table {
     let pairs = state.dataset().on_axis().pairs();
@@ -281,7 +281,7 @@ fn response_row(state: &State, pair: Pair) -> Row {
     row
 }
 
-/// Builds the table of channel gains and delays with error bars.
+/// Builds the table with channel gains, delays and their error bars.
 fn channels(state: &State) -> Table {
     let channels = all_channels(state.dataset()).into_iter();
     let rows = channels

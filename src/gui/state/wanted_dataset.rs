@@ -13,29 +13,29 @@ use gdcm_sysid::records::{RecordChannels, RecordColumn, RecordTable};
 use super::condition_records::ConditionRecords;
 use crate::gui::widgets::controls::typed_number;
 
-/// Meanings of columns that are the pilot's controls; "TARG" is neither an input nor an output.
+/// Column meanings that are the pilot's controls; "TARG" is neither an input nor an output.
 const CONTROLS: [&str; 4] = ["LON", "LAT", "PED", "COL"];
 const TARGET: &str = "TARG";
 
 /// Form for a dataset made from records, as typed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct WantedDataset {
-    /// Inputs, in the syntax of [`ChannelList`].
+    /// Inputs, in [`ChannelList`] syntax.
     pub inputs: String,
     /// Outputs, in the same syntax.
     pub outputs: String,
-    /// Lower and upper end of the band \[rad/s\].
+    /// Lower and upper band limit \[rad/s\].
     pub band: [String; 2],
     pub path: String,
-    /// Description of the records' columns.
+    /// Descriptions for the record columns.
     pub columns: Vec<String>,
     /// Reasons why the dataset could not be made.
     pub problems: Vec<String>,
 }
 
 impl WantedDataset {
-    /// Creates a proposal from the records of a condition: the channels known from the
-    /// documentation of their system; others must be typed.
+    /// Creates a proposal from a condition's records: the channels known from the documentation for
+    /// their system; others must be typed.
     pub fn proposed(records: &ConditionRecords, band: Band, path: String) -> Self {
         let mut inputs = Vec::new();
         let mut outputs = Vec::new();
@@ -82,7 +82,7 @@ impl WantedDataset {
     }
 }
 
-/// Returns the side of a column's channel, as stated in the file or known from its meaning.
+/// Returns the channel side for a column, as stated in the file or known from its meaning.
 fn known_side(column: &RecordColumn) -> Option<ChannelSide> {
     if column.side.is_some() {
         return column.side;
@@ -97,7 +97,7 @@ fn known_side(column: &RecordColumn) -> Option<ChannelSide> {
     }
 }
 
-/// Adds the channel name of a column, unless it is in the list.
+/// Adds a column's channel name, unless it is in the list.
 fn add_name(names: &mut Vec<String>, column: &RecordColumn) {
     let name = column.meaning.unwrap_or(&column.name);
     if !names.iter().any(|known| known == name) {
@@ -119,13 +119,13 @@ fn column_description(table: &RecordTable, column: &RecordColumn) -> String {
     description
 }
 
-/// Parses a list of channels; an error names the side.
+/// Parses a channel list; an error names the side.
 fn parse_rules(side: &str, text: &str) -> Result<Vec<ChannelRule>, String> {
     let list: ChannelList = text.parse().map_err(|error| format!("{side}: {error}"))?;
     Ok(list.channels.iter().map(SaidChannel::rule).collect())
 }
 
-/// Parses the end of a band \[rad/s\]; NaN, which no band accepts, if the text is not a number.
+/// Parses a band limit \[rad/s\]; NaN, which no band accepts, if the text is not a number.
 fn parse_end(text: &str) -> f64 {
     typed_number(text).ok().flatten().unwrap_or(f64::NAN)
 }

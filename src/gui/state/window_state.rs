@@ -1,4 +1,4 @@
-//! State of the window: the study, finished and running computations, messages and forms.
+//! Window state: the study, finished and running computations, messages and forms.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -37,7 +37,7 @@ pub struct RecentFile {
     pub missing: bool,
 }
 
-/// State of the window.
+/// Window state.
 #[derive(Debug)]
 pub struct State {
     /// The study, the only saved part.
@@ -46,28 +46,28 @@ pub struct State {
     pub is_example: bool,
     /// Whether the start page covers everything else.
     pub on_start_page: bool,
-    /// Dataset of the displayed results.
+    /// Dataset behind the displayed results.
     followed: Arc<Dataset>,
     /// Undo history.
     pub history: History<RecordsBefore>,
-    /// Name of the study's file, or a substitute.
+    /// File name of the study, or a substitute.
     pub study_name: String,
     /// Whether there are unsaved decisions.
     pub unsaved: bool,
     pub display: Display,
     pub results: Results,
     pub file_cautions: Vec<String>,
-    /// Differences between the dataset and the dataset of the saved study.
+    /// Differences between the dataset and the saved study's dataset.
     pub differences: Vec<Difference>,
     pub notice: Option<Notice>,
     /// Persistent messages, in bars below the menu.
     pub bars: Vec<Bar>,
     /// Recently opened and saved files, newest first.
     pub recent: Vec<RecentFile>,
-    /// Name of a file being read.
+    /// File being read.
     pub opening: Option<String>,
     pub forms: Forms,
-    /// Current step of the guided tour.
+    /// Current step in the guided tour.
     pub tour: Option<usize>,
     /// Flight records, and models identified from them.
     pub records: RecordsState,
@@ -76,7 +76,7 @@ pub struct State {
 }
 
 impl State {
-    /// Creates the state of a window that shows `study` for the first time.
+    /// Creates the state for a window that shows `study` for the first time.
     pub fn new(study: Study, study_name: String, file_cautions: Vec<String>) -> Self {
         let pair = study
             .dataset
@@ -136,7 +136,7 @@ impl State {
         found.unwrap_or(&self.study.dataset.conditions()[0])
     }
 
-    /// Returns the result of the displayed condition, if there is a result of this dataset.
+    /// Returns the displayed condition's result, if it belongs to this dataset.
     pub fn shown(&self) -> Option<&ConditionAnalysis> {
         self.outcome()?.as_ref().ok()
     }
@@ -151,7 +151,7 @@ impl State {
             .collect()
     }
 
-    /// Returns the newest outcome of the displayed condition for this dataset.
+    /// Returns the displayed condition's newest outcome for this dataset.
     pub fn outcome(&self) -> Option<&Result<ConditionAnalysis, ConditionFailure>> {
         let condition = self.condition().id();
         if let Some(first) = &self.results.first
@@ -163,9 +163,8 @@ impl State {
         self.analysis()?.conditions.get(&condition)
     }
 
-    /// Returns whether the results of the other conditions, and everything derived from them,
-    /// belong to older settings than the displayed condition's; this is reported beside each of
-    /// them.
+    /// Returns whether the other conditions' results, and everything derived from them, belong to
+    /// older settings than the displayed condition's; this is reported beside each of them.
     pub fn others_are_older(&self) -> bool {
         match &self.results.first {
             Some(first) => {
@@ -178,7 +177,7 @@ impl State {
     }
 
     /// Returns whether a result belongs to the displayed dataset. Datasets are compared by pointer:
-    /// results belong to one dataset even if another is equal.
+    /// results belong to a single dataset even if another is equal.
     fn is_shown_dataset(&self, dataset: &Arc<Dataset>) -> bool {
         Arc::ptr_eq(dataset, &self.study.dataset)
     }
@@ -193,7 +192,7 @@ impl State {
         Some(toggles)
     }
 
-    /// Returns the responses of the displayed condition, for drawing.
+    /// Returns the displayed condition's responses, for drawing.
     pub fn curves(&self) -> Option<&Arc<ConditionCurves>> {
         let (job, curves) = self.results.curves.as_ref()?;
         if job.condition != self.condition().id() || !self.is_shown_dataset(&job.dataset) {
@@ -202,7 +201,7 @@ impl State {
         Some(curves)
     }
 
-    /// Returns the modes of every model of the displayed condition.
+    /// Returns the modes of every model in the displayed condition.
     pub fn modes(&self) -> Option<&Arc<ConditionModes>> {
         let (job, modes) = self.results.modes.as_ref()?;
         if !Arc::ptr_eq(&job.condition, self.condition()) {
@@ -211,8 +210,8 @@ impl State {
         Some(modes)
     }
 
-    /// Returns the requested assessment; until it is ready, an assessment of an older analysis of
-    /// the same dataset.
+    /// Returns the requested assessment; until it is ready, the assessment from an older analysis
+    /// of the same dataset.
     pub fn assessment(&self) -> Option<&Arc<AssessmentTable>> {
         let (job, table) = self.results.assessment.as_ref()?;
         if !self.is_shown_dataset(&job.analysis.study.dataset)
@@ -233,7 +232,7 @@ impl State {
         }
     }
 
-    /// Returns the requirements; until they are ready, those of an older analysis of the same
+    /// Returns the requirements; until they are ready, those from an older analysis of the same
     /// dataset.
     pub fn requirements(&self) -> Option<&Arc<Requirements>> {
         let (job, requirements) = self.results.requirements.as_ref()?;
@@ -243,8 +242,8 @@ impl State {
         Some(requirements)
     }
 
-    /// Returns the responses of the displayed condition's models to the test input, or the reason
-    /// for their absence; until they are ready, those of an older analysis of the same condition.
+    /// Returns the model responses to the test input in the displayed condition, or the reason
+    /// for their absence; until they are ready, those from an older analysis in the same condition.
     pub fn test_answers(&self) -> Option<&Result<Arc<TestAnswers>, String>> {
         let (job, answers) = self.results.test_answers.as_ref()?;
         if !self.is_shown_dataset(&job.analysis.study.dataset)
@@ -256,8 +255,8 @@ impl State {
         Some(answers)
     }
 
-    /// Returns the comparison of a job's record with the tolerances, or the reason for its absence;
-    /// until it is ready, the comparison of an older analysis.
+    /// Returns the comparison between a job's record and the tolerances, or the reason for its
+    /// absence; until it is ready, the comparison from an older analysis.
     pub fn record_history(
         &self,
         job: &RecordHistoryJob,
@@ -269,8 +268,8 @@ impl State {
         Some(history)
     }
 
-    /// Returns the models' responses to all records; until they are ready, those of an older
-    /// analysis of the same records.
+    /// Returns the models' responses to all records; until they are ready, those from an older
+    /// analysis with the same records.
     pub fn time_histories(&self) -> Option<&Arc<TimeHistories>> {
         let (job, histories) = self.results.time_histories.as_ref()?;
         if job.records != self.records.history_records() {
@@ -288,8 +287,8 @@ impl State {
         }
     }
 
-    /// Returns the actual or potential effect of couplings on the study; until it is ready, the
-    /// effect under older settings.
+    /// Returns the actual or potential benefit from couplings; until it is ready, the effect under
+    /// older settings.
     pub fn couplings(&self) -> Option<&AssessedCouplings> {
         let (known, assessed) = self.results.couplings.as_ref()?;
         if !self.is_shown_dataset(&known.study.dataset)
@@ -300,7 +299,7 @@ impl State {
         Some(assessed)
     }
 
-    /// Returns the responses of a model of each condition; until they are ready, those of older
+    /// Returns a model's responses in each condition; until they are ready, those for older
     /// settings.
     pub fn across(&self) -> Option<&Arc<AcrossCurves>> {
         let (job, curves) = self.results.across.as_ref()?;
@@ -310,7 +309,7 @@ impl State {
         Some(curves)
     }
 
-    /// Returns the message shown instead of missing curves, or while curves are being renewed.
+    /// Returns the message for missing curves, or while curves are being renewed.
     pub fn curves_message(&self) -> Option<&'static str> {
         let results = &self.results;
         if results.is_behind() {
@@ -349,8 +348,8 @@ impl State {
         Some(uncertainty)
     }
 
-    /// Returns the uncertainty of the displayed condition's values; empty until it is computed, or
-    /// if it belongs to older settings.
+    /// Returns the uncertainty for values in the displayed condition; empty until it is computed,
+    /// or if it belongs to older settings.
     pub fn sureness(&self) -> Sureness<'_> {
         let uncertainty = if self.others_are_older() {
             None
@@ -363,8 +362,8 @@ impl State {
         }
     }
 
-    /// Returns the newest analysis with its uncertainty, as far as computed: the basis of files and
-    /// derivations.
+    /// Returns the newest analysis with its uncertainty, as far as computed: the basis for files
+    /// and derivations.
     pub fn analysis_with_bars(&self) -> Option<Analysis> {
         let analysis = self.analysis()?.clone();
         Some(Analysis {
@@ -404,7 +403,7 @@ impl State {
         self.display.frequency.fit();
     }
 
-    /// Counts the kept models in a bundle of the displayed condition: "14 of 19".
+    /// Counts the kept models in a bundle: "14 of 19".
     pub fn kept_words(&self, kind: BundleKind) -> String {
         let count = self.condition().bundle(kind).len();
         let choice = self.study.choice(self.condition().id());
@@ -412,7 +411,7 @@ impl State {
         format!("{} of {count}", count - rejected)
     }
 
-    /// Returns the id of a model of the displayed condition.
+    /// Returns the id of a model in the displayed condition.
     pub fn model_id(&self, bundle: BundleKind, name: &str) -> ModelId {
         ModelId::new(self.condition().id(), bundle, name)
     }

@@ -104,7 +104,7 @@ impl JobPool {
     }
 
     /// Starts a pool with `shared` threads beside the two reserved ones.
-    fn with_shared_threads(shared: usize) -> io::Result<Self> {
+    pub(super) fn with_shared_threads(shared: usize) -> io::Result<Self> {
         let pool = Self {
             schedule: Arc::default(),
         };

@@ -429,8 +429,9 @@ mod tests {
         }
     }
 
+    /// Starts a pool with a single thread for long jobs: a fault that ended it would end the test.
     fn pool() -> JobPool {
-        JobPool::start().unwrap()
+        JobPool::with_shared_threads(1).unwrap()
     }
 
     #[test]

@@ -205,23 +205,29 @@ struct Loaded {
 }
 
 fn load(path: Option<PathBuf>) -> Loaded {
-    let trouble = match path {
-        None => None,
-        Some(path) => match load_any(&path, &ReadingBudget::default()) {
-            Ok(opened) => {
-                return Loaded {
-                    opened: Ok(opened),
-                    trouble: None,
-                };
-            }
-            Err(error) => Some(short_message(&error)),
-        },
+    let Some(path) = path else {
+        return Loaded {
+            opened: load_example(),
+            trouble: None,
+        };
     };
-    let opened = match embedded_example() {
+    match load_any(&path, &ReadingBudget::default()) {
+        Ok(opened) => Loaded {
+            opened: Ok(opened),
+            trouble: None,
+        },
+        Err(error) => Loaded {
+            opened: load_example(),
+            trouble: Some(short_message(&error)),
+        },
+    }
+}
+
+fn load_example() -> Result<Opened, String> {
+    match embedded_example() {
         Ok(example) => Ok(Opened::Dataset(example)),
         Err(error) => Err(short_message(&error)),
-    };
-    Loaded { opened, trouble }
+    }
 }
 
 fn short_message(error: &FileError) -> String {
@@ -237,6 +243,7 @@ fn load_and_report(path: Option<PathBuf>) -> Loaded {
     loaded
 }
 
+/// Runs the window until it is closed; `opening` receives the autosave once a frame is drawn.
 fn run(
     reading: JoinHandle<Loaded>,
     models: Option<PathBuf>,

@@ -224,12 +224,8 @@ const WIDE: f32 = 1400.0;
 /// Draws conditions and models, in full or as a rail.
 fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let side = Frame::new().fill(palette.panel);
-    if !state
-        .display
-        .layout
-        .left_open
-        .unwrap_or(state.display.layout.is_wide)
-    {
+    let layout = &state.display.layout;
+    if !layout.left_open.unwrap_or(layout.is_wide) {
         let frame = side.inner_margin(Margin {
             left: 4,
             right: 2,
@@ -332,11 +328,12 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
         .iter()
         .any(|command| matches!(command, Command::Selection(SelectionCommand::Explain(_))));
     if is_closed && !asks {
-        commands.push(if sheet == Sheet::Derivation {
+        let close = if sheet == Sheet::Derivation {
             Command::Selection(SelectionCommand::Explain(None))
         } else {
             Command::Layout(LayoutCommand::ShowSheet(None))
-        });
+        };
+        commands.push(close);
     }
 }
 

@@ -103,7 +103,7 @@ impl GdcmApp {
         if path.extension().is_some() && holds_models(&path) {
             let path = sanitized_path(&path);
             return self.notify_error(format!(
-                "{path}: this is neither a dataset nor a study; Import models, in the menu File, makes a dataset of model files"
+                "{path}: neither a dataset nor a study; Import models, in the menu File, makes a dataset from model files"
             ));
         }
         let purpose = match self.recovery.offer_of(&path) {

@@ -254,7 +254,7 @@ impl GdcmApp {
         let folder = relative_folder(sources_folder(&bench.sources), &path);
         let Some(dataset) = bench.assembly().dataset(&folder) else {
             return self.notify_error(
-                "items are to be completed before the dataset can be made".to_owned(),
+                "complete the marked items before the dataset can be made".to_owned(),
             );
         };
         let rules = bench.assembly().rules().clone();

@@ -113,7 +113,7 @@ impl GdcmApp {
         if are_present {
             ""
         } else if were_stopped {
-            "; without error bars, for computing them was stopped"
+            "; without error bars: their computation was stopped"
         } else {
             "; without error bars, which are still being computed"
         }
@@ -133,13 +133,13 @@ impl GdcmApp {
         let results = &self.state.results;
         if results.stopped {
             return Err(format!(
-                "{}, for computing was stopped; compute first",
+                "{}: the computation was stopped; compute first",
                 self.state.after_stop()
             ));
         }
         if !results.background.proofs.is_empty() {
             return Err(format!(
-                "the gains are still being proven; {action} again in a moment, or stop it"
+                "the gains are still being proven; {action} again in a moment, or stop the proof"
             ));
         }
         match &results.analysis {
@@ -220,7 +220,7 @@ impl GdcmApp {
         let figure = figure_of(&self.state, view);
         if figure.is_none() {
             self.notify_error(format!(
-                "{} has nothing to take away yet: {}",
+                "{} has no figure yet: {}",
                 view.name(),
                 self.state.results.absence()
             ));

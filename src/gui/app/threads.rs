@@ -109,7 +109,7 @@ impl GdcmApp {
         match thread {
             Ok(_) => drop(order.send((work, take))),
             Err(error) => self.work.replies.send(move |app| {
-                app.notify_error(format!("{name} cannot begin: {error}"));
+                app.notify_error(format!("{name} could not start: {error}"));
                 take(app, None);
             }),
         }
@@ -128,7 +128,7 @@ impl GdcmApp {
             // An existing entry prevents another automatic search.
             self.records_of(self.state.condition().id());
         }
-        self.done(format!("stopped reading {name}; what was open stays"));
+        self.done(format!("stopped reading {name}; the open study stays"));
     }
 }
 

@@ -178,7 +178,7 @@ impl Results {
         match self.background.bars {
             Some(progress) if !self.is_behind() => bar_words(progress),
             None if self.background.stopped => {
-                "Error bars: stopped; Compute, below, goes on with them".to_owned()
+                "Error bars: stopped; Compute, below, continues them".to_owned()
             }
             _ => self.absence().to_owned(),
         }

@@ -21,8 +21,9 @@ use gdcm_model::dataset::{
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::{FrequencyGrid, PolarResponse};
 use gdcm_study::decisions::setting;
+use gdcm_study::results::comparison::BundleMetrics;
 use gdcm_study::results::required_modes::KnownPoles;
-use gdcm_study::stages::comparison::BundleMetrics;
+use gdcm_study::stages::compared_model::ComparisonGrid;
 use gdcm_study::stages::condition_responses::ConditionResponses;
 use gdcm_study::{Edit, Engine, Execution, PhaseCorrection, Study};
 
@@ -55,9 +56,14 @@ fn stages(criterion: &mut Criterion) {
     let alone = Execution::sequential();
     let responses =
         ConditionResponses::of(condition, (dataset.band(), 200), &alone).expect("nobody stops it");
-    let figures = BundleMetrics::of(condition, &responses, &measuring, (&grid, None), &alone)
-        .expect("nobody stops it");
-    let polar = PolarResponse::of;
+    let comparison_grid = ComparisonGrid {
+        grid: &grid,
+        coherence: None,
+    };
+    let figures =
+        BundleMetrics::compute(condition, &responses, &measuring, comparison_grid, &alone)
+            .expect("nobody stops it");
+    let polar = PolarResponse::new;
     let mismatch = mismatch_table(
         &polar(&responses.physics[10]),
         &polar(&responses.identified[2]),
@@ -73,8 +79,9 @@ fn stages(criterion: &mut Criterion) {
         bencher.iter(|| ConditionResponses::of(condition, (dataset.band(), 200), &alone));
     });
     group.bench_function("distances and ratios", |bencher| {
-        bencher
-            .iter(|| BundleMetrics::of(condition, &responses, &measuring, (&grid, None), &alone));
+        bencher.iter(|| {
+            BundleMetrics::compute(condition, &responses, &measuring, comparison_grid, &alone)
+        });
     });
     group.bench_function("ratios", |bencher| {
         bencher.iter(|| Discontinuity::fit(&figures.physics, &perturbations, &|| false))

@@ -153,7 +153,7 @@ fn bode(curves: &[BodeCurve]) -> Screen<'_> {
     let mut view = BodeView::default();
     let palette = Palette::dark();
     Screen::new(Context::default(), Doing::Nothing, move |ui| {
-        let scene = BodeScene::of("LON → Q", curves, (0.5, 12.0));
+        let scene = BodeScene::new("LON → Q", curves, (0.5, 12.0));
         bode_ui(ui, &scene, &mut view, &palette);
     })
 }

@@ -15,7 +15,7 @@ use gdcm_io::import::record_files::read_records;
 use gdcm_io::{FolderProgress, embedded_example};
 use gdcm_model::dataset::{ConditionId, StateSpace};
 use gdcm_model::progress::Progress;
-use gdcm_study::jobs::job::IdentificationRequest;
+use gdcm_study::jobs::identification_jobs::IdentificationRequest;
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
 

@@ -18,7 +18,8 @@ use gdcm_model::executor::{Executor, Sequential};
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::FrequencyGrid;
 use gdcm_study::Execution;
-use gdcm_study::stages::comparison::BundleMetrics;
+use gdcm_study::results::comparison::BundleMetrics;
+use gdcm_study::stages::compared_model::ComparisonGrid;
 use gdcm_study::stages::condition_responses::ConditionResponses;
 
 #[path = "random_model/mod.rs"]
@@ -116,7 +117,13 @@ fn main() {
     let all = responses(&Pool);
     group.bench_function("distances and ratios, all cores", |bencher| {
         let execution = Execution::new(&Pool, &Unobserved, 2 * MODELS);
-        bencher.iter(|| BundleMetrics::of(&condition, &all, &measuring, (&grid, None), &execution));
+        let comparison_grid = ComparisonGrid {
+            grid: &grid,
+            coherence: None,
+        };
+        bencher.iter(|| {
+            BundleMetrics::compute(&condition, &all, &measuring, comparison_grid, &execution)
+        });
     });
     group.finish();
     criterion.final_summary();

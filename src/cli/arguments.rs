@@ -9,9 +9,9 @@ use clap::{Arg, ArgAction, ArgMatches, Args, FromArgMatches, Parser, Subcommand}
 use gdcm_model::assembly::FileScope;
 use gdcm_plot::figure::{ColumnWidth, FigureKind, Role};
 use gdcm_study::AcrossRole;
-use gdcm_study::decisions::changed_models::SignRole;
 use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::{Kind, Setting};
+use gdcm_study::decisions::signs::SignRole;
 
 use super::flight_records::HistoryArguments;
 use super::identify_arguments::IdentifyArguments;

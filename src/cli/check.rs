@@ -14,9 +14,11 @@ use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::progress::Unobserved;
 use gdcm_model::units::number;
 use gdcm_study::results::analysis::ConditionFailure;
-use gdcm_study::results::convention_doubt::doubts_of_models;
-use gdcm_study::stages::comparison::cautions_of_models;
-use gdcm_study::{Execution, Study, Table};
+use gdcm_study::stages::convention_check::doubts_of_models;
+use gdcm_study::stages::model_cautions::cautions_of_models;
+use gdcm_study::{Execution, Study};
+use gdcm_words::Table;
+use gdcm_words::caution::caution_text;
 
 use super::arguments::{ChannelSign, OpeningArguments};
 use super::open;
@@ -123,9 +125,12 @@ fn model_cautions(study: &Study) -> Result<String, Failure> {
         .iter()
         .map(|doubt| doubt_words(doubt, &study.dataset));
     let cautions = cautions_of_models(study, &execution)?;
-    let cautions = cautions
-        .into_iter()
-        .map(|(id, caution)| (id, caution.words(|pair| study.dataset.pair_name(pair))));
+    let cautions = cautions.into_iter().map(|(id, caution)| {
+        (
+            id,
+            caution_text(&caution, |pair| study.dataset.pair_name(pair)),
+        )
+    });
     let cautions = by_words(cautions)
         .into_iter()
         .map(|(conditions, words)| of_conditions(&conditions, &words));

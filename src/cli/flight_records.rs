@@ -11,7 +11,7 @@ use gdcm_model::dataset::{Band, ConditionId, Dataset};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::{number, telling};
 use gdcm_study::results::time_histories::{HistoryRecords, TimeHistories, time_histories_of};
-use gdcm_study::{Analysis, Execution, Table};
+use gdcm_study::{Analysis, Execution};
 use gdcm_sysid::identification::{CautionNote, Preparation};
 use gdcm_sysid::records::layout_problem::LayoutCaution;
 use gdcm_sysid::records::record_channels::SaidConversion;
@@ -20,6 +20,7 @@ use gdcm_sysid::records::{
     LaidOutRecord, LayoutProblem, RecordChannels, RecordSource, RecordTable, TimeWish,
     leave_out_copies, with_topics_joined,
 };
+use gdcm_words::Table;
 
 use super::arguments::OfChannel;
 use super::identify_arguments::{

@@ -16,27 +16,22 @@ use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord};
 use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dataset};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_model::simulation::Signal;
-use gdcm_study::decisions::changed_models::AdoptedModels;
-use gdcm_study::jobs::job::IdentificationRequest;
+use gdcm_study::decisions::adopted_models::AdoptedModels;
+use gdcm_study::jobs::identification_jobs::IdentificationRequest;
 use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
-use gdcm_sysid::identification::{
-    CautionNote, ChannelPreparation, Hold, Identification, IdentificationCaution,
-    IdentificationError, Preparation,
-};
+use gdcm_sysid::identification::{CautionNote, ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError, Preparation};
 use gdcm_sysid::records::time_base::median_step;
 use gdcm_sysid::records::topics::is_held;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
 use gdcm_sysid::spectra::preparation::RecordUse;
+use gdcm_words::channel_time_skew::time_skew_text;
 
 use super::existing;
 use super::flight_records::{ReadRecords, hold_out, is_called, laid_out, record_table};
 use super::identify_arguments::{IdentifyArguments, has_channel, of_one_record, unknown};
 use super::models::counted;
 use super::study_options::{condition_of, ids};
-use super::terminal::{
-    Failure, TerminalProgress, by_words, caution, caution_of, listed_conditions, listed_paths,
-    note, say,
-};
+use super::terminal::{Failure, TerminalProgress, by_words, caution, caution_of, listed_conditions, listed_paths, note, say};
 use crate::executor::Pool;
 
 /// File of the identified models.
@@ -253,7 +248,8 @@ impl IdentificationTask {
         let late = ChannelTimeSkew::of_condition(&found.measured, options.band, condition)?;
         let signal = late.signal(dataset)?;
         let known = options.preparation.channel(&signal)?.delay_s;
-        let words = late.words(
+        let words = time_skew_text(
+            &late,
             &signal.name,
             &condition
                 .bundle(BundleKind::Physics)

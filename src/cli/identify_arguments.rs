@@ -5,10 +5,10 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::{Band, Dataset};
+use gdcm_model::names::ChannelRule;
 use gdcm_model::units::number;
-use gdcm_study::decisions::changed_models::OfferedModels;
+use gdcm_study::decisions::adopted_models::OfferedModels;
 use gdcm_sysid::identification::{ChannelPreparation, Preparation, SearchSpace};
 use gdcm_sysid::records::RecordChannels;
 use gdcm_sysid::records::channel_list::{ChannelList, SaidChannel};

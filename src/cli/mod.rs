@@ -31,6 +31,7 @@ use gdcm_io::{Existing, Opened, load_any};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::Kind;
+use gdcm_words::decisions::dataset_difference_text;
 
 use crate::executor::start_threads;
 use arguments::{Arguments, Command, OpeningArguments};
@@ -141,7 +142,11 @@ fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
     };
     if let Opened::Study(study) = &opened {
         for difference in &study.differences {
-            caution(&format!("{}: {difference}", file.display()));
+            caution(&format!(
+                "{}: {}",
+                file.display(),
+                dataset_difference_text(difference)
+            ));
         }
         if arguments.strict && !study.differences.is_empty() {
             return Err(Failure::Different {

@@ -17,8 +17,8 @@ use gdcm_model::assembly::declarations::ChannelDeclarations;
 use gdcm_model::assembly::{Assembly, FileScope, FoundModel, Headings, Rules, proposed_rules};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::number;
-use gdcm_study::Table;
 use gdcm_study::results::analysis::ConditionFailure;
+use gdcm_words::Table;
 
 use super::arguments::{AssembleArguments, ConvertArguments, OfFiles};
 use super::existing;
@@ -142,8 +142,10 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
             ))
         }
         None => {
-            let problems = assembly.told();
-            problems.iter().for_each(|(_, words)| error(words));
+            let problems = assembly.problem_lines();
+            for problem in &problems {
+                error(&problem.text);
+            }
             Err(Failure::Incomplete {
                 count: problems.len(),
                 rules: sanitized_path(&rules_path),

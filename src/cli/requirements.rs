@@ -10,13 +10,14 @@ use gdcm_io::output_set::make_directory;
 use gdcm_method::requirements::ModeVerdict;
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::s_to_ms;
+use gdcm_study::Analysis;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::required_modes::KnownPoles;
-use gdcm_study::results::requirements::{
-    MissingFinding, RequirementRole, Requirements, SummaryFinding,
-};
+use gdcm_study::results::requirement_role::RequirementRole;
+use gdcm_study::results::requirements::{MissingFinding, Requirements, SummaryFinding};
 use gdcm_study::results::time_histories::TimeHistories;
-use gdcm_study::{Analysis, Table};
+use gdcm_words::Table;
+use gdcm_words::time_histories::{history_cost_table, output_weights_text, share_table};
 
 use super::arguments::RequirementsArguments;
 use super::flight_records::time_histories;
@@ -281,7 +282,7 @@ fn history_section(histories: &TimeHistories) -> String {
             .map_or("no record was compared", |of| of.why.as_str());
         return line(HEADING, &sanitized(why));
     }
-    let mut table = histories.share_table();
+    let mut table = share_table(histories);
     let all = table.rows.len();
     table.rows.retain(|row| {
         row[3..]
@@ -303,7 +304,7 @@ fn history_section(histories: &TimeHistories) -> String {
     );
     let costs = format!(
         "rms error J_rms and Theil's coefficients, over all records of a condition, {}:",
-        histories.weights_words().replace('\u{b2}', "^2")
+        output_weights_text(histories).replace('\u{b2}', "^2")
     );
     line(HEADING, &words)
         + &indented(
@@ -317,7 +318,7 @@ fn history_section(histories: &TimeHistories) -> String {
         + &indented(
             &Table {
                 title: String::new(),
-                ..histories.cost_table()
+                ..history_cost_table(histories)
             },
             2,
         )

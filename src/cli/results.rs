@@ -26,8 +26,9 @@ use gdcm_plot::figure::gains::{Across, Measure};
 use gdcm_plot::figure::{ConditionSource, Figure, FigureKind, FigureRequest, Role, all_channels};
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::required_modes::KnownPoles;
-use gdcm_study::stages::condition_responses::{CURVE_POINTS, curves_band};
+use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
 use gdcm_study::{Analysis, AssessedCorrection, CouplingCorrection, Engine, Study};
+use gdcm_words::caution::failure_text;
 
 use super::arguments::{
     AnalyzeArguments, FigureArguments, PairChoice, ReportArguments, StudyArguments, real_number,
@@ -311,7 +312,10 @@ fn figure_of_condition(
         Some(Ok(result)) => result,
         Some(Err(failure)) => {
             return Err(Failure::NoResult {
-                reason: format!("condition {condition}: {failure}"),
+                reason: format!(
+                    "condition {condition}: {}",
+                    failure_text(failure, &study.dataset)
+                ),
             });
         }
         None => return Ok(None),

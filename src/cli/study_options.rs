@@ -8,9 +8,10 @@ use gdcm_io::{LoadedDataset, embedded_example};
 use gdcm_method::correction;
 use gdcm_model::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
 use gdcm_model::message_text::sanitized;
+use gdcm_study::decisions::requirement_settings::RequirementSettings;
 use gdcm_study::results::analysis::ConditionFailure;
-use gdcm_study::results::requirements::RequirementSettings;
 use gdcm_study::{Analysis, Edit, Engine, Study};
+use gdcm_words::caution::failure_text;
 
 use super::arguments::{ChannelSign, OfChannel, Rejection, StudyArguments};
 use super::identify_arguments::said_twice;
@@ -80,7 +81,7 @@ pub(super) fn analysis_of(
     let told = by_words(
         failures
             .iter()
-            .map(|(id, failure)| (*id, failure.to_string())),
+            .map(|(id, failure)| (*id, failure_text(failure, &analysis.study.dataset))),
     );
     if let Some((conditions, first)) = told
         .first()

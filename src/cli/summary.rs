@@ -13,13 +13,24 @@ use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, Pair};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::{number, s_to_ms, signed, six_digits};
-use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice, held_out_verdict};
+use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
 use gdcm_study::results::convention_doubt::ConventionDoubt;
-use gdcm_study::results::remark::{Remark, RemarkKind, Repeated, remarks};
-use gdcm_study::results::table::scatter_table;
-use gdcm_study::stages::lead_compensation::lead_limit_words;
 use gdcm_study::{
-    Analysis, AssessedCorrection, AssessmentTable, ConditionAnalysis, PhaseCorrection, Study, Table,
+    Analysis, AssessedCorrection, AssessmentTable, ConditionAnalysis, PhaseCorrection, Study,
+};
+use gdcm_words::Table;
+use gdcm_words::assessment::{held_out_verdict, not_assessed_text};
+use gdcm_words::caution::failure_text;
+use gdcm_words::condition_remarks::remarks;
+use gdcm_words::convention_doubt::doubt_text;
+use gdcm_words::couplings::{
+    analysis_coupling_remarks, coupling_cost_table, coupling_matrix_tables, couplings_heading,
+};
+use gdcm_words::leads::lead_limit_words;
+use gdcm_words::remark::{Remark, RemarkKind, Repeated};
+use gdcm_words::schedule::delayed_channel_text;
+use gdcm_words::uncertainty::{
+    difference_text, differences_summary, scatter_table, second_variable_text,
 };
 
 use super::terminal::{
@@ -63,7 +74,7 @@ pub(super) fn doubt_words(doubt: &ConventionDoubt, dataset: &Dataset) -> String 
     let option = doubt
         .turns()
         .map(|channel| format!(" (--sign {}=-1)", channel.name(&inputs, &outputs)));
-    doubt.words(dataset) + &option.unwrap_or_default()
+    doubt_text(doubt, dataset) + &option.unwrap_or_default()
 }
 
 fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
@@ -115,15 +126,15 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
 
 /// Returns the meaning, benefit and cost of the couplings; empty without couplings.
 fn couplings_section(analysis: &Analysis) -> String {
-    let said = analysis.coupling_remarks();
+    let said = analysis_coupling_remarks(analysis);
     if said.is_empty() {
         return String::new();
     }
     let mut text = "\n".to_owned();
     if let Some(assessment) = &analysis.coupling_assessment {
-        text += &line("Couplings", &sanitized(&assessment.heading()));
-        text += &indented(&assessment.cost_table(), 2);
-        for mut table in assessment.matrix_tables(&analysis.study.dataset) {
+        text += &line("Couplings", &sanitized(&couplings_heading(assessment)));
+        text += &indented(&coupling_cost_table(assessment), 2);
+        for mut table in coupling_matrix_tables(assessment, &analysis.study.dataset) {
             let names = table.rows.iter_mut().filter_map(|row| row.first_mut());
             names
                 .chain(&mut table.columns)
@@ -154,7 +165,7 @@ fn assessment_lines(analysis: &Analysis) -> String {
         let words = format!(
             "condition {}: {}",
             left_out.condition,
-            sanitized(&left_out.why)
+            sanitized(&not_assessed_text(&left_out.why, &analysis.study.dataset))
         );
         text += &line("Left out", &words);
     }
@@ -179,7 +190,10 @@ fn condition_section(analysis: &Analysis, condition: &Condition) -> String {
             text += &channel_lines(analysis, result);
             text += &trouble_lines(analysis, result);
         }
-        Some(Err(failure)) => text.push_str(&detail("no result", &sanitized(&failure.to_string()))),
+        Some(Err(failure)) => text.push_str(&detail(
+            "no result",
+            &sanitized(&failure_text(failure, &analysis.study.dataset)),
+        )),
     }
     text
 }
@@ -572,7 +586,7 @@ fn schedule_section(analysis: &Analysis) -> String {
     for delayed in analysis.unscheduled_delays() {
         text += &detail(
             "left out",
-            &sanitized(&delayed.words(&analysis.study.dataset)),
+            &sanitized(&delayed_channel_text(&delayed, &analysis.study.dataset)),
         );
     }
     text += &schedule_table(analysis, schedule, |correction, pair| {
@@ -631,14 +645,14 @@ fn evidence_section(analysis: &Analysis) -> String {
         .filter(|difference| difference.is_significant(uncertainty.level));
     let words = format!(
         "{} (error bars of {level:.0} %, Holm)",
-        uncertainty.differences_in_words().trim_end_matches('.')
+        differences_summary(uncertainty).trim_end_matches('.')
     );
     text += &line("Differences", &words);
     for difference in significant {
         let words = format!(
             "{}: {}",
             pair_name(difference.pair),
-            difference.words(uncertainty.level)
+            difference_text(difference, uncertainty.level)
         );
         text += &detail("", &words);
     }
@@ -659,7 +673,10 @@ fn evidence_section(analysis: &Analysis) -> String {
         .iter()
         .filter(|test| test.needed)
     {
-        text += &line("Schedule", &format!("{}: {}", pair_name(test.pair), test));
+        text += &line(
+            "Schedule",
+            &format!("{}: {}", pair_name(test.pair), second_variable_text(test)),
+        );
     }
     text
 }
@@ -708,7 +725,7 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
             &format!(
                 "condition {}: {}",
                 left_out.condition,
-                sanitized(&left_out.why)
+                sanitized(&not_assessed_text(&left_out.why, &analysis.study.dataset))
             ),
         );
     }

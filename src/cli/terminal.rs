@@ -20,7 +20,7 @@ use gdcm_io::json_text::write_pretty;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::message_text::{sanitized, sanitized_path, shortened, shortened_message};
 use gdcm_model::progress::{Cancelled, Progress};
-use gdcm_study::Table;
+use gdcm_words::Table;
 
 /// Output format of a command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -13,12 +13,11 @@ use gdcm_io::formats::variables::{Array, CellArray, StructArray, TextArray, Valu
 use gdcm_io::import::model_files::FoundModels;
 use gdcm_io::{FolderProgress, load_dataset, read_models, write_mat};
 use gdcm_model::assembly::problem::ProblemKind;
-use gdcm_model::assembly::{
-    Assembly, ChannelRule, FoundModel, Headings, RowRole, UnitRule, proposed_rules,
-};
+use gdcm_model::assembly::{Assembly, FoundModel, Headings, UnitRule, proposed_rules};
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset, Dynamics, Model, StateSpace};
+use gdcm_model::names::{ChannelRule, RowRole};
 
 use crate::commands::Ended;
 
@@ -325,7 +324,7 @@ fn the_example_in_a_folder_of_any_format_is_the_same_dataset_to_the_last_digit()
         assert!(
             assembly.problems().is_empty(),
             "{route}: {:?}",
-            assembly.told()
+            assembly.problem_lines()
         );
         assert_same_numbers(&assembly.dataset("").unwrap(), example, route);
     }
@@ -521,7 +520,7 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
     assert!(
         asked(&assembly, |kind| matches!(kind, ProblemKind::UnitOfFile(_))),
         "the response has no units: {:?}",
-        assembly.told()
+        assembly.problem_lines()
     );
     rules.rename(ChannelSide::Input, 0, "LON".into());
     rules.rename(ChannelSide::Output, 0, "Q".into());
@@ -541,7 +540,7 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
             ProblemKind::Conversion { .. }
         )),
         "inches of a stick: {:?}",
-        assembly.told()
+        assembly.problem_lines()
     );
     rules.units.push(UnitRule {
         channel: "LON".into(),
@@ -549,7 +548,11 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
         factor: 8.0,
     });
     let assembly = assembly.with_rules(rules);
-    assert!(assembly.problems().is_empty(), "{:?}", assembly.told());
+    assert!(
+        assembly.problems().is_empty(),
+        "{:?}",
+        assembly.problem_lines()
+    );
     assert_eq!(
         assembly
             .parts()
@@ -786,28 +789,30 @@ fn names_are_said_for_the_channels_of_one_model_and_a_wrong_number_of_them_is_to
             Some(names.iter().map(|name| (*name).to_owned()).collect());
         Assembly::new(found.models.clone(), rules)
     };
-    let told = |assembly: &Assembly| {
-        assembly
-            .told()
-            .into_iter()
-            .map(|(_, words)| words)
-            .collect::<Vec<_>>()
-            .join("\n")
+    let kinds = |names: &[&str]| -> Vec<ProblemKind> {
+        let assembly = with(names);
+        let problems = assembly.problems();
+        problems
+            .iter()
+            .map(|problem| problem.kind.clone())
+            .collect()
     };
+    let nz = kinds(&["NZ"]);
     assert!(
-        told(&with(&["NZ"])).contains("NZ"),
-        "the model has another output now: {}",
-        told(&with(&["NZ"]))
+        nz.iter().any(|kind| kind.to_string().contains("NZ")),
+        "the model has another output now: {nz:?}"
     );
-    assert!(
-        told(&with(&["Q", "P"])).contains("2 names are said for the 1 outputs"),
-        "{}",
-        told(&with(&["Q", "P"]))
-    );
+    let wrong_count = ProblemKind::Names {
+        side: ChannelSide::Output,
+        said: 2,
+        found: 1,
+    };
+    let two_names = kinds(&["Q", "P"]);
+    assert!(two_names.contains(&wrong_count), "{two_names:?}");
 }
 
 #[test]
-fn measured_responses_of_one_model_at_differing_frequencies_are_told_with_what_mends_it() {
+fn measured_responses_of_one_model_at_differing_frequencies_are_a_problem() {
     let folder = tempfile::tempdir().unwrap();
     small_folder(folder.path());
     let frf: String = (1..=30)
@@ -819,27 +824,30 @@ fn measured_responses_of_one_model_at_differing_frequencies_are_told_with_what_m
     let mut rules = proposed_rules("small", &found.models);
     rules.inputs.push(ChannelRule::named("LAT"));
     rules.outputs.push(ChannelRule::named("P"));
-    let told: Vec<String> = Assembly::new(found.models, rules)
-        .told()
-        .into_iter()
-        .map(|(_, words)| words)
-        .collect();
-    let words = told
+    let assembly = Assembly::new(found.models, rules);
+    let grids = assembly
+        .problems()
         .iter()
-        .find(|words| words.contains("same frequencies"))
-        .unwrap_or_else(|| panic!("{told:#?}"));
-    assert!(
-        words.contains("frf_P_LAT.csv has 30 from 0.5 to 15.0 rad/s"),
-        "{words}"
-    );
-    assert!(
-        words.contains("frf_Q_LON.csv has 40 from 0.3 to 12.3 rad/s"),
-        "{words}"
-    );
-    assert!(
-        words.ends_with("or give one of them another name: it is a model of its own then"),
-        "{words}"
-    );
+        .find_map(|problem| match &problem.kind {
+            ProblemKind::Grids {
+                first,
+                first_grid,
+                second,
+                second_grid,
+            } => Some([(first, first_grid), (second, second_grid)]),
+            _ => None,
+        })
+        .unwrap_or_else(|| panic!("{:#?}", assembly.problem_lines()));
+    let spans = grids.map(|(file, span)| format!("{file} has {span}"));
+    for expected in [
+        "frf_P_LAT.csv has 30 from 0.5 to 15.0 rad/s",
+        "frf_Q_LON.csv has 40 from 0.3 to 12.3 rad/s",
+    ] {
+        assert!(
+            spans.iter().any(|span| span.ends_with(expected)),
+            "{spans:?}"
+        );
+    }
 }
 
 #[test]

@@ -15,11 +15,13 @@ use gdcm_method::requirements::ToleranceTable;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 use gdcm_study::results::required_modes::KnownPoles;
-use gdcm_study::results::requirements::RequirementRole;
+use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::time_histories::{HistoryRecords, time_histories_of};
 use gdcm_study::{Analysis, Edit, Engine, Execution, Study};
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
+use gdcm_words::requirements::summary_table;
+use gdcm_words::time_histories::{record_table, share_table};
 
 use crate::commands::Desk;
 use crate::window::{click, few_window, settle, state};
@@ -155,7 +157,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
         .requirements(&analysis, &KnownPoles::default(), &Unobserved)
         .unwrap();
     let cells = texts(&parsed(&REPORT), "td");
-    for row in requirements.summary_table(None).rows {
+    for row in summary_table(&requirements, None).rows {
         assert!(cells.windows(row.len()).any(|of| *of == row), "{row:?}");
     }
     let known = requirements
@@ -189,13 +191,12 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
     };
     let report = report(subject, &source, engine, &Unobserved).unwrap();
     let cells = texts(&parsed(&report), "td");
-    let of_records = histories.record_table(ConditionId(3));
+    let of_records = record_table(&histories, ConditionId(3));
     assert!(
         !of_records.rows.is_empty(),
         "the physics model leaves some corridor"
     );
-    for row in histories
-        .share_table()
+    for row in share_table(&histories)
         .rows
         .into_iter()
         .chain(of_records.rows)

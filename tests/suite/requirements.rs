@@ -450,7 +450,7 @@ fn what_a_stick_commands_is_an_option_and_levels_are_drawn() {
 
 #[test]
 fn what_requirements_are_asked_with_comes_back_with_the_study() {
-    use gdcm_study::results::requirements::{OverviewLimits, RequirementSettings};
+    use gdcm_study::decisions::requirement_settings::{OverviewLimits, RequirementSettings};
     use gdcm_study::{Edit, Study};
     let desk = Desk::new();
     let loaded = gdcm_io::load_dataset(&desk.path("small.json")).unwrap();
@@ -500,8 +500,8 @@ fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
     use gdcm_plot::figure::Mark;
     use gdcm_plot::figure::requirements::record_history_figure;
     use gdcm_study::jobs::job::Job;
-    use gdcm_study::results::condition_answers::RecordHistoryJob;
-    use gdcm_study::results::requirements::RequirementRole;
+    use gdcm_study::jobs::requirement_jobs::RecordHistoryJob;
+    use gdcm_study::results::requirement_role::RequirementRole;
     use gdcm_study::results::time_histories::HistoryRecord;
     use gdcm_study::{Engine, Study};
     let dataset = crate::FEW.dataset.clone();

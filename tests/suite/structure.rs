@@ -13,17 +13,17 @@ const CRATES: &[(&str, ModuleTable)] = &[
     (
         "gdcm-model",
         &[
-            ("units", &[]),
+            ("number_format", &[]),
+            ("units", &["number_format"]),
             ("message_text", &[]),
             ("executor", &[]),
             ("whole_number", &[]),
+            ("statistics", &[]),
             ("dataset", &["units", "message_text", "whole_number"]),
             ("progress", &["dataset"]),
-            (
-                "assembly",
-                &["units", "message_text", "whole_number", "dataset"],
-            ),
-            ("response", &["units", "dataset"]),
+            ("assembly", &["units", "whole_number", "dataset", "names"]),
+            ("names", &["units", "message_text", "dataset"]),
+            ("response", &["units", "dataset", "statistics"]),
             ("simulation", &["executor", "dataset", "response"]),
         ],
     ),
@@ -70,10 +70,45 @@ const CRATES: &[(&str, ModuleTable)] = &[
     (
         "gdcm-study",
         &[
-            ("decisions", &["results"]),
-            ("stages", &["decisions", "results"]),
-            ("results", &["decisions", "stages", "jobs"]),
-            ("jobs", &["decisions", "stages", "results"]),
+            ("shared", &[]),
+            ("execution", &[]),
+            ("decisions", &[]),
+            ("results", &["shared", "execution", "decisions"]),
+            ("stages", &["execution", "decisions", "results"]),
+            (
+                "jobs",
+                &["shared", "execution", "decisions", "results", "stages"],
+            ),
+        ],
+    ),
+    (
+        "gdcm-words",
+        &[
+            ("table", &[]),
+            ("remark", &[]),
+            ("missed_targets", &[]),
+            ("caution", &[]),
+            ("convention_doubt", &[]),
+            ("channel_time_skew", &[]),
+            ("schedule", &[]),
+            ("decisions", &[]),
+            ("leads", &["remark", "missed_targets"]),
+            (
+                "condition_remarks",
+                &[
+                    "remark",
+                    "missed_targets",
+                    "caution",
+                    "convention_doubt",
+                    "leads",
+                ],
+            ),
+            ("couplings", &["remark", "table"]),
+            ("assessment", &["caution"]),
+            ("uncertainty", &["table"]),
+            ("time_histories", &["table"]),
+            ("requirements", &["table", "time_histories"]),
+            ("derivation", &["assessment", "leads"]),
         ],
     ),
     ("gdcm-plot", &[("figure", &[]), ("paper", &["figure"])]),
@@ -104,8 +139,18 @@ const MAY_DEPEND: &[(&str, &[&str])] = &[
     ("gdcm-sysid", &["gdcm-numerics", "gdcm-model"]),
     ("gdcm-study", &["gdcm-model", "gdcm-method", "gdcm-sysid"]),
     (
-        "gdcm-plot",
+        "gdcm-words",
         &["gdcm-model", "gdcm-method", "gdcm-sysid", "gdcm-study"],
+    ),
+    (
+        "gdcm-plot",
+        &[
+            "gdcm-model",
+            "gdcm-method",
+            "gdcm-sysid",
+            "gdcm-study",
+            "gdcm-words",
+        ],
     ),
     (
         "gdcm-io",
@@ -114,6 +159,7 @@ const MAY_DEPEND: &[(&str, &[&str])] = &[
             "gdcm-method",
             "gdcm-sysid",
             "gdcm-study",
+            "gdcm-words",
             "gdcm-plot",
         ],
     ),
@@ -184,8 +230,14 @@ fn modules(package: &str) -> Vec<(String, PathBuf, String)> {
                 code_of(&fs::read_to_string(&path).unwrap()),
             )
         })
-        .filter(|(module, ..)| module != "main" && module != "lib")
+        .filter(|(module, path, _)| module != "main" && module != "lib" && !is_test_file(path))
         .collect()
+}
+
+/// Returns whether a file holds tests alone.
+fn is_test_file(path: &Path) -> bool {
+    path.file_stem()
+        .is_some_and(|name| name.to_string_lossy().ends_with("tests"))
 }
 
 pub(super) fn code_of(text: &str) -> String {

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use gdcm_model::message_text::sanitized;
 use gdcm_model::units::without_sign_of_zero;
-use gdcm_study::Table;
+use gdcm_words::table::Table;
 
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;

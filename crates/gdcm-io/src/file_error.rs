@@ -4,11 +4,11 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use gdcm_method::requirements::tolerance::ToleranceError;
-use gdcm_model::dataset::channel::Location;
 use gdcm_model::dataset::dataset::BandError;
+use gdcm_model::dataset::location::Location;
 use gdcm_model::dataset::unchecked_dataset::{DraftError, DraftFault};
 use gdcm_model::message_text::{quoted, sanitized, sanitized_path};
-use gdcm_study::decisions::edit::EditRefusal;
+use gdcm_study::decisions::edit_refusal::EditRefusal;
 
 use crate::export_fault::ExportFault;
 use crate::location::line_of;

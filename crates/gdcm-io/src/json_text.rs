@@ -12,8 +12,8 @@ use serde::ser::{SerializeSeq, Serializer};
 use serde::{Deserialize, Serialize};
 use serde_json::error::Category;
 
-use gdcm_model::dataset::channel::Location;
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_FREQUENCIES, MOST_STATES};
+use gdcm_model::dataset::location::Location;
 use gdcm_model::message_text::{is_unprintable, sanitized, shortened};
 use gdcm_model::units::number;
 

@@ -6,7 +6,7 @@ use json_event_parser::{JsonEvent, SliceJsonParser};
 use serde_json::value::RawValue;
 
 use gdcm_model::dataset::BundleKind;
-use gdcm_model::dataset::channel::{ConditionPlace, Location, ModelPlace};
+use gdcm_model::dataset::location::{ConditionPlace, Location, ModelPlace};
 use gdcm_model::message_text::{quoted, sanitized, shortened};
 
 use crate::reading_budget::ReadingBudget;

@@ -1,5 +1,5 @@
-//! Independent tasks and their execution: the numerical crates know nothing of threads, but their
-//! callers may.
+//! Independent tasks and their execution. The numerical crates use no threads themselves; their
+//! callers may run the tasks on several.
 
 /// A task that depends on no other.
 pub type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
@@ -16,33 +16,47 @@ pub struct Sequential;
 
 impl Executor for Sequential {
     fn carry_out(&self, tasks: Vec<Task<'_>>) {
-        tasks.into_iter().for_each(|task| task());
+        for task in tasks {
+            task();
+        }
     }
 }
 
-/// Applies `of` to each of `things` on `executor` and returns the results in order; they do not
+/// An argument and its result.
+struct Piece<S, T> {
+    /// `None` once its task has begun.
+    argument: Option<S>,
+    /// `None` until its task is done.
+    result: Option<T>,
+}
+
+/// Applies a function to each argument on `executor`, and returns the results in order; they do not
 /// depend on the executor. Tasks that the executor leaves undone run on the caller's thread.
 pub fn each<S: Send, T: Send>(
     executor: &dyn Executor,
-    things: impl IntoIterator<Item = S>,
-    of: impl Fn(S) -> T + Sync,
+    arguments: impl IntoIterator<Item = S>,
+    function: impl Fn(S) -> T + Sync,
 ) -> Vec<T> {
-    let mut pieces: Vec<(Option<S>, Option<T>)> = things
+    let mut pieces: Vec<Piece<S, T>> = arguments
         .into_iter()
-        .map(|thing| (Some(thing), None))
+        .map(|argument| Piece {
+            argument: Some(argument),
+            result: None,
+        })
         .collect();
-    let of = &of;
-    let task = |(thing, result): &'_ mut (Option<S>, Option<T>)| *result = thing.take().map(of);
-    executor.carry_out(
-        pieces
-            .iter_mut()
-            .map(|piece| Box::new(move || task(piece)) as Task<'_>)
-            .collect(),
-    );
-    pieces
-        .into_iter()
-        .filter_map(|(thing, result)| result.or_else(|| thing.map(of)))
-        .collect()
+    let function = &function;
+    let mut tasks: Vec<Task<'_>> = Vec::with_capacity(pieces.len());
+    for piece in &mut pieces {
+        tasks.push(Box::new(move || {
+            piece.result = piece.argument.take().map(function);
+        }));
+    }
+    executor.carry_out(tasks);
+    let mut results = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        results.extend(piece.result.or_else(|| piece.argument.map(function)));
+    }
+    results
 }
 
 #[cfg(test)]
@@ -54,7 +68,9 @@ mod tests {
 
     impl Executor for Backwards {
         fn carry_out(&self, tasks: Vec<Task<'_>>) {
-            tasks.into_iter().rev().for_each(|task| task());
+            for task in tasks.into_iter().rev() {
+                task();
+            }
         }
     }
 
@@ -63,12 +79,14 @@ mod tests {
 
     impl Executor for Careless {
         fn carry_out(&self, tasks: Vec<Task<'_>>) {
-            tasks.into_iter().step_by(2).for_each(|task| task());
+            for task in tasks.into_iter().step_by(2) {
+                task();
+            }
         }
     }
 
     #[test]
-    fn results_come_in_the_order_of_the_things_whoever_works_on_them() {
+    fn results_are_in_the_order_of_the_arguments() {
         for executor in [&Sequential as &dyn Executor, &Backwards, &Careless] {
             assert_eq!(each(executor, 0..4, |index| 10 * index), [0, 10, 20, 30]);
         }

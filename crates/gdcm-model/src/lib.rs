@@ -1,14 +1,17 @@
 //! The Gain-Delay Correction Method: models, flight conditions and their responses.
 //!
-//! **Question answered:** which data did the engineer load, and how does one model respond?
+//! **Question answered:** which data did the engineer load, and how does a model respond?
 //!
 //! | module | holds |
 //! |---|---|
 //! | [`dataset`] | channels, models, measured responses, flight conditions; checked at construction |
 //! | [`response`] | frequency responses, poles, zeros, lead filters |
 //! | [`simulation`] | time responses: flight records, and a model simulated against them |
-//! | [`assembly`] | models from many files into one dataset: names, channels, units |
-//! | [`units`] | unit conversions and number formatting |
+//! | [`statistics`] | mean, median, quantiles |
+//! | [`assembly`] | models from many files into one dataset: roles, channels, conversions |
+//! | [`names`] | channel aliases and signs, response names, patterns of file names |
+//! | [`units`] | physical units and conversions |
+//! | [`number_format`] | numbers as text: the only choice of digits, signs and exponents |
 //! | [`executor`], [`progress`] | parallel tasks, progress and cancellation |
 //! | [`message_text`], [`whole_number`] | sanitised text, and whole numbers in JSON |
 //!
@@ -30,8 +33,11 @@ pub mod assembly;
 pub mod dataset;
 pub mod executor;
 pub mod message_text;
+pub mod names;
+pub mod number_format;
 pub mod progress;
 pub mod response;
 pub mod simulation;
+pub mod statistics;
 pub mod units;
 pub mod whole_number;

@@ -2,18 +2,18 @@
 
 use std::path::Path;
 
-/// Escapes control and invisible characters: a name with a line end, an escape sequence or a change
-/// of writing direction could break a message or a terminal, or read as another name.
+/// Escapes control and invisible characters. A name with a line end, an escape sequence or a new
+/// writing direction could break a message or a terminal, or read as another name.
 pub fn sanitized(text: &str) -> String {
-    let mut words = String::with_capacity(text.len());
+    let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
         if is_unprintable(character) {
-            words.extend(character.escape_default());
+            escaped.extend(character.escape_default());
         } else {
-            words.push(character);
+            escaped.push(character);
         }
     }
-    words
+    escaped
 }
 
 /// Returns a path as sanitised text.
@@ -21,7 +21,7 @@ pub fn sanitized_path(path: &Path) -> String {
     sanitized(&path.to_string_lossy())
 }
 
-/// Returns whether a character is unprintable: a control character, or one without a shape that
+/// Returns whether a character is unprintable: a control character, or an invisible character that
 /// changes the writing direction, joins or separates letters, or ends a line or a paragraph.
 pub fn is_unprintable(character: char) -> bool {
     let is_invisible = matches!(
@@ -37,28 +37,26 @@ pub fn quoted(text: &str) -> String {
     format!("\"{}\"", shortened(&sanitized(text)))
 }
 
-/// Shortens a message and its words to a readable length; an ellipsis replaces the middle of each.
+/// Shortens a message and each of its words to a readable length, by the middle.
 pub fn shortened_message(text: &str) -> String {
-    /// Limit above every sentence of the program with sixty column names, and length kept at each
-    /// end.
-    const MESSAGE: [usize; 2] = [2000, 900];
-    let words: Vec<String> = text
-        .split(' ')
-        .map(|word| without_middle(word, WORD))
-        .collect();
-    without_middle(&words.join(" "), MESSAGE)
+    /// Longer than any message of the program with sixty column names.
+    const LONGEST: usize = 2000;
+    const KEPT: usize = 900;
+    let words: Vec<String> = text.split(' ').map(shortened_name).collect();
+    without_middle(&words.join(" "), LONGEST, KEPT)
 }
 
 /// Shortens a name in a message by its middle where it is longer than most file paths.
 pub fn shortened_name(text: &str) -> String {
-    without_middle(text, WORD)
+    /// Longer than most file paths.
+    const LONGEST: usize = 400;
+    const KEPT: usize = 40;
+    without_middle(text, LONGEST, KEPT)
 }
 
-/// Limit above most file paths, and length kept at each end.
-const WORD: [usize; 2] = [400, 40];
-
-/// Removes the middle of a text above `longest` characters; `kept` characters remain at each end.
-fn without_middle(text: &str, [longest, kept]: [usize; 2]) -> String {
+/// Replaces the middle of a text above `longest` characters by an ellipsis; `kept` characters remain
+/// at each end.
+fn without_middle(text: &str, longest: usize, kept: usize) -> String {
     let letters = text.chars().count();
     if letters <= longest {
         return text.to_owned();
@@ -82,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn control_characters_and_invisible_ones_are_spelt_out_and_letters_are_not() {
+    fn control_and_invisible_characters_are_escaped() {
         assert_eq!(sanitized("a\u{1b}[31m\nΔ → °"), "a\\u{1b}[31m\\nΔ → °");
         for invisible in
             "\u{200b}\u{200f}\u{202e}\u{2028}\u{2029}\u{2066}\u{2069}\u{feff}\u{61c}\u{7f}\u{9b}"
@@ -98,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_of_seventy_thousand_letters_is_shortened_and_the_others_stay() {
+    fn only_the_long_word_of_a_message_is_shortened() {
         let shown = shortened_message(&format!("condition {} is odd", "x".repeat(70_000)));
         assert!(
             shown.starts_with("condition xxx")
@@ -110,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_of_many_short_words_is_shortened_too() {
+    fn a_long_message_of_short_words_is_shortened() {
         let shown = shortened_message(&format!(
             "condition {} is odd",
             "hover at low altitude ".repeat(4000)

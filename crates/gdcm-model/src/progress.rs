@@ -4,21 +4,19 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::dataset::StateSpace;
 
-/// Receives the progress of a long computation, and can cancel it.
-///
-/// A computation may run on several threads, each of which checks for cancellation.
+/// Receives progress reports, and can cancel the computation. Methods may be called from
+/// several threads.
 pub trait Progress: Sync {
     /// Returns whether the computation should stop now, without a result.
     fn cancelled(&self) -> bool;
 
-    /// Reports that `done` of `total` steps are complete.
+    /// Reports `done` out of `total` steps as complete.
     fn advanced(&self, done: usize, total: usize);
 
-    /// Reports the start of a step, in words.
-    fn step(&self, _what: &str) {}
+    /// Reports the start of a step.
+    fn step(&self, _name: &str) {}
 
-    /// Reports a preliminary model of an identification, in the units of the records; a better one
-    /// follows.
+    /// Reports a preliminary identified model, in record units; a better model follows.
     fn first_model(&self, _model: &StateSpace) {}
 }
 
@@ -34,22 +32,22 @@ impl Progress for Unobserved {
     fn advanced(&self, _done: usize, _total: usize) {}
 }
 
-/// Reports progress within one part of a computation as its share of the whole.
+/// Reports progress within a part as its share of the whole computation.
 pub struct Portion<'a> {
     shares: &'a Shares<'a>,
     share: f64,
-    what: &'static str,
+    name: &'static str,
     /// The share reported so far.
     reported: Mutex<f64>,
 }
 
 impl<'a> Portion<'a> {
-    /// Creates a part that makes up `share` of the whole, reported as the step `what`.
-    pub fn new(shares: &'a Shares<'a>, share: f64, what: &'static str) -> Self {
+    /// Creates a part with `share` (0 to 1) of the whole, reported as the step `name`.
+    pub fn new(shares: &'a Shares<'a>, share: f64, name: &'static str) -> Self {
         Self {
             shares,
             share,
-            what,
+            name,
             reported: Mutex::new(0.0),
         }
     }
@@ -68,7 +66,7 @@ impl<'a> Portion<'a> {
         let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
         let rise = (done.min(1.0) * self.share - *reported).max(0.0);
         *reported += rise;
-        self.shares.advance(rise, self.what)
+        self.shares.advance(rise, self.name)
     }
 }
 
@@ -83,13 +81,13 @@ impl Progress for Portion<'_> {
     }
 }
 
-/// The error of a cancelled computation.
+/// Error for a cancelled computation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the analysis was stopped")]
 pub struct Cancelled;
 
-/// Reports progress of a computation split into shares of the whole, some of which end in any
-/// order; never goes backwards.
+/// Reports progress of a computation split into shares that may end in any order; never goes
+/// backwards.
 pub struct Shares<'a> {
     progress: &'a dyn Progress,
     done: Mutex<f64>,
@@ -109,28 +107,29 @@ impl<'a> Shares<'a> {
         self.progress
     }
 
-    /// Starts the next step, with `done` (0 to 1) of the whole complete before it.
-    pub fn next(&self, done: f64, what: &str) -> Result<(), Cancelled> {
-        self.tell(|_| done, what)
+    /// Starts the next step; `done` (0 to 1) is the share complete before it.
+    pub fn next(&self, done: f64, name: &str) -> Result<(), Cancelled> {
+        self.report(|_| done, name)
     }
 
-    /// Reports a completed step with `share` of the whole, where steps end in any order.
-    pub fn advance(&self, share: f64, what: &str) -> Result<(), Cancelled> {
-        self.tell(|done| done + share, what)
+    /// Reports a completed step with its share (0 to 1).
+    pub fn advance(&self, share: f64, name: &str) -> Result<(), Cancelled> {
+        self.report(|done| done + share, name)
     }
 
-    fn tell(&self, done: impl Fn(f64) -> f64, what: &str) -> Result<(), Cancelled> {
+    /// Reports the step `name`, and the total share that `done` computes from the last.
+    fn report(&self, done: impl Fn(f64) -> f64, name: &str) -> Result<(), Cancelled> {
         /// Resolution of the reported progress.
         const PARTS: f64 = 1000.0;
         if self.progress.cancelled() {
             return Err(Cancelled);
         }
         // A panic while the lock was held leaves a valid number.
-        let mut last = self.done.lock().unwrap_or_else(PoisonError::into_inner);
-        *last = last.max(done(*last).min(1.0));
-        self.progress.step(what);
+        let mut total = self.done.lock().unwrap_or_else(PoisonError::into_inner);
+        *total = total.max(done(*total).min(1.0));
+        self.progress.step(name);
         self.progress
-            .advanced((*last * PARTS) as usize, PARTS as usize);
+            .advanced((*total * PARTS) as usize, PARTS as usize);
         Ok(())
     }
 }

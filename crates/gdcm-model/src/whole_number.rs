@@ -8,7 +8,7 @@ use serde::de::{Deserializer, Error, Unexpected, Visitor};
 
 /// Integer types that accept whole numbers.
 pub trait WholeNumber: TryFrom<i64> {
-    /// Description of the expected value in a file.
+    /// Expected value, for error messages.
     const EXPECTED: &'static str;
 }
 
@@ -30,7 +30,7 @@ pub fn whole<'de, T: WholeNumber, D: Deserializer<'de>>(deserializer: D) -> Resu
     deserializer.deserialize_any(Whole(PhantomData))
 }
 
-/// As `whole`, or null; for an optional key, with `#[serde(default)]`.
+/// As [`whole`], or null: for an optional key with `#[serde(default)]`.
 pub fn whole_or_none<'de, T: WholeNumber, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<T>, D::Error> {
@@ -55,14 +55,14 @@ impl<T: WholeNumber> Visitor<'_> for Whole<T> {
     }
 
     fn visit_u64<E: Error>(self, number: u64) -> Result<T, E> {
-        let value = i64::try_from(number)
-            .ok()
-            .and_then(|number| T::try_from(number).ok());
-        value.ok_or_else(|| E::invalid_value(Unexpected::Unsigned(number), &self))
+        match i64::try_from(number) {
+            Ok(number) => self.visit_i64(number),
+            Err(_) => Err(E::invalid_value(Unexpected::Unsigned(number), &self)),
+        }
     }
 
     fn visit_f64<E: Error>(self, number: f64) -> Result<T, E> {
-        /// Up to this limit every whole number has its own floating-point value.
+        /// 2^53: up to here every whole number has its own floating-point value.
         const LARGEST: f64 = 9_007_199_254_740_992.0;
         if number.fract() == 0.0 && number.abs() <= LARGEST {
             self.visit_i64(number as i64)
@@ -90,14 +90,14 @@ mod tests {
     }
 
     #[test]
-    fn seven_point_zero_is_seven() {
+    fn a_zero_fraction_is_accepted() {
         assert_eq!(read(r#"{"id": 7.0, "order": 4.00}"#), Ok((7, Some(4))));
         assert_eq!(read(r#"{"id": -7e0, "order": null}"#), Ok((-7, None)));
         assert_eq!(read(r#"{"id": 9223372036854775807}"#), Ok((i64::MAX, None)));
     }
 
     #[test]
-    fn what_is_no_whole_number_is_refused() {
+    fn other_values_are_refused() {
         for (text, words) in [
             (
                 r#"{"id": 7.5}"#,

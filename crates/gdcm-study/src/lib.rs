@@ -5,7 +5,8 @@
 //!
 //! A [`Study`] contains a dataset and all decisions ([`decisions`]); an [`Engine`] computes its
 //! [`Analysis`] in [`stages`], each cached while its inputs stay the same. The [`results`] are typed
-//! facts with numbers; [`jobs`] are computations beside the live answer.
+//! facts with numbers; [`jobs`] are computations beside the live answer. Pieces of work run through
+//! an [`execution`]; large values are passed to jobs as [`shared`].
 //!
 //! # Example
 //!
@@ -37,18 +38,20 @@
 //! ```
 
 pub mod decisions;
+pub mod execution;
 pub mod jobs;
+#[cfg(test)]
+mod reference_tests;
 pub mod results;
+pub mod shared;
 pub mod stages;
 
-pub use crate::decisions::study::Study;
 pub use decisions::edit::Edit;
 pub use decisions::settings::{CouplingCorrection, PhaseCorrection};
+pub use decisions::study::Study;
+pub use execution::Execution;
 pub use gdcm_model::progress::{Cancelled, Progress, Unobserved};
-pub use jobs::job::AcrossRole;
+pub use jobs::curve_jobs::AcrossRole;
 pub use results::analysis::{Analysis, ConditionAnalysis};
 pub use results::assessment_table::{AssessedCorrection, AssessmentTable};
-pub use results::derivation::ExplainTarget;
-pub use results::table::Table;
 pub use stages::engine::Engine;
-pub use stages::execution::Execution;

@@ -30,7 +30,7 @@
 //! let inputs = DMatrix::from_fn(3000, 1, |k, _| {
 //!     (0.5 / growth * ((growth * time_s[k]).exp() - 1.0)).sin()
 //! });
-//! let hold = FirstOrderHold::of(&aircraft, 0.02).expect("a finite model");
+//! let hold = FirstOrderHold::new(&aircraft, 0.02).expect("a finite model");
 //! let mut outputs = hold.simulate(&DVector::zeros(1), &inputs);
 //! for (k, rate) in outputs.iter_mut().enumerate() {
 //!     *rate += 0.05 * (1e4 * (k as f64 + 1.0).sin()).fract(); // noise of the sensor

@@ -6,8 +6,9 @@ use std::sync::mpsc::Receiver;
 use gdcm_method::correction::Solution;
 use gdcm_method::correction::problem::ProblemError;
 use gdcm_model::dataset::ConditionId;
-use gdcm_study::jobs::job::{CurvesJob, ProofJob};
-use gdcm_study::stages::condition_responses::ConditionCurves;
+use gdcm_study::jobs::analysis_jobs::ProofJob;
+use gdcm_study::jobs::curve_jobs::CurvesJob;
+use gdcm_study::stages::condition_curves::ConditionCurves;
 use gdcm_study::{Analysis, Study};
 
 use super::GdcmApp;

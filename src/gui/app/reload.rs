@@ -1,5 +1,6 @@
 //! Reloads a dataset whose file changes on the disk while open.
 
+use gdcm_words::decisions::dataset_difference_text;
 use std::sync::Arc;
 
 use gdcm_io::files::dataset_file::load_dataset_within;
@@ -65,7 +66,7 @@ impl GdcmApp {
             .record_reload(before, format!("reload {name}"));
         self.files.earlier.push(loaded);
         self.study_changed();
-        let sentences: Vec<String> = differences.iter().map(ToString::to_string).collect();
+        let sentences: Vec<String> = differences.iter().map(dataset_difference_text).collect();
         if sentences.is_empty() {
             self.done(format!("reloaded {name}: every decision still applies"));
         } else {

@@ -1,6 +1,6 @@
 //! Carries out decisions about the study.
 
-use gdcm_study::decisions::study::History;
+use gdcm_study::decisions::history::History;
 use gdcm_study::{Edit, Study};
 
 use super::GdcmApp;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use gdcm_io::export::ExportFormat;
 use gdcm_plot::figure::{ColumnWidth, FigureFormat};
-use gdcm_study::Table;
+use gdcm_words::Table;
 
 use crate::gui::state::tables::TableKind;
 use crate::gui::state::view::View;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use gdcm_model::dataset::condition::{ChannelRemedy, RecordKind};
 use gdcm_model::simulation::Signal;
-use gdcm_study::decisions::changed_models::OfferedModels;
+use gdcm_study::decisions::adopted_models::OfferedModels;
 use gdcm_sysid::identification::{Hold, SearchSpace};
 use gdcm_sysid::records::RecordLayout;
 

@@ -1,7 +1,7 @@
 //! Commands about selected and highlighted parts.
 
 use gdcm_model::dataset::{ConditionId, ModelId, Pair};
-use gdcm_study::ExplainTarget;
+use gdcm_words::derivation::ExplainTarget;
 
 /// Selects or highlights a condition, a response, a model or a value.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,6 +7,7 @@ use egui::{
 };
 
 use gdcm_model::dataset::{BundleKind, Condition};
+use gdcm_words::assessment::not_assessed_text;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::command_table::command_table;
@@ -495,7 +496,10 @@ fn standing_remark(state: &State) -> String {
         .analysis()
         .and_then(|analysis| analysis.assessment.get(&id))
     {
-        Some(Err(why)) => format!("condition {id} is left out of the assessment: {why}"),
+        Some(Err(why)) => format!(
+            "condition {id} is left out of the assessment: {}",
+            not_assessed_text(why, state.dataset())
+        ),
         _ => state.condition().flight_state().name.clone(),
     }
 }

@@ -10,9 +10,10 @@ use gdcm_method::correction::solution::Unmatched;
 use gdcm_method::fidelity::Cost;
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Pair};
-use gdcm_plot::figure::decimals;
+use gdcm_model::number_format::decimals;
 use gdcm_plot::figure::gains::Classes;
 use gdcm_study::Edit;
+use gdcm_words::caution::failure_text;
 
 use super::cost_map::{CostColumn, columns, cost_of_column};
 use super::table_menu::{table_heading_ui, table_menu_ui};
@@ -595,7 +596,7 @@ impl Marks {
             .and_then(|analysis| analysis.conditions.get(&condition))
         {
             None => {}
-            Some(Err(failure)) => marks.failure = Some(failure.to_string()),
+            Some(Err(failure)) => marks.failure = Some(failure_text(failure, state.dataset())),
             Some(Ok(result)) => {
                 marks.suggested = state.open_suggestions(result).len();
                 marks.unmatched_gains = result.gains.unmatched.len();

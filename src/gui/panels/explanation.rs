@@ -12,13 +12,16 @@ use egui::{
 use gdcm_method::correction::sensitivity::kkt_residual;
 use gdcm_method::correction::{Channel, GainObjective, Outcome, Quantity};
 use gdcm_model::dataset::Pair;
-use gdcm_study::decisions::changed_models::SignRole;
 use gdcm_study::decisions::setting;
-use gdcm_study::results::couplings_words::no_couplings;
-use gdcm_study::results::derivation::{Derivation, derivation};
-use gdcm_study::results::remark::{Remark, RemarkKind, details, remarks};
-use gdcm_study::stages::lead_compensation::lead_words;
-use gdcm_study::{ConditionAnalysis, Edit, ExplainTarget};
+use gdcm_study::decisions::signs::SignRole;
+use gdcm_study::{ConditionAnalysis, Edit};
+use gdcm_words::ExplainTarget;
+use gdcm_words::caution::failure_text;
+use gdcm_words::condition_remarks::{details, remarks};
+use gdcm_words::couplings::{coupling_consequences, coupling_offer, no_couplings};
+use gdcm_words::derivation::{Derivation, derivation};
+use gdcm_words::leads::lead_words;
+use gdcm_words::remark::{Remark, RemarkKind};
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::layout::LayoutCommand;
@@ -251,7 +254,7 @@ pub fn coupling_remarks(state: &State) -> Vec<Remark> {
         used_couplings(state),
     ) {
         (Some(Err(why)), _) => vec![no_couplings(&why)],
-        (Some(Ok(Some(_))), Some(assessment)) => assessment.consequences(state.dataset()),
+        (Some(Ok(Some(_))), Some(assessment)) => coupling_consequences(assessment, state.dataset()),
         _ => Vec::new(),
     }
 }
@@ -321,7 +324,7 @@ const CAUSES: [(&str, &str, &str, View); 4] = [
 pub fn reasons_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(Ok(shown)) = state.outcome() else {
         let words = match state.outcome() {
-            Some(Err(failure)) => failure.to_string(),
+            Some(Err(failure)) => failure_text(failure, state.dataset()),
             _ => state.results.absence().to_owned(),
         };
         ui.label(words);
@@ -488,10 +491,9 @@ fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &
         return;
     };
     let couplings = assessment.couplings;
-    assessment
-        .offer()
-        .into_iter()
-        .for_each(|text| remark_ui(ui, palette, &Remark::new(RemarkKind::Good, text)));
+    if let Some(text) = coupling_offer(assessment) {
+        remark_ui(ui, palette, &Remark::good("couplings-offered", text));
+    }
     let button = Button::new(format!("Use {}", couplings.name())).small();
     button_ui(
         ui,

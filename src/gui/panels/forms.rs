@@ -15,6 +15,7 @@ use gdcm_model::dataset::ConditionId;
 use gdcm_plot::figure::ColumnWidth;
 use gdcm_study::decisions::differences::Difference;
 use gdcm_study::{Analysis, Edit};
+use gdcm_words::decisions::dataset_difference_text;
 
 use super::help::keys_page_ui;
 use crate::gui::commands::command::Command;
@@ -399,14 +400,17 @@ fn differences_ui(form: &mut Form<'_, '_>, state: &State) {
                 } else {
                     palette.text
                 };
-                ui.label(RichText::new(format!("• {difference}")).color(color));
+                ui.label(
+                    RichText::new(format!("• {}", dataset_difference_text(difference)))
+                        .color(color),
+                );
             }
         });
     form.ui.add_space(4.0);
     let lines: Vec<String> = state
         .differences
         .iter()
-        .map(|difference| difference.to_string())
+        .map(dataset_difference_text)
         .collect();
     form.line(|form| {
         form.button_ui("Go on", true, FormCommand::ShowForm(None));

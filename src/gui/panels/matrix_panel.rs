@@ -9,11 +9,13 @@ use egui::{
 use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::Pair;
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::s_to_ms;
-use gdcm_plot::figure::decimals;
-use gdcm_study::decisions::changed_models::SignRole;
+use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::results::caution::Undefined;
-use gdcm_study::{ConditionAnalysis, Edit, ExplainTarget};
+use gdcm_study::{ConditionAnalysis, Edit};
+use gdcm_words::ExplainTarget;
+use gdcm_words::caution::undefined_text;
 
 use super::explanation::{gain_conflict_marks, question_menu_ui, turn_entry};
 use super::table_menu::table_menu_ui;
@@ -249,7 +251,7 @@ impl<'a> Cell<'a> {
             );
         }
         let hint = match (self.undefined(), self.constrained) {
-            (Some(why), _) => format!("{} cannot be held: {}", self.name, why),
+            (Some(why), _) => format!("{} cannot be held: {}", self.name, undefined_text(why)),
             (_, true) => {
                 "Held: its net gain exactly, its delay where one can; click to free it".to_owned()
             }
@@ -420,7 +422,7 @@ impl<'a> Cell<'a> {
         };
         ui.label(RichText::new(format!("{}, {held}{ignored}", self.name)).font(medium(BODY_SIZE)));
         if let Some(why) = self.undefined() {
-            ui.label(format!("No G, no D and no J: {why}"));
+            ui.label(format!("No G, no D and no J: {}", undefined_text(why)));
             return;
         }
         card_grid_ui(ui, self.state, self.pair, palette);

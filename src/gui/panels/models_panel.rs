@@ -10,8 +10,10 @@ use egui::{
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::{BundleKind, Model, ModelId};
-use gdcm_plot::figure::axis::compact;
-use gdcm_study::{Edit, ExplainTarget};
+use gdcm_model::number_format::compact;
+use gdcm_study::Edit;
+use gdcm_words::ExplainTarget;
+use gdcm_words::caution::caution_text;
 
 use super::explanation::question_menu_ui;
 use super::table_menu::{table_heading_ui, table_menu_ui};
@@ -359,7 +361,9 @@ impl<'a> ModelRow<'a> {
                     .cautions
                     .iter()
                     .find(|caution| caution.is_set_aside(kind, &model.name))?;
-                Some(caution.words(|pair| state.dataset().pair_name(pair)))
+                Some(caution_text(caution, |pair| {
+                    state.dataset().pair_name(pair)
+                }))
             }),
             id,
         }

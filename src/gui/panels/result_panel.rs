@@ -4,10 +4,11 @@ use egui::{Color32, CursorIcon, FontId, Rect, Role, Sense, Ui, pos2, vec2};
 
 use gdcm_method::correction::{Channel, Outcome};
 use gdcm_method::uncertainty::Scalar;
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::s_to_ms;
-use gdcm_plot::figure::decimals;
-use gdcm_study::stages::lead_compensation::servo_words;
-use gdcm_study::{ConditionAnalysis, ExplainTarget};
+use gdcm_study::ConditionAnalysis;
+use gdcm_words::ExplainTarget;
+use gdcm_words::leads::servo_words;
 
 use super::table_menu::table_menu_ui;
 use crate::gui::commands::command::Command;

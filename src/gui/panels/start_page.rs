@@ -6,7 +6,7 @@ use egui::{
     Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
 
-use gdcm_plot::figure::axis::compact;
+use gdcm_model::number_format::compact;
 
 use super::conditions_panel::cost_picture_ui;
 use crate::gui::commands::assembling::AssemblingCommand;

@@ -5,15 +5,18 @@ use gdcm_method::correction::conflict::ConflictKind;
 use gdcm_method::correction::remedy::Remedy;
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
-use gdcm_model::response::median;
+use gdcm_model::statistics::median;
+use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
-use gdcm_study::decisions::changed_models::SignRole;
 use gdcm_study::decisions::setting;
 use gdcm_study::decisions::setting_row::Value;
+use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_study::results::couplings_assessment::CouplingCost;
-use gdcm_study::results::remark::RemarkKind;
 use gdcm_study::{ConditionAnalysis, CouplingCorrection, Edit, PhaseCorrection};
+use gdcm_words::caution::failure_text;
+use gdcm_words::couplings::coupling_cautions;
+use gdcm_words::remark::RemarkKind;
 
 use super::explanation::turn_entry;
 use crate::gui::commands::command::Command;
@@ -136,12 +139,12 @@ impl Verdict {
                     Command::Layout(LayoutCommand::ShowView(View::Records)),
                 );
                 Self {
-                    caution: Some(failure.to_string()),
+                    caution: Some(failure_text(failure, state.dataset())),
                     ..nothing("no reference yet".to_owned(), vec![identify])
                 }
             }
             Some(Err(failure)) => Self {
-                caution: Some(failure.to_string()),
+                caution: Some(failure_text(failure, state.dataset())),
                 ..nothing("no result".to_owned(), Vec::new())
             },
             Some(Ok(shown)) => Self::of_result(state, shown),
@@ -299,7 +302,7 @@ fn lag_words(left_ms: &mut [f64]) -> String {
     } else {
         [-most, -least]
     }
-    .map(|at| telling(at, 0).replace('-', "\u{2212}"));
+    .map(|at| with_minus_sign(&telling(at, 0)));
     if low == high {
         format!("{verb} by {low} ms")
     } else if most - least <= 0.5 * middle.abs() {
@@ -484,7 +487,7 @@ fn coupling_caution(state: &State) -> Option<(RemarkKind, String)> {
             "No couplings could be found".to_owned(),
         ));
     }
-    let cautions = used_couplings(state)?.cautions(state.dataset());
+    let cautions = coupling_cautions(used_couplings(state)?, state.dataset());
     match (unstable_in_band(state), cautions.len()) {
         (0, 0) => None,
         (1, _) => Some((

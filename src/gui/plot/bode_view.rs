@@ -1,4 +1,4 @@
-//! State of the Bode plot between frames: visible ranges and screen positions.
+//! Bode state between frames: visible ranges and screen positions.
 
 use egui::{Pos2, Rect, Vec2};
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
@@ -6,13 +6,13 @@ use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::responses::fitted_values;
 
-use super::axis_strip::{LimitsForm, PlotAxis};
-use super::bode::{BodeScene, PANES};
-use super::cached_raster::CachedRaster;
-use super::curve_menu::MenuSubject;
-use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves, Pane};
-use super::navigation::ViewedRange;
+use super::bode_scene::BodeScene;
+use super::curve_layer::DrawnPane;
+use super::drawn_curves::{BodeCurve, CurveId, PANES, Pane};
+use super::limits_form::LimitsForm;
+use super::plot_axis::PlotAxis;
 use super::quantity::ValueUnit;
+use super::viewed_range::{ViewedRange, bounds_of};
 
 /// Decades that can be visible.
 const DECADES: Range = Range {
@@ -24,10 +24,10 @@ const LOG_OMEGA: Range = Range {
     min: -30.0,
     max: 30.0,
 };
-/// Space above and below the curves after fitting, as a share of their height.
+/// Space above and below the curves after fitting, relative to their height.
 const FIT_MARGIN: f64 = 0.04;
 
-/// State of the Bode plot between frames.
+/// State of a Bode plot between frames.
 ///
 /// Recomputed curves do not move the view; only the engineer does. Value ranges that have not been
 /// zoomed are fitted once to another response or condition.
@@ -45,26 +45,35 @@ pub struct BodeView {
     /// Whether a box is being drawn to select curves.
     pub(super) is_selecting: bool,
     /// Finished selection box.
-    pub(super) selection: Option<(Pane, Rect)>,
-    /// Open form for the limits of an axis.
+    pub(super) selection: Option<SelectionBox>,
+    /// Open form for axis limits.
     pub(super) limits: Option<LimitsForm>,
     must_fit_frequencies: bool,
     must_fit_values: bool,
-    /// Frequency range of the curves when last followed, as `log10 omega`.
+    /// Frequency range when last followed, as `log10 omega`.
     followed: Option<Range>,
-    /// Last drawing of each pane.
+    /// Panes as last drawn.
     pub(super) drawn: [DrawnPane; 2],
 }
 
-/// Last drawing of a pane: its place, its lines, and the image of its static lines.
-#[derive(Clone, Debug, Default)]
-pub(super) struct DrawnPane {
-    pub(super) transform: Option<PlotTransform>,
-    pub(super) curves: DrawnCurves,
-    pub(super) image: CachedRaster,
+/// Menu subject: a curve or the ground, and the frequency there \[rad/s\].
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MenuSubject {
+    pub(super) curve: Option<CurveId>,
+    pub(super) omega: f64,
+    /// Rejection reason, as typed so far.
+    pub(super) reason: String,
 }
 
-/// Returns the range from the first to the last frequency of all curves, as `log10 omega`.
+/// Finished selection box in a pane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SelectionBox {
+    pub(super) pane: Pane,
+    /// Place on the screen.
+    pub(super) area: Rect,
+}
+
+/// Returns the range from the first to the last frequency, as `log10 omega`.
 fn log_omega_of(curves: &[BodeCurve]) -> Option<Range> {
     Range::of(
         curves
@@ -122,24 +131,26 @@ impl BodeView {
     /// Fits all axes to the data at the next frame, including zoomed axes.
     pub fn request_fit(&mut self) {
         self.log_omega.release();
-        self.values.iter_mut().for_each(ViewedRange::release);
+        for values in &mut self.values {
+            values.release();
+        }
         self.must_fit_frequencies = true;
         self.must_fit_values = true;
     }
 
-    /// Fits the values of other curves at the next frame, on axes that have not been zoomed; the
+    /// Fits other curves' values at the next frame, on axes that have not been zoomed; the
     /// frequencies stay.
     pub fn request_refit(&mut self) {
         self.must_fit_values = true;
     }
 
-    /// Fits the values of a pane at the next frame, because their unit changes.
+    /// Fits a pane's values at the next frame, because their unit changes.
     pub fn release_values(&mut self, pane: Pane) {
         self.values[pane as usize].release();
         self.must_fit_values = true;
     }
 
-    /// Fits the frequencies if those of the curves have changed, unless the engineer chose the
+    /// Fits the frequencies if those in the curves have changed, unless the engineer chose the
     /// range.
     pub(super) fn follow_curves(&mut self, curves: &[BodeCurve]) {
         let ends = log_omega_of(curves);
@@ -152,7 +163,7 @@ impl BodeView {
         }
     }
 
-    /// Adopts the frequency range of another plot.
+    /// Adopts another plot's frequency range.
     pub fn share_frequencies(&mut self, other: &Self) {
         self.log_omega = other.log_omega;
         self.must_fit_frequencies = other.must_fit_frequencies;
@@ -166,37 +177,47 @@ impl BodeView {
 
     /// Returns the visible frequencies \[rad/s\] if the engineer chose them.
     pub fn chosen_omega(&self) -> Option<Range> {
+        if !self.log_omega.is_chosen() {
+            return None;
+        }
         let (min, max) = self.omega_range();
-        self.log_omega.is_chosen().then_some(Range { min, max })
+        Some(Range { min, max })
     }
 
-    /// Returns the visible range of a pane's vertical axis if the engineer chose it.
+    /// Returns a pane's visible values if the engineer chose them.
     pub fn chosen_values(&self, pane: Pane) -> Option<Range> {
         let viewed = &self.values[pane as usize];
-        viewed.is_chosen().then(|| viewed.range())
+        if viewed.is_chosen() {
+            Some(viewed.range())
+        } else {
+            None
+        }
     }
 
-    /// Returns the visible range of a pane's vertical axis.
+    /// Returns a pane's visible values.
     pub fn value_range(&self, pane: Pane) -> Range {
         self.values[pane as usize].range()
     }
 
-    /// Returns the last transform of a pane: x is `log10 omega`, y is in dB or in degrees.
+    /// Returns a pane's last transform: x is `log10 omega`, y is in dB or in degrees.
     pub fn transform(&self, pane: Pane) -> Option<&PlotTransform> {
         self.drawn[pane as usize].transform.as_ref()
     }
 
-    /// Returns the screen position of `value` at `omega` \[rad/s\].
+    /// Returns a pane's last frame, without its axes.
+    pub(super) fn frame(&self, pane: Pane) -> Option<Rect> {
+        Some(*self.transform(pane)?.frame())
+    }
+
+    /// Returns where `value` at `omega` \[rad/s\] lies on the screen.
     pub fn screen_position(&self, pane: Pane, omega: f64, value: f64) -> Option<Pos2> {
         let transform = self.transform(pane)?;
         Some(transform.position_from_point(&PlotPoint::new(omega.log10(), value)))
     }
 
-    /// Returns the visible range of a pane as egui_plot bounds.
+    /// Returns a pane's visible range as egui_plot bounds.
     pub(super) fn bounds(&self, pane: Pane) -> PlotBounds {
-        let frequencies = self.log_omega.range();
-        let values = self.value_range(pane);
-        PlotBounds::from_min_max([frequencies.min, values.min], [frequencies.max, values.max])
+        bounds_of([self.log_omega.range(), self.value_range(pane)])
     }
 
     /// Pans a pane by a distance on the screen.
@@ -235,7 +256,7 @@ impl BodeView {
         }
     }
 
-    /// Fits an axis to all of the curves at the next frame.
+    /// Fits an axis to all curves at the next frame.
     pub(super) fn fit_axis(&mut self, axis: PlotAxis) {
         self.axis_mut(axis).release();
         match axis {
@@ -244,7 +265,7 @@ impl BodeView {
         }
     }
 
-    /// Zooms into an `area` of the screen.
+    /// Zooms into an area on the screen.
     pub(super) fn zoom_to(&mut self, pane: Pane, area: Rect) {
         let Some(transform) = self.transform(pane) else {
             return;
@@ -255,17 +276,19 @@ impl BodeView {
         self.values[pane as usize].choose(Range::new(a.y, b.y));
     }
 
-    /// Fits all curves of `scene`, including rejected ones, if requested. Without data the request
+    /// Fits all curves, including rejected ones, if requested. Without data the request
     /// stays pending.
     pub(super) fn fit_if_requested(&mut self, scene: &BodeScene<'_>) {
-        let ends = scene
+        let computed = scene
             .omega_range
             .map(|(min, max)| Range::new(min.log10(), max.log10()));
-        ends.into_iter().for_each(|ends| self.log_omega.reach(ends));
+        if let Some(computed) = computed {
+            self.log_omega.reach(computed);
+        }
         if !(self.must_fit_frequencies || self.must_fit_values) {
             return;
         }
-        let Some(log_omega) = ends.or_else(|| log_omega_of(scene.curves)) else {
+        let Some(log_omega) = computed.or_else(|| log_omega_of(scene.curves)) else {
             return;
         };
         self.log_omega.reach(log_omega);
@@ -273,15 +296,20 @@ impl BodeView {
             self.log_omega.fit(log_omega);
         }
         if std::mem::take(&mut self.must_fit_values) {
-            let within = (
-                scene.band.0,
-                scene.invalid.map_or(scene.band.1, |invalid| invalid.up_to),
-            );
-            for pane in PANES {
-                if let Some(values) = fitted_values(scene.curves, pane, within) {
-                    self.values[pane as usize]
-                        .fit(values.with_margin(FIT_MARGIN, scene.quantity.least_height(pane)));
-                }
+            self.fit_values(scene);
+        }
+    }
+
+    /// Fits the values in both panes, unless the engineer chose their ranges.
+    fn fit_values(&mut self, scene: &BodeScene<'_>) {
+        let upper = match scene.invalid {
+            Some(invalid) => invalid.up_to,
+            None => scene.band.1,
+        };
+        for pane in PANES {
+            if let Some(values) = fitted_values(scene.curves, pane, (scene.band.0, upper)) {
+                let least = scene.quantity.least_height(pane);
+                self.values[pane as usize].fit(values.with_margin(FIT_MARGIN, least));
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Cached raster image of many static curves.
+//! Cached raster image for many static curves.
 
 use egui::{
     Color32, ColorImage, Context, Pos2, Rect, Shape, Stroke, TextureHandle, TextureOptions, pos2,
@@ -9,19 +9,19 @@ use vello_cpu::{Pixmap, RenderContext, RenderSettings, Resources};
 
 use super::curve_style::CurveStyle;
 
-/// Number of curves from which an image is worth its memory: filling their lines takes longer than
+/// Least curve count for which an image is worth its memory: filling their lines takes longer than
 /// everything else in a frame.
 pub(super) const MANY: usize = 200;
-/// Greatest distance of a drawn circle from a true circle \[pt\].
+/// Greatest distance between a drawn and a true circle \[pt\].
 const TOLERANCE: f64 = 0.05;
 
 /// Content of an image, which is valid as long as this stays the same.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct StillScene {
-    /// Place of the curves on the screen \[pt\].
+    /// Place on the screen \[pt\].
     pub(super) frame: Rect,
     pub(super) pixels_per_point: f32,
-    /// Serial number of each curve's points, and its style; from bottom to top.
+    /// Serial number and style for each curve, from bottom to top.
     pub(super) curves: Vec<(u64, CurveStyle)>,
 }
 
@@ -29,14 +29,14 @@ pub(super) struct StillScene {
 /// thousand curves dominates the time of a frame, although none of them moves with the pointer.
 ///
 /// ```text
-/// the scene is another than in the frame before:  lines are drawn; no image
-/// the same, and no image yet:                     the lines are filled once, into an image of the frame's pixels
-/// the same, with its image:                       one rectangle is drawn
+/// scene changed since the last frame:  draw the lines; drop the image
+/// same scene, no image yet:            fill the lines once, into an image
+/// same scene, with its image:          draw a rectangle
 /// ```
 #[derive(Clone, Default)]
 pub(super) struct CachedRaster {
     scene: Option<StillScene>,
-    image: Option<(TextureHandle, Rect)>,
+    image: Option<StillImage>,
 }
 
 impl std::fmt::Debug for CachedRaster {
@@ -49,9 +49,9 @@ impl std::fmt::Debug for CachedRaster {
 }
 
 impl CachedRaster {
-    /// Returns the image of `scene` if it has not changed since the last frame; `shapes` returns
+    /// Returns the image if `scene` has not changed since the last frame; `shapes` returns
     /// its content.
-    pub(super) fn of(
+    pub(super) fn image_of(
         &mut self,
         ctx: &Context,
         scene: StillScene,
@@ -67,47 +67,54 @@ impl CachedRaster {
             return None;
         }
         if self.image.is_none() {
-            let (area, pixels) = whole_pixels(scene.frame, scene.pixels_per_point)?;
+            let area = whole_pixels(scene.frame, scene.pixels_per_point)?;
             let largest = ctx.input(|input| input.max_texture_side);
-            if pixels.iter().any(|side| usize::from(*side) > largest) {
+            if area.pixels.iter().any(|side| usize::from(*side) > largest) {
                 return None;
             }
-            let image = filled(&shapes(), (area.min, scene.pixels_per_point), pixels);
-            self.image = Some((
-                ctx.load_texture("curves at rest", image, TextureOptions::NEAREST),
-                area,
-            ));
+            let image = filled(&shapes(), &area);
+            self.image = Some(StillImage {
+                texture: ctx.load_texture("curves at rest", image, TextureOptions::NEAREST),
+                area: area.rect,
+            });
         }
-        let (texture, area) = self.image.as_ref()?;
-        Some(StillImage {
-            texture: texture.clone(),
-            area: *area,
-        })
+        self.image.clone()
     }
 }
 
-/// Returns the least rectangle of whole pixels around `frame`, with its width and height in pixels.
-fn whole_pixels(frame: Rect, pixels_per_point: f32) -> Option<(Rect, [u16; 2])> {
-    let min = (frame.min * pixels_per_point).floor();
-    let max = (frame.max * pixels_per_point).ceil();
-    let side = |length: f32| {
-        (1.0..=f32::from(u16::MAX))
-            .contains(&length)
-            .then_some(length as u16)
-    };
-    let pixels = [side(max.x - min.x)?, side(max.y - min.y)?];
-    Some((
-        Rect::from_min_max(min / pixels_per_point, max / pixels_per_point),
-        pixels,
-    ))
+/// Whole pixels on the screen.
+struct PixelArea {
+    /// Place \[pt\].
+    rect: Rect,
+    pixels_per_point: f32,
+    /// Width and height \[pixels\].
+    pixels: [u16; 2],
 }
 
-/// Fills the shapes on a transparent ground with its upper left corner at `origin` \[pt\].
-fn filled(
-    shapes: &[Shape],
-    (origin, pixels_per_point): (Pos2, f32),
-    [width, height]: [u16; 2],
-) -> ColorImage {
+/// Returns the whole pixels around `frame`, if an image can be so large.
+fn whole_pixels(frame: Rect, pixels_per_point: f32) -> Option<PixelArea> {
+    let min = (frame.min * pixels_per_point).floor();
+    let max = (frame.max * pixels_per_point).ceil();
+    let pixels = [pixel_count(max.x - min.x)?, pixel_count(max.y - min.y)?];
+    Some(PixelArea {
+        rect: Rect::from_min_max(min / pixels_per_point, max / pixels_per_point),
+        pixels_per_point,
+        pixels,
+    })
+}
+
+/// Returns a side in pixels, if an image can be so long.
+fn pixel_count(length: f32) -> Option<u16> {
+    if (1.0..=f32::from(u16::MAX)).contains(&length) {
+        Some(length as u16)
+    } else {
+        None
+    }
+}
+
+/// Fills the shapes on a transparent ground.
+fn filled(shapes: &[Shape], area: &PixelArea) -> ColorImage {
+    let [width, height] = area.pixels;
     let mut context = RenderContext::new_with(
         width,
         height,
@@ -116,10 +123,13 @@ fn filled(
             ..Default::default()
         },
     );
-    let scale = f64::from(pixels_per_point);
+    let scale = f64::from(area.pixels_per_point);
+    let origin = area.rect.min;
     let shift = (-f64::from(origin.x), -f64::from(origin.y));
     context.set_transform(Affine::scale(scale) * Affine::translate(shift));
-    shapes.iter().for_each(|shape| fill(&mut context, shape));
+    for shape in shapes {
+        fill(&mut context, shape);
+    }
     context.flush();
     let mut pixmap = Pixmap::new(width, height);
     context.render(&mut pixmap, &mut Resources::new());
@@ -129,10 +139,14 @@ fn filled(
     )
 }
 
-/// Fills a shape of a line: strokes, and discs for dots.
+/// Fills strokes, and discs for dots.
 fn fill(context: &mut RenderContext, shape: &Shape) {
     match shape {
-        Shape::Vec(shapes) => shapes.iter().for_each(|shape| fill(context, shape)),
+        Shape::Vec(shapes) => {
+            for shape in shapes {
+                fill(context, shape);
+            }
+        }
         Shape::LineSegment { points, stroke } => stroke_along(context, points, *stroke),
         Shape::Path(path) => {
             if let egui::epaint::ColorMode::Solid(color) = path.stroke.color {
@@ -151,18 +165,18 @@ fn fill(context: &mut RenderContext, shape: &Shape) {
     }
 }
 
-fn stroke_along(context: &mut RenderContext, points: &[Pos2], Stroke { width, color }: Stroke) {
+fn stroke_along(context: &mut RenderContext, points: &[Pos2], stroke: Stroke) {
     let mut path = BezPath::new();
     for (index, point) in points.iter().enumerate() {
         let at = (f64::from(point.x), f64::from(point.y));
         if index == 0 {
-            path.move_to(at)
+            path.move_to(at);
         } else {
-            path.line_to(at)
+            path.line_to(at);
         }
     }
-    take_color(context, color);
-    context.set_stroke(PathStroke::new(f64::from(width)).with_join(Join::Bevel));
+    take_color(context, stroke.color);
+    context.set_stroke(PathStroke::new(f64::from(stroke.width)).with_join(Join::Bevel));
     context.stroke_path(&path);
 }
 
@@ -173,6 +187,7 @@ fn take_color(context: &mut RenderContext, color: Color32) {
 
 /// Image on whole pixels. (A `PlotImage` lies below every other item, including bands, and has its
 /// size in the plot's coordinates.)
+#[derive(Clone)]
 pub(super) struct StillImage {
     texture: TextureHandle,
     area: Rect,
@@ -216,11 +231,11 @@ mod tests {
 
     /// Returns the rectangle into which the image is drawn.
     fn image(still: &mut CachedRaster, ctx: &Context, scene: StillScene) -> Option<Rect> {
-        still.of(ctx, scene, Vec::new).map(|item| item.area)
+        still.image_of(ctx, scene, Vec::new).map(|item| item.area)
     }
 
     #[test]
-    fn what_stands_still_for_a_frame_becomes_an_image_until_it_moves() {
+    fn static_curves_become_an_image_until_they_move() {
         let ctx = Context::default();
         ctx.run_ui(RawInput::default(), |_| {})
             .drop_without_applying_deltas();
@@ -228,9 +243,9 @@ mod tests {
         assert_eq!(
             image(&mut still, &ctx, scene(&[1, 2], 10.2)),
             None,
-            "it may be moving"
+            "the first frame may be part of a motion"
         );
-        let area = image(&mut still, &ctx, scene(&[1, 2], 10.2)).expect("it stands still");
+        let area = image(&mut still, &ctx, scene(&[1, 2], 10.2)).expect("the scene is static");
         assert!(area.contains_rect(scene(&[], 10.2).frame));
         let pixels = area.scale_from_center(1.0).min * 1.5;
         assert!(
@@ -260,7 +275,12 @@ mod tests {
             ),
             Shape::circle_filled(pos2(40.0, 40.0), 3.0, Color32::BLUE),
         ];
-        let image = filled(&shapes, (pos2(10.0, 20.0), 2.0), [100, 60]);
+        let area = PixelArea {
+            rect: Rect::from_min_size(pos2(10.0, 20.0), vec2(50.0, 30.0)),
+            pixels_per_point: 2.0,
+            pixels: [100, 60],
+        };
+        let image = filled(&shapes, &area);
         // Rounding of a premultiplied colour in either direction.
         let near = |[x, y]: [usize; 2], color: Color32| {
             image[(x, y)]

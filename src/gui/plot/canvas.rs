@@ -2,7 +2,9 @@
 //! the legend line above the plots of a figure.
 
 use egui::epaint::TextShape;
-use egui::{FontId, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{
+    Color32, FontId, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2,
+};
 
 use gdcm_plot::figure::Figure;
 use gdcm_plot::figure::drawing::{Area, Shape as Drawn, Stroke as Line, Text};
@@ -13,18 +15,17 @@ use crate::gui::widgets::palette::Palette;
 
 /// Screen points per paper point: printed lines are finer by this factor.
 pub(super) const SCALE: f32 = 1.8;
-/// Font size, in points of paper.
+/// Font size \[pt on paper\].
 pub(super) const LETTERS_PT: f64 = 10.5 / SCALE as f64;
 
-/// Part of the screen on which shapes are drawn.
+/// Screen area on which shapes are drawn.
 pub(super) struct Canvas<'a> {
     pub(super) painter: &'a Painter,
-    /// Screen position of the origin.
     pub(super) origin: Pos2,
     pub(super) palette: &'a Palette,
 }
 
-/// Converts a rectangle of the screen to an area of paper with its origin at the corner.
+/// Converts a screen rectangle to paper, with the origin at its corner.
 pub(super) fn area(rect: Rect) -> Area {
     Area::new(
         0.0,
@@ -41,7 +42,7 @@ impl Canvas<'_> {
     }
 
     /// Converts a screen position to paper.
-    pub(super) fn from(&self, at: Pos2) -> [f64; 2] {
+    pub(super) fn paper_place(&self, at: Pos2) -> [f64; 2] {
         let offset = (at - self.origin) / SCALE;
         [offset.x.into(), offset.y.into()]
     }
@@ -49,64 +50,75 @@ impl Canvas<'_> {
     /// Draws shapes, later shapes over earlier ones.
     pub(super) fn paint(&self, shapes: &[Drawn]) {
         for shape in shapes {
-            match shape {
-                Drawn::Path {
-                    points,
-                    closed,
-                    fill,
-                    stroke,
-                } => {
-                    let points: Vec<Pos2> = points.iter().map(|point| self.at(*point)).collect();
-                    match (fill, stroke) {
-                        (Some(color), _) if points.len() > 4 => {
-                            self.fill_between(&points, self.palette.color(*color))
-                        }
-                        (Some(color), stroke) if *closed => {
-                            let stroke = stroke.map_or(Stroke::NONE, |line| self.stroke(line));
-                            let bounds = Rect::from_points(&points);
-                            // A closed outline without area has no direction at its ends: it is
-                            // drawn as the line it looks like.
-                            match bounds.is_positive() {
-                                true => self.painter.add(Shape::convex_polygon(
-                                    points,
-                                    self.palette.color(*color),
-                                    stroke,
-                                )),
-                                false => {
-                                    self.painter.line_segment([bounds.min, bounds.max], stroke)
-                                }
-                            };
-                        }
-                        (_, Some(line)) => self.line(points, *line),
-                        _ => {}
+            self.paint_shape(shape);
+        }
+    }
+
+    fn paint_shape(&self, shape: &Drawn) {
+        match shape {
+            Drawn::Path {
+                points,
+                closed,
+                fill,
+                stroke,
+            } => {
+                let points: Vec<Pos2> = points.iter().map(|point| self.at(*point)).collect();
+                match (fill, stroke) {
+                    (Some(color), _) if points.len() > 4 => {
+                        self.fill_between(&points, self.palette.color(*color));
                     }
-                }
-                Drawn::Circle {
-                    center,
-                    radius,
-                    fill,
-                    stroke,
-                } => {
-                    let fill = fill.map_or(egui::Color32::TRANSPARENT, |color| {
-                        self.palette.color(color)
-                    });
-                    let stroke = stroke.map_or(Stroke::NONE, |line| self.stroke(line));
-                    self.painter
-                        .circle(self.at(*center), SCALE * *radius as f32, fill, stroke);
-                }
-                Drawn::Text(text) => self.text(text),
-                Drawn::Clipped { area, shapes } => {
-                    let [upper_left, _, lower_right, _] =
-                        area.corners().map(|corner| self.at(corner));
-                    let seen = Rect::from_min_max(upper_left, lower_right)
-                        .intersect(self.painter.clip_rect());
-                    Canvas {
-                        painter: &self.painter.with_clip_rect(seen),
-                        ..*self
+                    (Some(color), stroke) if *closed => {
+                        let fill = self.palette.color(*color);
+                        self.polygon(points, fill, self.optional_stroke(*stroke));
                     }
-                    .paint(shapes);
+                    (_, Some(line)) => self.line(points, *line),
+                    _ => {}
                 }
             }
+            Drawn::Circle {
+                center,
+                radius,
+                fill,
+                stroke,
+            } => {
+                let fill = match fill {
+                    Some(color) => self.palette.color(*color),
+                    None => Color32::TRANSPARENT,
+                };
+                let radius = SCALE * *radius as f32;
+                let stroke = self.optional_stroke(*stroke);
+                self.painter.circle(self.at(*center), radius, fill, stroke);
+            }
+            Drawn::Text(text) => self.text(text),
+            Drawn::Clipped { area, shapes } => {
+                let [upper_left, _, lower_right, _] = area.corners().map(|corner| self.at(corner));
+                let visible =
+                    Rect::from_min_max(upper_left, lower_right).intersect(self.painter.clip_rect());
+                let clipped = Canvas {
+                    painter: &self.painter.with_clip_rect(visible),
+                    ..*self
+                };
+                clipped.paint(shapes);
+            }
+        }
+    }
+
+    /// Draws a filled outline. An outline without area has no direction at its ends: it is drawn as
+    /// the line it looks like.
+    fn polygon(&self, points: Vec<Pos2>, fill: Color32, stroke: Stroke) {
+        let bounds = Rect::from_points(&points);
+        if bounds.is_positive() {
+            self.painter
+                .add(Shape::convex_polygon(points, fill, stroke));
+        } else {
+            self.painter.line_segment([bounds.min, bounds.max], stroke);
+        }
+    }
+
+    fn optional_stroke(&self, line: Option<Line>) -> Stroke {
+        match line {
+            Some(line) => self.stroke(line),
+            None => Stroke::NONE,
         }
     }
 
@@ -128,16 +140,11 @@ impl Canvas<'_> {
 
     /// Fills the area between two lines over the same places; the second returns from the end of
     /// the first.
-    fn fill_between(&self, outline: &[Pos2], color: egui::Color32) {
+    fn fill_between(&self, outline: &[Pos2], color: Color32) {
         let mut mesh = Mesh::default();
-        for (place, (lower, upper)) in outline
-            .iter()
-            .zip(outline.iter().rev())
-            .take(outline.len() / 2)
-            .enumerate()
-        {
-            mesh.colored_vertex(*lower, color);
-            mesh.colored_vertex(*upper, color);
+        for place in 0..outline.len() / 2 {
+            mesh.colored_vertex(outline[place], color);
+            mesh.colored_vertex(outline[outline.len() - 1 - place], color);
             if place > 0 {
                 let corner = 2 * place as u32;
                 mesh.add_triangle(corner - 2, corner - 1, corner);
@@ -147,31 +154,18 @@ impl Canvas<'_> {
         self.painter.add(Shape::mesh(mesh));
     }
 
-    fn text(
-        &self,
-        Text {
-            at,
-            words,
-            size_pt,
-            anchor,
-            upright,
-            color,
-        }: &Text,
-    ) {
-        let color = self.palette.color(*color);
-        let galley = self.painter.layout_no_wrap(
-            words.clone(),
-            FontId::proportional(SCALE * *size_pt as f32),
-            color,
-        );
-        let base = galley
-            .rows
-            .first()
-            .and_then(|row| row.glyphs.first())
-            .map_or(0.0, |glyph| glyph.pos.y);
-        let before = anchor.before() as f32 * galley.size().x;
-        let at = self.at(*at);
-        if *upright {
+    fn text(&self, text: &Text) {
+        let color = self.palette.color(text.color);
+        let font = FontId::proportional(SCALE * text.size_pt as f32);
+        let galley = self.painter.layout_no_wrap(text.words.clone(), font, color);
+        // Distance of the base line from the top of the text.
+        let base = match galley.rows.first().and_then(|row| row.glyphs.first()) {
+            Some(glyph) => glyph.pos.y,
+            None => 0.0,
+        };
+        let before = text.anchor.before() as f32 * galley.size().x;
+        let at = self.at(text.at);
+        if text.upright {
             let text = TextShape::new(pos2(at.x - base, at.y + before), galley, color);
             self.painter
                 .add(text.with_angle(-std::f32::consts::FRAC_PI_2));
@@ -181,45 +175,46 @@ impl Canvas<'_> {
     }
 }
 
-/// Size of a sample \[pt\].
-const SAMPLE: egui::Vec2 = vec2(18.0, 14.0);
+/// Sample size \[pt\].
+const SAMPLE_SIZE: Vec2 = vec2(18.0, 14.0);
 
-/// Draws a sample and a name for each key among the marks of a figure, as in the printed legend.
+/// Draws a sample and a name for each key among the figure's marks, as in the printed legend.
 pub fn figure_legend_ui(ui: &mut Ui, figure: &Figure, palette: &Palette) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(4.0, 0.0);
         for entry in figure.legend() {
-            let (rect, _) = ui.allocate_exact_size(SAMPLE, Sense::hover());
-            match entry.sample {
-                Sample::Dot {
-                    shape,
-                    color,
-                    filled,
-                } => {
-                    let canvas = Canvas {
-                        painter: ui.painter(),
-                        origin: rect.center(),
-                        palette,
-                    };
-                    canvas.paint(&dot_shapes([0.0, 0.0], (shape, 1.0), color, filled));
-                }
-                Sample::Line(stroke) => {
-                    let ends = [rect.left(), rect.right()].map(|x| pos2(x, rect.center().y));
-                    let mut shapes = Vec::new();
-                    palette
-                        .curve_style(stroke)
-                        .in_miniature()
-                        .add_shapes(ends.to_vec(), &mut shapes);
-                    ui.painter().extend(shapes);
-                }
-                Sample::Ground(color) => drop(ui.painter().rect_filled(
-                    rect.shrink(2.0),
-                    2.0,
-                    palette.color(color),
-                )),
-            }
+            let (place, _) = ui.allocate_exact_size(SAMPLE_SIZE, Sense::hover());
+            paint_sample(ui, place, entry.sample, palette);
             ui.label(palette.small(entry.text));
             ui.add_space(10.0);
         }
     });
+}
+
+fn paint_sample(ui: &Ui, place: Rect, sample: Sample, palette: &Palette) {
+    match sample {
+        Sample::Dot {
+            shape,
+            color,
+            filled,
+        } => {
+            let canvas = Canvas {
+                painter: ui.painter(),
+                origin: place.center(),
+                palette,
+            };
+            canvas.paint(&dot_shapes([0.0, 0.0], (shape, 1.0), color, filled));
+        }
+        Sample::Line(stroke) => {
+            let path = vec![place.left_center(), place.right_center()];
+            let style = palette.curve_style(stroke).in_miniature();
+            let mut shapes = Vec::new();
+            style.add_shapes(path, &mut shapes);
+            ui.painter().extend(shapes);
+        }
+        Sample::Ground(color) => {
+            let fill = palette.color(color);
+            ui.painter().rect_filled(place.shrink(2.0), 2.0, fill);
+        }
+    }
 }

@@ -1,54 +1,24 @@
-//! Context menus of a curve and of the empty ground between curves.
+//! Context menus: on a curve, and on the empty ground between curves.
 
-use egui::{
-    Button, Id, Key, Popup, PopupCloseBehavior, Response, RichText, Role as WidgetRole, TextEdit,
-    Ui, WidgetInfo,
-};
+use egui::{Button, Key, Popup, PopupCloseBehavior, Response, RichText, Role as WidgetRole, TextEdit, Ui, WidgetInfo};
 
-use gdcm_study::ExplainTarget;
-
-use super::bode::{BodeEvent, BodeScene};
+use super::bode_event::BodeEvent;
+use super::bode_event::CurveWish;
+use super::bode_scene::BodeScene;
 use super::bode_view::BodeView;
 use super::curve_command::CurveCommand;
 use super::curve_style::Role;
 use super::drawn_curves::{BodeCurve, CurveId};
 use super::quantity::{BodeQuantity, PhaseUnit};
-use crate::gui::widgets::controls::QUESTION;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Action on a curve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CurveWish {
-    /// Reject its model, or restore it.
-    RejectOrRestore,
-    /// Make its model the representative of the bundle.
-    Pin,
-    /// Show it alone beside the representatives, or show all again.
-    Isolate,
-    /// Hide it.
-    Hide,
-    /// Copy its frequencies and values to the clipboard.
-    CopyValues,
-    /// Shift its phase by whole turns.
-    Turn(i32),
-}
-
-/// Subject of a menu: a curve or the ground, and the frequency there \[rad/s\].
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct MenuSubject {
-    pub(super) curve: Option<CurveId>,
-    pub(super) omega: f64,
-    /// Reason of the rejection, as typed so far.
-    pub(super) reason: String,
-}
-
-/// Shows the menu of a pane while it is open.
+/// Shows a pane's menu while it is open.
 pub(super) fn menu_ui(
     response: &Response,
     scene: &BodeScene<'_>,
     view: &mut BodeView,
-    events: &mut Vec<BodeEvent>,
     palette: &Palette,
+    events: &mut Vec<BodeEvent>,
 ) {
     let Some(mut subject) = view.menu_subject.take() else {
         return;
@@ -61,13 +31,23 @@ pub(super) fn menu_ui(
     let menu =
         Popup::context_menu(response).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     menu.show(|ui| match curve {
-        Some(curve) => curve_menu_ui(ui, scene, (curve, &mut subject.reason), events, palette),
-        None => ground_menu_ui(ui, scene, &subject, view, events),
+        Some(curve) => {
+            name_ui(ui, curve, palette);
+            if reason_ui(ui, curve, &mut subject.reason) {
+                let reason = subject.reason.clone();
+                events.push(BodeEvent::RejectedBecause(curve.id.clone(), reason));
+            }
+            if let Some(wish) = curve_wishes_ui(ui, curve, scene.quantity) {
+                events.push(BodeEvent::Wished(curve.id.clone(), wish));
+            }
+        }
+        None => ground_menu_ui(ui, scene, subject.omega, view, events),
     });
     view.menu_subject = Some(subject);
 }
 
-fn entry(ui: &mut Ui, text: &str, hint: &str) -> bool {
+/// Draws an entry; returns whether it was chosen.
+fn entry_ui(ui: &mut Ui, text: &str, hint: &str) -> bool {
     let clicked = ui.button(text).on_hover_text(hint).clicked();
     if clicked {
         ui.close();
@@ -75,8 +55,21 @@ fn entry(ui: &mut Ui, text: &str, hint: &str) -> bool {
     clicked
 }
 
-/// Draws the field for the reason of a rejection; returns whether the rejection was confirmed.
-fn reason_ui(ui: &mut Ui, reason: &mut String) -> bool {
+fn name_ui(ui: &mut Ui, curve: &BodeCurve, palette: &Palette) {
+    ui.label(RichText::new(&curve.label).strong());
+    if !curve.detail.is_empty() {
+        let detail = RichText::new(&curve.detail).size(SMALL_SIZE);
+        ui.label(detail.color(palette.dim_text));
+    }
+    ui.separator();
+}
+
+/// Draws the field for the rejection's reason, if the curve has a model to reject; returns
+/// whether the rejection was confirmed.
+fn reason_ui(ui: &mut Ui, curve: &BodeCurve, reason: &mut String) -> bool {
+    if !matches!(curve.id, CurveId::Model(_)) || curve.rejected {
+        return false;
+    }
     let field = ui.add(
         TextEdit::singleline(reason)
             .hint_text("reason")
@@ -86,168 +79,114 @@ fn reason_ui(ui: &mut Ui, reason: &mut String) -> bool {
         WidgetInfo::labeled(WidgetRole::TextInput, true, "Reason of the rejection")
     });
     let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-    field.on_hover_text("Why the model is rejected, in words: kept in the study; Enter rejects it");
+    field.on_hover_text("Reason of the rejection, kept in the study; Enter rejects the model");
+    let has_reason = !reason.trim().is_empty();
     let is_clicked = ui
-        .add_enabled(!reason.trim().is_empty(), Button::new("Reject with reason"))
+        .add_enabled(has_reason, Button::new("Reject with reason"))
         .clicked();
-    let is_wanted = (is_entered || is_clicked) && !reason.trim().is_empty();
-    if is_wanted {
+    let is_confirmed = (is_entered || is_clicked) && has_reason;
+    if is_confirmed {
         ui.close();
     }
-    is_wanted
+    is_confirmed
 }
 
-fn curve_menu_ui(
+/// Draws the actions on a curve; returns the chosen action.
+fn curve_wishes_ui(
     ui: &mut Ui,
-    scene: &BodeScene<'_>,
-    (curve, reason): (&BodeCurve, &mut String),
-    events: &mut Vec<BodeEvent>,
-    palette: &Palette,
-) {
-    ui.label(RichText::new(&curve.label).strong());
-    if !curve.detail.is_empty() {
-        ui.label(
-            RichText::new(&curve.detail)
-                .size(SMALL_SIZE)
-                .color(palette.dim_text),
-        );
-    }
-    ui.separator();
-    if matches!(curve.id, CurveId::Model(_)) && !curve.rejected && reason_ui(ui, reason) {
-        events.push(BodeEvent::RejectedBecause(curve.id.clone(), reason.clone()));
-    }
-    let wished = model_wishes_ui(ui, curve);
-    events.extend(wished.map(|wish| BodeEvent::Wished(curve.id.clone(), wish)));
-    let mut wish = |ui: &mut Ui, text: &str, hint: &str, wish: CurveWish| {
-        if entry(ui, text, hint) {
-            events.push(BodeEvent::Wished(curve.id.clone(), wish));
-        }
-    };
-    wish(
+    curve: &BodeCurve,
+    quantity: BodeQuantity<'_>,
+) -> Option<CurveWish> {
+    let mut wished = model_wishes_ui(ui, curve);
+    if entry_ui(
         ui,
         "Copy values",
         "Frequencies and values as text, with their units",
-        CurveWish::CopyValues,
-    );
+    ) {
+        wished = Some(CurveWish::CopyValues);
+    }
     if let BodeQuantity::Response {
         phase: PhaseUnit::Unwrapped,
         ..
-    } = scene.quantity
+    } = quantity
     {
         ui.separator();
-        wish(
-            ui,
-            "Phase +360°",
-            "Draw this curve's phase 360° higher",
-            CurveWish::Turn(1),
-        );
-        wish(
-            ui,
-            "Phase −360°",
-            "Draw this curve's phase 360° lower",
-            CurveWish::Turn(-1),
-        );
-    }
-}
-
-/// Draws the actions on a curve's model, in whichever plot; nothing if the curve has no model.
-pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWish> {
-    if !matches!(curve.id, CurveId::Model(_)) {
-        return None;
-    }
-    let represents = matches!(
-        curve.role,
-        Role::Representative | Role::IdentifiedRepresentative
-    );
-    let reject = match curve.rejected {
-        true => ("Restore model", "Put the model back into its bundle"),
-        false => ("Reject model", "Take the model out of its bundle"),
-    };
-    let pin = (
-        "Use as representative",
-        "Use this model as the representative of its bundle, whatever the medoid is",
-    );
-    let isolate = (
-        "Isolate model",
-        "Only this model beside the representatives, or all again",
-    );
-    let hide = (
-        "Hide curve",
-        "Do not draw this model; it counts all the same",
-    );
-    let wishes = [
-        (reject, CurveWish::RejectOrRestore, true),
-        (pin, CurveWish::Pin, !curve.rejected && !represents),
-        (isolate, CurveWish::Isolate, true),
-        (hide, CurveWish::Hide, true),
-    ];
-    let mut wished = None;
-    for ((text, hint), wish, _) in wishes.into_iter().filter(|(.., is_possible)| *is_possible) {
-        if entry(ui, text, hint) {
-            wished = Some(wish);
+        if entry_ui(ui, "Phase +360°", "Draw this curve's phase 360° higher") {
+            wished = Some(CurveWish::Turn(1));
+        }
+        if entry_ui(ui, "Phase −360°", "Draw this curve's phase 360° lower") {
+            wished = Some(CurveWish::Turn(-1));
         }
     }
     wished
 }
 
+/// Draws the actions on a curve's model, in whichever plot; nothing if the curve has no model.
+/// Returns the chosen action.
+pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWish> {
+    if !matches!(curve.id, CurveId::Model(_)) {
+        return None;
+    }
+    let mut wished = None;
+    let is_chosen = if curve.rejected {
+        entry_ui(ui, "Restore model", "Return the model to its bundle")
+    } else {
+        entry_ui(ui, "Reject model", "Take the model out of its bundle")
+    };
+    if is_chosen {
+        wished = Some(CurveWish::RejectOrRestore);
+    }
+    let represents = matches!(
+        curve.role,
+        Role::Representative | Role::IdentifiedRepresentative
+    );
+    if !curve.rejected
+        && !represents
+        && entry_ui(
+            ui,
+            "Use as representative",
+            "Use this model as the representative of its bundle instead of the medoid",
+        )
+    {
+        wished = Some(CurveWish::Pin);
+    }
+    if entry_ui(
+        ui,
+        "Isolate model",
+        "Only this model beside the representatives, or all again",
+    ) {
+        wished = Some(CurveWish::Isolate);
+    }
+    if entry_ui(
+        ui,
+        "Hide curve",
+        "Do not draw this model; it still counts in every result",
+    ) {
+        wished = Some(CurveWish::Hide);
+    }
+    wished
+}
+
+/// Draws the menu on empty ground at `omega` \[rad/s\].
 fn ground_menu_ui(
     ui: &mut Ui,
     scene: &BodeScene<'_>,
-    subject: &MenuSubject,
+    omega: f64,
     view: &mut BodeView,
     events: &mut Vec<BodeEvent>,
 ) {
-    if entry(ui, "Fit plot", "Bring every curve into view") {
+    if entry_ui(ui, "Fit plot", "Bring every curve into view") {
         view.request_fit();
     }
-    if entry(
+    if entry_ui(
         ui,
         "Mark frequency",
-        "Leave a cursor at this frequency; two show what changes between them",
+        "Mark this frequency; two marks show the change between them",
     ) {
-        events.push(BodeEvent::Display(CurveCommand::PinCursor(subject.omega)));
+        events.push(BodeEvent::Display(CurveCommand::PinCursor(omega)));
     }
-    if !(scene.pinned.is_empty() && scene.crossings.is_empty())
-        && entry(ui, "Remove marks", "Take the marks of frequencies away")
-    {
+    let has_marks = !(scene.pinned.is_empty() && scene.crossings.is_empty());
+    if has_marks && entry_ui(ui, "Remove marks", "Remove all frequency marks") {
         events.push(BodeEvent::Display(CurveCommand::UnpinCursors));
-    }
-}
-
-/// Value with a derivation, and its name.
-pub type NamedFigure = (String, ExplainTarget);
-
-/// Values listed in an open menu.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Questions {
-    /// Clicked plot, and the values under the pointer.
-    asked_of: Option<(Id, Vec<NamedFigure>)>,
-}
-
-impl Questions {
-    /// Opens the menu of a plot on a secondary click on `pointed`; returns the value chosen in it.
-    pub(super) fn ui(
-        &mut self,
-        response: &Response,
-        pointed: &[NamedFigure],
-    ) -> Option<ExplainTarget> {
-        if response.secondary_clicked() {
-            self.asked_of = (!pointed.is_empty()).then(|| (response.id, pointed.to_vec()));
-        }
-        let (_, figures) = self
-            .asked_of
-            .as_ref()
-            .filter(|(plot, _)| *plot == response.id)?;
-        let mut chosen = None;
-        response.context_menu(|ui| {
-            ui.label(QUESTION);
-            for (name, asked) in figures {
-                if ui.button(name).clicked() {
-                    chosen = Some(asked.clone());
-                    ui.close();
-                }
-            }
-        });
-        chosen
     }
 }

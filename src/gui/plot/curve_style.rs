@@ -8,9 +8,9 @@ use gdcm_plot::figure::drawing::{Dash, Hue};
 
 use crate::gui::widgets::palette::Palette;
 
-/// Gap between dashes as a share of their length.
+/// Gap between dashes, relative to their length.
 const GAP_OF_DASH: f32 = 0.618;
-/// Length of a dot between dashes \[pt\].
+/// Dot length between dashes \[pt\].
 const DOT_LENGTH: f32 = 1.8;
 
 /// Colour, width and pattern of a curve.
@@ -21,7 +21,7 @@ pub struct CurveStyle {
     pub width: f32,
     /// Pattern, which distinguishes roles in the same colour.
     pub dash: Dash,
-    /// Length of a dash, or distance between dots \[pt\].
+    /// Dash length, or distance between dots \[pt\].
     pub length: f32,
 }
 
@@ -45,7 +45,7 @@ impl CurveStyle {
 
     /// Returns the style of this line in a small plot: narrower, with a shorter pattern.
     pub fn in_miniature(self) -> Self {
-        /// Share of the width in a full plot.
+        /// Width relative to a full plot.
         const WIDTH_PART: f32 = 0.72;
         let length = match self.dash {
             Dash::Solid => 0.0,
@@ -138,7 +138,7 @@ impl Palette {
         }
     }
 
-    /// Returns the style of a role's curves.
+    /// Returns a role's style.
     pub fn role_style(&self, role: Role, rejected: bool) -> CurveStyle {
         self.curve_style(role.line(rejected))
     }
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_solid_or_broken_in_the_window_is_so_on_paper() {
+    fn lines_are_broken_in_the_window_as_on_paper() {
         for role in Role::ALL {
             let window = Palette::light().role_style(role, false);
             let paper = role.stroke(false);

@@ -10,23 +10,28 @@ use egui::{
 
 use gdcm_plot::figure::drawing::Dash;
 
-use super::bode::BodeEvent;
+use super::bode_event::BodeEvent;
 use super::curve_command::CurveCommand;
 use super::curve_style::{CurveStyle, Role};
 use super::drawn_curves::BodeCurve;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Height of a chip, and of a line of chips \[pt\].
-const HEIGHTS: [f32; 2] = [22.0, 27.0];
+const CHIP_HEIGHT: f32 = 22.0;
+/// Line height with the gap below \[pt\].
+const LINE_HEIGHT: f32 = 27.0;
 /// Gap between two chips \[pt\].
 const GAP: f32 = 5.0;
-/// Length of a curve's sample in normal and in tight chips \[pt\].
-const SAMPLES: [f32; 2] = [18.0, 12.0];
+/// Sample length \[pt\].
+const SAMPLE: f32 = 18.0;
+/// The same in a tight chip \[pt\].
+const TIGHT_SAMPLE: f32 = 12.0;
 const SAMPLE_GAP: f32 = 6.0;
-/// Padding at both ends of a chip \[pt\].
+/// Padding at both ends \[pt\].
 const PAD: f32 = 6.0;
-/// Longest name of a single model shown beside its role, in characters.
+/// Longest model name beside its role \[characters\].
 const NAME_LENGTH: usize = 22;
+/// Line width in the sample of a band \[pt\].
+const BAND_SAMPLE_WIDTH: f32 = 7.0;
 
 /// Chip that switches curves.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,14 +39,14 @@ pub(super) struct RoleChip {
     pub(super) role: Role,
     pub(super) text: String,
     pub(super) look: CurveStyle,
-    /// Whether the curves of the role are drawn.
+    /// Whether the role's curves are drawn.
     pub(super) shown: bool,
-    /// Whether the pointer is on a curve of the role, or on its counterpart in another view.
+    /// Whether the pointer is on such a curve, or on its counterpart in another view.
     pub(super) lit: bool,
 }
 
 impl RoleChip {
-    /// Removes the name of a single model or variant from the chip, and shortens the longest words.
+    /// Removes a single model's or variant's name, and shortens the longest words.
     fn shorten(&mut self) {
         match self.role {
             Role::Representative => "repr.".clone_into(&mut self.text),
@@ -58,41 +63,47 @@ pub(super) fn role_chips(
     hidden: Option<&BTreeSet<Role>>,
     palette: &Palette,
 ) -> Vec<RoleChip> {
-    let of_role = |role: Role| {
+    let mut chips = Vec::new();
+    for role in Role::ALL {
         let members: Vec<&BodeCurve> = curves
             .iter()
             .filter(|curve| curve.role.shown(curve.rejected) == role)
             .collect();
-        let first = members.first()?;
+        let Some(first) = members.first() else {
+            continue;
+        };
         // A single chip for kept and rejected nominal models: dotted only if none is kept.
         let rejected = members.iter().all(|curve| curve.rejected);
-        let look = palette.role_style(first.role, rejected);
-        Some(RoleChip {
+        chips.push(RoleChip {
             role,
-            text: text(role, &members),
-            look,
+            text: chip_text(role, &members),
+            look: palette.role_style(first.role, rejected),
             shown: !hidden.is_some_and(|hidden| hidden.contains(&role)),
             lit: members.iter().any(|curve| curve.highlighted),
-        })
-    };
-    Role::ALL.into_iter().filter_map(of_role).collect()
+        });
+    }
+    chips
 }
 
-fn text(role: Role, members: &[&BodeCurve]) -> String {
+/// Returns the role's name, with that of its only curve if that says more.
+fn chip_text(role: Role, members: &[&BodeCurve]) -> String {
     let name = role.name();
-    let short = |label: &str| {
-        let start: String = label.chars().take(NAME_LENGTH).collect();
-        let ellipsis = if start.len() < label.len() { "…" } else { "" };
-        format!("{start}{ellipsis}")
-    };
     match (role, members) {
         (Role::Representative, [only]) if !only.label.is_empty() => {
-            format!("{name} {}", short(&only.label))
+            format!("{name} {}", shortened(&only.label))
         }
-        (Role::Variant, [only]) => short(&only.label),
+        (Role::Variant, [only]) => shortened(&only.label),
         (Role::Identified, _) => "others".to_owned(),
         _ => name.to_owned(),
     }
+}
+
+fn shortened(label: &str) -> String {
+    let mut start: String = label.chars().take(NAME_LENGTH).collect();
+    if start.len() < label.len() {
+        start.push('…');
+    }
+    start
 }
 
 /// Current restriction of a plot, and the effect of a click on it.
@@ -104,9 +115,8 @@ pub struct Chip {
     pub hint: String,
 }
 
-/// All chips of a plot.
 pub(super) struct Chips<'a> {
-    /// Distinguishes these chips from those of other plots.
+    /// Suffix that distinguishes these chips from those in other plots.
     pub(super) plot: &'a str,
     pub(super) roles: Vec<RoleChip>,
     /// Whether bands are drawn; `None` if there are no bands.
@@ -116,108 +126,126 @@ pub(super) struct Chips<'a> {
     pub(super) is_tight: bool,
 }
 
+/// Chips as drawn.
+pub(super) struct ChipsResponse {
+    /// Height taken by all lines \[pt\].
+    pub(super) height: f32,
+    /// Effect of the clicked chip.
+    pub(super) event: Option<BodeEvent>,
+}
+
 impl Chips<'_> {
     /// Shortens samples and words.
     pub(super) fn tighten(&mut self) {
         self.is_tight = true;
-        self.roles.iter_mut().for_each(RoleChip::shorten);
+        for chip in &mut self.roles {
+            chip.shorten();
+        }
     }
 
     /// Returns the total width of the chips side by side \[pt\].
     pub(super) fn width(&self, ui: &Ui) -> f32 {
-        let text = |text: &str| {
-            let font = FontId::proportional(SMALL_SIZE);
-            ui.painter()
-                .layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER)
-                .size()
-                .x
-                + 2.0 * PAD
-                + GAP
-        };
+        let sample = self.sample();
         let bands = self.bands.map(|_| self.bands_text());
-        let sample = SAMPLES[usize::from(self.is_tight)];
-        let names = self
-            .roles
-            .iter()
-            .map(|chip| chip.text.as_str())
-            .chain(bands);
-        let roles = names.map(|name| text(name) + sample + SAMPLE_GAP);
-        roles
-            .chain(self.states.iter().map(|chip| text(&chip.text)))
-            .sum::<f32>()
-            - GAP
+        let names = self.roles.iter().map(|chip| chip.text.as_str());
+        let switches = names
+            .chain(bands)
+            .map(|name| chip_width(ui, name) + sample + SAMPLE_GAP);
+        let states = self.states.iter().map(|chip| chip_width(ui, &chip.text));
+        switches.chain(states).sum::<f32>() - GAP
     }
 
-    /// Draws the chips in lines from the upper left corner of `area`; returns their height, and the
-    /// clicked chip.
-    pub(super) fn ui(&self, ui: &Ui, area: Rect, palette: &Palette) -> (f32, Option<BodeEvent>) {
-        let sample = SAMPLES[usize::from(self.is_tight)];
+    /// Draws the chips in lines from the upper left corner.
+    pub(super) fn ui(&self, ui: &Ui, area: Rect, palette: &Palette) -> ChipsResponse {
         let mut row = Row {
             area,
             corner: area.min,
-            sample,
-            event: None,
+            sample: self.sample(),
         };
+        let mut event = None;
         for chip in &self.roles {
-            let name = format!("Show {}{}", chip.role.name(), self.plot);
-            let sample = Some((chip.look, chip.shown));
-            let response = row.chip_ui(ui, (&chip.text, &name), (sample, chip.lit), palette);
-            let hint = if chip.shown {
-                "Click: hide"
-            } else {
-                "Click: show"
-            };
-            let hint = format!("{hint} · Alt+click: alone · Shift+click: in front");
-            if response.on_hover_text(hint).clicked() {
-                let modifiers = ui.input(|input| input.modifiers);
-                row.event = Some(BodeEvent::Display(match (modifiers.alt, modifiers.shift) {
-                    (true, _) => CurveCommand::ShowRoleAlone(chip.role),
-                    (_, true) => CurveCommand::RaiseRole(chip.role),
-                    _ => CurveCommand::ToggleRole(chip.role),
-                }));
+            if let Some(request) = self.role_chip_ui(ui, &mut row, chip, palette) {
+                event = Some(BodeEvent::Display(request));
             }
         }
-        if let Some(shown) = self.bands {
-            let style = CurveStyle {
-                color: palette.identified.gamma_multiply(0.45),
-                width: 7.0,
-                dash: Dash::Solid,
-                length: 0.0,
-            };
-            let name = format!("Show the band of 95 %{}", self.plot);
-            let response = row.chip_ui(
-                ui,
-                (self.bands_text(), &name),
-                (Some((style, shown)), false),
-                palette,
-            );
-            if response
-                .on_hover_text("How far each identified response may lie from its curve")
-                .clicked()
-            {
-                row.event = Some(BodeEvent::Display(CurveCommand::ShowBands(!shown)));
-            }
+        if let Some(shown) = self.bands
+            && self.bands_chip_ui(ui, &mut row, shown, palette)
+        {
+            event = Some(BodeEvent::Display(CurveCommand::ShowBands(!shown)));
         }
         for (index, chip) in self.states.iter().enumerate() {
-            let name = format!("{}{}", chip.text, self.plot);
-            if row
-                .chip_ui(ui, (&chip.text, &name), (None, false), palette)
-                .on_hover_text(&chip.hint)
-                .clicked()
-            {
-                row.event = Some(BodeEvent::ChipClicked(index));
+            let face = ChipFace {
+                text: &chip.text,
+                name: &format!("{}{}", chip.text, self.plot),
+                sample: None,
+                is_lit: false,
+            };
+            let response = row.chip_ui(ui, &face, palette);
+            if response.on_hover_text(&chip.hint).clicked() {
+                event = Some(BodeEvent::ChipClicked(index));
             }
         }
         let is_empty = self.roles.is_empty() && self.states.is_empty();
         let height = if is_empty {
             0.0
         } else {
-            row.corner.y - area.top() + HEIGHTS[1]
+            row.corner.y - area.top() + LINE_HEIGHT
         };
-        (height, row.event)
+        ChipsResponse { height, event }
     }
 
-    /// Returns the text of the bands' chip.
+    fn role_chip_ui(
+        &self,
+        ui: &Ui,
+        row: &mut Row,
+        chip: &RoleChip,
+        palette: &Palette,
+    ) -> Option<CurveCommand> {
+        let face = ChipFace {
+            text: &chip.text,
+            name: &format!("Show {}{}", chip.role.name(), self.plot),
+            sample: Some(Sample {
+                style: chip.look,
+                is_shown: chip.shown,
+            }),
+            is_lit: chip.lit,
+        };
+        let response = row.chip_ui(ui, &face, palette);
+        let effect = if chip.shown { "hide" } else { "show" };
+        let hint = format!("Click: {effect} · Alt+click: alone · Shift+click: in front");
+        if !response.on_hover_text(hint).clicked() {
+            return None;
+        }
+        let modifiers = ui.input(|input| input.modifiers);
+        Some(if modifiers.alt {
+            CurveCommand::ShowRoleAlone(chip.role)
+        } else if modifiers.shift {
+            CurveCommand::RaiseRole(chip.role)
+        } else {
+            CurveCommand::ToggleRole(chip.role)
+        })
+    }
+
+    /// Returns whether the switch was clicked.
+    fn bands_chip_ui(&self, ui: &Ui, row: &mut Row, is_shown: bool, palette: &Palette) -> bool {
+        let style = CurveStyle {
+            color: palette.identified.gamma_multiply(0.45),
+            width: BAND_SAMPLE_WIDTH,
+            dash: Dash::Solid,
+            length: 0.0,
+        };
+        let face = ChipFace {
+            text: self.bands_text(),
+            name: &format!("Show the band of 95 %{}", self.plot),
+            sample: Some(Sample { style, is_shown }),
+            is_lit: false,
+        };
+        let response = row.chip_ui(ui, &face, palette);
+        response
+            .on_hover_text("How far each identified response may lie from its curve")
+            .clicked()
+    }
+
     fn bands_text(&self) -> &'static str {
         if self.is_tight {
             "95 %"
@@ -225,57 +253,85 @@ impl Chips<'_> {
             "band of 95 %"
         }
     }
+
+    /// Returns the sample length \[pt\].
+    fn sample(&self) -> f32 {
+        if self.is_tight { TIGHT_SAMPLE } else { SAMPLE }
+    }
 }
 
-/// Place of the next chip.
+/// Returns the width without a sample, and with the gap beside it \[pt\].
+fn chip_width(ui: &Ui, text: &str) -> f32 {
+    let font = FontId::proportional(SMALL_SIZE);
+    let galley = ui
+        .painter()
+        .layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER);
+    galley.size().x + 2.0 * PAD + GAP
+}
+
+struct ChipFace<'a> {
+    text: &'a str,
+    /// Accessible name.
+    name: &'a str,
+    /// Curve sample, if the chip switches curves.
+    sample: Option<Sample>,
+    is_lit: bool,
+}
+
+/// Curve sample.
+#[derive(Clone, Copy)]
+struct Sample {
+    style: CurveStyle,
+    /// Whether the curves are drawn in the plot.
+    is_shown: bool,
+}
+
+impl ChipFace<'_> {
+    /// Returns whether the chip switches curves that are hidden.
+    fn is_hidden(&self) -> bool {
+        self.sample.is_some_and(|sample| !sample.is_shown)
+    }
+}
+
+/// Place for the next chip.
 struct Row {
     area: Rect,
     corner: egui::Pos2,
-    /// Length of a sample \[pt\].
+    /// Sample length \[pt\].
     sample: f32,
-    event: Option<BodeEvent>,
 }
 
 impl Row {
-    /// Draws a chip with the sample of a curve, pale and dashed if hidden; in the accent colour if
+    /// Draws a chip with a curve sample, pale and dashed if hidden; in the accent colour if
     /// it has no sample.
-    fn chip_ui(
-        &mut self,
-        ui: &Ui,
-        (text, name): (&str, &str),
-        (sample, is_lit): (Option<(CurveStyle, bool)>, bool),
-        palette: &Palette,
-    ) -> Response {
-        let is_shown = sample.is_none_or(|(_, shown)| shown);
-        let color = if is_shown {
-            palette.text
-        } else {
+    fn chip_ui(&mut self, ui: &Ui, face: &ChipFace<'_>, palette: &Palette) -> Response {
+        let color = if face.is_hidden() {
             palette.dim_text
-        };
-        let galley =
-            ui.painter()
-                .layout_no_wrap(text.to_owned(), FontId::proportional(SMALL_SIZE), color);
-        let before = if sample.is_some() {
-            self.sample + SAMPLE_GAP
         } else {
-            0.0
+            palette.text
         };
-        let size = vec2(galley.size().x + before + 2.0 * PAD, HEIGHTS[0]);
-        if self.corner.x + size.x > self.area.right() && self.corner.x > self.area.left() {
-            self.corner = pos2(self.area.left(), self.corner.y + HEIGHTS[1]);
-        }
-        let place = Rect::from_min_size(self.corner, size);
-        self.corner.x = place.right() + GAP;
-        let response = ui.interact(place, ui.scope_id().with(("chip", name)), Sense::click());
-        match sample {
-            Some((_, shown)) => {
-                response
-                    .widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, true, shown, name));
+        let font = FontId::proportional(SMALL_SIZE);
+        let galley = ui
+            .painter()
+            .layout_no_wrap(face.text.to_owned(), font, color);
+        let before = match face.sample {
+            Some(_) => self.sample + SAMPLE_GAP,
+            None => 0.0,
+        };
+        let place = self.next_place(galley.size().x + before + 2.0 * PAD);
+        let id = ui.scope_id().with(("chip", face.name));
+        let response = ui.interact(place, id, Sense::click());
+        response.widget_info(|| match face.sample {
+            Some(sample) => {
+                WidgetInfo::selected(egui::Role::CheckBox, true, sample.is_shown, face.name)
             }
-            None => response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, name)),
+            None => WidgetInfo::labeled(egui::Role::Button, true, face.name),
+        });
+        let is_lit = face.is_lit || response.hovered() || response.has_focus();
+        paint_outline(ui, place, face, is_lit, palette);
+        if let Some(sample) = face.sample {
+            self.paint_sample(ui, place, sample);
         }
-        let is_meant = is_lit || response.hovered() || response.has_focus();
-        self.paint(ui, place, (sample, is_meant), palette);
         let at = pos2(
             place.left() + PAD + before,
             place.center().y - 0.5 * galley.size().y,
@@ -284,72 +340,62 @@ impl Row {
         response.on_hover_cursor(CursorIcon::PointingHand)
     }
 
-    fn paint(
-        &self,
-        ui: &Ui,
-        place: Rect,
-        (sample, is_meant): (Option<(CurveStyle, bool)>, bool),
-        palette: &Palette,
-    ) {
-        let radius = 0.5 * place.height();
-        let is_hidden = sample.is_some_and(|(_, shown)| !shown);
-        let line = Stroke::new(
-            1.0,
-            if is_meant {
-                palette.accent
-            } else {
-                palette.line
-            },
-        );
-        let fill = match sample {
-            _ if is_hidden => Color32::TRANSPARENT,
-            Some(_) => palette.panel,
-            None => palette.selected,
-        };
-        if is_hidden {
-            let path = rounded(place.shrink(0.5), radius);
-            ui.painter()
-                .extend(egui::Shape::dashed_line(&path, line, 3.0, 3.0));
-        } else {
-            ui.painter()
-                .rect(place, radius, fill, line, StrokeKind::Inside);
+    /// Returns the next chip's place, in the next line if there is no room in this line.
+    fn next_place(&mut self, width: f32) -> Rect {
+        let size = vec2(width, CHIP_HEIGHT);
+        if self.corner.x + size.x > self.area.right() && self.corner.x > self.area.left() {
+            self.corner = pos2(self.area.left(), self.corner.y + LINE_HEIGHT);
         }
-        let Some((look, _)) = sample else { return };
-        let look = if is_hidden {
-            CurveStyle {
-                color: look.color.gamma_multiply(0.5),
-                ..look
-            }
-        } else {
-            look
-        };
-        let left = place.left() + PAD;
-        let middle = place.center().y;
+        let place = Rect::from_min_size(self.corner, size);
+        self.corner.x = place.right() + GAP;
+        place
+    }
+
+    fn paint_sample(&self, ui: &Ui, place: Rect, sample: Sample) {
+        let mut style = sample.style;
+        if !sample.is_shown {
+            style.color = style.color.gamma_multiply(0.5);
+        }
+        let start = pos2(place.left() + PAD, place.center().y);
+        let end = pos2(place.left() + PAD + self.sample, place.center().y);
         let mut shapes = Vec::new();
-        look.add_shapes(
-            vec![pos2(left, middle), pos2(left + self.sample, middle)],
-            &mut shapes,
-        );
+        style.add_shapes(vec![start, end], &mut shapes);
         ui.painter().extend(shapes);
     }
 }
 
-/// Returns the outline of a rectangle with semicircular ends, as a single path.
-fn rounded(place: Rect, radius: f32) -> Vec<egui::Pos2> {
-    let centers = [
-        pos2(place.right() - radius, place.center().y),
-        pos2(place.left() + radius, place.center().y),
-    ];
-    let quarter = std::f32::consts::FRAC_PI_2;
-    let turn = |center: egui::Pos2, from: f32| {
-        (0..=8).map(move |step| {
-            let angle = from + 2.0 * quarter * step as f32 / 8.0;
-            center + radius * vec2(angle.cos(), angle.sin())
-        })
+/// Paints ground and outline; dashed if its curves are hidden.
+fn paint_outline(ui: &Ui, place: Rect, face: &ChipFace<'_>, is_lit: bool, palette: &Palette) {
+    let radius = 0.5 * place.height();
+    let color = if is_lit { palette.accent } else { palette.line };
+    let line = Stroke::new(1.0, color);
+    if face.is_hidden() {
+        let path = rounded(place.shrink(0.5), radius);
+        ui.painter()
+            .extend(egui::Shape::dashed_line(&path, line, 3.0, 3.0));
+        return;
+    }
+    let fill = match face.sample {
+        Some(_) => palette.panel,
+        None => palette.selected,
     };
-    let mut path: Vec<_> = turn(centers[0], -quarter)
-        .chain(turn(centers[1], quarter))
-        .collect();
+    ui.painter()
+        .rect(place, radius, fill, line, StrokeKind::Inside);
+}
+
+/// Returns a rectangle with semicircular ends, as a single path.
+fn rounded(place: Rect, radius: f32) -> Vec<egui::Pos2> {
+    const STEPS: usize = 8;
+    let quarter = std::f32::consts::FRAC_PI_2;
+    let right = pos2(place.right() - radius, place.center().y);
+    let left = pos2(place.left() + radius, place.center().y);
+    let mut path = Vec::new();
+    for (center, from) in [(right, -quarter), (left, quarter)] {
+        for step in 0..=STEPS {
+            let angle = from + 2.0 * quarter * step as f32 / STEPS as f32;
+            path.push(center + radius * vec2(angle.cos(), angle.sin()));
+        }
+    }
     path.push(path[0]);
     path
 }

@@ -1,34 +1,77 @@
-//! Plots: each takes a scene and its state of the last frame, and returns the engineer's actions.
+//! Plots: each takes a scene and its state from the last frame, and returns the engineer's actions.
+//!
+//! Every panel with axes is drawn by [`painter`]. A scene ([`bode_scene`], [`figure_scene`],
+//! [`chart`], [`overview`]) describes its content; the parts below serve all of them:
+//!
+//! ```text
+//! painter           frame, axes, grid and gestures; each scene adds its layers
+//! panel_axis, ticks numbers and grid lines
+//! viewed_range      visible ranges and zoom limits
+//! navigation        wheel, pinching, boxes
+//! picking           curve or dot under the pointer
+//! thinning          visible points, no finer than the pixels; drawn_curves keeps them
+//! curve_layer       order and styles of curves; cached_raster holds the image of many
+//! layers, canvas    areas, lines across a panel; shapes from printed figures
+//! legend, readout   chips above a plot, values at the pointer
+//! ```
 
-mod axes;
 mod axis_strip;
+mod band_handles;
 pub mod bode;
-pub mod bode_pane;
+pub mod bode_event;
+mod bode_headings;
+mod bode_keys;
+mod bode_layout;
+mod bode_pane;
+pub mod bode_scene;
 pub mod bode_view;
 mod cached_raster;
 pub mod canvas;
 pub mod chart;
+mod chart_layers;
+pub mod chart_view;
+mod coherence_strip;
 pub mod curve_command;
-pub mod curve_menu;
+mod curve_layer;
+mod curve_menu;
 pub mod curve_style;
 pub mod drawn_curves;
+mod end_labels;
+mod figure_marks;
+mod figure_panel;
+pub mod figure_scene;
 pub mod figure_view;
+mod invalid_region;
+mod layers;
 pub mod legend;
-pub mod navigation;
+mod limits_form;
+mod navigation;
 pub mod overview;
+mod painter;
+mod pane_scene;
+mod panel_axis;
+mod panel_text;
+pub mod picking;
+mod plot_axis;
+pub mod pointed_curve;
 pub mod quantity;
+pub mod questions;
 pub mod readout;
+mod reference_lines;
+mod sketch;
+pub mod stretch;
+mod thinning;
+mod ticks;
 mod tiles;
-
-pub use gdcm_plot::figure::axis::FrequencyUnit;
-pub use gdcm_plot::figure::gains::{Across, Measure};
-pub use gdcm_plot::figure::{Range, decimals};
+mod viewed_range;
 
 #[cfg(test)]
 mod tests;
 
-pub use bode::{BodeScene, bode_ui};
+pub use bode::bode_ui;
+pub use bode_scene::BodeScene;
 pub use bode_view::BodeView;
 pub use curve_style::Role;
 pub use drawn_curves::{BodeCurve, CurveId, Pane};
-pub use figure_view::{FigureEvent, FigureScene, FigureView, FigureWords, figure_ui};
+pub use figure_scene::{FigureEvent, FigureScene, FigureWords};
+pub use figure_view::{FigureView, figure_ui};

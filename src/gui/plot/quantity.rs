@@ -1,12 +1,13 @@
-//! Quantities of the two stacked panes, and their units.
+//! Quantities and units in the two stacked panes.
 
+use gdcm_model::number_format::compact;
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::db_to_ratio;
-use gdcm_plot::figure::axis::compact;
+use gdcm_plot::figure::Range;
 pub use gdcm_plot::figure::axis::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
-use gdcm_plot::figure::{Range, decimals};
 
-use super::axes::{Ticks, VERTICAL_TICK_GAP};
 use super::drawn_curves::Pane;
+use super::ticks::{Ticks, VERTICAL_TICK_GAP};
 
 /// Quantity shown by the two stacked panes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +16,7 @@ pub enum BodeQuantity<'a> {
     Response {
         magnitude: MagnitudeUnit,
         phase: PhaseUnit,
-        /// Unit of a ratio: "(deg/s)/in".
+        /// "(deg/s)/in".
         ratio_unit: &'a str,
         place: ResponsePlace,
     },
@@ -24,17 +25,54 @@ pub enum BodeQuantity<'a> {
     Error { phase: PhaseErrorUnit },
 }
 
-/// Plot of the responses, which distinguishes its controls from the same controls of other plots.
+/// Subject of a response plot, which distinguishes its controls from those in other plots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ResponsePlace {
-    /// Plot of the displayed condition.
+    /// The displayed condition.
     #[default]
     Condition,
     /// Plot across conditions.
     EveryCondition,
-    /// Plot of a model found in a file.
+    /// A model found in a file.
     FoundModel,
 }
+
+/// Texts that distinguish the controls of a plot from those of others.
+struct PlotNames {
+    /// Id salt of its widgets.
+    salt: &'static str,
+    /// Suffix behind the label of a control.
+    label: &'static str,
+    /// Suffix behind the name of a pane.
+    pane: &'static str,
+    /// Suffix behind a pane within a sentence.
+    place: &'static str,
+}
+
+const CONDITION_NAMES: PlotNames = PlotNames {
+    salt: "bode",
+    label: "",
+    pane: "",
+    place: " plot",
+};
+const EVERY_CONDITION_NAMES: PlotNames = PlotNames {
+    salt: "airspeeds",
+    label: ", plot of airspeeds",
+    pane: " in every condition",
+    place: " plot of every condition",
+};
+const FOUND_MODEL_NAMES: PlotNames = PlotNames {
+    salt: "found model",
+    label: ", plot of a found model",
+    pane: " of a found model",
+    place: " plot of a found model",
+};
+const ERROR_NAMES: PlotNames = PlotNames {
+    salt: "error",
+    label: ", error plot",
+    pane: " error",
+    place: " error plot",
+};
 
 impl Default for BodeQuantity<'_> {
     fn default() -> Self {
@@ -43,12 +81,12 @@ impl Default for BodeQuantity<'_> {
 }
 
 impl BodeQuantity<'_> {
-    /// Responses of the displayed condition in decibels and degrees.
+    /// Responses in the displayed condition, in decibels and degrees.
     pub const RESPONSE: BodeQuantity<'static> = Self::in_place(ResponsePlace::Condition);
-    /// Responses of every condition in decibels and degrees.
+    /// Responses in every condition, in decibels and degrees.
     pub const RESPONSE_OF_EVERY_CONDITION: BodeQuantity<'static> =
         Self::in_place(ResponsePlace::EveryCondition);
-    /// Responses of a model found in a file, in decibels and degrees.
+    /// Model found in a file, in decibels and degrees.
     pub const RESPONSE_OF_FOUND_MODEL: BodeQuantity<'static> =
         Self::in_place(ResponsePlace::FoundModel);
 
@@ -61,44 +99,27 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Returns the texts that distinguish this plot from others: for its widgets, for its labels,
-    /// and the suffixes of a pane's name and of its place.
-    fn words(self) -> [&'static str; 4] {
-        match self {
-            Self::Response {
-                place: ResponsePlace::Condition,
-                ..
-            } => ["bode", "", "", " plot"],
-            Self::Response {
-                place: ResponsePlace::EveryCondition,
-                ..
-            } => [
-                "airspeeds",
-                ", plot of airspeeds",
-                " in every condition",
-                " plot of every condition",
-            ],
-            Self::Response {
-                place: ResponsePlace::FoundModel,
-                ..
-            } => [
-                "found model",
-                ", plot of a found model",
-                " of a found model",
-                " plot of a found model",
-            ],
-            Self::Error { .. } => ["error", ", error plot", " error", " error plot"],
+    /// Returns the texts that distinguish this plot from others.
+    fn names(self) -> PlotNames {
+        let place = match self {
+            Self::Response { place, .. } => place,
+            Self::Error { .. } => return ERROR_NAMES,
+        };
+        match place {
+            ResponsePlace::Condition => CONDITION_NAMES,
+            ResponsePlace::EveryCondition => EVERY_CONDITION_NAMES,
+            ResponsePlace::FoundModel => FOUND_MODEL_NAMES,
         }
     }
 
-    /// Returns the id salt that distinguishes this plot's widgets from those of others.
+    /// Returns the id salt that distinguishes this plot's widgets from others.
     pub(super) fn salt(self) -> &'static str {
-        self.words()[0]
+        self.names().salt
     }
 
-    /// Returns the suffix that distinguishes this plot's labels from those of the Bode plot.
+    /// Returns the suffix that distinguishes this plot's labels from the Bode plot's.
     pub(super) fn label_suffix(self) -> &'static str {
-        self.words()[1]
+        self.names().label
     }
 
     /// Returns whether the plot shows the displayed condition, not a comparison across conditions
@@ -114,17 +135,18 @@ impl BodeQuantity<'_> {
         )
     }
 
-    /// Returns the name of a pane: "Magnitude".
+    /// Returns a pane's name: "Magnitude".
     pub(super) fn name(self, pane: Pane) -> String {
-        format!("{pane:?}{}", self.words()[2])
+        format!("{pane:?}{}", self.names().pane)
     }
 
-    /// Returns a pane as part of a sentence: "magnitude plot".
+    /// Returns a pane within a sentence: "magnitude plot".
     pub(super) fn place(self, pane: Pane) -> String {
-        format!("{}{}", format!("{pane:?}").to_lowercase(), self.words()[3])
+        let pane = format!("{pane:?}").to_lowercase();
+        format!("{pane}{}", self.names().place)
     }
 
-    /// Returns the display unit of a pane.
+    /// Returns a pane's display unit.
     pub(crate) fn unit(self, pane: Pane) -> ValueUnit {
         match (self, pane) {
             (
@@ -145,7 +167,7 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Returns the label of a pane's numbers, with the unit in which they are drawn.
+    /// Returns the label for a pane's numbers, with the unit in which they are drawn.
     pub(crate) fn drawn_label(self, pane: Pane) -> String {
         match self {
             Self::Response { .. } => Self::RESPONSE.axis_label(pane),
@@ -153,7 +175,7 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Returns the axis label of a pane.
+    /// Returns a pane's axis label.
     pub(super) fn axis_label(self, pane: Pane) -> String {
         match (self, pane) {
             (
@@ -184,7 +206,7 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Returns the least height of a pane after fitting.
+    /// Returns a pane's least height after fitting.
     pub(super) fn least_height(self, pane: Pane) -> f64 {
         match (self, pane) {
             (Self::Response { .. }, Pane::Magnitude) => 4.0,
@@ -195,7 +217,7 @@ impl BodeQuantity<'_> {
     }
 }
 
-/// Display unit of a pane's values. For the first two, drawn values are in decibels.
+/// Display unit in a pane. For the first two, drawn values are in decibels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueUnit {
     Decibel,
@@ -206,7 +228,7 @@ pub enum ValueUnit {
 }
 
 impl ValueUnit {
-    /// Returns the suffix of a value: " dB", "°".
+    /// Returns the suffix behind a value: " dB", "°".
     pub fn suffix(self) -> &'static str {
         match self {
             Self::Decibel => " dB",
@@ -225,7 +247,7 @@ impl ValueUnit {
         }
     }
 
-    /// Returns the permitted widths of the visible range.
+    /// Returns the permitted visible widths.
     pub(super) fn widths(self) -> Range {
         match self {
             Self::Decibel | Self::Ratio => Range {
@@ -239,7 +261,7 @@ impl ValueUnit {
         }
     }
 
-    /// Returns the kind of tick labels of the axis.
+    /// Returns the kind of tick labels.
     pub(super) fn ticks(self) -> Ticks {
         match self {
             Self::Decibel | Self::Millisecond => Ticks::Decimal(VERTICAL_TICK_GAP),
@@ -287,7 +309,9 @@ mod tests {
             bounds: (-20.0, 20.0),
             base_step_size: 40.0 / 300.0,
         };
-        let marks = ValueUnit::Ratio.ticks().spacer()(input);
+        let marks = ValueUnit::Ratio
+            .ticks()
+            .marks(input.bounds, input.base_step_size);
         let labels: Vec<String> = marks
             .into_iter()
             .map(|mark| ValueUnit::Ratio.ticks().text(mark))

@@ -1,14 +1,14 @@
 //! Small multiples: many plots of equal size in a row, or in the number of rows that makes them
 //! largest.
 
-use egui::{Rect, ScrollArea, Ui, UiBuilder, Vec2, pos2, vec2};
+use egui::{Rect, ScrollArea, Ui, UiBuilder, Vec2, vec2};
 
-/// Preferred ratio of width to height of a small plot.
+/// Preferred ratio of width to height.
 const ASPECT: f32 = 1.15;
 /// Gain in size required to accept a gap in the last row \[pt\].
 const PRICE_OF_GAP: f32 = 4.0;
 
-/// Arrangement of plots in rows and columns, and their size.
+/// Arrangement in rows and columns, and plot size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Tiles {
     pub(super) columns: usize,
@@ -23,25 +23,28 @@ impl Tiles {
     /// If they do not fit, they form a single row wider than `available`, which scrolls.
     pub(super) fn arrange(count: usize, available: Vec2, least: Vec2) -> Self {
         let count = count.max(1);
-        let candidates = (1..=count).map(|columns| {
+        let mut best: Option<Self> = None;
+        for columns in 1..=count {
             let rows = count.div_ceil(columns);
-            Self {
+            let size = vec2(available.x / columns as f32, available.y / rows as f32);
+            let tiles = Self {
                 columns,
                 rows,
-                size: vec2(available.x / columns as f32, available.y / rows as f32),
+                size,
+            };
+            let fits = size.x >= least.x && size.y >= least.y;
+            if fits && best.is_none_or(|best| tiles.usefulness(count) >= best.usefulness(count)) {
+                best = Some(tiles);
             }
-        });
-        let fitting = candidates.filter(|tiles| tiles.size.x >= least.x && tiles.size.y >= least.y);
-        fitting
-            .max_by(|a, b| a.usefulness(count).total_cmp(&b.usefulness(count)))
-            .unwrap_or(Self {
-                columns: count,
-                rows: 1,
-                size: vec2(
-                    least.x.max(available.x / count as f32),
-                    available.y.max(least.y),
-                ),
-            })
+        }
+        best.unwrap_or(Self {
+            columns: count,
+            rows: 1,
+            size: vec2(
+                least.x.max(available.x / count as f32),
+                available.y.max(least.y),
+            ),
+        })
     }
 
     /// Rates an arrangement by the size of the largest well-proportioned plot in a tile, less a
@@ -51,15 +54,24 @@ impl Tiles {
         (self.size.x / ASPECT).min(self.size.y) - PRICE_OF_GAP * gaps as f32
     }
 
-    /// Returns the total size of the tiles.
-    fn all(self) -> Vec2 {
+    fn total_size(self) -> Vec2 {
         vec2(
             self.columns as f32 * self.size.x,
             self.rows as f32 * self.size.y,
         )
     }
 
-    /// Returns the place of a tile in an area that begins at `origin`.
+    /// Allocates all tiles and draws each.
+    fn ui(self, ui: &mut Ui, count: usize, tile_ui: &mut impl FnMut(&mut Ui, usize, Rect)) {
+        let origin = ui.max_rect().left_top();
+        let area = Rect::from_min_size(origin, self.total_size());
+        ui.allocate_rect(area, egui::Sense::hover());
+        for index in 0..count {
+            tile_ui(ui, index, self.rect(index, origin));
+        }
+    }
+
+    /// Returns a tile's place in an area that begins at `origin`.
     fn rect(self, index: usize, origin: egui::Pos2) -> Rect {
         let column = index % self.columns;
         let row = index / self.columns;
@@ -68,43 +80,51 @@ impl Tiles {
     }
 }
 
-/// Calls `tile_ui(ui, index, rect)` for each of `count` tiles in `rect`, with scroll bars if they
-/// do not fit.
+/// Tiles to be drawn into an area.
+pub(super) struct TiledArea {
+    /// Distinguishes the scroll bars from those of other areas.
+    pub(super) name: &'static str,
+    pub(super) rect: Rect,
+    pub(super) count: usize,
+    /// Least size of a tile \[pt\].
+    pub(super) least: Vec2,
+}
+
+/// Calls `tile_ui(ui, index, rect)` for each tile, with scroll bars if they do not fit.
 pub(super) fn tiles_ui(
     ui: &mut Ui,
-    name: &str,
-    rect: Rect,
-    count: usize,
-    least: Vec2,
+    area: &TiledArea,
     mut tile_ui: impl FnMut(&mut Ui, usize, Rect),
 ) {
+    let TiledArea {
+        name,
+        rect,
+        count,
+        least,
+    } = *area;
     let mut tiles = Tiles::arrange(count, rect.size(), least);
-    let fits = tiles.all().x <= rect.width() + 0.5 && tiles.all().y <= rect.height() + 0.5;
+    let wanted = tiles.total_size();
+    let fits = wanted.x <= rect.width() + 0.5 && wanted.y <= rect.height() + 0.5;
     if !fits {
         // Tiles wider than the area leave some of the height to the scroll bar.
         tiles.size.y = (tiles.size.y - ui.spacing().scroll.allocated_width()).max(least.y);
     }
-    let size = tiles.all();
-    let builder = UiBuilder::new().id_salt(name).max_rect(rect);
-    ui.scope_builder(builder, |ui| {
-        let mut draw = |ui: &mut Ui| {
-            let origin = pos2(ui.max_rect().left(), ui.max_rect().top());
-            ui.allocate_rect(Rect::from_min_size(origin, size), egui::Sense::hover());
-            (0..count).for_each(|index| tile_ui(ui, index, tiles.rect(index, origin)));
-        };
+    ui.scope_builder(UiBuilder::new().id_salt(name).max_rect(rect), |ui| {
         if fits {
-            draw(ui);
+            tiles.ui(ui, count, &mut tile_ui);
         } else {
             ScrollArea::both()
                 .id_salt(name)
                 .auto_shrink(false)
-                .show(ui, draw);
+                .show(ui, |ui| tiles.ui(ui, count, &mut tile_ui));
         }
     });
 }
 
 #[cfg(test)]
 mod tests {
+    use egui::pos2;
+
     use super::*;
 
     const LEAST: Vec2 = vec2(150.0, 130.0);

@@ -1,6 +1,6 @@
 //! Table columns of imported models.
 
-use gdcm_model::assembly::assembly::Part;
+use gdcm_model::assembly::part::Part;
 use gdcm_model::units::number;
 
 /// A column of the table.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use gdcm_method::schedule::{FormComparison, LeadDegreeFit};
+use gdcm_method::schedule::form_comparison::{FormComparison, LeadDegreeFit};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Analysis;
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use gdcm_io::export::ExportFormat;
 use gdcm_model::dataset::{ConditionId, ModelId};
 use gdcm_plot::figure::ColumnWidth;
-use gdcm_study::Table;
+use gdcm_words::Table;
 
 use super::view::View;
 

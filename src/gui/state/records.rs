@@ -160,7 +160,7 @@ impl RecordsState {
 
     /// Returns the running job, once it has reported a step.
     pub fn under_way(&self) -> Option<&IdentifyJob> {
-        self.running.iter().find(|job| !job.told().step.is_empty())
+        self.running.iter().find(|job| !job.news().step.is_empty())
     }
 
     /// Returns the identification jobs, the displayed condition first.

@@ -6,21 +6,21 @@ use gdcm_method::correction::Problem;
 use gdcm_method::uncertainty::{Bar as ErrorBar, Scalar};
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::simulation::Validation;
-use gdcm_study::jobs::job::{
-    AcrossCurves, AcrossJob, ConditionModes, CurvesJob, ModesJob, SimulationJob, Toggles,
-    TogglesJob, UncertaintyJob, VariantJob,
-};
+use gdcm_study::jobs::analysis_jobs::{Toggles, TogglesJob, UncertaintyJob, VariantJob};
+use gdcm_study::jobs::curve_jobs::{AcrossCurves, AcrossJob, ConditionModes, CurvesJob, ModesJob};
+use gdcm_study::jobs::identification_jobs::SimulationJob;
 use gdcm_study::results::analysis::ConditionFailure;
-use gdcm_study::results::assessment_table::AssessmentJob;
-use gdcm_study::results::condition_answers::{
-    RecordHistory, RecordHistoryJob, TestAnswers, TestAnswersJob,
-};
-use gdcm_study::results::couplings_assessment::{AssessedCouplings, CouplingsJob};
+use gdcm_study::jobs::analysis_jobs::AssessmentJob;
+use gdcm_study::jobs::requirement_jobs::{RecordHistoryJob, TestAnswersJob};
+use gdcm_study::results::condition_answers::{RecordHistory, TestAnswers};
+use gdcm_study::jobs::analysis_jobs::CouplingsJob;
+use gdcm_study::results::couplings_assessment::AssessedCouplings;
 use gdcm_study::results::requirements::Requirements;
-use gdcm_study::results::requirements_tables::RequirementsJob;
-use gdcm_study::results::time_histories::{TimeHistories, TimeHistoriesJob};
-use gdcm_study::stages::condition_responses::ConditionCurves;
-use gdcm_study::stages::uncertainty::Uncertainty;
+use gdcm_study::jobs::requirement_jobs::RequirementsJob;
+use gdcm_study::jobs::requirement_jobs::TimeHistoriesJob;
+use gdcm_study::results::time_histories::TimeHistories;
+use gdcm_study::stages::condition_curves::ConditionCurves;
+use gdcm_study::results::uncertainty::Uncertainty;
 use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis};
 
 /// Uncertainty of values in the displayed condition.

@@ -1,7 +1,7 @@
 //! Selected and highlighted parts.
 
 use gdcm_model::dataset::{ConditionId, ModelId, Pair};
-use gdcm_study::ExplainTarget;
+use gdcm_words::derivation::ExplainTarget;
 
 /// Parts in focus, selected or under the pointer.
 #[derive(Debug, Default)]

@@ -4,19 +4,31 @@ use egui::{Align, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::CostChange;
-use gdcm_model::dataset::{Condition, ConditionId, Pair};
+use gdcm_model::dataset::{Condition, ConditionId, Dataset, Pair};
+use gdcm_model::number_format::decimals;
 use gdcm_plot::figure::assessment::change_table;
 use gdcm_plot::figure::axis::Axis;
 use gdcm_plot::figure::drawing::{Hue, Stroke};
 use gdcm_plot::figure::figure::{Bars, Curve, Note, Place, Plot, Rule, Spans};
-use gdcm_plot::figure::{Color, Figure, MarkId, Panel, Range, decimals};
-use gdcm_study::results::assessment_table::{AssessedModel, held_out_verdict};
-use gdcm_study::{AssessedCorrection, AssessmentTable, ExplainTarget, Table};
+use gdcm_plot::figure::Color;
+use gdcm_plot::figure::Figure;
+use gdcm_plot::figure::MarkId;
+use gdcm_plot::figure::Panel;
+use gdcm_plot::figure::Range;
+use gdcm_study::results::assessment_table::AssessedModel;
+use gdcm_words::assessment::held_out_verdict;
+use gdcm_study::AssessedCorrection;
+use gdcm_study::AssessmentTable;
+use gdcm_words::derivation::ExplainTarget;
+use gdcm_words::Table;
+use gdcm_words::assessment::missing_cost_text;
+use gdcm_words::assessment::not_assessed_text;
+use gdcm_words::assessment::summary_text;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::plot::curve_menu::NamedFigure;
+use crate::gui::plot::questions::NamedFigure;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
 use crate::gui::state::assessed_figures::{AssessedFigures, AssessedPairs, CostPart};
 use crate::gui::state::view::View;
@@ -403,7 +415,7 @@ impl FigureWords for AssessmentPlots<'_> {
         let Some(change) = self.table.change(*id, pair) else {
             return Some(format!(
                 "{of} · left out: {}",
-                why_not(self.table, *id, pair)
+                why_not(self.state.dataset(), self.table, *id, pair)
             ));
         };
         let [total, magnitude, phase] =
@@ -478,7 +490,12 @@ pub fn assessed_pairs(state: &State) -> Vec<Pair> {
 }
 
 /// Returns the reason why a response of a condition has no change of J.
-fn why_not(table: &AssessmentTable, condition: ConditionId, pair: Pair) -> String {
+fn why_not(
+    dataset: &Dataset,
+    table: &AssessmentTable,
+    condition: ConditionId,
+    pair: Pair,
+) -> String {
     let left_out = table
         .left_out
         .iter()
@@ -493,10 +510,11 @@ fn why_not(table: &AssessmentTable, condition: ConditionId, pair: Pair) -> Strin
             .iter()
             .find(|(missing, _)| *missing == pair)
     });
-    let why = left_out
-        .map(|left_out| left_out.why.as_str())
-        .or(missing.map(|(_, why)| why.as_str()));
-    why.unwrap_or("not computed").to_owned()
+    match (left_out, missing) {
+        (Some(left_out), _) => not_assessed_text(&left_out.why, dataset),
+        (None, Some((_, why))) => missing_cost_text(*why),
+        (None, None) => "not computed".to_owned(),
+    }
 }
 
 /// Builds the table with the responses in rows, the conditions in columns, and the signed change of
@@ -523,7 +541,7 @@ pub fn assessment_sentences(state: &State, table: &AssessmentTable) -> Vec<Strin
         .dataset()
         .on_axis()
         .map(|pair, _| pairs.contains(&pair));
-    let mut sentences = vec![table.summary(&marked).words(state.dataset())];
+    let mut sentences = vec![summary_text(&table.summary(&marked), state.dataset())];
     let verdict = state
         .analysis()
         .and_then(|analysis| held_out_verdict(analysis, table.choice));
@@ -531,7 +549,8 @@ pub fn assessment_sentences(state: &State, table: &AssessmentTable) -> Vec<Strin
     for left_out in &table.left_out {
         sentences.push(format!(
             "condition {} is left out: {}",
-            left_out.condition, left_out.why
+            left_out.condition,
+            not_assessed_text(&left_out.why, state.dataset())
         ));
     }
     sentences

@@ -4,14 +4,16 @@
 use egui::{Align2, Pos2, Rect, Ui, vec2};
 
 use gdcm_model::dataset::Pair;
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::{number, ratio_to_db, s_to_ms};
+use gdcm_plot::figure::ConditionSource;
 use gdcm_plot::figure::error::{muad_about, noticed};
 use gdcm_plot::figure::responses::{airspeed_curves, uncertainty_bands};
-use gdcm_plot::figure::{ConditionSource, decimals};
 use gdcm_study::AcrossRole;
-use gdcm_study::jobs::job::AcrossJob;
+use gdcm_study::jobs::curve_jobs::AcrossJob;
 use gdcm_study::results::caution::Undefined;
-use gdcm_study::stages::condition_responses::display_band;
+use gdcm_study::stages::condition_curves::display_band;
+use gdcm_words::caution::undefined_text;
 
 use super::frequency::{
     bode_curves, bode_options, condition_source, error_curves, error_reference, frequency_plot_ui,
@@ -21,12 +23,12 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::plot::bode::{BodeEvent, InvalidRegion, PaneNote};
-use crate::gui::plot::bode_pane::BodeBand;
+use crate::gui::plot::bode_event::BodeEvent;
+use crate::gui::plot::bode_scene::{BodeBand, InvalidRegion, PaneNote};
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::overview::{OverviewCell, OverviewEvent, OverviewScene, overview_ui};
+use crate::gui::plot::pointed_curve::pointed_words;
 use crate::gui::plot::quantity::{BodeQuantity, PhaseErrorUnit, ResponsePlace};
-use crate::gui::plot::readout::pointed_words;
 use crate::gui::plot::{BodeCurve, BodeScene, CurveId, Pane, Role, bode_ui};
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
@@ -84,7 +86,7 @@ pub fn bode_view_ui(
         invalid: invalid.as_ref(),
         notes,
         message,
-        ..BodeScene::of(&title, &curves, band)
+        ..BodeScene::new(&title, &curves, band)
     };
     frequency_plot_ui(ui, state, (scene, &mut view), palette, commands);
     state.display.frequency.error.share_frequencies(&view);
@@ -225,7 +227,7 @@ pub fn error_view_ui(
         strips: &strips,
         omega_range: grid.and_then(|omega| Some((*omega.first()?, *omega.last()?))),
         message: Some(&message),
-        ..BodeScene::of(&title, &curves, (band.min(), band.max()))
+        ..BodeScene::new(&title, &curves, (band.min(), band.max()))
     };
     frequency_plot_ui(ui, state, (scene, &mut view), palette, commands);
     state.display.frequency.bode.share_frequencies(&view);
@@ -257,7 +259,7 @@ pub fn error_message(state: &State, pair: Pair) -> String {
             format!(
                 "{} is not compared: {}",
                 state.dataset().pair_name(pair),
-                Undefined::NotCoherent
+                undefined_text(Undefined::NotCoherent)
             )
         }
         Some(shown) if shown.comparison.undefined[pair].is_some() => {
@@ -337,7 +339,7 @@ pub fn across_view_ui(
         unit,
         stale: state.results.is_stale(ui.input(|input| input.time)),
         message: Some(state.results.absence()),
-        ..BodeScene::of(&title, &curves, (band.min(), band.max()))
+        ..BodeScene::new(&title, &curves, (band.min(), band.max()))
     };
     for event in bode_ui(ui, &scene, &mut state.display.frequency.across, palette) {
         if let BodeEvent::Clicked(CurveId::Model(id)) = event {
@@ -345,7 +347,7 @@ pub fn across_view_ui(
         }
     }
     commands.extend(
-        pointed_words(&state.display.frequency.across, &curves, (quantity, unit))
+        pointed_words(&state.display.frequency.across, &curves, quantity, unit)
             .map(|value| Command::Selection(SelectionCommand::Tell(value))),
     );
     if let Some(transform) = state

@@ -4,10 +4,11 @@ use egui::{Align, Button, Layout, RichText, Role, Ui};
 
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::signed;
-use gdcm_study::decisions::differences::decision_differences;
 use gdcm_study::decisions::study::Variant;
-use gdcm_study::jobs::job::VariantJob;
-use gdcm_study::{Analysis, Edit, Table};
+use gdcm_study::jobs::analysis_jobs::VariantJob;
+use gdcm_study::{Analysis, Edit};
+use gdcm_words::Table;
+use gdcm_words::decisions::decision_differences;
 
 use super::gain_plots::net_gain_pairs;
 use crate::gui::commands::command::Command;

@@ -6,11 +6,17 @@ use egui::{Label, Panel, RichText, ScrollArea, Ui, vec2};
 
 use gdcm_method::couplings::LEAST_CONDITIONS;
 use gdcm_model::dataset::Dataset;
+use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::telling;
 use gdcm_study::decisions::setting;
-use gdcm_study::results::couplings_assessment::{CouplingCost, CouplingsAssessment, CouplingsJob};
-use gdcm_study::results::remark::RemarkKind;
-use gdcm_study::{CouplingCorrection, PhaseCorrection, Table};
+use gdcm_study::jobs::analysis_jobs::CouplingsJob;
+use gdcm_study::results::couplings_assessment::{CouplingCost, CouplingsAssessment};
+use gdcm_study::{CouplingCorrection, PhaseCorrection};
+use gdcm_words::Table;
+use gdcm_words::couplings::{
+    coupling_cost_table, coupling_matrix_tables, coupling_remarks, pole_table,
+};
+use gdcm_words::remark::RemarkKind;
 
 use super::figures::request;
 use super::frequency::condition_source;
@@ -134,7 +140,7 @@ pub fn couplings_view_ui(
                 // The deciding figures come first.
                 let costs = Table {
                     title: "J, mean over the conditions".to_owned(),
-                    ..assessment.cost_table()
+                    ..coupling_cost_table(&assessment)
                 };
                 table_part_ui(ui, &costs, TableLook::PLAIN.color, palette, commands);
                 words_ui(ui, state, &assessment, palette);
@@ -200,7 +206,7 @@ fn use_ui(
 
 fn words_ui(ui: &mut Ui, state: &State, assessment: &CouplingsAssessment, palette: &Palette) {
     ui.add_space(6.0);
-    for remark in assessment.remarks(state.dataset()) {
+    for remark in coupling_remarks(assessment, state.dataset()) {
         let words = match remark.kind {
             RemarkKind::Good => RichText::new(&remark.text).color(palette.text),
             _ => RichText::new(format!("⚠ {}", remark.text)).color(palette.warning),
@@ -229,7 +235,7 @@ fn tables_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    for table in assessment.matrix_tables(state.dataset()) {
+    for table in coupling_matrix_tables(assessment, state.dataset()) {
         // Values within their error bar are indistinguishable from zero.
         let dim = |row: usize, column: usize| {
             table.rows[row][column]
@@ -287,7 +293,7 @@ fn above_band_table(dataset: &Dataset, assessment: &CouplingsAssessment) -> Tabl
         let most = of.most_changed_above_band(dataset.on_axis());
         let (change, pair) = most.map_or((String::new(), String::new()), |(pair, change_db)| {
             (
-                telling(change_db, 1).replace('-', "\u{2212}"),
+                with_minus_sign(&telling(change_db, 1)),
                 dataset.pair_name(pair),
             )
         });
@@ -299,7 +305,7 @@ fn above_band_table(dataset: &Dataset, assessment: &CouplingsAssessment) -> Tabl
 /// Returns the pole table's rows of the displayed condition.
 fn poles_of_condition(state: &State, assessment: &CouplingsAssessment) -> Table {
     let id = state.condition().id().to_string();
-    let mut table = assessment.pole_table();
+    let mut table = pole_table(assessment);
     table.rows.retain(|row| row[0] == id);
     table.rows.iter_mut().for_each(|row| drop(row.remove(0)));
     table.columns.remove(0);

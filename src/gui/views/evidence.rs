@@ -3,18 +3,21 @@
 
 use std::sync::Arc;
 
-use egui::{
-    Align2, Color32, FontId, Grid, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2,
-};
+use egui::{Align2, Color32, FontId, Grid, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 
-use gdcm_method::schedule::{FormComparison, FormFit, LeadDegreeFit, LeadFit, ScheduleKind};
+use gdcm_method::schedule::ScheduleKind;
+use gdcm_method::schedule::form_comparison::{FormComparison, FormFit, LeadDegreeFit, LeadFit};
 use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::{s_to_ms, signed};
-use gdcm_study::Table;
+use gdcm_words::Table;
 use gdcm_study::decisions::setting;
-use gdcm_study::results::table::{difference_table, second_variable_table};
-use gdcm_study::stages::uncertainty::Uncertainty;
+use gdcm_words::uncertainty::difference_table;
+use gdcm_words::uncertainty::second_variable_table;
+use gdcm_study::results::uncertainty::Uncertainty;
+use gdcm_words::uncertainty::difference_verdict;
+use gdcm_words::uncertainty::differences_summary;
 
 use super::gain_plots::net_gain_pairs;
 use crate::gui::commands::command::Command;
@@ -44,7 +47,7 @@ pub fn evidence_view_ui(
         return;
     };
     let mut sorting = state.display.gains.evidence_tables;
-    ui.label(RichText::new(uncertainty.differences_in_words()).font(medium(BODY_SIZE)));
+    ui.label(RichText::new(differences_summary(&uncertainty)).font(medium(BODY_SIZE)));
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         answer_ui(ui, state, &uncertainty, palette);
         scatter_ui(ui, state, &uncertainty, palette);
@@ -62,7 +65,7 @@ fn answer_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Pa
         .filter(|of| of.is_significant(uncertainty.level))
         .collect();
     if let Some(of) = beyond.first() {
-        let verdict = of.verdict(uncertainty.level);
+        let verdict = difference_verdict(of, uncertainty.level);
         ui.label(palette.small(format!(
             "{verdict}; expected: from trim and identification uncertainty"
         )));
@@ -433,7 +436,7 @@ pub fn residual_table(
     conditions: &[ConditionId],
     evidence: &FormComparison,
 ) -> Option<Table> {
-    let kind = evidence.of(state.study.settings.schedule.kind)?;
+    let kind = evidence.form(state.study.settings.schedule.kind)?;
     let pairs = net_gain_pairs(state);
     let names = pairs
         .iter()
@@ -467,7 +470,7 @@ pub fn coefficient_table(state: &State) -> Option<Table> {
         let figures = row
             .figures
             .iter()
-            .map(|figure| format!("{figure:.5}").replace('-', "\u{2212}"));
+            .map(|figure| with_minus_sign(&format!("{figure:.5}")));
         table.row(std::iter::once(row.name).chain(figures));
     }
     Some(table)

@@ -4,7 +4,7 @@ use egui::containers::menu::MenuButton;
 use egui::{Button, Role, Ui};
 
 use gdcm_plot::figure::FigureFormat;
-use gdcm_study::Table;
+use gdcm_words::Table;
 
 use super::requirements::requirement_tables;
 use crate::gui::commands::command::Command;

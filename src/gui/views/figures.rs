@@ -11,7 +11,7 @@ use super::frequency::{bode_options, condition_source};
 use super::over_time::shown_over_time;
 use super::view_content;
 use crate::gui::plot::BodeView;
-use crate::gui::plot::bode::PANES;
+use crate::gui::plot::drawn_curves::PANES;
 use crate::gui::state::view::View;
 use crate::gui::state::window_state::State;
 

@@ -20,12 +20,13 @@ use crate::gui::commands::command::Command;
 use crate::gui::commands::output::OutputCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::commands::study::StudyCommand;
-use crate::gui::plot::bode::{BodeEvent, PANES};
+use crate::gui::plot::bode_event::{BodeEvent, CurveWish};
 use crate::gui::plot::curve_command::CurveCommand;
-use crate::gui::plot::curve_menu::CurveWish;
+use crate::gui::plot::drawn_curves::PANES;
 use crate::gui::plot::legend::Chip;
+use crate::gui::plot::pointed_curve::pointed_words;
 use crate::gui::plot::quantity::{BodeQuantity, ValueUnit};
-use crate::gui::plot::readout::{Readout, ReadoutCell, pointed_words};
+use crate::gui::plot::readout::{Readout, ReadoutCell};
 use crate::gui::plot::{BodeCurve, BodeScene, BodeView, CurveId, Pane, Role, bode_ui};
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
@@ -77,7 +78,7 @@ pub(super) fn frequency_plot_ui(
         commands.push(SelectionCommand::Hover(id.clone()).into());
     }
     commands.extend(
-        pointed_words(view, curves, (quantity, unit))
+        pointed_words(view, curves, quantity, unit)
             .map(|value| Command::Selection(SelectionCommand::Tell(value))),
     );
     commands.extend(

@@ -7,13 +7,14 @@ use gdcm_model::dataset::Pair;
 use gdcm_model::units::s_to_ms;
 use gdcm_plot::figure::gains::{Across, GainQuantity};
 use gdcm_plot::figure::{Figure, MarkId};
-use gdcm_study::stages::uncertainty::Uncertainty;
-use gdcm_study::{Edit, ExplainTarget};
+use gdcm_study::results::uncertainty::Uncertainty;
+use gdcm_study::Edit;
+use gdcm_words::derivation::ExplainTarget;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;
 use crate::gui::commands::selection::SelectionCommand;
-use crate::gui::plot::curve_menu::NamedFigure;
+use crate::gui::plot::questions::NamedFigure;
 use crate::gui::plot::{FigureEvent, FigureScene, FigureWords};
 use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::window_state::State;

@@ -5,9 +5,11 @@ use egui::{CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
 
 use gdcm_method::requirements::{TestInput, TestInputShape};
 use gdcm_model::units::number;
-use gdcm_plot::figure::{Figure, OverTime};
+use gdcm_plot::figure::Figure;
+use gdcm_plot::figure::OverTime;
 use gdcm_study::results::condition_answers::RecordHistory;
-use gdcm_study::results::time_histories::Trend;
+use gdcm_study::results::record_comparison::Trend;
+use gdcm_words::time_histories::record_history_table;
 
 use super::figures::figure_of;
 use super::over_time::{over_time, record_job};
@@ -64,7 +66,7 @@ pub fn histories_ui(
         .figures
         .remove(&View::Requirements)
         .unwrap_or_default();
-    view.is_of(&figure.title);
+    view.set_subject(&figure.title);
     let accented = match &found {
         OverTime::Test(_) => Some(1 + state.display.selection.pair.output),
         OverTime::Record(..) => None,
@@ -139,7 +141,7 @@ fn shares_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let table = history.table();
+    let table = record_history_table(history);
     let is_outside = |row: usize| table.rows[row][5] != "none";
     let color = |row: usize, column: usize| match column {
         4 | 5 => Some(if is_outside(row) {

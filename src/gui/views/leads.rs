@@ -5,7 +5,8 @@ use egui::{Panel, Ui, vec2};
 use gdcm_method::correction::{Channel, LeadPrice};
 use gdcm_model::units::{number, s_to_ms, signed, telling};
 use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
-use gdcm_study::{PhaseCorrection, Table};
+use gdcm_study::PhaseCorrection;
+use gdcm_words::Table;
 
 use super::frequency::condition_source;
 use crate::gui::commands::command::Command;

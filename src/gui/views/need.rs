@@ -1,11 +1,13 @@
 //! Background results that a view needs besides the live answer.
 
-use gdcm_study::jobs::job::{AcrossJob, ModesJob, SimulationJob, VariantJob};
-use gdcm_study::results::assessment_table::AssessmentJob;
-use gdcm_study::results::condition_answers::{RecordHistoryJob, TestAnswersJob};
-use gdcm_study::results::couplings_assessment::CouplingsJob;
-use gdcm_study::results::requirements_tables::RequirementsJob;
-use gdcm_study::results::time_histories::TimeHistoriesJob;
+use gdcm_study::jobs::analysis_jobs::VariantJob;
+use gdcm_study::jobs::curve_jobs::{AcrossJob, ModesJob};
+use gdcm_study::jobs::identification_jobs::SimulationJob;
+use gdcm_study::jobs::analysis_jobs::AssessmentJob;
+use gdcm_study::jobs::requirement_jobs::{RecordHistoryJob, TestAnswersJob};
+use gdcm_study::jobs::analysis_jobs::CouplingsJob;
+use gdcm_study::jobs::requirement_jobs::RequirementsJob;
+use gdcm_study::jobs::requirement_jobs::TimeHistoriesJob;
 
 /// Computation needed by a view besides the live answer.
 #[derive(Clone, Debug, PartialEq)]

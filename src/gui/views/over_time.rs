@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use gdcm_plot::figure::{FigureKind, OverTime};
 use gdcm_study::Analysis;
-use gdcm_study::results::condition_answers::{RecordHistoryJob, TestAnswersJob};
+use gdcm_study::jobs::requirement_jobs::{RecordHistoryJob, TestAnswersJob};
 use gdcm_study::results::time_histories::HistoryRecord;
 
 use super::need::Need;

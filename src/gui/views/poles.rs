@@ -6,14 +6,17 @@ use egui::{Panel, Ui, Vec2, vec2};
 
 use gdcm_method::requirements::{ModeName, NamedBy};
 use gdcm_model::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
+use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::response::Mode;
 use gdcm_model::response::zeros::finite_zeros;
 use gdcm_model::units::number;
 use gdcm_plot::figure::figure::Along;
 use gdcm_plot::figure::poles::{damping_grid, poles_figure};
 use gdcm_plot::figure::{Figure, Mark, MarkId, Range, Role};
-use gdcm_study::jobs::job::ConditionModes;
-use gdcm_study::{ConditionAnalysis, Edit, Table};
+use gdcm_study::jobs::curve_jobs::ConditionModes;
+use gdcm_study::ConditionAnalysis;
+use gdcm_study::Edit;
+use gdcm_words::Table;
 
 use super::frequency::{bode_options, condition_source};
 use crate::gui::commands::command::Command;
@@ -424,7 +427,7 @@ fn modes_table(
             .iter()
             .map(|&model| models[model].name.as_str())
             .collect();
-        let figure = |value: f64| format!("{value:.3}").replace('-', "\u{2212}");
+        let figure = |value: f64| with_minus_sign(&format!("{value:.3}"));
         table.row([
             name_words(mode, &models[reference]).unwrap_or_default(),
             figure(mode.frequency_rad_s),

@@ -12,11 +12,21 @@ use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::{s_to_ms, telling};
 use gdcm_plot::figure::drawing::Hue;
 use gdcm_plot::figure::requirements::{bandwidth_pairs, bandwidth_place};
-use gdcm_plot::figure::{Color, Figure, MarkId};
-use gdcm_study::Table;
-use gdcm_study::results::requirements::{RequirementRole, RequirementSettings, Requirements};
-use gdcm_study::results::requirements_tables::{RequirementsJob, mode_verdict_words};
-use gdcm_study::results::time_histories::TimeHistoriesJob;
+use gdcm_plot::figure::Color;
+use gdcm_plot::figure::Figure;
+use gdcm_plot::figure::MarkId;
+use gdcm_words::Table;
+use gdcm_study::results::requirement_role::RequirementRole;
+use gdcm_study::decisions::requirement_settings::RequirementSettings;
+use gdcm_study::results::requirements::Requirements;
+use gdcm_study::jobs::requirement_jobs::RequirementsJob;
+use gdcm_words::requirements::mode_verdict_words;
+use gdcm_study::jobs::requirement_jobs::TimeHistoriesJob;
+use gdcm_words::requirements::RequirementsOverview;
+use gdcm_words::requirements::bandwidth_table;
+use gdcm_words::requirements::mode_table;
+use gdcm_words::requirements::summary_of_row;
+use gdcm_words::requirements::summary_table;
 
 use super::figures::figure_of;
 use super::histories::histories_ui;
@@ -315,14 +325,14 @@ fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> Vec<ShownTa
     let dataset = state.dataset();
     match state.display.judging.requirements_page {
         RequirementsPage::Bandwidth => {
-            let table = requirements.bandwidth_table(dataset);
+            let table = bandwidth_table(requirements, dataset);
             vec![ShownTable {
                 table,
                 color: Box::new(|row, column| bandwidth_look(requirements, (row, column))),
             }]
         }
         RequirementsPage::Modes => {
-            let table = requirements.mode_table(state.condition().id());
+            let table = mode_table(requirements, state.condition().id());
             let of_table = table.clone();
             vec![ShownTable {
                 table,
@@ -334,13 +344,17 @@ fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> Vec<ShownTa
                 .time_histories()
                 .filter(|_| time_histories_job(state).is_some())
                 .map(Arc::as_ref);
-            let overview =
-                requirements.overview(dataset, histories, &state.study.requirements.overview);
+            let overview = RequirementsOverview::new(
+                requirements,
+                dataset,
+                histories,
+                &state.study.requirements.overview,
+            );
             let is_outside = {
                 let overview = overview.clone();
                 move |row, column| overview.is_outside(row, column).then_some(Hue::Warning)
             };
-            let table = requirements.summary_table(histories);
+            let table = summary_table(requirements, histories);
             let of_table = table.clone();
             let of_summary =
                 move |row, column| summary_look(requirements, &of_table, (row, column));
@@ -478,7 +492,7 @@ fn summary_look(
     table: &Table,
     (row, column): (usize, usize),
 ) -> Option<Hue> {
-    let of = requirements.summary_of(&table.rows[row]);
+    let of = summary_of_row(requirements, &table.rows[row]);
     let cost = match table.columns[column].as_str() {
         "J on-axis" => of.and_then(|of| of.mean_j_on_axis),
         "J of all" => of.and_then(|of| of.mean_j_all),

@@ -10,6 +10,7 @@ use egui::{
     Rect, Response, RichText, Role, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
+use gdcm_model::number_format::{gain_text, significant};
 use gdcm_model::units::number;
 use gdcm_study::decisions::setting_row::Digits;
 
@@ -557,29 +558,6 @@ fn number_text(digits: Digits, value: f64) -> String {
     }
 }
 
-/// Formats three significant digits, without an exponent from 0.001 to 9999.
-pub fn significant(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let magnitude = value.abs().log10().floor();
-    if (-3.0..4.0).contains(&magnitude) {
-        format!("{value:.*}", (2.0 - magnitude).max(0.0) as usize)
-    } else {
-        format!("{value:.2e}")
-    }
-}
-
-/// Formats a gain with three decimals, two if the third is zero; a small gain with three
-/// significant digits.
-pub fn gain_text(gain: f64) -> String {
-    if gain < 0.1 {
-        return significant(gain);
-    }
-    let text = format!("{gain:.3}");
-    text.strip_suffix('0').map(str::to_owned).unwrap_or(text)
-}
-
 /// Paints a small arrow: to the right if its section is folded, down if it is open.
 pub fn chevron(ui: &Ui, center: egui::Pos2, is_open: bool, palette: &Palette) {
     let turn = |x: f32, y: f32| {
@@ -634,31 +612,6 @@ mod tests {
         assert_eq!(typed_number(" 1,5 "), Ok(Some(1.5)));
         assert_eq!(typed_number(""), Ok(None));
         assert!(typed_number("12 kt").is_err() && typed_number("inf").is_err());
-    }
-
-    #[test]
-    fn alpha_is_shown_with_three_significant_digits() {
-        for (value, text) in [
-            (0.0, "0"),
-            (1.0, "1.00"),
-            (0.00123, "0.00123"),
-            (120.0, "120"),
-            (1e6, "1.00e6"),
-        ] {
-            assert_eq!(significant(value), text);
-        }
-    }
-
-    #[test]
-    fn a_gain_is_shown_with_two_or_three_digits_behind_the_point() {
-        for (value, text) in [
-            (1.0, "1.00"),
-            (1.25, "1.25"),
-            (1.2346, "1.235"),
-            (1e-6, "1.00e-6"),
-        ] {
-            assert_eq!(gain_text(value), text);
-        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Role, ScrollArea, Sense, Ui};
 
-use gdcm_study::Table;
+use gdcm_words::Table;
 
 use super::controls::{entries_ui, named};
 use super::palette::{Palette, SMALL_SIZE};

@@ -65,7 +65,7 @@ fn a_folder_is_put_together_by_its_labels_and_opened() {
     assert!(
         bench(&window).assembly().problems().is_empty(),
         "{:?}",
-        bench(&window).assembly().told()
+        bench(&window).assembly().problem_lines()
     );
 
     let made = folder.path().join("made.json.gz");

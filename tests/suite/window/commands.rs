@@ -6,7 +6,7 @@ use gdcm::gui::state::forms::FormKind;
 use gdcm::gui::state::tables::{TableKind, table_of};
 use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::Scalar;
-use gdcm_study::Table;
+use gdcm_words::Table;
 
 use super::views::give;
 use super::*;

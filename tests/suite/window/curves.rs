@@ -1,6 +1,6 @@
 //! Hands on every curve: the plot of errors, menus, boxes, cursors, units.
 
-use gdcm::gui::plot::navigation::PICK_RADIUS;
+use gdcm::gui::plot::picking::PICK_RADIUS;
 use gdcm::gui::state::view::View;
 use gdcm_plot::figure::ConditionSource;
 use gdcm_plot::figure::bode::BodeOptions;

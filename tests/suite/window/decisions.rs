@@ -1,7 +1,8 @@
 //! Decisions, by hand, and what they give.
 
 use gdcm::gui::commands::layout::LayoutCommand;
-use gdcm_study::results::derivation::derivation;
+use gdcm_words::derivation::derivation;
+use gdcm::gui::commands::command::Command as Action;
 
 use super::views::give;
 use super::*;

@@ -6,6 +6,7 @@ use gdcm::gui::commands::form::FormCommand;
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::records::RecordsCommand;
 use gdcm::gui::state::records::RecordsPage;
+use gdcm_words::convention_doubt::doubt_text;
 
 use super::assembling::{bench, type_into};
 use super::views::{give, show};
@@ -37,7 +38,7 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
     assert!(
         bench(&window).assembly().problems().is_empty(),
         "{:?}",
-        bench(&window).assembly().told()
+        bench(&window).assembly().problem_lines()
     );
     type_into(
         &mut window,
@@ -56,7 +57,7 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
         analysis
             .doubts
             .iter()
-            .map(|doubt| doubt.words(state(window).dataset()))
+            .map(|doubt| doubt_text(doubt, state(window).dataset()))
             .collect()
     };
     let words = doubted(&window);

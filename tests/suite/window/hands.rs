@@ -7,8 +7,8 @@ use gdcm::gui::commands::output::OutputCommand;
 use gdcm::gui::commands::selection::SelectionCommand;
 use gdcm::gui::commands::study::StudyCommand;
 use gdcm::gui::state::view::View;
-use gdcm_study::ExplainTarget;
-use gdcm_study::results::derivation::derivation;
+use gdcm_words::derivation::ExplainTarget;
+use gdcm_words::derivation::derivation;
 
 use super::views::{give, show};
 use super::walk::stays_within;

@@ -175,8 +175,8 @@ fn a_tooltip_has_a_name_and_four_rows_at_most() {
 
 #[test]
 fn what_a_tooltip_does_not_say_is_behind_the_question() {
-    use gdcm_study::ExplainTarget;
-    use gdcm_study::results::derivation::derivation;
+    use gdcm_words::ExplainTarget;
+    use gdcm_words::derivation::derivation;
     let window = window();
     let id = ModelId::new(ConditionId(10), BundleKind::Physics, "V+10kt");
     let found = derivation(

@@ -72,7 +72,7 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
     window.get_by_label("Identify").click();
     wait_until(&mut window, "the first model or the models", |window| {
         let running = state(window).records.running(CONDITION_10_ID);
-        running.is_none_or(|job| job.told().first_model.is_some())
+        running.is_none_or(|job| job.news().first_model.is_some())
     });
     wait_until(&mut window, "the models", |window| {
         state(window).records.conditions[&CONDITION_10_ID]

@@ -12,9 +12,11 @@ use gdcm::gui::state::view::View;
 use gdcm_method::requirements::{ModeVerdict, RecordCheck, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Edit;
+use gdcm_study::decisions::requirement_settings::RequirementSettings;
 use gdcm_study::results::condition_answers::RecordHistory;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
-use gdcm_study::results::requirements::{RequirementRole, RequirementSettings};
+use gdcm_study::results::requirement_role::RequirementRole;
+use gdcm_words::requirements::{RequirementsOverview, bandwidth_table, summary_table};
 
 use super::assembling::type_into;
 use super::lists::texts_in;
@@ -60,7 +62,7 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
         .iter()
         .position(|of| std::ptr::eq(of, corrected))
         .unwrap();
-    let table = requirements.bandwidth_table(state(&window).dataset());
+    let table = bandwidth_table(&requirements, state(&window).dataset());
     assert_eq!(table.rows[row][3], "corrected");
     for (chosen, heading) in [
         (RequirementsPage::Modes, "physics ζ"),
@@ -383,10 +385,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     let found = state(&window).time_histories().unwrap().clone();
     let rms = |role| found.j_rms(ConditionId(10), role).unwrap();
     assert!(rms(RequirementRole::Identified) < rms(RequirementRole::Physics));
-    let table = state(&window)
-        .requirements()
-        .unwrap()
-        .summary_table(Some(&found));
+    let table = summary_table(state(&window).requirements().unwrap(), Some(&found));
     let of_flight = table
         .rows
         .iter()
@@ -400,7 +399,8 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     // The overview has them too, and its limits are decided, undone and drawn.
     let overview = |window: &Window| {
         let limits = &state(window).study.requirements.overview;
-        state(window).requirements().unwrap().overview(
+        RequirementsOverview::new(
+            state(window).requirements().unwrap(),
             state(window).dataset(),
             Some(&found),
             limits,

@@ -17,8 +17,9 @@ use gdcm_method::correction::Channel;
 use gdcm_plot::figure::figure::DotShape;
 use gdcm_plot::figure::{Mark, Panel};
 use gdcm_study::results::assessment_table::AssessedModel;
-use gdcm_study::results::derivation::derivation;
-use gdcm_study::{AcrossRole, Analysis, AssessedCorrection, Edit, ExplainTarget};
+use gdcm_study::{AcrossRole, Analysis, AssessedCorrection, Edit};
+use gdcm_words::ExplainTarget;
+use gdcm_words::derivation::derivation;
 
 use super::*;
 
@@ -353,7 +354,7 @@ fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
     );
     show(&mut window, View::Assessment);
     let choice = state(&window).assessment_choice();
-    let words = gdcm_study::results::assessment_table::held_out_verdict(
+    let words = gdcm_words::assessment::held_out_verdict(
         state(&window).analysis().unwrap(),
         choice,
     )

@@ -18,6 +18,7 @@ use gdcm_model::dataset::{
 };
 use gdcm_model::units::{number, telling};
 use gdcm_study::{Analysis, AssessedCorrection, ConditionAnalysis, CouplingCorrection};
+use gdcm_words::caution::failure_text;
 
 use super::matlab_struct::{Fields, cell_of_texts, matrix, records};
 use super::{ExportFormat, ExportRequest, Exported, ExportedRole};
@@ -306,7 +307,7 @@ fn result_of<'a>(
     };
     match analysis.conditions.get(&condition.id()) {
         Some(Ok(result)) => Ok(result),
-        Some(Err(failure)) => Err(without(failure.to_string())),
+        Some(Err(failure)) => Err(without(failure_text(failure, &analysis.study.dataset))),
         None => Err(without("it has no result".to_owned())),
     }
 }

@@ -7,6 +7,7 @@ use gdcm_method::schedule::{Schedule, ScheduleError};
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_study::results::schedule_losses::DelayedChannel;
 use gdcm_study::{Analysis, AssessedCorrection, PhaseCorrection};
+use gdcm_words::schedule::delayed_channel_text;
 
 /// Source of a part of an exported correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,7 +79,7 @@ impl LeftOutPart {
     /// Describes it in words: "delay of output NX: 5.3 ms in condition 4 (not scheduled)".
     pub fn words(&self, dataset: &Dataset) -> String {
         match self {
-            Self::Delay(of) => format!("{} (not scheduled)", of.words(dataset)),
+            Self::Delay(of) => format!("{} (not scheduled)", delayed_channel_text(of, dataset)),
             Self::Leads => "the lead filters of the schedule".to_owned(),
             Self::Couplings(why) => format!("the couplings that the study asks for: {why}"),
         }

@@ -9,13 +9,14 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use gdcm_model::assembly::found_model::Facts;
-use gdcm_model::assembly::{ChannelLabel, ChannelRule, FoundModel};
+use gdcm_model::assembly::{ChannelLabel, FoundModel};
 use gdcm_model::dataset::Channel;
 use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_MODELS_IN_ALL};
 use gdcm_model::dataset::model::{Origin, Provenance};
 use gdcm_model::dataset::state_space::Timing;
 use gdcm_model::dataset::unchecked_dataset::ModelDraft;
+use gdcm_model::names::ChannelRule;
 use gdcm_model::response::pole_estimate::PoleEstimate;
 use gdcm_model::units::neper_to_db;
 use gdcm_model::whole_number::whole;
@@ -336,7 +337,7 @@ pub fn add_identified(
         .chain(once(&found.unrefined))
         .chain(&found.bundle)
         .map(|model| FoundModel {
-            draft: ModelDraft::of(model),
+            draft: ModelDraft::from_model(model),
             inputs: of.channels.inputs.iter().map(label).collect(),
             outputs: of.channels.outputs.iter().map(label).collect(),
             facts: Facts::default(),

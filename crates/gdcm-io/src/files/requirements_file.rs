@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use gdcm_method::requirements::tolerance::ToleranceError;
 use gdcm_method::requirements::{BandwidthRule, LevelBoundaries, Tolerance, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
-use gdcm_model::dataset::channel::Location;
+use gdcm_model::dataset::location::Location;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::required_modes::{ModeFinding, ModeNumbers};
 use gdcm_study::results::requirements::{Requirements, SummaryFinding};

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::assembly::declarations::ScopedDeclarations;
-use gdcm_model::assembly::rules::{NamePattern, Signs, standard_patterns};
-use gdcm_model::assembly::{ChannelRule, RowRule, Rules, UnitRule};
-use gdcm_model::dataset::channel::Location;
+use gdcm_model::assembly::declarations::{ScopedDeclarations, Signs};
+use gdcm_model::assembly::{RowRule, Rules, UnitRule};
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
+use gdcm_model::dataset::location::Location;
+use gdcm_model::names::{ChannelRule, NamePattern, standard_patterns};
 use gdcm_model::whole_number::whole;
 
 use crate::file_error::{ContentError, ContentFault, FileError};
@@ -270,7 +270,8 @@ fn standard() -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use gdcm_model::assembly::{FileScope, RowRole};
+    use gdcm_model::assembly::FileScope;
+    use gdcm_model::names::RowRole;
 
     use super::*;
     use crate::output_set::Existing;

@@ -8,16 +8,18 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::dataset::channel::Location;
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
+use gdcm_model::dataset::location::Location;
 use gdcm_model::dataset::{Condition, ConditionId, Dataset};
 use gdcm_model::whole_number::whole;
 use gdcm_study::Study;
-use gdcm_study::decisions::changed_models::{AdoptedModels, TurnedChannel};
-use gdcm_study::decisions::differences::{Decisions, Difference, Inventory};
+use gdcm_study::decisions::adopted_models::AdoptedModels;
+use gdcm_study::decisions::choices::{BundleChoice, ConditionChoice};
+use gdcm_study::decisions::differences::{Difference, Inventory};
+use gdcm_study::decisions::named_decisions::Decisions;
+use gdcm_study::decisions::requirement_settings::RequirementSettings;
 use gdcm_study::decisions::settings::{ResponseNames, Settings};
-use gdcm_study::decisions::study::{BundleChoice, ConditionChoice};
-use gdcm_study::results::requirements::RequirementSettings;
+use gdcm_study::decisions::signs::TurnedChannel;
 
 use super::dataset_file::{
     DatasetOrigin, LoadedDataset, ModelText, RecordText, dataset_from, embedded_example,

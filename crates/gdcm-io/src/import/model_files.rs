@@ -354,7 +354,7 @@ fn found(
     FoundModel {
         draft: ModelDraft {
             source: Some(source),
-            ..ModelDraft::of(model)
+            ..ModelDraft::from_model(model)
         },
         inputs: labels(dataset.inputs()),
         outputs: labels(dataset.outputs()),

@@ -6,19 +6,28 @@ use std::sync::Arc;
 use gdcm_method::fidelity::ACCEPTABLE;
 use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{ConditionId, Pair, PairTable};
+use gdcm_model::number_format::decimals;
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::units::signed;
 use gdcm_plot::figure::assessment::{
     assessment_figure, average_word, change_table, evidence_figure, usual_choice,
 };
 use gdcm_plot::figure::axis::FrequencyUnit;
-use gdcm_plot::figure::decimals;
 use gdcm_plot::figure::poles::couplings_figure;
-use gdcm_study::results::assessment_table::{AssessmentChoice, held_out_verdict};
-use gdcm_study::results::table::{
-    bar_table, difference_table, scatter_table, second_variable_table,
+use gdcm_study::results::assessment_table::AssessmentChoice;
+use gdcm_study::{Analysis, AssessmentTable, Engine};
+use gdcm_words::Table;
+use gdcm_words::assessment::{
+    held_out_verdict, missing_cost_text, not_assessed_text, summary_text,
 };
-use gdcm_study::{Analysis, AssessmentTable, Engine, Table};
+use gdcm_words::couplings::{
+    analysis_coupling_remarks, coupling_cost_table, coupling_matrix_tables, couplings_heading,
+    pole_table,
+};
+use gdcm_words::uncertainty::{
+    bar_table, difference_table, difference_text, differences_summary, scatter_table,
+    second_variable_table,
+};
 
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, PAIRS_DRAWN, Page};
@@ -60,12 +69,12 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
         .iter()
         .filter(|of| of.is_significant(uncertainty.level))
         .collect();
-    page.paragraph(&uncertainty.differences_in_words());
+    page.paragraph(&differences_summary(uncertainty));
     page.list(beyond.iter().map(|of| {
         format!(
             "{}: {}.",
             dataset.pair_name(of.pair),
-            of.words(uncertainty.level)
+            difference_text(of, uncertainty.level)
         )
     }));
     let pairs: Vec<Pair> = dataset
@@ -102,12 +111,10 @@ pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
          below 0 is better. J takes {} over frequency; up to {ACCEPTABLE} is acceptable, up to 50 next to indistinguishable.",
         average_word(choice.average)
     ));
-    page.list(
-        table
-            .left_out
-            .iter()
-            .map(|of| format!("Condition {} is left out: {}.", of.condition, of.why)),
-    );
+    page.list(table.left_out.iter().map(|of| {
+        let why = not_assessed_text(&of.why, &analysis.study.dataset);
+        format!("Condition {} is left out: {why}.", of.condition)
+    }));
     let measuring = analysis.study.dataset.measuring_pairs();
     let has_on_axis = analysis.study.dataset.on_axis().marked().next().is_some();
     let on_axis: Vec<Pair> = measuring.marked().collect();
@@ -127,7 +134,10 @@ pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
         });
         page.paragraph(&format!(
             "{}.",
-            capital(&table.summary(&marked).words(&analysis.study.dataset))
+            capital(&summary_text(
+                &table.summary(&marked),
+                &analysis.study.dataset
+            ))
         ));
         add_figures(page, analysis, choice, &pairs, of);
         add_tables(page, analysis, &table, &pairs, of);
@@ -206,9 +216,10 @@ fn add_tables(
             .filter(|(pair, _)| pairs.contains(pair));
         of_these.map(|(pair, why)| {
             format!(
-                "Condition {}: no ΔJ of {}: {why}.",
+                "Condition {}: no ΔJ of {}: {}.",
                 assessed.condition,
-                analysis.study.dataset.pair_name(*pair)
+                analysis.study.dataset.pair_name(*pair),
+                missing_cost_text(*why)
             )
         })
     });
@@ -287,21 +298,19 @@ pub(super) fn add_couplings(page: &mut Page, analysis: &Analysis) {
          model with them. Which model represents its bundle, and which is suspected, is decided without them.",
     );
     page.list(
-        analysis
-            .coupling_remarks()
+        analysis_coupling_remarks(analysis)
             .into_iter()
             .map(|remark| remark.text),
     );
     let Some(assessment) = &analysis.coupling_assessment else {
         return;
     };
-    page.paragraph(&format!("{}.", capital(&assessment.heading())));
-    page.table(&assessment.cost_table());
-    assessment
-        .matrix_tables(&analysis.study.dataset)
+    page.paragraph(&format!("{}.", capital(&couplings_heading(assessment))));
+    page.table(&coupling_cost_table(assessment));
+    coupling_matrix_tables(assessment, &analysis.study.dataset)
         .iter()
         .for_each(|table| page.wide_table(table, MATRIX_COLUMNS));
-    page.table(&assessment.pole_table());
+    page.table(&pole_table(assessment));
     if let Some(figure) = couplings_figure(assessment, None, FrequencyUnit::default()) {
         let caption = "The least singular value of I \u{2212} K H at the sticks, of each condition: 1 is no loop, under 0.5 the loop is close \
                        to ringing. Poles of the condition that is nearest to it.";

@@ -5,20 +5,24 @@ use std::collections::BTreeSet;
 use gdcm_method::correction::{Channel, Outcome};
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, ModelId, Pair};
+use gdcm_model::number_format::compact;
+use gdcm_model::number_format::decimals;
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 use gdcm_model::units::{number, s_to_ms, signed};
-use gdcm_plot::figure::axis::compact;
 use gdcm_plot::figure::bode::{BodeOptions, bode_figure, overview_figure};
 use gdcm_plot::figure::condition_source::condition_words;
 use gdcm_plot::figure::error::error_figure;
 use gdcm_plot::figure::gains::class_names;
 use gdcm_plot::figure::poles::poles_figure;
-use gdcm_plot::figure::{ConditionSource, Figure, Mark, Role, all_channels, decimals};
-use gdcm_study::jobs::job::ConditionModes;
-use gdcm_study::results::remark::{RemarkKind, details, remarks};
-use gdcm_study::stages::condition_responses::{CURVE_POINTS, curves_band};
-use gdcm_study::stages::lead_compensation::lead_words;
-use gdcm_study::{Analysis, ConditionAnalysis, Engine, Study, Table};
+use gdcm_plot::figure::{ConditionSource, Figure, Mark, Role, all_channels};
+use gdcm_study::jobs::curve_jobs::ConditionModes;
+use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
+use gdcm_study::{Analysis, ConditionAnalysis, Engine, Study};
+use gdcm_words::Table;
+use gdcm_words::caution::{failure_text, undefined_text};
+use gdcm_words::condition_remarks::{details, remarks};
+use gdcm_words::leads::lead_words;
+use gdcm_words::remark::RemarkKind;
 
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, MODELS_SHOWN, PAIRS_DRAWN, PAIRS_LISTED, Page, names};
@@ -50,9 +54,10 @@ pub(super) fn add(
                     draw(page, analysis, condition.id(), (engine, progress))?;
                 }
             }
-            Some(Err(failure)) => {
-                page.paragraph(&format!("This condition has no result: {failure}."))
-            }
+            Some(Err(failure)) => page.paragraph(&format!(
+                "This condition has no result: {}.",
+                failure_text(failure, &analysis.study.dataset)
+            )),
             None => page.paragraph("This condition was not analysed."),
         }
         progress.advanced(index + 1, conditions.len());
@@ -312,7 +317,7 @@ fn response_cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [Str
 fn undefined(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
     for (pair, why) in result.comparison.undefined.iter() {
-        let Some(why) = why.map(|why| why.to_string()) else {
+        let Some(why) = why.map(undefined_text) else {
             continue;
         };
         let name = study.dataset.pair_name(pair);

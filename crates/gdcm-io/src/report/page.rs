@@ -5,7 +5,7 @@ use gdcm_model::message_text::sanitized;
 use gdcm_plot::figure::drawing::Drawing;
 use gdcm_plot::figure::{ColumnWidth, Figure};
 use gdcm_plot::paper::{escaped, inline_svg};
-use gdcm_study::Table;
+use gdcm_words::Table;
 
 /// Maximum number of conditions with figures; all have tables.
 pub(super) const CONDITIONS_DRAWN: usize = 60;

@@ -7,9 +7,11 @@ use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_plot::figure::requirements::requirements_figure;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::requirements::Requirements;
-use gdcm_study::results::requirements_tables::RequirementsOverview;
 use gdcm_study::results::time_histories::TimeHistories;
-use gdcm_study::{Engine, Study, Table};
+use gdcm_study::{Engine, Study};
+use gdcm_words::Table;
+use gdcm_words::requirements::{RequirementsOverview, bandwidth_table, mode_table, summary_table};
+use gdcm_words::time_histories::{record_table, share_table};
 
 use super::page::Page;
 use super::{ReportSubject, Unobtrusive};
@@ -45,9 +47,10 @@ pub(super) fn add_requirements(
         "Means of J (M4) and of the share of the band, in ln \u{3c9}, inside the envelopes of unnoticeable added dynamics \
          (MIL-STD-1797A, appendix A, 4.2.1.2), against the identified representative.",
     );
-    page.wide_table_behind(&requirements.summary_table(histories), 3, COLUMNS - 2);
+    page.wide_table_behind(&summary_table(&requirements, histories), 3, COLUMNS - 2);
     let limits = &analysis.study.requirements.overview;
-    let overview = requirements.overview(&analysis.study.dataset, histories, limits);
+    let overview =
+        RequirementsOverview::new(&requirements, &analysis.study.dataset, histories, limits);
     page.wide_table_behind(&overview.table, RequirementsOverview::HEADS, COLUMNS);
     if let Some(histories) = histories {
         add_histories(page, histories);
@@ -90,7 +93,7 @@ fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
         bandwidth: known.into_iter().cloned().collect(),
         ..requirements.clone()
     };
-    page.table(&known.bandwidth_table(dataset));
+    page.table(&bandwidth_table(&known, dataset));
     let why = |of: &BandwidthFinding| of.absent.get("omega_bw_rad_s").cloned().unwrap_or_default();
     let reason = |of: &BandwidthFinding| {
         (
@@ -113,7 +116,7 @@ fn add_modes(page: &mut Page, requirements: &Requirements) {
     conditions.dedup();
     conditions
         .into_iter()
-        .for_each(|id| page.wide_table(&requirements.mode_table(id), COLUMNS));
+        .for_each(|id| page.wide_table(&mode_table(requirements, id), COLUMNS));
 }
 
 /// Adds time histories within tolerances, and those that are not compared.
@@ -130,11 +133,11 @@ fn add_histories(page: &mut Page, histories: &TimeHistories) {
     ));
     page.table(&tolerance_table(histories));
     if !histories.records.is_empty() {
-        page.table(&histories.share_table());
+        page.table(&share_table(histories));
         histories
             .conditions()
             .into_iter()
-            .for_each(|(id, _)| page.table(&histories.record_table(id)));
+            .for_each(|(id, _)| page.table(&record_table(histories, id)));
     }
     page.list(by_words(
         histories

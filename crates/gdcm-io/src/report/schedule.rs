@@ -3,12 +3,15 @@
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::Schedule;
 use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_model::number_format::compact;
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::{number, s_to_ms};
-use gdcm_plot::figure::axis::compact;
+use gdcm_plot::figure::all_channels;
 use gdcm_plot::figure::condition_source::quantity_symbol;
 use gdcm_plot::figure::gains::{Across, Measure, channels_figure, net_gain_figure};
-use gdcm_plot::figure::{all_channels, decimals};
-use gdcm_study::{Analysis, Study, Table};
+use gdcm_study::{Analysis, Study};
+use gdcm_words::Table;
+use gdcm_words::schedule::delayed_channel_text;
 
 use super::page::{PAIRS_DRAWN, Page, names};
 use super::study::schedule_words;
@@ -100,7 +103,10 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
         .iter()
         .map(|of| format!("Caution: {}.", of.words(&inputs, &outputs)));
     let left_out = analysis.unscheduled_delays().into_iter();
-    let left_out = left_out.map(|of| format!("Left out: {}.", of.words(&analysis.study.dataset)));
+    let left_out = left_out.map(|of| {
+        let text = delayed_channel_text(&of, &analysis.study.dataset);
+        format!("Left out: {text}.")
+    });
     page.list(price.into_iter().chain(cautions).chain(left_out));
     add_coefficients(page, schedule, (&inputs, &outputs));
     add_gains(page, analysis, schedule);

@@ -7,14 +7,17 @@ use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_method::schedule::{Schedule, ScheduleKind, ScheduleSettings};
 use gdcm_model::dataset::model::Provenance;
 use gdcm_model::dataset::{BundleKind, Channel, Condition, ModelId, Pair, PairTable};
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::{number, six_digits};
 use gdcm_plot::figure::assessment::usual_choice;
 use gdcm_plot::figure::condition_source::quantity_symbol;
-use gdcm_plot::figure::decimals;
 use gdcm_study::decisions::setting;
 use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::results::caution::Caution;
-use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis, Study, Table};
+use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis, Study};
+use gdcm_words::Table;
+use gdcm_words::assessment::summary_text;
+use gdcm_words::caution::{caution_text, failure_text};
 
 use super::assessment::capital;
 use super::conditions::proof_word;
@@ -42,8 +45,9 @@ pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     let without = conditions.iter().filter_map(|condition| {
         let failure = analysis.conditions.get(&condition.id())?.as_ref().err()?;
         Some(format!(
-            "Condition {} has no result: {failure}.",
-            condition.id()
+            "Condition {} has no result: {}.",
+            condition.id(),
+            failure_text(failure, &analysis.study.dataset)
         ))
     });
     page.list(without);
@@ -59,9 +63,8 @@ pub fn assessment_sentence(analysis: &Analysis) -> String {
     } else {
         "responses"
     };
-    let found = AssessmentTable::of(analysis, usual_choice(analysis))
-        .summary(&measuring)
-        .words(dataset);
+    let table = AssessmentTable::of(analysis, usual_choice(analysis));
+    let found = summary_text(&table.summary(&measuring), dataset);
     let between = if analysis
         .schedule
         .as_ref()
@@ -386,7 +389,7 @@ fn left_out_lines(analysis: &Analysis, condition: &Condition) -> Vec<String> {
         .iter()
         .filter(|caution| matches!(caution, Caution::SetAside { .. }));
     let aside: Vec<String> = aside
-        .map(|caution| caution.words(|pair| study.dataset.pair_name(pair)))
+        .map(|caution| caution_text(caution, |pair| study.dataset.pair_name(pair)))
         .collect();
     let more = aside.len().saturating_sub(NAMES_SHOWN);
     let mut lines: Vec<String> = aside

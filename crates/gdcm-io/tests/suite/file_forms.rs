@@ -18,10 +18,9 @@ use gdcm_io::formats::variables::{
 };
 use gdcm_io::{FolderProgress, read_models, write_mat};
 use gdcm_method::correction::GainBounds;
-use gdcm_model::assembly::{
-    Assembly, ChannelRule, FileScope, FoundModel, Headings, Rules, UnitRule,
-};
+use gdcm_model::assembly::{Assembly, FileScope, FoundModel, Headings, Rules, UnitRule};
 use gdcm_model::dataset::{Band, Dataset, Pair};
+use gdcm_model::names::ChannelRule;
 use gdcm_model::progress::Unobserved;
 use gdcm_model::response::FrequencyGrid;
 use gdcm_study::decisions::setting;
@@ -926,7 +925,7 @@ fn known_gains_and_delays_come_back_from_every_form_of_files_or_are_asked_about(
                 assert!(
                     assembly.problems().is_empty(),
                     "{name}: {:#?}",
-                    assembly.told()
+                    assembly.problem_lines()
                 );
                 assert_known(name, assembly.dataset("").unwrap(), has_delays);
             }
@@ -936,7 +935,11 @@ fn known_gains_and_delays_come_back_from_every_form_of_files_or_are_asked_about(
                     .iter()
                     .map(|problem| problem.kind.code())
                     .collect();
-                assert!(codes.contains(&code), "{name}: {:#?}", assembly.told());
+                assert!(
+                    codes.contains(&code),
+                    "{name}: {:#?}",
+                    assembly.problem_lines()
+                );
                 assert!(assembly.dataset("").is_none(), "{name}");
             }
         }

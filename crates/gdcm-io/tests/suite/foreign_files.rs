@@ -143,7 +143,7 @@ fn signs_are_said_of_all_of_a_role_and_of_one_file_and_go_before_the_mark_in_the
     assert_eq!(factor(said.clone()), Some(1.0));
     said.role_signs
         .insert("physics".into(), [("NZ".to_owned(), -1.0)].into());
-    said.rows.entry(found.key()).or_default().role = Some(gdcm_model::assembly::RowRole::Nominal);
+    said.rows.entry(found.key()).or_default().role = Some(gdcm_model::names::RowRole::Nominal);
     assert_eq!(factor(said.clone()), Some(-1.0));
     said.rows.entry(found.key()).or_default().signs = Some([("NZ".to_owned(), 1.0)].into());
     assert_eq!(factor(said), Some(1.0));

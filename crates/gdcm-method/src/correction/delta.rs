@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_model::response::PolarResponse;
-use gdcm_model::response::curve_values::quantile;
+use gdcm_model::statistics::quantile;
 use gdcm_model::units::db_to_ratio;
 
 use super::GainBounds;

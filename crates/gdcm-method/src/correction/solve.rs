@@ -2,7 +2,7 @@
 //! objective, and the proof that they are optimal.
 
 use gdcm_model::dataset::PairTable;
-use gdcm_model::response::curve_values::mean;
+use gdcm_model::statistics::mean;
 
 use super::branch_and_bound::effort::{Effort, SearchStopped};
 use super::branch_and_bound::newton::Newton;

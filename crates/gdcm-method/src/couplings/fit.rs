@@ -1,4 +1,4 @@
-//! Fit of mixing and feedback to all conditions at once (M16.2), leave-one-out fits, and the error
+//! Fits mixing and feedback to all conditions at once (M16.2), leave-one-out fits, and the error
 //! bars derived from them (M16.4).
 //!
 //! ```text
@@ -13,42 +13,45 @@ use gdcm_model::dataset::ConditionId;
 use gdcm_model::executor::{Executor, Sequential, each};
 use gdcm_model::progress::{Cancelled, Portion, Progress, Shares};
 
+use super::condition_blocks::ConditionBlocks;
 use super::coupling_matrices::CouplingMatrices;
-use super::normal_equations::{ConditionBlocks, NormalEquations, UnknownLayout};
-use super::problem::{CouplingError, CouplingProblem, Unknown};
+use super::error::CouplingError;
+use super::normal_equations::NormalEquations;
+use super::problem::CouplingProblem;
+use super::unknown::Unknown;
+use super::unknown_layout::UnknownLayout;
 use super::weighted_condition::WeightedCondition;
 use crate::uncertainty::student_quantile;
 
-/// The fitted couplings of a problem and a record of the fit.
+/// The fitted couplings, with a record of the fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CouplingFit {
     pub matrices: CouplingMatrices,
     /// The fitted unknowns.
     pub unknowns: Vec<Unknown>,
-    /// Values of the unknowns after each solve.
+    /// Values by solve and unknown.
     pub coefficients: Vec<Vec<f64>>,
-    /// Optimality check of the last solve, a convex problem with one optimum: the largest residual
-    /// of the normal equations over the largest right side.
+    /// Optimality check for the last solve, a convex problem with a single optimum: the largest
+    /// residual of the normal equations over the largest right side.
     pub residual: f64,
-    /// Outputs that cannot be fed back, because some input has no response of them in any
+    /// Outputs that cannot be fed back, because their response to some input is unknown in every
     /// condition.
     pub not_fed_back: Vec<usize>,
     /// Unknowns that no response determines; they keep their uncoupled values.
     pub undetermined: Vec<Unknown>,
 }
 
-/// Memory limit for the blocks of conditions computed in parallel \[bytes\].
+/// Memory limit for condition blocks computed in parallel \[bytes\].
 const BLOCK_MEMORY: usize = 256 << 20;
 
-/// Fits the couplings of a problem by five successive weighted linear least-squares problems
-/// (M16.2).
+/// Fits the couplings by five successive weighted linear least-squares problems (M16.2).
 ///
-/// The result is identical to the last bit, however its pieces are scheduled. `progress` is
-/// notified of every condition of every pass, and polled every few frequencies for cancellation.
+/// The result is identical to the last bit in any order of execution. `progress` is notified after
+/// every condition in every pass, and polled every few frequencies for cancellation.
 ///
 /// # Errors
-/// [`CouplingError`] if tables do not fit together, no response has a weight, the loop of a pass is
-/// singular, the unknowns cannot be told apart, or `progress` is cancelled.
+/// [`CouplingError`] if tables do not fit together, no response has a weight, the loop is singular in
+/// a pass, the responses do not determine the unknowns, or `progress` is cancelled.
 pub fn fit_couplings(
     problem: &CouplingProblem,
     executor: &dyn Executor,
@@ -57,9 +60,9 @@ pub fn fit_couplings(
     problem.check()?;
     let airspeeds = problem.airspeeds()?;
     let fed_back = problem.fed_back();
-    let unknowns = Unknown::all(problem, &airspeeds, &fed_back);
-    let conditions = each(executor, &problem.conditions, |of| {
-        WeightedCondition::new(problem, of, &fed_back)
+    let unknowns = Unknown::list(problem, &airspeeds, &fed_back);
+    let conditions = each(executor, &problem.conditions, |condition| {
+        WeightedCondition::new(problem, condition, &fed_back)
     });
     if !conditions.iter().any(WeightedCondition::counts) {
         return Err(CouplingError::NothingToFit {
@@ -72,7 +75,7 @@ pub fn fit_couplings(
         fed_back: &fed_back,
         layout: UnknownLayout::new(&unknowns, problem.inputs(), &fed_back),
         shares: Shares::new(progress),
-        // The solution of a pass counts as one more condition.
+        // Solving a pass counts like a condition.
         share: 1.0 / (solves * (conditions.len() + 1)) as f64,
     };
     let mut matrices = CouplingMatrices::none(airspeeds, problem.inputs(), problem.outputs());
@@ -85,40 +88,47 @@ pub fn fit_couplings(
             .solve(&unknowns, problem.options.ridge)?;
         matrices = matrices.with(&unknowns, pass.coefficients.as_slice());
         coefficients.push(pass.coefficients.as_slice().to_vec());
-        (residual, undetermined) = (pass.residual, pass.undetermined);
+        residual = pass.residual;
+        undetermined = pass.undetermined;
         fitting.advance()?;
     }
     fitting.shares.next(1.0, FITTING)?;
     matrices.check()?;
-    let is_left_out = |output: &usize| problem.kind.feeds_back() && !fed_back.contains(output);
+    let not_fed_back = if problem.kind.feeds_back() {
+        (0..problem.outputs())
+            .filter(|output| !fed_back.contains(output))
+            .collect()
+    } else {
+        Vec::new()
+    };
     Ok(CouplingFit {
         matrices,
         coefficients,
         residual,
-        not_fed_back: (0..problem.outputs()).filter(is_left_out).collect(),
+        not_fed_back,
         undetermined: undetermined
             .into_iter()
-            .map(|place| unknowns[place])
+            .map(|index| unknowns[index])
             .collect(),
         unknowns,
     })
 }
 
-/// Name of the step in progress reports.
+/// Step name in progress reports.
 const FITTING: &str = "mixing and feedback";
 
-/// Shared data of the passes of a fit.
+/// Data that all passes of a fit share.
 struct Fitting<'a> {
     conditions: &'a [WeightedCondition<'a>],
     fed_back: &'a [usize],
     layout: UnknownLayout,
     shares: Shares<'a>,
-    /// Share of one condition of one pass in the whole fit.
+    /// Progress of the fit per condition and pass.
     share: f64,
 }
 
 impl Fitting<'_> {
-    /// Returns the normal equations of the pass that follows these couplings.
+    /// Returns the normal equations for the pass after these couplings.
     ///
     /// As many conditions run in parallel as memory permits for their blocks; they are added in
     /// order.
@@ -129,8 +139,8 @@ impl Fitting<'_> {
     ) -> Result<NormalEquations<'_>, CouplingError> {
         let inputs = last.feedback().nrows();
         let airspeeds = last.airspeeds();
-        let together =
-            (BLOCK_MEMORY / ConditionBlocks::bytes(inputs, self.fed_back.len()).max(1)).max(1);
+        let block_bytes = ConditionBlocks::bytes(inputs, self.fed_back.len()).max(1);
+        let together = (BLOCK_MEMORY / block_bytes).max(1);
         let mut equations = NormalEquations::zeros(&self.layout, inputs, self.fed_back.len());
         for conditions in self.conditions.chunks(together) {
             let blocks = each(executor, conditions, |condition| {
@@ -154,7 +164,7 @@ impl Fitting<'_> {
 /// Fewest conditions for error bars.
 pub const LEAST_CONDITIONS: usize = 3;
 
-/// The fit without one condition.
+/// A fit without a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeftOutFit {
     /// The omitted condition.
@@ -163,10 +173,11 @@ pub struct LeftOutFit {
     pub fit: CouplingFit,
 }
 
-/// Fits the couplings without each condition in turn, in the order of the conditions; the fits are
-/// independent tasks.
+/// Fits the couplings without each condition in turn, in their order; the fits are independent
+/// tasks.
+///
 /// # Errors
-/// [`CouplingError::TooFewConditions`] for fewer than three conditions, and the errors of
+/// [`CouplingError::TooFewConditions`] for fewer than three conditions, and all errors from
 /// [`fit_couplings`].
 pub fn left_out_fits(
     problem: &CouplingProblem,
@@ -176,14 +187,14 @@ pub fn left_out_fits(
     let count = problem.conditions.len();
     check_count(count)?;
     let shares = Shares::new(progress);
-    let fits = each(executor, 0..count, |place| {
-        let condition = problem.conditions[place].id;
+    let fits = each(executor, 0..count, |index| {
+        let condition = problem.conditions[index].id;
         let portion = Portion::new(
             &shares,
             1.0 / count as f64,
             "mixing and feedback without each condition",
         );
-        let fit = fit_couplings(&problem.without(place), &Sequential, &portion)?;
+        let fit = fit_couplings(&problem.without(index), &Sequential, &portion)?;
         portion.finish()?;
         Ok(LeftOutFit { condition, fit })
     });
@@ -191,22 +202,23 @@ pub fn left_out_fits(
 }
 
 fn check_count(found: usize) -> Result<(), CouplingError> {
-    let needed = LEAST_CONDITIONS;
-    if found < needed {
-        Err(CouplingError::TooFewConditions { needed, found })
-    } else {
-        Ok(())
+    if found < LEAST_CONDITIONS {
+        return Err(CouplingError::TooFewConditions {
+            needed: LEAST_CONDITIONS,
+            found,
+        });
     }
+    Ok(())
 }
 
-/// Half-widths of the error bars of mixing and feedback.
+/// Half-widths of the error bars for mixing and feedback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CouplingBars {
-    /// Half-widths for `M~` at one airspeed, m x m; 0 on its diagonal, which is 1.
+    /// Half-widths for `M~` at an airspeed, m x m; 0 on its diagonal, which is 1.
     pub mixing: DMatrix<f64>,
     /// Half-widths for `K`, m x p.
     pub feedback: DMatrix<f64>,
-    /// Student's quantile: the ratio of half-width to standard deviation.
+    /// Student's quantile, the ratio between half-width and standard deviation.
     pub quantile: f64,
 }
 
@@ -219,11 +231,12 @@ impl CouplingBars {
     pub fn of(fits: &[LeftOutFit], airspeed_kt: f64, level: f64) -> Result<Self, CouplingError> {
         check_count(fits.len())?;
         let quantile = student_quantile(level, fits.len() as f64 - 1.0);
-        let matrices = || fits.iter().map(|of| &of.fit.matrices);
-        let mixing: Vec<_> = matrices()
-            .map(|of| of.normalised_mixing(airspeed_kt))
-            .collect();
-        let feedback: Vec<_> = matrices().map(|of| of.feedback().clone()).collect();
+        let mut mixing = Vec::with_capacity(fits.len());
+        let mut feedback = Vec::with_capacity(fits.len());
+        for LeftOutFit { fit, .. } in fits {
+            mixing.push(fit.matrices.normalised_mixing(airspeed_kt));
+            feedback.push(fit.matrices.feedback().clone());
+        }
         Ok(Self {
             mixing: jackknife(&mixing) * quantile,
             feedback: jackknife(&feedback) * quantile,
@@ -232,17 +245,15 @@ impl CouplingBars {
     }
 }
 
-/// Computes the jackknife standard deviation of each entry from the leave-one-out matrices; at
-/// least one is needed.
+/// Computes the jackknife standard deviation by entry from the leave-one-out matrices; at least one
+/// is needed.
 fn jackknife(without: &[DMatrix<f64>]) -> DMatrix<f64> {
     let count = without.len() as f64;
     let (rows, columns) = without[0].shape();
     DMatrix::from_fn(rows, columns, |row, column| {
-        let mean = without.iter().map(|of| of[(row, column)]).sum::<f64>() / count;
-        let square: f64 = without
-            .iter()
-            .map(|of| (of[(row, column)] - mean).powi(2))
-            .sum();
+        let entries = without.iter().map(|matrix| matrix[(row, column)]);
+        let mean = entries.clone().sum::<f64>() / count;
+        let square: f64 = entries.map(|entry| (entry - mean).powi(2)).sum();
         ((count - 1.0) / count * square).sqrt()
     })
 }

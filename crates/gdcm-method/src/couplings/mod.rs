@@ -1,20 +1,31 @@
-//! Couplings and modes that channels cannot reach (M16): one input mixing and one output-to-input
+//! Couplings and modes that channels cannot reach (M16): an input mixing and an output-to-input
 //! feedback, common to all flight conditions, fitted by linear least squares.
 //!
 //! ```text
 //! y = H (u' + K y),  u' = M~ u,  so that  H~ = (I - H K)^-1 H M~
 //!
-//!  1  for each condition: R' <- L_o^-1 R L_i^-1, the flight response without the delays and leads of its channels
+//!  1  for each condition: R' <- L_o^-1 R L_i^-1, the flight response without its channels' delays and leads
 //!  2  K <- 0, M <- I;  exactly R' = (I - H K)^-1 H M where R' = H (M + K R'), which is linear in M and K
 //!  3  repeat five times:
 //!  4     S <- (I - H K)^-1,  F <- S H,  H_c <- F M at each condition and frequency
-//!  5     q <- s w / max(|R'|, |H_c| / 2) / (1 + (e s / 10)^2)^(1/4) of each response, e^2 the summand of J
-//!  6     G, b <- normal matrix and right side of  sum q^2 |S R' - F M - F K R'|^2  in the entries theta of M and K
+//!  5     q <- s w / max(|R'|, |H_c| / 2) / (1 + (e s / 10)^2)^(1/4) for each response, e^2 the summand of J
+//!  6     G, b <- normal matrix and right side for  sum q^2 |S R' - F M - F K R'|^2  in the entries theta of M and K
 //!  7     theta <- solution of  (G + rho diag G) theta = b + rho diag G theta_0,  theta_0: M = I, K = 0, by Cholesky's factors
 //!  8  M~(V) <- M(V) diag(M(V))^-1: the level stays with the channels
-//!  9  bars: theta again without each condition;  sd^2 <- (n - 1) / n sum (theta_(-c) - mean)^2,  Student's t of n - 1
+//!  9  bars: theta again without each condition;  sd^2 <- (n - 1) / n sum (theta_(-c) - mean)^2,  Student's t(n - 1)
 //! 10  H~, its state space, its poles, the least singular value of I - K H
 //! ```
+//!
+//! | step | file |
+//! |---|---|
+//! | 1 | `problem`, `flight_data` |
+//! | 2, 3 | `unknown`, `fit` |
+//! | 4 | `closed_loop` |
+//! | 5 | `weighted_condition` |
+//! | 6 | `condition_blocks`, `pair_products`, `normal_equations` |
+//! | 7 | `normal_equations`, `arrow_system` |
+//! | 8, 10 | `coupling_matrices`, `coupling_effects` |
+//! | 9 | `fit` |
 //!
 //! M16; the jackknife: B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans", SIAM
 //! 1982, chapter 3.
@@ -22,11 +33,19 @@
 //! Index order: `[output, input]` for responses, `[to, from]` for `M` (input, input) and for `K`
 //! (input, output); omega in rad/s.
 
+mod arrow_system;
+mod closed_loop;
+mod condition_blocks;
 pub mod coupling_effects;
 pub mod coupling_matrices;
+mod error;
 pub mod fit;
+mod flight_data;
 mod normal_equations;
+mod pair_products;
 pub mod problem;
+mod unknown;
+mod unknown_layout;
 mod weighted_condition;
 
 #[cfg(test)]
@@ -35,4 +54,5 @@ mod tests;
 pub use coupling_effects::{LoopMargin, PoleShift};
 pub use coupling_matrices::{CoupledModelError, CouplingMatrices};
 pub use fit::{CouplingBars, LEAST_CONDITIONS, LeftOutFit, fit_couplings};
-pub use problem::{CouplingCondition, CouplingKind, CouplingProblem, Unknown};
+pub use problem::{CouplingCondition, CouplingKind, CouplingProblem};
+pub use unknown::Unknown;

@@ -1,4 +1,8 @@
-//! A condition of the fit arranged by frequency, with the weight of each response (M16.2).
+//! A condition arranged by frequency, with the weight of each response (M16.2).
+//!
+//! ```text
+//! q = s w_gamma / max(|R'|, |H_c| / 2) / (1 + (e s / 10)^2)^(1/4),   s = w_p / sqrt(1 + (sd / 0.06)^2),   e^2: the summand of J (M4)
+//! ```
 
 use nalgebra::Complex;
 
@@ -7,22 +11,23 @@ use gdcm_model::dataset::{ConditionId, Pair, PairTable};
 use super::problem::{CouplingCondition, CouplingProblem};
 use crate::fidelity::summand;
 
-/// Weight of an on-axis response relative to the others, `w_p`.
+/// Weight for an on-axis response relative to the others, `w_p`.
 const ON_AXIS: f64 = 2.0;
-/// Standard deviation of `ln H` from which the weight of a response drops clearly.
+/// Standard deviation of `ln H` from which a response loses weight clearly.
 const DEVIATION: f64 = 0.06;
 /// `e s` from which a frequency counts as an outlier.
 const OUTLIER: f64 = 10.0;
-/// The factors of a weight that stay the same in all passes.
+
+/// The weight factors that stay the same in all passes.
 #[derive(Clone, Copy, Debug, Default)]
 struct FixedWeight {
     /// `s = w_p / sqrt(1 + (sd / 0.06)^2)`; 0 for a response without weight.
     s: f64,
-    /// `W` of the coherence (M4a); `w_gamma` is its root, so the squares weigh `W`.
+    /// Coherence weight `W = w_gamma^2` (M4a).
     coherence: f64,
 }
 
-/// One condition; at each frequency its values are stored input column by input column.
+/// A condition; at each frequency its values are stored input column by input column.
 pub(super) struct WeightedCondition<'a> {
     pub(super) id: ConditionId,
     /// True airspeed \[kt\].
@@ -37,11 +42,11 @@ pub(super) struct WeightedCondition<'a> {
 }
 
 impl<'a> WeightedCondition<'a> {
-    /// Creates a condition of a problem with feedback of the outputs `fed_back`.
+    /// Arranges a condition; `fed_back` are the outputs with a column in `K`.
     ///
     /// A missing value has weight 0 and value 0. If flight lacks a response that is fed back, its
-    /// input column has weight 0; if the physics model lacks one, the whole frequency has weight 0.
-    /// The value 0 is then never used.
+    /// input column has weight 0; if the physics model lacks such a response, the whole frequency
+    /// has weight 0. The value 0 is then never used.
     pub(super) fn new(
         problem: &'a CouplingProblem,
         condition: &CouplingCondition,
@@ -50,40 +55,25 @@ impl<'a> WeightedCondition<'a> {
         let outputs = problem.outputs();
         let inputs = problem.inputs();
         let weights = fixed_weights(problem, condition, fed_back);
-        let columns = |of: &PairTable<Vec<Complex<f64>>>| {
-            let mut values = Vec::with_capacity(problem.omega.len() * inputs * outputs);
-            for k in 0..problem.omega.len() {
-                let entries = (0..inputs)
-                    .flat_map(|input| (0..outputs).map(move |output| Pair::new(output, input)));
-                let finite = |value: Complex<f64>| {
-                    if value.is_finite() {
-                        value
-                    } else {
-                        Complex::new(0.0, 0.0)
-                    }
-                };
-                values.extend(entries.map(|pair| finite(of[pair][k])));
-            }
-            values
-        };
+        let points = problem.omega.len();
         Self {
             id: condition.id,
             airspeed_kt: condition.airspeed_kt,
             omega: &problem.omega,
             outputs,
             inputs,
-            physics: columns(condition.physics.curves()),
-            flight: columns(condition.flight.curves()),
+            physics: columns_by_frequency(condition.physics.curves(), points),
+            flight: columns_by_frequency(condition.flight.curves(), points),
             weights,
         }
     }
 
-    /// Returns the number of outputs, `p`.
+    /// Returns the output count, `p`.
     pub(super) fn outputs(&self) -> usize {
         self.outputs
     }
 
-    /// Returns the number of inputs, `m`.
+    /// Returns the input count, `m`.
     pub(super) fn inputs(&self) -> usize {
         self.inputs
     }
@@ -93,7 +83,7 @@ impl<'a> WeightedCondition<'a> {
         self.weights.iter().any(|weight| weight.s > 0.0)
     }
 
-    /// Whether any response has a weight at a frequency.
+    /// Whether any response has a weight at frequency `k`.
     pub(super) fn counts_at(&self, k: usize) -> bool {
         let size = self.inputs * self.outputs;
         self.weights[k * size..][..size]
@@ -101,26 +91,23 @@ impl<'a> WeightedCondition<'a> {
             .any(|weight| weight.s > 0.0)
     }
 
-    /// Returns `H` at a frequency, p x m, column by column.
+    /// Returns `H` at frequency `k`, p x m, column by column.
     pub(super) fn physics(&self, k: usize) -> &[Complex<f64>] {
         let size = self.inputs * self.outputs;
         &self.physics[k * size..][..size]
     }
 
-    /// Returns the column of one input of `R'` at a frequency, p values.
+    /// Returns an input column of `R'` at frequency `k`, p values.
     pub(super) fn flight(&self, k: usize, input: usize) -> &[Complex<f64>] {
         &self.flight[(k * self.inputs + input) * self.outputs..][..self.outputs]
     }
 
-    /// Computes `q^2` of each output of an input column at a frequency, given `H_c = coupled` of
-    /// the last pass; returns false if every weight is zero.
-    ///
-    /// ```text
-    /// q^2 = s^2 W / max(|R'|, |H_c| / 2)^2 / (1 + (e s / 10)^2)^(1/2),   e^2: the summand of J (M4)
-    /// ```
+    /// Computes `q^2` by output in an input column at frequency `k`, given `H_c = coupled` from the
+    /// last pass; returns false if every weight is zero.
     pub(super) fn squared_weights(
         &self,
-        (k, input): (usize, usize),
+        k: usize,
+        input: usize,
         coupled: &[Complex<f64>],
         squared: &mut [f64],
     ) -> bool {
@@ -141,19 +128,42 @@ impl<'a> WeightedCondition<'a> {
 }
 
 impl FixedWeight {
+    /// Returns `q^2`.
     fn squared(self, coupled: Complex<f64>, flight: Complex<f64>) -> f64 {
-        let of_coupled = coupled.norm_sqr();
-        let of_flight = flight.norm_sqr();
-        let db = 10.0 * (of_coupled / of_flight).log10();
-        let deg = (coupled * flight.conj()).arg().to_degrees();
-        let error = summand(db, deg);
-        let robust = (1.0 + error * (self.s / OUTLIER).powi(2)).sqrt();
-        let squared = self.s * self.s * self.coherence / of_flight.max(0.25 * of_coupled) / robust;
+        let coupled_square = coupled.norm_sqr();
+        let flight_square = flight.norm_sqr();
+        let error_db = 10.0 * (coupled_square / flight_square).log10();
+        let error_deg = (coupled * flight.conj()).arg().to_degrees();
+        let robust = (1.0 + summand(error_db, error_deg) * (self.s / OUTLIER).powi(2)).sqrt();
+        let scale = flight_square.max(0.25 * coupled_square);
+        let squared = self.s * self.s * self.coherence / scale / robust;
         // A zero value has no decibels, and an overflow cannot be compared.
         if squared.is_finite() { squared } else { 0.0 }
     }
 }
 
+/// Returns the values frequency by frequency, each p x m stored column by column; missing values are
+/// zero.
+fn columns_by_frequency(curves: &PairTable<Vec<Complex<f64>>>, points: usize) -> Vec<Complex<f64>> {
+    let inputs = curves.inputs();
+    let outputs = curves.outputs();
+    let mut values = Vec::with_capacity(points * inputs * outputs);
+    for k in 0..points {
+        for input in 0..inputs {
+            for output in 0..outputs {
+                let value = curves[Pair::new(output, input)][k];
+                values.push(if value.is_finite() {
+                    value
+                } else {
+                    Complex::new(0.0, 0.0)
+                });
+            }
+        }
+    }
+    values
+}
+
+/// Returns the fixed weights, ordered like [`columns_by_frequency`].
 fn fixed_weights(
     problem: &CouplingProblem,
     condition: &CouplingCondition,
@@ -162,42 +172,51 @@ fn fixed_weights(
     let outputs = problem.outputs();
     let inputs = problem.inputs();
     let points = problem.omega.len();
-    let coherence = condition.coherence.as_ref();
-    let coherence = coherence.map(|table| table.map(|_, of| of.spread(&of.weights, points)));
+    let coherence = condition
+        .coherence
+        .as_ref()
+        .map(|table| table.map(|_, coherence| coherence.spread(&coherence.weights, points)));
     let mut weights = Vec::with_capacity(points * inputs * outputs);
     for k in 0..points {
-        let physics = |output, input| condition.physics.curve(Pair::new(output, input))[k];
-        let flight = |output, input| condition.flight.curve(Pair::new(output, input))[k];
-        let has_row = |output: usize| (0..inputs).all(|input| physics(output, input).is_finite());
-        let has_loop = fed_back.iter().all(|&output| has_row(output));
+        let has_row: Vec<bool> = (0..outputs)
+            .map(|output| condition.has_physics_row(output, k))
+            .collect();
+        let has_loop = fed_back.iter().all(|&output| has_row[output]);
         for input in 0..inputs {
             let has_column = has_loop
                 && fed_back
                     .iter()
-                    .all(|&output| flight(output, input).is_finite());
-            weights.extend((0..outputs).map(|output| {
+                    .all(|&output| has_flight(condition, Pair::new(output, input), k));
+            for (output, &has_row) in has_row.iter().enumerate() {
                 let pair = Pair::new(output, input);
                 let counts = has_column
                     && condition.usable[pair]
-                    && has_row(output)
-                    && flight(output, input).is_finite();
+                    && has_row
+                    && has_flight(condition, pair, k);
                 if !counts {
-                    return FixedWeight::default();
+                    weights.push(FixedWeight::default());
+                    continue;
                 }
                 let axis = if problem.on_axis[pair] { ON_AXIS } else { 1.0 };
-                let deviation = condition
-                    .deviation
-                    .as_ref()
-                    .map_or(0.0, |table| table[pair][k]);
+                let deviation = match &condition.deviation {
+                    Some(table) => table[pair][k],
+                    None => 0.0,
+                };
                 let s = axis / (1.0 + (deviation / DEVIATION).powi(2)).sqrt();
-                FixedWeight {
+                weights.push(FixedWeight {
                     s: s.max(0.0),
-                    coherence: coherence
-                        .as_ref()
-                        .map_or(1.0, |table| table[pair][k].max(0.0)),
-                }
-            }));
+                    coherence: match &coherence {
+                        Some(table) => table[pair][k].max(0.0),
+                        None => 1.0,
+                    },
+                });
+            }
         }
     }
     weights
+}
+
+/// Whether a flight response is known at frequency `k`.
+fn has_flight(condition: &CouplingCondition, pair: Pair, k: usize) -> bool {
+    condition.flight.curve(pair)[k].is_finite()
 }

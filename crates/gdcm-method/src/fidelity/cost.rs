@@ -5,9 +5,8 @@ use std::f64::consts::{PI, TAU};
 use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::response::curve_values::{mean, weighted_median};
 use gdcm_model::response::frequency_response::PolarCurve;
-use gdcm_model::response::median;
+use gdcm_model::statistics::{mean, median, weighted_median};
 
 /// Weight of the squared magnitude error \[dB^2\], `W_g` (Tischler & Remple 2012, chapter 11).
 const MAGNITUDE_WEIGHT: f64 = 1.0;

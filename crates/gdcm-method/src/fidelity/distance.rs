@@ -5,8 +5,9 @@ use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
 use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::response::PolarResponse;
 use gdcm_model::response::frequency_response::PolarCurve;
-use gdcm_model::response::{PolarResponse, median};
+use gdcm_model::statistics::median;
 
 use super::absolute_deviations::{FitError, least_absolute_deviations};
 use super::coherence_weights::CoherenceWeights;
@@ -448,7 +449,7 @@ mod tests {
         let grid = FrequencyGrid::logarithmic(Band::new(1.0, 9.0).unwrap(), 100);
         let responses: Vec<PolarResponse> = models
             .iter()
-            .map(|model| PolarResponse::of(&FrequencyResponse::of(model, &grid)))
+            .map(|model| PolarResponse::new(&FrequencyResponse::of(model, &grid)))
             .collect();
         let coherence_weights: Vec<_> = models
             .iter()

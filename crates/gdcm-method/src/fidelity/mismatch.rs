@@ -2,9 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use gdcm_model::response::curve_values::{centred_unwrap, weighted_median};
+use gdcm_model::response::curve_values::centred_unwrap;
 use gdcm_model::response::frequency_response::PolarCurve;
-use gdcm_model::response::{GainDelay, median, wrap};
+use gdcm_model::response::{GainDelay, wrap};
+use gdcm_model::statistics::{median, weighted_median};
 
 use super::coherence_weights::CoherenceWeights;
 use super::cost::{Cost, CostAverage};

@@ -14,7 +14,8 @@
 
 use nalgebra::Complex;
 
-use gdcm_model::response::{Mode, median};
+use gdcm_model::response::Mode;
+use gdcm_model::statistics::median;
 
 /// Distance between a jump and the centre, in track spreads: a smooth track over perturbations to
 /// both sides ends at two to three.

@@ -1,25 +1,26 @@
 //! The attitude response to an input, `Theta(j omega)`, from which bandwidth and phase delay are
-//! read (M17.1), and a model's response sampled once on the frequencies of the crossing search.
+//! read (M17.1), and a model response sampled once on the search frequencies.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
+use std::ops::Range;
 
 use nalgebra::Complex;
 
-use gdcm_model::assembly::PhysicalUnit;
 use gdcm_model::dataset::{Band, Channel, Dynamics, Pair};
 use gdcm_model::message_text::quoted;
 use gdcm_model::response::curve_values::{between, unwrap};
 use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::response::{FrequencyResponse, GainDelay, PreparedModel, wrap};
+use gdcm_model::units::physical_unit::PhysicalUnit;
 use gdcm_model::units::{number, ratio_to_db};
 
-/// Number of frequencies searched for sign changes.
+/// Frequency count in the search for sign changes.
 const SEARCH_POINTS: usize = 400;
-/// The search for a model extends from the lower band end over this to the upper band end times
-/// this.
+/// The search for a model extends from the lower band end divided by this factor to the upper band
+/// end times this factor.
 const SEARCH_BEYOND_BAND: f64 = 4.0;
 
-/// Relation of an output to an attitude.
+/// Meaning of an output: an attitude or its rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AttitudeOutput {
     /// Angular rate: deg/s, rad/s.
@@ -38,7 +39,7 @@ pub enum AttitudeResponseError {
         quoted(unit)
     )]
     NotAnAttitude {
-        /// Name of the output.
+        /// Output name.
         output: String,
         unit: String,
     },
@@ -80,7 +81,7 @@ impl AttitudeOutput {
 /// A response evaluated at any frequencies \[rad/s\]; NaN where it is unknown.
 pub type ResponseAt<'a> = dyn Fn(&[f64]) -> Vec<Complex<f64>> + 'a;
 
-/// Returns the frequencies \[rad/s\] of the crossing search for a model: 400, logarithmic, from
+/// Returns the frequencies \[rad/s\] searched for crossings of a model: 400, logarithmic, from
 /// `band / 4` to `4 band`.
 pub fn search_frequencies(band: Band) -> Vec<f64> {
     log_spaced(
@@ -97,7 +98,7 @@ pub fn search_frequencies(band: Band) -> Vec<f64> {
 /// unstable modes turn a physics model's phase by whole turns.
 pub struct AttitudeResponse<'a> {
     response: &'a ResponseAt<'a>,
-    /// Source for sequences of many points.
+    /// Faster source for long frequency sequences.
     samples: &'a ResponseAt<'a>,
     output: AttitudeOutput,
     /// Grid frequencies \[rad/s\] with a known response, ascending; at least two.
@@ -106,15 +107,15 @@ pub struct AttitudeResponse<'a> {
     pub(super) magnitude_db: Vec<f64>,
     /// Continuous phase \[rad\] on the grid.
     pub(super) phase: Vec<f64>,
-    /// Grid index of the lowest frequency of the band, which fixes the branch of the phase.
+    /// Grid index of the lowest band frequency, which fixes the phase branch.
     pub(super) lowest_of_band: usize,
 }
 
 impl<'a> AttitudeResponse<'a> {
-    /// Creates the attitude response of an output from `response`, searched on the ascending
-    /// frequencies `omega` \[rad/s\]: [`search_frequencies`] for a model, its own frequencies for a
-    /// measured response. It ends at the first missing value. The branch of the phase is chosen at
-    /// the first frequency in `band`.
+    /// Creates an output's attitude response from `response`, searched on the ascending frequencies
+    /// `omega` \[rad/s\]: [`search_frequencies`] for a model, its own frequencies for a measured
+    /// response. It ends at the first missing value. The phase branch is chosen at the first
+    /// frequency in `band`.
     ///
     /// # Errors
     /// [`AttitudeResponseError::NoResponse`] if no two neighbouring frequencies have a value.
@@ -124,22 +125,22 @@ impl<'a> AttitudeResponse<'a> {
         omega: &[f64],
         band: Band,
     ) -> Result<Self, AttitudeResponseError> {
-        let polar: Vec<Option<(f64, f64)>> = polar(response, output, omega);
-        let from = polar
-            .iter()
-            .position(Option::is_some)
-            .unwrap_or(omega.len());
-        let run: Vec<(f64, f64)> = polar[from..].iter().map_while(|polar| *polar).collect();
-        if run.len() < 2 {
-            let end = |omega: Option<&f64>| omega.copied().unwrap_or(f64::NAN);
+        let polar = polar(response, output, omega);
+        let known = first_run(&polar);
+        if known.len() < 2 {
             return Err(AttitudeResponseError::NoResponse {
-                from: end(omega.first()),
-                to: end(omega.last()),
+                from: omega.first().copied().unwrap_or(f64::NAN),
+                to: omega.last().copied().unwrap_or(f64::NAN),
             });
         }
-        let (magnitude_db, mut phase): (Vec<f64>, Vec<f64>) = run.into_iter().unzip();
+        let mut magnitude_db = Vec::new();
+        let mut phase = Vec::new();
+        for polar in polar[known.clone()].iter().flatten() {
+            magnitude_db.push(polar.magnitude_db);
+            phase.push(polar.phase);
+        }
         unwrap(&mut phase);
-        let omega = omega[from..from + phase.len()].to_vec();
+        let omega = omega[known].to_vec();
         let lowest_of_band = omega
             .partition_point(|omega| *omega < band.min())
             .min(omega.len() - 1);
@@ -150,7 +151,9 @@ impl<'a> AttitudeResponse<'a> {
             principal
         };
         let turns = on_branch - phase[lowest_of_band];
-        phase.iter_mut().for_each(|phase| *phase += turns);
+        for phase in &mut phase {
+            *phase += turns;
+        }
         Ok(Self {
             response,
             samples: response,
@@ -162,68 +165,95 @@ impl<'a> AttitudeResponse<'a> {
         })
     }
 
-    /// Uses `samples` of the response to read sequences of many points.
+    /// Reads long frequency sequences from `samples` of the response.
     #[must_use]
     pub fn sampled_by(self, samples: &'a ResponseAt<'a>) -> Self {
         Self { samples, ..self }
     }
 
     /// Returns the phase \[deg\] at the lowest frequency of the band if it indicates an input or an
-    /// output with reversed sign: within 45 deg of +90 deg, where an attitude that follows its
-    /// input has 0 to -90 deg. The bandwidths are then wrong.
+    /// output with reversed sign: +90 deg within 45 deg, where an attitude that follows its input
+    /// has 0 to -90 deg. The bandwidths are then wrong.
     pub fn reversed_phase_deg(&self) -> Option<f64> {
         let phase_deg = self.phase[self.lowest_of_band].to_degrees();
-        let is_reversed = !(-225.0..=45.0).contains(&phase_deg);
-        is_reversed.then_some(phase_deg)
+        if (-225.0..=45.0).contains(&phase_deg) {
+            None
+        } else {
+            Some(phase_deg)
+        }
     }
 
     /// Returns the magnitude \[dB\] at `omega` \[rad/s\]; `None` without a response.
     pub fn magnitude_db_at(&self, omega: f64) -> Option<f64> {
-        polar(self.response, self.output, &[omega])[0].map(|(magnitude_db, _)| magnitude_db)
+        Some(polar(self.response, self.output, &[omega])[0]?.magnitude_db)
     }
 
     /// Returns the phase \[rad\] at `omega` \[rad/s\] on the branch of the surrounding grid; `None`
     /// outside the grid or without a response.
     pub fn phase_at(&self, omega: f64) -> Option<f64> {
         let near = between(&self.omega, &self.phase, omega)?;
-        let (_, principal) = polar(self.response, self.output, &[omega])[0]?;
+        let principal = polar(self.response, self.output, &[omega])[0]?.phase;
         Some(near + wrap(principal - near))
     }
 
     /// Returns the phases \[rad\] at the ascending frequencies `omega` \[rad/s\], unwrapped from
-    /// `first`, the phase at the first of them; `None` if a response is missing. The frequencies
+    /// `first`, the phase at the first frequency; `None` if a response is missing. The frequencies
     /// may extend beyond the grid. The last phase is read from the response itself, the others from
     /// its samples, if any.
     pub fn phases_from(&self, first: f64, omega: &[f64]) -> Option<Vec<f64>> {
         let (last, before) = omega.split_last()?;
         let mut found = polar(self.samples, self.output, before);
         found.extend(polar(self.response, self.output, &[*last]));
-        let mut phases: Vec<f64> = found
-            .into_iter()
-            .map(|polar| polar.map(|(_, phase)| phase))
-            .collect::<Option<_>>()?;
+        let mut phases = Vec::new();
+        for polar in found {
+            phases.push(polar?.phase);
+        }
         unwrap(&mut phases);
         let turns = TAU * ((first - phases.first()?) / TAU).round();
-        phases.iter_mut().for_each(|phase| *phase += turns);
+        for phase in &mut phases {
+            *phase += turns;
+        }
         Some(phases)
     }
 }
 
-/// Returns magnitude \[dB\] and principal phase \[rad\] of the attitude; `None` where it is zero or
-/// not finite.
-fn polar(
-    response: &ResponseAt<'_>,
-    output: AttitudeOutput,
-    omega: &[f64],
-) -> Vec<Option<(f64, f64)>> {
-    let values = response(omega)
-        .into_iter()
-        .zip(omega)
-        .map(|(value, &omega)| value * output.factor(omega));
-    let polar = values.map(|value| (ratio_to_db(value.norm()), value.arg()));
+/// Attitude magnitude \[dB\] and principal phase \[rad\] at a frequency.
+#[derive(Clone, Copy)]
+struct Polar {
+    magnitude_db: f64,
+    phase: f64,
+}
+
+/// Evaluates the attitude; `None` where it is zero or not finite.
+fn polar(response: &ResponseAt<'_>, output: AttitudeOutput, omega: &[f64]) -> Vec<Option<Polar>> {
+    let mut polar = Vec::with_capacity(omega.len());
+    for (value, &omega) in response(omega).into_iter().zip(omega) {
+        let attitude = value * output.factor(omega);
+        let magnitude_db = ratio_to_db(attitude.norm());
+        let phase = attitude.arg();
+        polar.push(if magnitude_db.is_finite() && phase.is_finite() {
+            Some(Polar {
+                magnitude_db,
+                phase,
+            })
+        } else {
+            None
+        });
+    }
     polar
-        .map(|(db, phase)| (db.is_finite() && phase.is_finite()).then_some((db, phase)))
-        .collect()
+}
+
+/// Returns the range from the first known value to the last before a gap.
+fn first_run(polar: &[Option<Polar>]) -> Range<usize> {
+    let start = polar
+        .iter()
+        .position(Option::is_some)
+        .unwrap_or(polar.len());
+    let length = polar[start..]
+        .iter()
+        .position(Option::is_none)
+        .unwrap_or(polar.len() - start);
+    start..start + length
 }
 
 /// A model with its response on the search frequencies and, at equal ratios, up to twice the
@@ -232,7 +262,7 @@ pub struct SampledModel {
     prepared: PreparedModel,
     omega: Vec<f64>,
     values: FrequencyResponse,
-    /// Number of search frequencies.
+    /// Search frequency count.
     searched: usize,
 }
 
@@ -245,7 +275,7 @@ impl SampledModel {
         let highest = omega[omega.len() - 1];
         let ratio = omega[1] / omega[0];
         let beyond = std::iter::successors(Some(highest * ratio), |omega| Some(omega * ratio));
-        // One more than needed, as a neighbour for the interpolation.
+        // With an extra neighbour for the interpolation.
         omega.extend(beyond.take(1 + (2f64.ln() / ratio.ln()).ceil() as usize));
         let values = prepared.at(&omega);
         Self {
@@ -263,17 +293,11 @@ impl SampledModel {
         correction: GainDelay,
     ) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
         move |omega| {
-            let corrected = |values: &[Complex<f64>]| {
-                values
-                    .iter()
-                    .zip(omega)
-                    .map(|(value, omega)| value * correction.at(*omega))
-                    .collect()
-            };
             if *omega == self.omega[..self.searched] {
-                return corrected(&self.values.curve(pair)[..self.searched]);
+                let values = &self.values.curve(pair)[..self.searched];
+                return corrected(values, omega, correction);
             }
-            corrected(self.prepared.at(omega).curve(pair))
+            corrected(self.prepared.at(omega).curve(pair), omega, correction)
         }
     }
 
@@ -284,19 +308,51 @@ impl SampledModel {
         pair: Pair,
         correction: GainDelay,
     ) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
-        let curve = self.values.curve(pair);
-        let start = self.omega[0].ln();
-        let step = (self.omega[1] / self.omega[0]).ln();
-        let between = move |omega: f64| {
-            let place = (omega.ln() - start) / step;
-            let last = (curve.len() - 1) as f64;
-            if !(-1e-9..=last + 1e-9).contains(&place) {
-                return Complex::new(f64::NAN, f64::NAN);
-            }
-            let from = (place.floor() - 1.0).clamp(0.0, last - 3.0);
-            cubic(&curve[from as usize..][..4], place - from) * correction.at(omega)
+        let cubic = CubicInterpolation {
+            curve: self.values.curve(pair),
+            start: self.omega[0].ln(),
+            step: (self.omega[1] / self.omega[0]).ln(),
         };
-        move |omega| omega.iter().map(|omega| between(*omega)).collect()
+        move |omega| {
+            omega
+                .iter()
+                .map(|&omega| match cubic.at(omega) {
+                    Some(value) => value * correction.at(omega),
+                    None => Complex::new(f64::NAN, f64::NAN),
+                })
+                .collect()
+        }
+    }
+}
+
+/// Returns the values at these frequencies under `correction`.
+fn corrected(values: &[Complex<f64>], omega: &[f64], correction: GainDelay) -> Vec<Complex<f64>> {
+    values
+        .iter()
+        .zip(omega)
+        .map(|(value, omega)| value * correction.at(*omega))
+        .collect()
+}
+
+/// A response sampled at equal steps of ln omega.
+struct CubicInterpolation<'a> {
+    curve: &'a [Complex<f64>],
+    /// ln omega at the first sample.
+    start: f64,
+    /// Step of ln omega.
+    step: f64,
+}
+
+impl CubicInterpolation<'_> {
+    /// Interpolates through the four nearest samples; `None` outside the samples.
+    fn at(&self, omega: f64) -> Option<Complex<f64>> {
+        let place = (omega.ln() - self.start) / self.step;
+        let last = (self.curve.len() - 1) as f64;
+        if !(-1e-9..=last + 1e-9).contains(&place) {
+            return None;
+        }
+        let from = (place.floor() - 1.0).clamp(0.0, last - 3.0);
+        Some(cubic(&self.curve[from as usize..][..4], place - from))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Boundaries of handling-qualities levels over bandwidth and phase delay, read from a user file
+//! Handling-qualities level boundaries over bandwidth and phase delay, read from a user file
 //! (M17.1).
 //!
 //! None is built in, because they depend on the mission task element and the category (ADS-33E-PRF,
@@ -9,18 +9,18 @@ use serde::{Deserialize, Serialize};
 use gdcm_model::message_text::quoted;
 use gdcm_model::units::number;
 
-/// One boundary: a polyline in the plane of bandwidth and phase delay.
+/// A boundary: a polyline in the plane of bandwidth and phase delay.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelBoundary {
     /// Its name ("Level 1").
     pub name: String,
     /// The output that it applies to ("P").
     pub axis: String,
-    /// Bandwidth \[rad/s\] and phase delay \[s\] of each point, in drawing order; at least two.
+    /// Points \[rad/s, s\]: bandwidth and phase delay, in drawing order; at least two.
     pub points: Vec<[f64; 2]>,
 }
 
-/// The boundaries of a file, `[{"name": "Level 1", "axis": "P", "points": [[omega, tau], ...]}]`;
+/// The boundaries in a file, `[{"name": "Level 1", "axis": "P", "points": [[omega, tau], ...]}]`;
 /// each is checked on reading.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<LevelBoundary>")]
@@ -69,6 +69,7 @@ pub enum LevelBoundaryError {
 }
 
 impl LevelBoundary {
+    /// Checks a boundary; `entry` counts from 1.
     fn check(&self, entry: usize) -> Result<(), LevelBoundaryError> {
         let name = self.name.clone();
         if name.trim().is_empty() {
@@ -84,17 +85,17 @@ impl LevelBoundary {
                 found: self.points.len(),
             });
         }
-        let is_wrong =
-            |point: &[f64; 2]| point.iter().any(|value| !value.is_finite() || *value < 0.0);
-        match self.points.iter().position(is_wrong) {
-            Some(at) => Err(LevelBoundaryError::Point {
-                entry,
-                name,
-                point: at + 1,
-                found: self.points[at],
-            }),
-            None => Ok(()),
+        for (index, &found) in self.points.iter().enumerate() {
+            if found.iter().any(|value| !value.is_finite() || *value < 0.0) {
+                return Err(LevelBoundaryError::Point {
+                    entry,
+                    name,
+                    point: index + 1,
+                    found,
+                });
+            }
         }
+        Ok(())
     }
 }
 
@@ -102,35 +103,30 @@ impl TryFrom<Vec<LevelBoundary>> for LevelBoundaries {
     type Error = LevelBoundaryError;
 
     fn try_from(boundaries: Vec<LevelBoundary>) -> Result<Self, LevelBoundaryError> {
-        boundaries
-            .iter()
-            .enumerate()
-            .try_for_each(|(index, boundary)| boundary.check(index + 1))?;
+        for (index, boundary) in boundaries.iter().enumerate() {
+            boundary.check(index + 1)?;
+        }
         Ok(Self(boundaries))
     }
 }
 
 impl LevelBoundaries {
-    /// Returns all boundaries, in file order.
+    /// Returns the boundaries in file order.
     pub fn all(&self) -> &[LevelBoundary] {
         &self.0
     }
 
-    /// Returns the boundaries of one axis, named as the dataset names its output.
+    /// Returns the boundaries for one axis, named as the dataset names its output.
     pub fn of_axis<'a>(&'a self, axis: &'a str) -> impl Iterator<Item = &'a LevelBoundary> {
         self.0.iter().filter(move |boundary| boundary.axis == axis)
     }
 
-    /// Returns the axes of the file that are not outputs of the dataset, without duplicates.
+    /// Returns the axes that are not outputs of the dataset, without duplicates.
     pub fn unknown_axes(&self, outputs: &[String]) -> Vec<&str> {
         let mut unknown: Vec<&str> = Vec::new();
-        for boundary in self
-            .0
-            .iter()
-            .filter(|boundary| !outputs.contains(&boundary.axis))
-        {
-            if !unknown.contains(&boundary.axis.as_str()) {
-                unknown.push(&boundary.axis);
+        for LevelBoundary { axis, .. } in &self.0 {
+            if !outputs.contains(axis) && !unknown.contains(&axis.as_str()) {
+                unknown.push(axis);
             }
         }
         unknown
@@ -143,6 +139,12 @@ mod tests {
 
     fn read(text: &str) -> Result<LevelBoundaries, String> {
         serde_json::from_str(text).map_err(|error| error.to_string())
+    }
+
+    /// The error for a file with a single boundary.
+    fn read_error(name: &str, axis: &str, points: &str) -> String {
+        let boundary = format!(r#"[{{"name":"{name}","axis":"{axis}","points":{points}}}]"#);
+        read(&boundary).unwrap_err()
     }
 
     #[test]
@@ -160,24 +162,21 @@ mod tests {
 
     #[test]
     fn a_wrong_boundary_is_refused_with_its_place() {
-        let of = |name: &str, axis: &str, points: &str| {
-            read(&format!(
-                r#"[{{"name":"{name}","axis":"{axis}","points":{points}}}]"#
-            ))
-            .unwrap_err()
-        };
         for (error, words) in [
-            (of(" ", "P", "[[1,0],[1,1]]"), "boundary 1: expected a name"),
             (
-                of("L", "", "[[1,0],[1,1]]"),
+                read_error(" ", "P", "[[1,0],[1,1]]"),
+                "boundary 1: expected a name",
+            ),
+            (
+                read_error("L", "", "[[1,0],[1,1]]"),
                 "boundary 1, \"L\": expected the name of an output",
             ),
             (
-                of("L", "P", "[[1,0]]"),
+                read_error("L", "P", "[[1,0]]"),
                 "boundary 1, \"L\": expected at least 2 points, found 1",
             ),
             (
-                of("L", "P", "[[1,0],[1,-0.1]]"),
+                read_error("L", "P", "[[1,0],[1,-0.1]]"),
                 "boundary 1, \"L\", point 2: expected a bandwidth (rad/s) and a phase delay (s) not below zero, found 1 and -0.1",
             ),
         ] {

@@ -1,27 +1,43 @@
 //! Qualification criteria for a model (M17): bandwidth and phase delay, time histories within
 //! tolerances, modes, summary costs.
 //!
-//! J measures the distance of two models; acceptance of a simulator or a flight control law needs
+//! J measures the distance between two models; accepting a simulator or a flight control law needs
 //! other criteria. Each is evaluated here for one model and never changes a correction. Times in s,
 //! frequencies in rad/s, internal angles in rad. A response is evaluated exactly (models) or
 //! interpolated inside its frequencies (measured), never extrapolated.
 //!
 //! | file | answers | standard |
 //! |---|---|---|
-//! | `bandwidth` | bandwidth, phase delay | ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742 |
-//! | `mode_comparison`, `mode_pairing`, `mode_name` | modes | 14 CFR part 60, appendix C, table C2A, 2.c.3.a, 2.d.3.a |
+//! | `attitude_response` | response from which bandwidths are read | |
+//! | `bandwidth`, `phase_delay`, `response_deviation`, `level_boundary` | bandwidth, phase delay, their uncertainty and levels | ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742 |
+//! | `mode_comparison`, `mode_pairing`, `mode_name`, `mode_values`, `mode_tolerance` | modes | 14 CFR part 60, appendix C, table C2A, 2.c.3.a, 2.d.3.a |
 //! | `summary` | J, rms in time, Theil's coefficients, MUAD | MIL-STD-1797A, appendix A, 4.2.1.2 |
-//! | `tolerance` | time histories within tolerances | 14 CFR part 60, appendix C, table C2A; CS-FSTD(H) |
+//! | `test_input` | steps and doublets | |
+//! | `tolerance`, `tolerance_table` | time histories within tolerances | 14 CFR part 60, appendix C, table C2A; CS-FSTD(H) |
 
 pub mod attitude_response;
 pub mod bandwidth;
+mod bandwidth_metric;
+#[cfg(test)]
+mod bandwidth_tests;
+mod crossing;
 pub mod level_boundary;
 pub mod mode_comparison;
+#[cfg(test)]
+mod mode_comparison_tests;
 pub mod mode_name;
 pub mod mode_pairing;
+mod mode_tolerance;
+mod mode_values;
+mod phase_delay;
+mod positive_number;
+mod response_deviation;
 pub mod summary;
 pub mod test_input;
 pub mod tolerance;
+mod tolerance_table;
+#[cfg(test)]
+mod tolerance_tests;
 
 pub use attitude_response::AttitudeOutput;
 pub use bandwidth::BandwidthRule;
@@ -31,17 +47,7 @@ pub use mode_name::{ModeName, NamedBy};
 pub use test_input::{TestInput, TestInputShape};
 pub use tolerance::{RecordCheck, Tolerance, ToleranceTable};
 
-/// Returns the first named number that is not finite, or not above zero.
-fn not_positive<const N: usize>(
-    values: [(&'static str, Option<f64>); N],
-) -> Option<(&'static str, f64)> {
-    let is_wrong = |value: &f64| !value.is_finite() || *value <= 0.0;
-    values
-        .into_iter()
-        .find_map(|(name, value)| Some((name, value.filter(is_wrong)?)))
-}
-
-/// Known answers of M17, from independent code.
+/// Known answers for M17, from independent code.
 #[cfg(test)]
 mod known_answers {
     use nalgebra::Complex;
@@ -55,12 +61,12 @@ mod known_answers {
         .unwrap()
     }
 
-    /// Returns a number of a case.
+    /// Returns a named number.
     pub(super) fn number(case: &Value, name: &str) -> f64 {
         case[name].as_f64().unwrap()
     }
 
-    /// The attitude response of each case, as its description defines it.
+    /// The attitude responses, as the cases describe them.
     pub(super) fn attitudes() -> [fn(Complex<f64>) -> Complex<f64>; 4] {
         fn second_order(
             gain: f64,

@@ -1,7 +1,7 @@
-//! Names of the modes of a helicopter (M17.3).
+//! Names of helicopter modes (M17.3).
 //!
 //! ```text
-//! where states are named: sum the participations of states of a kind
+//! if states are named: sum the participations by kind of state
 //!    cyclic flap >= 0.4, an oscillation below 25 rad/s             regressing flap
 //!    u, w, q, theta  more than  v, p, r, phi, psi, and over 0.3:   u, theta more than w, q: phugoid; else oscillation: short period
 //!                                                                  real: q more than w: pitch subsidence, else heave
@@ -18,34 +18,34 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::response::Mode;
 
-/// Participation of the cyclic flap above which a mode belongs to the rotor.
+/// Cyclic flap participation at or above which a mode belongs to the rotor.
 const FLAP_SHARE: f64 = 0.4;
-/// Participation of the fuselage below which a mode belongs to actuators, sensors or inflow.
+/// Fuselage participation below which a mode belongs to actuators, sensors or inflow.
 const FUSELAGE_SHARE: f64 = 0.3;
-/// Frequency \[rad/s\] below which a flapping mode is the regressing one.
+/// Frequency \[rad/s\] below which a flapping mode is regressing.
 const FASTEST_REGRESSING_RAD_S: f64 = 25.0;
 /// Frequency \[rad/s\] below which a real lateral mode without roll rate is the spiral.
 const FASTEST_SPIRAL_RAD_S: f64 = 1.0;
 
-/// The name of a mode.
+/// A helicopter mode (Padfield 2007, 4.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ModeName {
-    /// Slow oscillation of speed and pitch attitude: the long-term response.
+    /// Long-term response: slow oscillation in speed and pitch attitude.
     Phugoid,
-    /// Fast oscillation of pitch rate and incidence.
+    /// Fast oscillation in pitch rate and incidence.
     ShortPeriod,
-    /// Subsidence of pitch rate.
+    /// Real pitch rate mode.
     PitchSubsidence,
-    /// Subsidence of vertical speed.
+    /// Real vertical speed mode.
     Heave,
     /// Lateral-directional oscillation.
     DutchRoll,
-    /// Subsidence of roll rate.
+    /// Real roll rate mode.
     RollSubsidence,
-    /// Slow real mode of bank and heading.
+    /// Slow real mode in bank and heading.
     Spiral,
-    /// Regressing flap of the main rotor.
+    /// Main rotor, cyclic flap.
     RegressingFlap,
 }
 
@@ -68,14 +68,14 @@ impl fmt::Display for ModeName {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NamedBy {
-    /// The participation of states.
+    /// State participation.
     States,
     /// Frequency and damping only.
     Frequency,
 }
 
-/// Returns the kind of a state by its name ("q \[rad/s\]", "theta", "b1c_dot", "a (lon flap)"): the
-/// usual letter of a body axis, an attitude, or "flap" for the cyclic flap; `None` for any other.
+/// Returns a state's kind by its name ("q \[rad/s\]", "theta", "b1c_dot", "a (lon flap)"): the
+/// usual letter for a body axis, an attitude, or "flap" for the cyclic flap; `None` for any other.
 fn state_kind(name: &str) -> Option<&'static str> {
     let lower = name.to_lowercase();
     if lower.contains("flap") {
@@ -103,10 +103,33 @@ fn state_kind(name: &str) -> Option<&'static str> {
     })
 }
 
+/// How much named states participate in a mode.
+struct KindShares<'a> {
+    /// Index and participation of each participating state.
+    shares: &'a [(usize, f64)],
+    /// State names.
+    states: &'a [String],
+}
+
+impl KindShares<'_> {
+    /// Returns the summed participation of these kinds.
+    fn sum(&self, kinds: &[&str]) -> f64 {
+        self.shares
+            .iter()
+            .filter(|(state, _)| {
+                let name = self.states.get(*state);
+                let kind = name.and_then(|name| state_kind(name));
+                kind.is_some_and(|kind| kinds.contains(&kind))
+            })
+            .map(|(_, share)| share)
+            .sum()
+    }
+}
+
 impl ModeName {
-    /// Names a mode of a model: by the participation of states if `states` names them, otherwise by
-    /// frequency and damping. `None` if this is inconclusive, or if a pole of named states cannot
-    /// be separated from another, as for identical actuators.
+    /// Names a mode: by state participation if `states` is not empty, otherwise by frequency and
+    /// damping. `None` if this is inconclusive, or if a pole cannot be separated from another, as
+    /// for identical actuators.
     pub fn of(mode: &Mode, states: &[String]) -> (Option<Self>, NamedBy) {
         if states.is_empty() {
             return (Self::by_frequency(mode), NamedBy::Frequency);
@@ -115,40 +138,32 @@ impl ModeName {
         (Self::by_states(mode, shares, states), NamedBy::States)
     }
 
+    /// Names a mode by the kinds of states that participate; `shares` holds their indices and
+    /// participations.
     fn by_states(mode: &Mode, shares: &[(usize, f64)], states: &[String]) -> Option<Self> {
-        let kinds: Vec<Option<&str>> = states.iter().map(|name| state_kind(name)).collect();
-        let share = |of: &[&str]| -> f64 {
-            let is_of = |state: usize| {
-                kinds
-                    .get(state)
-                    .copied()
-                    .flatten()
-                    .is_some_and(|kind| of.contains(&kind))
-            };
-            shares
-                .iter()
-                .filter(|(state, _)| is_of(*state))
-                .map(|(_, share)| share)
-                .sum()
-        };
+        let shares = KindShares { shares, states };
+        let cyclic_flap = shares.sum(&["flap"]);
         let is_slow_enough = mode.frequency_rad_s < FASTEST_REGRESSING_RAD_S;
-        if share(&["flap"]) >= FLAP_SHARE && mode.oscillates() && is_slow_enough {
+        if cyclic_flap >= FLAP_SHARE && mode.oscillates() && is_slow_enough {
             return Some(Self::RegressingFlap);
         }
-        let longitudinal = share(&["u", "w", "q", "theta"]);
-        let lateral = share(&["v", "p", "r", "phi", "psi"]);
+        let longitudinal = shares.sum(&["u", "w", "q", "theta"]);
+        let lateral = shares.sum(&["v", "p", "r", "phi", "psi"]);
         if longitudinal.max(lateral) < FUSELAGE_SHARE {
             return None;
         }
         match (longitudinal > lateral, mode.oscillates()) {
             // Also for two real poles, into which the oscillation can split.
-            (true, _) if share(&["u", "theta"]) > share(&["w", "q"]) => Some(Self::Phugoid),
+            (true, _) if shares.sum(&["u", "theta"]) > shares.sum(&["w", "q"]) => {
+                Some(Self::Phugoid)
+            }
             (true, true) => Some(Self::ShortPeriod),
-            (true, false) if share(&["q"]) > share(&["w"]) => Some(Self::PitchSubsidence),
+            (true, false) if shares.sum(&["q"]) > shares.sum(&["w"]) => Some(Self::PitchSubsidence),
             (true, false) => Some(Self::Heave),
             (false, true) => Some(Self::DutchRoll),
-            (false, false) if share(&["p"]) >= 0.5 * lateral => Some(Self::RollSubsidence),
-            (false, false) => (mode.frequency_rad_s < FASTEST_SPIRAL_RAD_S).then_some(Self::Spiral),
+            (false, false) if shares.sum(&["p"]) >= 0.5 * lateral => Some(Self::RollSubsidence),
+            (false, false) if mode.frequency_rad_s < FASTEST_SPIRAL_RAD_S => Some(Self::Spiral),
+            (false, false) => None,
         }
     }
 
@@ -176,7 +191,8 @@ mod tests {
 
     use super::*;
 
-    fn modes_of(a: DMatrix<f64>) -> Vec<Mode> {
+    /// Modes of `dx/dt = a x`, without inputs and outputs.
+    fn uncontrolled_modes(a: DMatrix<f64>) -> Vec<Mode> {
         let n = a.nrows();
         modes(
             &StateSpace::new(
@@ -192,7 +208,7 @@ mod tests {
 
     fn named(a: DMatrix<f64>, states: &[&str]) -> Vec<(Option<ModeName>, NamedBy)> {
         let states: Vec<String> = states.iter().map(|name| (*name).to_owned()).collect();
-        modes_of(a)
+        uncontrolled_modes(a)
             .iter()
             .map(|mode| ModeName::of(mode, &states))
             .collect()
@@ -201,8 +217,7 @@ mod tests {
     #[test]
     fn modes_are_named_by_the_states_that_take_part() {
         use ModeName::*;
-        // Decoupled blocks: a slow pair of u and theta, a pair of w and q, a lag of p, a lag of
-        // phi.
+        // Decoupled blocks: a slow pair u and theta, a pair w and q, lags p and phi.
         let a = dmatrix![
             0.0, -0.1, 0.0, 0.0, 0.0, 0.0;
             0.1, 0.0, 0.0, 0.0, 0.0, 0.0;
@@ -224,37 +239,42 @@ mod tests {
 
     #[test]
     fn states_of_actuators_leave_a_mode_without_a_name() {
-        let pair = || dmatrix![-16.0, 14.0; -14.0, -16.0];
+        let pair = dmatrix![-16.0, 14.0; -14.0, -16.0];
         assert_eq!(
-            named(pair(), &["act_lon", "act_lon_dot"])[0],
+            named(pair.clone(), &["act_lon", "act_lon_dot"])[0],
             (None, NamedBy::States)
         );
-        // Two identical actuators cannot be told apart; frequency is not used when the states are
-        // known.
+        // Two identical actuators cannot be separated; frequency is not used if states are known.
         let twice = dmatrix![-6.0, 5.0, 1.0, 0.0; -5.0, -6.0, 0.0, 1.0; 0.0, 0.0, -6.0, 5.0; 0.0, 0.0, -5.0, -6.0];
         assert_eq!(
             named(twice, &["act_lon", "act_lon_dot", "act_lat", "act_lat_dot"])[0],
             (None, NamedBy::States)
         );
         assert_eq!(
-            named(pair() * 0.4, &["b1s", "p"])[0].0,
+            named(pair.clone() * 0.4, &["b1s", "p"])[0].0,
             Some(ModeName::RegressingFlap)
         );
         assert_eq!(
-            named(pair() * 0.1, &["v", "r"])[0].0,
+            named(pair.clone() * 0.1, &["v", "r"])[0].0,
             Some(ModeName::DutchRoll)
         );
         assert_eq!(
-            named(pair() * 0.4, &["a (lon flap)", "beta_1s_dot"])[0].0,
+            named(pair.clone() * 0.4, &["a (lon flap)", "beta_1s_dot"])[0].0,
             Some(ModeName::RegressingFlap)
         );
+    }
+
+    fn lag(rate: f64) -> DMatrix<f64> {
+        dmatrix![-rate]
+    }
+
+    fn pair(re: f64, im: f64) -> DMatrix<f64> {
+        dmatrix![re, im; -im, re]
     }
 
     #[test]
     fn without_names_of_states_frequency_and_damping_guess() {
         use ModeName::*;
-        let lag = |rate: f64| dmatrix![-rate];
-        let pair = |re: f64, im: f64| dmatrix![re, im; -im, re];
         for (a, name) in [
             (lag(0.05), Some(Spiral)),
             (lag(3.0), Some(RollSubsidence)),

@@ -1,15 +1,15 @@
-//! Pairing of the modes of a model with flown modes: close in the s-plane and similar in shape over
-//! the outputs (M17.3).
+//! Pairs a model's modes with flown modes: close in the s-plane and similar in shape over the
+//! outputs (M17.3).
 //!
 //! ```text
-//! 1  of a conjugate pair the pole above the real axis: one mode
-//! 2  scale of output i:  s_i^2 = sum_k |r_ki|^2 / max(|lambda_k|, omega_min)^2 over the flown modes,  r_k = (C v_k) |w_k B|
+//! 1  mode: a real pole, or the upper pole of a conjugate pair
+//! 2  output scale:  s_i^2 = sum_k |r_ki|^2 / max(|lambda_k|, omega_min)^2 over the flown modes,  r_k = (C v_k) |w_k B|
 //! 3  distance  d = |lambda - lambda'| / max(|lambda|, |lambda'|, omega_min)
 //!    likeness  c = |sum_i r_i* r'_i / s_i^2|^2 / (sum_i |r_i|^2 / s_i^2  sum_i |r'_i|^2 / s_i^2)
-//! 4  a pair has d <= 1/2 and c >= 1/2; the sum of d + 1 - c is least, an unpaired flown mode counting 1
+//! 4  a pair has d <= 1/2 and c >= 1/2; least sum over d + 1 - c, where an unpaired flown mode counts 1
 //! ```
 //!
-//! `omega_min` is the lower end of the band: below it flight resolves poles only by their absolute
+//! `omega_min` is the lower band end: below it flight resolves poles only by their absolute
 //! difference. `c` is the modal assurance criterion, 1 for equal shapes and 0 for orthogonal
 //! shapes: Allemang & Brown, "A correlation coefficient for modal vector analysis", Proc. 1st
 //! International Modal Analysis Conference, 1982. Assignment: see `fidelity/mode_tracks.rs`.
@@ -20,13 +20,13 @@ use gdcm_model::response::Mode;
 
 use crate::fidelity::mode_tracks::least_total;
 
-/// Largest distance of a pair in the s-plane, relative to the larger modulus.
+/// Largest s-plane distance within a pair, relative to the larger modulus.
 pub const LARGEST_PAIR_DISTANCE: f64 = 0.5;
-/// Smallest likeness of a pair: of its residues over the outputs.
+/// Smallest likeness within a pair.
 pub const LEAST_PAIR_LIKENESS: f64 = 0.5;
 /// Cost of a flown mode without a partner: the same as the worst pair.
 const UNPAIRED_COST: f64 = LARGEST_PAIR_DISTANCE + 1.0 - LEAST_PAIR_LIKENESS;
-/// Cost of two modes that cannot be a pair: more than any number of unpaired modes.
+/// Cost of an impossible pair: more than all modes unpaired.
 const BARRED_COST: f64 = 1e9;
 
 /// A model's counterpart of a flown mode.
@@ -38,15 +38,15 @@ pub(super) struct ModePair {
     pub(super) cost: f64,
 }
 
-/// Returns the index of one mode of each conjugate pair.
+/// Returns the indices of modes, each conjugate pair once.
 pub(super) fn single_modes(modes: &[Mode]) -> Vec<usize> {
     (0..modes.len())
         .filter(|&index| modes[index].pole.im >= 0.0)
         .collect()
 }
 
-/// Returns the partner among `model` of each of [`single_modes`] of `flown`; `None` if unpaired. No
-/// mode is a partner twice.
+/// Returns the partner in `model` for each of the [`single_modes`] in `flown`; `None` if unpaired.
+/// No mode is a partner twice.
 pub(super) fn mode_pairs(
     flown: &[Mode],
     model: &[Mode],
@@ -55,20 +55,25 @@ pub(super) fn mode_pairs(
     let rows = single_modes(flown);
     let columns = single_modes(model);
     let scales = output_scales(flown, least_rad_s);
-    let cost = |row: usize, column: usize| {
-        let Some(&mode) = columns.get(column) else {
-            return UNPAIRED_COST;
-        };
-        pair_cost(&flown[rows[row]], &model[mode], &scales, least_rad_s).unwrap_or(BARRED_COST)
-    };
     // Each flown mode has an additional column, which leaves it unpaired.
-    let assigned = least_total(rows.len(), columns.len() + rows.len(), cost);
-    let pair = |(row, column): (usize, usize)| {
-        let mode = *columns.get(column)?;
-        let cost = pair_cost(&flown[rows[row]], &model[mode], &scales, least_rad_s)?;
-        Some(ModePair { mode, cost })
-    };
-    assigned.into_iter().enumerate().map(pair).collect()
+    let assigned = least_total(
+        rows.len(),
+        columns.len() + rows.len(),
+        |row, column| match columns.get(column) {
+            Some(&mode) => pair_cost(&flown[rows[row]], &model[mode], &scales, least_rad_s)
+                .unwrap_or(BARRED_COST),
+            None => UNPAIRED_COST,
+        },
+    );
+    let mut pairs = Vec::with_capacity(rows.len());
+    for (row, column) in assigned.into_iter().enumerate() {
+        let pair = columns.get(column).and_then(|&mode| {
+            let cost = pair_cost(&flown[rows[row]], &model[mode], &scales, least_rad_s)?;
+            Some(ModePair { mode, cost })
+        });
+        pairs.push(pair);
+    }
+    pairs
 }
 
 /// Returns `d + 1 - c` of two modes; `None` if they cannot be a pair.
@@ -88,7 +93,7 @@ fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Op
     }
 }
 
-/// Returns `s_i` of each output; zero if no flown mode reaches it.
+/// Returns `s_i` by output; zero if no flown mode reaches it.
 fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
     let mut squares: Vec<f64> = Vec::new();
     for mode in flown {
@@ -103,23 +108,33 @@ fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
 
 /// Returns `c` of two modes; `None` if one shape is unknown, or no flown mode reaches any output.
 fn likeness(flown: &Mode, model: &Mode, scales: &[f64]) -> Option<f64> {
-    let [of_flown, of_model] = [flown, model].map(|mode| mode.residues.as_deref());
+    let flown = mode_shape(flown)?;
+    let model = mode_shape(model)?;
     let mut product = Complex::from(0.0);
-    let mut squares = [0.0; 2];
+    let mut flown_square = 0.0;
+    let mut model_square = 0.0;
     let mut is_reached = false;
-    for ((flown, model), scale) in of_flown?.iter().zip(of_model?).zip(scales) {
+    for ((flown, model), scale) in flown.iter().zip(model).zip(scales) {
         if *scale > 0.0 {
             let flown = flown / scale;
             let model = model / scale;
             product += flown.conj() * model;
-            squares[0] += flown.norm_sqr();
-            squares[1] += model.norm_sqr();
+            flown_square += flown.norm_sqr();
+            model_square += model.norm_sqr();
             is_reached = true;
         }
     }
-    let likeness = product.norm_sqr() / (squares[0] * squares[1]);
+    if !is_reached {
+        return None;
+    }
+    let likeness = product.norm_sqr() / (flown_square * model_square);
     // A mode that no input excites or no output observes resembles no other.
-    is_reached.then(|| if likeness.is_finite() { likeness } else { 0.0 })
+    Some(if likeness.is_finite() { likeness } else { 0.0 })
+}
+
+/// Returns a mode's residues by output, `r_i`.
+fn mode_shape(mode: &Mode) -> Option<&[Complex<f64>]> {
+    mode.residues.as_deref()
 }
 
 #[cfg(test)]
@@ -131,7 +146,7 @@ mod tests {
 
     use super::*;
 
-    /// The modes of lags `-rate`, with their output shapes by row.
+    /// Modes with poles `-rate`, with their output shapes by row.
     fn lags(rates: &[f64], shapes: &[[f64; 2]]) -> Vec<Mode> {
         let n = rates.len();
         let a = DMatrix::from_diagonal(&nalgebra::DVector::from_iterator(
@@ -145,6 +160,17 @@ mod tests {
         .unwrap()
     }
 
+    /// A conjugate mode pair, observed by two outputs.
+    fn oscillation(re: f64, im: f64) -> Vec<Mode> {
+        let model = StateSpace::new(
+            dmatrix![re, im; -im, re],
+            dmatrix![1.0; 0.0],
+            dmatrix![1.0, 0.0; 0.0, 1.0],
+            DMatrix::zeros(2, 1),
+        );
+        modes(&model.unwrap()).unwrap()
+    }
+
     fn partners(flown: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
         mode_pairs(flown, model, 0.5)
             .into_iter()
@@ -153,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_modes_as_near_that_of_the_same_shape_is_the_partner() {
+    fn among_equally_near_modes_the_partner_has_the_same_shape() {
         let roll = [1.0, 0.0];
         let pitch = [0.0, 1.0];
         let flown = lags(&[2.0, 3.0], &[pitch, roll]);
@@ -172,14 +198,13 @@ mod tests {
     fn units_of_the_outputs_do_not_matter() {
         let roll = [1.0, 0.2];
         let pitch = [0.1, 1.0];
-        let in_other_units = |[first, second]: [f64; 2]| [first, 1e-3 * second];
         let [flown, model] = [[2.0, 3.0], [2.4, 2.6]];
         let before = mode_pairs(
             &lags(&flown, &[roll, pitch]),
             &lags(&model, &[pitch, roll]),
             0.5,
         );
-        let [roll, pitch] = [roll, pitch].map(in_other_units);
+        let [roll, pitch] = [roll, pitch].map(|shape| [shape[0], 1e-3 * shape[1]]);
         let after = mode_pairs(
             &lags(&flown, &[roll, pitch]),
             &lags(&model, &[pitch, roll]),
@@ -195,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_farther_than_half_the_larger_modulus_is_unpaired() {
+    fn a_mode_farther_than_half_the_larger_modulus_is_unpaired() {
         let shape = [[1.0, 0.5]];
         assert_eq!(
             partners(&lags(&[2.8], &shape), &lags(&[0.28], &shape)),
@@ -217,24 +242,17 @@ mod tests {
     }
 
     #[test]
-    fn a_conjugate_pair_is_the_partner_of_one_mode() {
-        let pair = |re: f64, im: f64| {
-            let a = dmatrix![re, im; -im, re];
-            modes(
-                &StateSpace::new(
-                    a,
-                    dmatrix![1.0; 0.0],
-                    dmatrix![1.0, 0.0; 0.0, 1.0],
-                    DMatrix::zeros(2, 1),
-                )
-                .unwrap(),
-            )
-            .unwrap()
-        };
+    fn a_conjugate_pair_is_partner_only_once() {
         let shape = [1.0, 1.0];
-        let found = partners(&lags(&[0.26, 0.3], &[shape, shape]), &pair(-0.28, 0.05));
+        let found = partners(
+            &lags(&[0.26, 0.3], &[shape, shape]),
+            &oscillation(-0.28, 0.05),
+        );
         assert_eq!(found.iter().flatten().count(), 1, "{found:?}");
-        assert_eq!(partners(&pair(-1.0, 2.0), &pair(-1.1, 2.1)), [Some(0)]);
+        assert_eq!(
+            partners(&oscillation(-1.0, 2.0), &oscillation(-1.1, 2.1)),
+            [Some(0)]
+        );
     }
 
     #[test]

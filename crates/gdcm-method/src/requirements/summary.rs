@@ -1,22 +1,21 @@
-//! Summary costs of one model of one condition (M17.4): mean J, weighted rms error in time, Theil's
+//! Summary costs of a model in a condition (M17.4): mean J, weighted rms error in time, Theil's
 //! coefficients, and the share of the band inside the MUAD envelopes.
 //!
 //! ```text
-//! J:      mean over the on-axis responses, and over all, of J_mag + J_phase after the correction (M4)
+//! J:      J_mag + J_phase after the correction, averaged over the on-axis responses and over all (M4)
 //! J_rms:  sqrt(1 / (n_t n_o) sum (y - y^)' W (y - y^)), W = 1 in deg/s, deg, ft/s^2, ft/s: 1 deg counts as 1 ft/s^2
-//! Theil:  rms(y - y^) / (rms y + rms y^) of each channel (M14, 6)
+//! Theil:  rms(y - y^) / (rms y + rms y^) for each channel (M14, 6)
 //! MUAD:   1 - sum ln(b/a) / ln(omega_N/omega_1) over the ranges (a, b) in which the error leaves an envelope
 //! ```
 //!
 //! Tischler & Remple, "Aircraft and Rotorcraft System Identification", 2nd ed. 2012, 14.3 (J_rms
 //! and its weights); MIL-STD-1797A, appendix A, 4.2.1.2 (MUAD).
 
-use gdcm_model::assembly::PhysicalUnit;
-use gdcm_model::assembly::physical_unit::{Dimension, conversion_factor};
 use gdcm_model::dataset::{Channel, Pair, PairTable};
-use gdcm_model::response::curve_values::mean;
 use gdcm_model::response::{GainDelay, wrap};
 use gdcm_model::simulation::{Validation, ValidationWindow};
+use gdcm_model::statistics::mean;
+use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_factor};
 
 use crate::fidelity::{CostAverage, Mismatch, leaves};
 
@@ -31,25 +30,36 @@ pub struct OnAxisAndAll {
 
 impl OnAxisAndAll {
     /// Averages the defined values.
-    pub fn of(values: &PairTable<Option<f64>>, on_axis: &PairTable<bool>) -> Self {
-        let mean_of = |counts: &dyn Fn(Pair) -> bool| {
-            let counted = values.iter().filter(|(pair, _)| counts(*pair));
-            let defined: Vec<f64> = counted.filter_map(|(_, value)| *value).collect();
-            (!defined.is_empty()).then(|| mean(&defined))
-        };
+    pub fn average(values: &PairTable<Option<f64>>, on_axis: &PairTable<bool>) -> Self {
+        let mut all_values = Vec::new();
+        let mut on_axis_values = Vec::new();
+        for (pair, value) in values.iter() {
+            let Some(value) = *value else { continue };
+            all_values.push(value);
+            if on_axis.get(pair) == Some(&true) {
+                on_axis_values.push(value);
+            }
+        }
         Self {
-            on_axis: mean_of(&|pair| on_axis.get(pair) == Some(&true)),
-            all: mean_of(&|_| true),
+            on_axis: mean_or_none(&on_axis_values),
+            all: mean_or_none(&all_values),
         }
     }
 }
 
-/// The weighted rms error of a model in time, `J_rms`.
+fn mean_or_none(values: &[f64]) -> Option<f64> {
+    if values.is_empty() {
+        return None;
+    }
+    Some(mean(values))
+}
+
+/// The weighted rms error in time, `J_rms`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RmsCost {
     /// `J_rms` \[deg, deg/s, ft/s, ft/s^2\].
     pub value: f64,
-    /// Indices of outputs without a weight: their units are not angles, speeds or accelerations.
+    /// Indices of outputs without a weight, in units other than angle, speed or acceleration.
     pub left_out: Vec<usize>,
 }
 
@@ -57,37 +67,46 @@ impl RmsCost {
     /// Computes the cost over all samples of `windows`; `None` without samples, or if no output has
     /// a weight.
     pub fn of(windows: &[ValidationWindow], outputs: &[Channel]) -> Option<Self> {
-        let weights: Vec<Option<f64>> = outputs.iter().map(|output| factor(&output.unit)).collect();
-        let counted: Vec<(usize, f64)> = weights
-            .iter()
-            .enumerate()
-            .filter_map(|(output, weight)| Some((output, (*weight)?)))
-            .collect();
+        let mut counted: Vec<WeightedOutput> = Vec::new();
+        let mut left_out = Vec::new();
+        for (output, channel) in outputs.iter().enumerate() {
+            match unit_factor(&channel.unit) {
+                Some(factor) => counted.push(WeightedOutput { output, factor }),
+                None => left_out.push(output),
+            }
+        }
         let mut sum = 0.0;
         let mut samples = 0;
         for window in windows {
             samples += window.measured.nrows();
-            for &(output, factor) in counted
-                .iter()
-                .filter(|(output, _)| *output < window.measured.ncols())
-            {
-                let error = window.measured.column(output) - window.simulated.column(output);
-                sum += factor * factor * error.norm_squared();
+            for &WeightedOutput { output, factor } in &counted {
+                if output < window.measured.ncols() {
+                    let error = window.measured.column(output) - window.simulated.column(output);
+                    sum += factor * factor * error.norm_squared();
+                }
             }
         }
-        let left_out = (0..outputs.len())
-            .filter(|&output| weights[output].is_none())
-            .collect();
         let count = samples * counted.len();
-        (count > 0).then(|| Self {
+        if count == 0 {
+            return None;
+        }
+        Some(Self {
             value: (sum / count as f64).sqrt(),
             left_out,
         })
     }
 }
 
+/// An output that counts in `J_rms`.
+struct WeightedOutput {
+    /// Output index.
+    output: usize,
+    /// From its unit to deg, deg/s, ft/s or ft/s^2.
+    factor: f64,
+}
+
 /// Returns the factor from a unit to deg, deg/s, ft/s or ft/s^2; `None` for any other unit.
-fn factor(unit: &str) -> Option<f64> {
+fn unit_factor(unit: &str) -> Option<f64> {
     let counted = match PhysicalUnit::of(unit)?.dimension {
         Dimension::Angle => "deg",
         Dimension::AngularRate => "deg/s",
@@ -98,14 +117,14 @@ fn factor(unit: &str) -> Option<f64> {
     conversion_factor(unit, counted)
 }
 
-/// Returns the share of the band, in `ln omega`, in which the error of a response stays inside both
-/// MUAD envelopes after `correction`; `None` with fewer than two frequencies.
+/// Returns the share of the band, in `ln omega`, in which a response error stays inside both MUAD
+/// envelopes after `correction`; `None` with fewer than two frequencies.
 pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> Option<f64> {
     let omega = mismatch.omega(omega);
-    let (&first, &last) = omega
-        .first()
-        .zip(omega.last())
-        .filter(|(first, last)| first < last)?;
+    let (&first, &last) = omega.first().zip(omega.last())?;
+    if first >= last {
+        return None;
+    }
     let error_db: Vec<f64> = correction
         .magnitudes_db(&mismatch.magnitude_db, omega)
         .collect();
@@ -120,40 +139,38 @@ pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> 
     Some((1.0 - outside / (last / first).ln()).clamp(0.0, 1.0))
 }
 
-/// Inputs of a model's summary costs.
+/// A model in a condition, compared with flight.
 #[derive(Clone, Copy)]
 pub struct SummarySource<'a> {
-    /// Difference of the model's responses from those of the identified representative; `None`
-    /// where they are not compared.
+    /// Difference between the model's responses and the identified representative's; `None` where
+    /// they are not compared.
     pub mismatch: &'a PairTable<Option<Mismatch>>,
-    /// Correction of each response; `None` without a positive net gain.
+    /// Correction by response; `None` without a positive net gain.
     pub correction: &'a dyn Fn(Pair) -> Option<GainDelay>,
     pub on_axis: &'a PairTable<bool>,
-    /// Frequencies of the band \[rad/s\], ascending.
+    /// Band frequencies \[rad/s\], ascending.
     pub omega: &'a [f64],
     /// Average over frequency in J.
     pub average: CostAverage,
     /// The model against a record in time, if any.
     pub validation: Option<&'a Validation>,
-    /// Outputs of the dataset.
     pub outputs: &'a [Channel],
 }
 
-/// The summary costs of one model of one condition.
+/// The summary costs of a model in a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     pub cost: OnAxisAndAll,
     /// `J_rms`; `None` without a record.
     pub rms: Option<RmsCost>,
-    /// Theil's coefficient of each output, 0 to 1; empty without a record, `None` for a constant
-    /// output.
+    /// Theil's coefficient by output, 0 to 1; empty without a record, `None` for a constant output.
     pub theil: Vec<Option<f64>>,
     /// Mean share of the band inside MUAD, 0 to 1.
     pub muad: OnAxisAndAll,
 }
 
 impl Summary {
-    /// Computes the summary costs of a model.
+    /// Computes all costs under the correction in `source`.
     pub fn of(source: &SummarySource<'_>) -> Self {
         let SummarySource {
             mismatch,
@@ -164,20 +181,20 @@ impl Summary {
             validation,
             outputs,
         } = *source;
-        let of_each = |value: &dyn Fn(&Mismatch, GainDelay) -> Option<f64>| {
-            let values =
-                mismatch.map(|pair, mismatch| value(mismatch.as_ref()?, correction(pair)?));
-            OnAxisAndAll::of(&values, on_axis)
-        };
+        let costs = mismatch.map(|pair, mismatch| {
+            let correction = correction(pair)?;
+            let cost = mismatch.as_ref()?.cost(omega, correction, average);
+            Some(cost.total())
+        });
+        let muad_shares =
+            mismatch.map(|pair, mismatch| muad_share(mismatch.as_ref()?, omega, correction(pair)?));
         Self {
-            cost: of_each(&|mismatch, correction| {
-                Some(mismatch.cost(omega, correction, average).total())
-            }),
+            cost: OnAxisAndAll::average(&costs, on_axis),
             rms: validation.and_then(|validation| RmsCost::of(&validation.windows, outputs)),
             theil: validation
                 .map(|validation| validation.theil.clone())
                 .unwrap_or_default(),
-            muad: of_each(&|mismatch, correction| muad_share(mismatch, omega, correction)),
+            muad: OnAxisAndAll::average(&muad_shares, on_axis),
         }
     }
 }
@@ -205,16 +222,15 @@ mod tests {
         }
     }
 
+    /// A window with three outputs, stored one after the other.
     fn window(measured: &[f64], simulated: &[f64]) -> ValidationWindow {
-        let columns = |values: &[f64]| DMatrix::from_column_slice(values.len() / 3, 3, values);
-        let measured = columns(measured);
-        let simulated = columns(simulated);
+        let samples = measured.len() / 3;
         ValidationWindow {
             record: 0,
             start_s: 0.0,
             sample_time_s: 0.1,
-            measured,
-            simulated,
+            measured: DMatrix::from_column_slice(samples, 3, measured),
+            simulated: DMatrix::from_column_slice(samples, 3, simulated),
         }
     }
 
@@ -241,12 +257,12 @@ mod tests {
         assert_eq!(
             RmsCost::of(&twice, &outputs()).unwrap(),
             cost,
-            "more of the same is the same"
+            "repeated data do not change a mean"
         );
     }
 
     #[test]
-    fn a_model_without_error_is_wholly_inside_and_costs_nothing() {
+    fn a_model_without_error_is_inside_everywhere_and_costs_nothing() {
         let table = PairTable::filled(1, 1, Some(mismatch(0.0, 0.0)));
         let on_axis = PairTable::filled(1, 1, true);
         let source = SummarySource {
@@ -282,7 +298,7 @@ mod tests {
             muad_share(&mismatch(60.0, 0.0), &omega, GainDelay::NONE),
             Some(0.0)
         );
-        // A delay of a quarter of a second, removed by the correction including its whole turns.
+        // A delay of 0.25 s, removed by the correction including its whole turns.
         let lead = mismatch(0.0, -0.25);
         let share = muad_share(&lead, &omega, GainDelay::NONE).unwrap();
         assert!(share < 0.5, "{share}");
@@ -290,29 +306,29 @@ mod tests {
             muad_share(&lead, &omega, GainDelay::new(1.0, 0.25)),
             Some(1.0)
         );
-        let one = Mismatch {
+        let single_point = Mismatch {
             magnitude_db: vec![0.0],
             phase: vec![0.0],
             coherence_weights: None,
             turn: 0.0,
         };
-        assert_eq!(muad_share(&one, &[1.0], GainDelay::NONE), None);
+        assert_eq!(muad_share(&single_point, &[1.0], GainDelay::NONE), None);
     }
 
     #[test]
-    fn means_leave_out_what_is_not_defined() {
+    fn means_leave_undefined_values_out() {
         let values = PairTable::from_fn(2, 2, |pair| {
             [[Some(1.0), Some(5.0)], [None, Some(3.0)]][pair.output][pair.input]
         });
         let on_axis = PairTable::from_fn(2, 2, |pair| pair.output == pair.input);
         assert_eq!(
-            OnAxisAndAll::of(&values, &on_axis),
+            OnAxisAndAll::average(&values, &on_axis),
             OnAxisAndAll {
                 on_axis: Some(2.0),
                 all: Some(3.0)
             }
         );
-        let nothing = OnAxisAndAll::of(&PairTable::filled(2, 2, None), &on_axis);
+        let nothing = OnAxisAndAll::average(&PairTable::filled(2, 2, None), &on_axis);
         assert_eq!(nothing, OnAxisAndAll::default());
     }
 

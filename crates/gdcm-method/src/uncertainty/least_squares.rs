@@ -1,19 +1,22 @@
-//! Least squares over the conditions: split of the scatter about a fit (M13.5), bands of a schedule of `ln k` (M13.6), and the test
-//! whether the schedule needs a second variable beside airspeed (M13.7).
+//! Least squares over the conditions: split of the scatter about a fit (M13.5), bands for scheduled
+//! `ln k` (M13.6), and the test whether the schedule needs a second variable besides airspeed
+//! (M13.7).
 
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::bar::{
-    Bar, VarianceComponent, chi_squared_quantile, fisher_upper, satterthwaite, student_quantile,
-    student_two_sided,
+use super::bar::Bar;
+use super::distributions::{
+    chi_squared_quantile, fisher_upper, student_quantile, student_two_sided,
 };
+use super::variance_component::{VarianceComponent, satterthwaite};
 
-/// A column is linearly dependent if less than this fraction of its norm is orthogonal to the columns before it.
+/// A column is linearly dependent if less than this fraction of its norm is orthogonal to the columns
+/// before it.
 const DEPENDENT: f64 = 1e-9;
 
-/// Largest number of columns of a design; a table over more airspeeds has neither a split nor bands.
+/// Most columns in a design; a table over more airspeeds has neither a split nor bands.
 pub const MOST_COLUMNS: usize = 200;
 
 /// Design matrix `X` with full column rank, n conditions by r columns, stored as `Q R`.
@@ -23,18 +26,18 @@ pub struct Design {
     r: DMatrix<f64>,
 }
 
-/// Least-squares fit to one value per condition.
+/// Least-squares fit to a value by condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// Coefficients, by column.
+    /// By column.
     pub coefficients: Vec<f64>,
-    /// Residuals, by condition.
+    /// By condition.
     pub residuals: Vec<f64>,
 }
 
 impl Design {
-    /// Factorises the design with one row per condition. `None` where the columns are linearly dependent, outnumber the rows,
-    /// are missing, or are more than [`MOST_COLUMNS`].
+    /// Factorises the design, with a row by condition. `None` if the columns are linearly dependent,
+    /// outnumber the rows, are missing, or are more than [`MOST_COLUMNS`].
     pub fn new(rows: &[Vec<f64>]) -> Option<Self> {
         let columns = rows.first()?.len();
         if rows.len() < columns || columns == 0 || columns > MOST_COLUMNS {
@@ -45,27 +48,31 @@ impl Design {
         let qr = matrix.qr();
         let q = qr.q();
         let r = qr.r();
-        let depends =
-            (0..columns).any(|column| r[(column, column)].abs() <= DEPENDENT * lengths[column]);
-        (!depends).then_some(Self { q, r })
+        for (column, length) in lengths.iter().enumerate() {
+            if r[(column, column)].abs() <= DEPENDENT * length {
+                return None;
+            }
+        }
+        Some(Self { q, r })
     }
 
-    /// Returns the number of conditions, n.
+    /// Returns the condition count, n.
     pub fn conditions(&self) -> usize {
         self.q.nrows()
     }
 
-    /// Returns the number of columns, r.
+    /// Returns the column count, r.
     pub fn rank(&self) -> usize {
         self.q.ncols()
     }
 
-    /// Returns the degrees of freedom of the residuals, `f = n - r`.
+    /// Returns the residuals' degrees of freedom, `f = n - r`.
     pub fn freedom(&self) -> usize {
         self.conditions() - self.rank()
     }
 
-    /// Returns the hat value `h_c` of each condition: derivative of its fitted value by its own value.
+    /// Returns the hat values by condition, `h_c`: derivatives of the fitted values with respect to
+    /// the condition's own value.
     pub fn hat_values(&self) -> Vec<f64> {
         (0..self.conditions())
             .map(|row| self.q.row(row).norm_squared().min(1.0))
@@ -88,11 +95,11 @@ impl Design {
         self.leverage(&last)
     }
 
-    /// Fits one value per condition.
-    pub fn fit(&self, figures: &[f64]) -> Fit {
-        let figures = DVector::from_column_slice(figures);
-        let projected = self.q.transpose() * &figures;
-        let residuals = &figures - &self.q * &projected;
+    /// Fits a value by condition.
+    pub fn fit(&self, values: &[f64]) -> Fit {
+        let values = DVector::from_column_slice(values);
+        let projected = self.q.transpose() * &values;
+        let residuals = &values - &self.q * &projected;
         let coefficients = self
             .r
             .solve_upper_triangular(&projected)
@@ -103,26 +110,32 @@ impl Design {
         }
     }
 
-    /// Computes the leave-one-out error `e_c / (1 - h_c)` of each condition; `None` where the fit interpolates it, `h_c = 1`.
-    pub fn left_out_errors(&self, figures: &[f64]) -> Vec<Option<f64>> {
-        let residuals = self.fit(figures).residuals;
-        let hats = self.hat_values();
-        let error =
-            |(residual, hat): (f64, f64)| (1.0 - hat > DEPENDENT).then(|| residual / (1.0 - hat));
-        residuals.into_iter().zip(hats).map(error).collect()
+    /// Computes the leave-one-out errors by condition, `e_c / (1 - h_c)`; `None` if the fit
+    /// interpolates the condition, `h_c = 1`.
+    pub fn left_out_errors(&self, values: &[f64]) -> Vec<Option<f64>> {
+        let residuals = self.fit(values).residuals;
+        let mut errors = Vec::with_capacity(residuals.len());
+        for (residual, hat) in residuals.into_iter().zip(self.hat_values()) {
+            errors.push(if 1.0 - hat > DEPENDENT {
+                Some(residual / (1.0 - hat))
+            } else {
+                None
+            });
+        }
+        errors
     }
 }
 
-/// Half-widths of the two bands about a scheduled `ln k` at one airspeed.
+/// Half-widths of the two bands about a scheduled `ln k` at an airspeed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandWidths {
-    /// Confidence band of the schedule.
+    /// Confidence band for the schedule itself.
     pub confidence: f64,
-    /// Band for the value of a further condition.
+    /// Band for a further condition.
     pub scatter: f64,
 }
 
-/// Bands of a schedule: `t(n - r) S' sqrt(h)` and `t(n - r) S' sqrt(1 + h)`, `S'^2 = max(S^2, B)`.
+/// Bands for a schedule: `t(n - r) S' sqrt(h)` and `t(n - r) S' sqrt(1 + h)`, `S'^2 = max(S^2, B)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduleBand {
     design: Arc<Design>,
@@ -131,7 +144,7 @@ pub struct ScheduleBand {
 }
 
 impl ScheduleBand {
-    /// Computes the bands from the design and the split of the scatter about its fit.
+    /// Computes the bands from the scatter about the fit with `design`, for a confidence level.
     pub fn of(design: &Arc<Design>, split: &VarianceDecomposition, level: f64) -> Self {
         let deviation = split.scatter.max(split.explained()).sqrt();
         Self {
@@ -140,7 +153,7 @@ impl ScheduleBand {
         }
     }
 
-    /// Returns the half-widths for one row of the design.
+    /// Returns the half-widths for a design row.
     pub fn at(&self, row: &[f64]) -> BandWidths {
         let h = self.design.leverage(row);
         BandWidths {
@@ -150,10 +163,10 @@ impl ScheduleBand {
     }
 }
 
-/// Scatter of one value about a fit, split into the parts expected from the bundles and the rest.
+/// Scatter about a fit, split into the parts expected from the bundles and the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VarianceDecomposition {
-    /// Degrees of freedom of the scatter, `f = n - r`.
+    /// Degrees of freedom in the scatter, `f = n - r`.
     pub freedom: usize,
     /// Residual variance `S^2 = sum e^2 / f`.
     pub scatter: f64,
@@ -161,38 +174,32 @@ pub struct VarianceDecomposition {
     pub trim: f64,
     /// `B_id`, expected from the identification.
     pub identification: f64,
-    /// Degrees of freedom of `B`; `None` where the bundles have no spread.
+    /// Degrees of freedom in `B`; `None` if the bundles have no spread.
     pub degrees_of_freedom: Option<f64>,
 }
 
 impl VarianceDecomposition {
-    /// Splits the scatter of the values about the fit of `design`; `None` without degrees of freedom.
+    /// Splits the scatter of the bars' values about the fit with `design`; `None` without degrees
+    /// of freedom.
     pub fn of(design: &Design, bars: &[Bar]) -> Option<Self> {
         let freedom = design.freedom();
         if freedom == 0 || bars.len() != design.conditions() {
             return None;
         }
-        let figures: Vec<f64> = bars.iter().map(|bar| bar.value).collect();
+        let values: Vec<f64> = bars.iter().map(|bar| bar.value).collect();
         let f = freedom as f64;
-        let square: f64 = design
-            .fit(&figures)
-            .residuals
-            .iter()
-            .map(|residual| residual * residual)
-            .sum();
-        let hats = design.hat_values();
-        let expected = |part: fn(&Bar) -> Option<VarianceComponent>| -> Vec<VarianceComponent> {
-            let of_bar = |(bar, hat): (&Bar, &f64)| Some(part(bar)?.scaled((1.0 - hat) / f));
-            bars.iter().zip(&hats).filter_map(of_bar).collect()
-        };
-        let trim = expected(|bar| bar.trim);
-        let identification = expected(|bar| bar.identification);
-        let sum = |parts: &[VarianceComponent]| parts.iter().map(|part| part.variance).sum::<f64>();
+        let mut trim: Vec<VarianceComponent> = Vec::new();
+        let mut identification: Vec<VarianceComponent> = Vec::new();
+        for (bar, hat) in bars.iter().zip(design.hat_values()) {
+            let weight = (1.0 - hat) / f;
+            trim.extend(bar.trim.map(|part| part.scaled(weight)));
+            identification.extend(bar.identification.map(|part| part.scaled(weight)));
+        }
         Some(Self {
             freedom,
-            scatter: square / f,
-            trim: sum(&trim),
-            identification: sum(&identification),
+            scatter: sum_of_squares(&design.fit(&values).residuals) / f,
+            trim: trim.iter().map(|part| part.variance).sum(),
+            identification: identification.iter().map(|part| part.variance).sum(),
             degrees_of_freedom: satterthwaite(trim.into_iter().chain(identification)),
         })
     }
@@ -207,20 +214,24 @@ impl VarianceDecomposition {
         (self.scatter - self.explained()).max(0.0)
     }
 
-    /// Returns the shares of trim, identification and rest in `max(S^2, B)`; `None` without scatter and spread.
+    /// Returns the shares in `max(S^2, B)` from trim, identification and rest; `None` without
+    /// scatter and spread.
     pub fn shares(&self) -> Option<[f64; 3]> {
         let whole = self.scatter.max(self.explained());
-        (whole > 0.0)
-            .then(|| [self.trim, self.identification, self.unexplained()].map(|part| part / whole))
+        if whole > 0.0 {
+            Some([self.trim, self.identification, self.unexplained()].map(|part| part / whole))
+        } else {
+            None
+        }
     }
 
-    /// Returns `sqrt(S^2 / B)`, the multiple of the expected scatter; `None` without spread.
+    /// Returns `sqrt(S^2 / B)`, as a multiple of the expected scatter; `None` without spread.
     pub fn ratio(&self) -> Option<f64> {
-        self.degrees_of_freedom
-            .map(|_| (self.scatter / self.explained()).sqrt())
+        self.degrees_of_freedom?;
+        Some((self.scatter / self.explained()).sqrt())
     }
 
-    /// Returns the probability of a scatter this large if the bundles explain all of it.
+    /// Returns the probability that a scatter this large arises if the bundles explain it fully.
     pub fn p(&self) -> Option<f64> {
         fisher_upper(
             self.scatter / self.explained(),
@@ -229,64 +240,72 @@ impl VarianceDecomposition {
         )
     }
 
-    /// Returns the confidence interval of the rest, as a standard deviation: `sqrt(max(0, f S^2 / chi^2_f(p) - B))` at `p = (1 +- level) / 2`.
+    /// Returns the rest's confidence interval, as a standard deviation.
     pub fn unexplained_interval(&self, level: f64) -> Option<[f64; 2]> {
+        Some([
+            self.unexplained_limit(0.5 * (1.0 + level))?,
+            self.unexplained_limit(0.5 * (1.0 - level))?,
+        ])
+    }
+
+    /// Returns `sqrt(max(0, f S^2 / chi^2_f(p) - B))`.
+    fn unexplained_limit(&self, p: f64) -> Option<f64> {
         let f = self.freedom as f64;
-        let end = |p: f64| {
-            let quantile = chi_squared_quantile(p, f).filter(|quantile| *quantile > 0.0)?;
-            Some(
-                (f * self.scatter / quantile - self.explained())
-                    .max(0.0)
-                    .sqrt(),
-            )
-        };
-        Some([end(0.5 * (1.0 + level))?, end(0.5 * (1.0 - level))?])
+        let quantile = chi_squared_quantile(p, f).filter(|quantile| *quantile > 0.0)?;
+        let variance = f * self.scatter / quantile - self.explained();
+        Some(variance.max(0.0).sqrt())
     }
 }
 
-/// Effect of a second variable on one value, in addition to the schedule with airspeed.
+fn sum_of_squares(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum()
+}
+
+/// A second variable's effect on a value, in addition to the schedule with airspeed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondVariableEffect {
-    /// Change from the lowest to the highest value of the variable, `2 gamma`.
+    /// Change between the variable's lowest and highest value, `2 gamma`.
     pub effect: f64,
-    /// Half-width `2 t se` of its interval; smaller effects are not detectable.
+    /// Half-width of its interval, `2 t se`; smaller effects are not detectable.
     pub visible: f64,
-    /// Probability of an effect this large without a true effect.
+    /// Probability that an effect this large arises without a true effect.
     pub p: f64,
-    /// Rms leave-one-out error without the variable; `None` where no condition can be left out.
+    /// Rms leave-one-out error without the variable; `None` if no condition can be left out.
     pub left_out_without: Option<f64>,
     /// Rms leave-one-out error with the variable.
     pub left_out_with: Option<f64>,
 }
 
-/// Reason why the effect of a second variable is unavailable.
+/// Reason why a second variable's effect is unavailable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SecondVariableError {
-    /// A condition has no value of the variable, or all values are equal.
-    #[error("the conditions do not carry two values of it")]
+    /// A condition lacks the variable, or all values are equal.
+    #[error("the conditions do not have two values of it")]
     NotVaried,
     /// The variable is a function of airspeed in these conditions.
-    #[error("its effect and that of airspeed cannot be told apart")]
+    #[error("its effect and that of airspeed cannot be separated")]
     NotToldApart,
     /// The fit has too few degrees of freedom.
-    #[error("there are too few conditions to see it beside the airspeed")]
+    #[error("there are too few conditions to separate it from airspeed")]
     TooFewConditions,
 }
 
-/// Scales values linearly to the range from -1 to 1; `None` where all are equal.
+/// Scales values linearly to the range from -1 to 1; `None` if all are equal, or without values.
 pub fn scaled(values: &[f64]) -> Option<Vec<f64>> {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let width = greatest - least;
-    (width > 0.0 && width.is_finite()).then(|| {
-        values
-            .iter()
-            .map(|value| (2.0 * value - least - greatest) / width)
-            .collect()
-    })
+    if width <= 0.0 || !width.is_finite() {
+        return None;
+    }
+    let scaled = values
+        .iter()
+        .map(|value| (2.0 * value - least - greatest) / width)
+        .collect();
+    Some(scaled)
 }
 
-/// Designs of a schedule without and with a second variable.
+/// Designs without and with a second variable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondVariableDesign {
     without: Design,
@@ -294,17 +313,16 @@ pub struct SecondVariableDesign {
 }
 
 impl SecondVariableDesign {
-    /// Appends `values`, one per condition, to the columns of `rows`.
+    /// Appends the variable's values by condition to the columns of `rows`.
     ///
     /// # Errors
-    /// [`SecondVariableError`] where the effect cannot be estimated.
+    /// [`SecondVariableError`] if the effect cannot be estimated.
     pub fn of(rows: &[Vec<f64>], values: &[f64]) -> Result<Self, SecondVariableError> {
         let scaled = scaled(values).ok_or(SecondVariableError::NotVaried)?;
-        let extended: Vec<Vec<f64>> = rows
-            .iter()
-            .zip(scaled)
-            .map(|(row, value)| row.iter().copied().chain([value]).collect())
-            .collect();
+        let mut extended = rows.to_vec();
+        for (row, value) in extended.iter_mut().zip(scaled) {
+            row.push(value);
+        }
         let without = Design::new(rows).ok_or(SecondVariableError::NotToldApart)?;
         if without.freedom() < 2 {
             return Err(SecondVariableError::TooFewConditions);
@@ -313,17 +331,12 @@ impl SecondVariableDesign {
         Ok(Self { without, with })
     }
 
-    /// Estimates the effect on one value per condition.
-    pub fn effect(&self, figures: &[f64], level: f64) -> SecondVariableEffect {
+    /// Estimates the effect on a value by condition.
+    pub fn effect(&self, values: &[f64], level: f64) -> SecondVariableEffect {
         let Self { without, with } = self;
-        let fit = with.fit(figures);
+        let fit = with.fit(values);
         let freedom = with.freedom() as f64;
-        let variance = fit
-            .residuals
-            .iter()
-            .map(|residual| residual * residual)
-            .sum::<f64>()
-            / freedom;
+        let variance = sum_of_squares(&fit.residuals) / freedom;
         let error = (variance * with.last_variance()).sqrt();
         let coefficient = fit.coefficients.last().copied().unwrap_or_default();
         // An exact fit without effect would give 0/0.
@@ -332,38 +345,48 @@ impl SecondVariableDesign {
         } else {
             coefficient / error
         };
-        let errors = (
-            without.left_out_errors(figures),
-            with.left_out_errors(figures),
-        );
-        let both: Vec<(f64, f64)> = errors
-            .0
-            .iter()
-            .zip(&errors.1)
-            .filter_map(|(a, b)| Some(((*a)?, (*b)?)))
-            .collect();
-        let rms = |of: fn(&(f64, f64)) -> f64| {
-            let square: f64 = both.iter().map(|pair| of(pair).powi(2)).sum();
-            (!both.is_empty()).then(|| (square / both.len() as f64).sqrt())
-        };
+        // Conditions that either fit interpolates count in neither error.
+        let mut errors_without = Vec::new();
+        let mut errors_with = Vec::new();
+        let left_out = without
+            .left_out_errors(values)
+            .into_iter()
+            .zip(with.left_out_errors(values));
+        for errors in left_out {
+            if let (Some(without), Some(with)) = errors {
+                errors_without.push(without);
+                errors_with.push(with);
+            }
+        }
         SecondVariableEffect {
             effect: 2.0 * coefficient,
             visible: 2.0 * student_quantile(level, freedom) * error,
             p: student_two_sided(ratio, freedom),
-            left_out_without: rms(|pair| pair.0),
-            left_out_with: rms(|pair| pair.1),
+            left_out_without: rms(&errors_without),
+            left_out_with: rms(&errors_with),
         }
     }
 }
 
+/// Returns the root mean square; `None` without values.
+fn rms(values: &[f64]) -> Option<f64> {
+    if values.is_empty() {
+        return None;
+    }
+    Some((sum_of_squares(values) / values.len() as f64).sqrt())
+}
+
+/// Largest ratio between the leave-one-out errors with and without a variable that is needed.
+const NOTABLE_RATIO: f64 = 0.9;
+
 impl SecondVariableEffect {
-    /// Decides whether the schedule needs the variable: the effect is significant after Holm's correction, and the rms leave-one-out
-    /// error falls by 10 % or more.
+    /// Decides whether the schedule needs the variable: the effect is significant after Holm's
+    /// correction, and the rms leave-one-out error falls by 10 % or more.
     pub fn is_needed(&self, p_holm: f64, level: f64) -> bool {
-        /// Largest ratio of the leave-one-out errors with and without the variable.
-        const LEFT: f64 = 0.9;
-        let foresees = self.left_out_without.zip(self.left_out_with);
-        p_holm < 1.0 - level && foresees.is_some_and(|(without, with)| with <= LEFT * without)
+        match (self.left_out_without, self.left_out_with) {
+            (Some(without), Some(with)) => p_holm < 1.0 - level && with <= NOTABLE_RATIO * without,
+            _ => false,
+        }
     }
 }
 
@@ -376,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn hat_values_sum_to_the_number_of_columns_and_foresee_the_condition_left_out() {
+    fn hat_values_sum_to_the_column_count_and_predict_a_left_out_condition() {
         let places = [0.0, 1.0, 2.0, 4.0];
         let figures = [1.0, 1.5, 3.0, 3.5];
         let design = Design::new(&line(&places)).unwrap();
@@ -385,13 +408,13 @@ mod tests {
             .unwrap()
             .fit(&figures[..3])
             .coefficients;
-        let foreseen = without_last[0] + 4.0 * without_last[1];
-        // Two solutions of the same small problem.
-        assert!((design.left_out_errors(&figures)[3].unwrap() - (3.5 - foreseen)).abs() < 1e-13);
+        let predicted = without_last[0] + 4.0 * without_last[1];
+        // The same small problem solved twice.
+        assert!((design.left_out_errors(&figures)[3].unwrap() - (3.5 - predicted)).abs() < 1e-13);
     }
 
     #[test]
-    fn a_column_that_is_a_combination_of_the_others_is_no_design() {
+    fn linearly_dependent_columns_are_no_design() {
         let rows: Vec<Vec<f64>> = [0.0, 1.0, 2.0, 3.0]
             .map(|x| vec![1.0, x, 2.0 - 3.0 * x])
             .to_vec();
@@ -401,7 +424,7 @@ mod tests {
     }
 
     #[test]
-    fn a_condition_that_the_fit_must_follow_has_no_error() {
+    fn an_interpolated_condition_has_no_leave_one_out_error() {
         let design = Design::new(&[vec![1.0, 0.0], vec![1.0, 0.0], vec![0.0, 1.0]]).unwrap();
         assert_eq!(design.left_out_errors(&[1.0, 2.0, 5.0])[2], None);
         assert!((design.left_out_errors(&[1.0, 2.0, 5.0])[1].unwrap() - 1.0).abs() < 1e-14);

@@ -1,25 +1,41 @@
-//! Uncertainty of the results (M13): error bars, differences between conditions, split of the scatter, bands of a schedule, and the
-//! test for a second variable.
+//! Uncertainty in the results (M13): error bars, differences between conditions, split of the
+//! scatter, bands for a schedule, and the test for a second variable.
 //!
 //! ```text
 //!  1  for each condition c: q_0 <- the analysis with the representatives (a^, b^)
-//!  2     s_phys^2 <- mean of (q(a, b^) - q_0)^2 over the other kept physics models a
-//!  3     s_own^2  <- mean of (q(a^, b) - q_0)^2 over the other kept identified models b, n of them
+//!  2     s_phys^2 <- mean (q(a, b^) - q_0)^2 over the other kept physics models a
+//!  3     s_own^2  <- mean (q(a^, b) - q_0)^2 over the n other kept identified models b
 //!  4  s_pooled^2 <- sum n s_own^2 / sum n,  over the conditions
 //!  5  for each c: s_id^2 <- (n s_own^2 + d_0 s_pooled^2) / (n + d_0),  d_0 = min(4, the others' n);  at least s_coh^2
 //!  6     u^2 <- s_phys^2 + s_id^2;  nu <- u^4 / sum s^4/nu;  bar <- q_0 +- t(nu) u
-//!  7  differences at equal airspeed: |delta| / sqrt(u_c^2 + u_c'^2), Holm over all of them
-//!  8  split: S^2 of the residuals <-> B = sum (1 - h_c)(s_phys^2 + s_id^2) / f;  rest^2 = S^2 - B
+//!  7  differences at equal airspeed: |delta| / sqrt(u_c^2 + u_c'^2), Holm's correction over all
+//!  8  split: residual variance S^2 <-> B = sum (1 - h_c)(s_phys^2 + s_id^2) / f;  rest^2 = S^2 - B
 //!  9  bands: t(f) S' sqrt(h), t(f) S' sqrt(1 + h),  S'^2 = max(S^2, B)
 //! 10  second variable: its coefficient beside the schedule's columns, and leave-one-out errors with and without it
 //! ```
+//!
+//! | step | file |
+//! |---|---|
+//! | 1 to 3, 6 | `scalar`, `spread`, `bar` |
+//! | 4, 5 | `variance_component`, `coherence_error` |
+//! | 7 | `difference` |
+//! | 8 to 10 | `least_squares` |
 
 pub mod bar;
+mod coherence_error;
+mod difference;
+mod distributions;
 pub mod least_squares;
+mod scalar;
+pub mod settings;
 pub mod spread;
+mod variance_component;
 
-pub use bar::{Bar, Difference, IdentificationSource, VarianceComponent, holm, student_quantile};
+pub use bar::{Bar, IdentificationSource};
+pub use difference::{Difference, holm};
+pub use distributions::student_quantile;
 pub use least_squares::{
     BandWidths, Design, ScheduleBand, SecondVariableDesign, VarianceDecomposition,
 };
-pub use spread::Scalar;
+pub use scalar::Scalar;
+pub use variance_component::VarianceComponent;

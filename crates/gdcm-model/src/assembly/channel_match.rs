@@ -2,534 +2,367 @@
 
 use super::declarations::DeclaredChannels;
 use super::found_model::ChannelLabel;
-use super::physical_unit::{Dimension, PhysicalUnit, conversion_factor};
 use super::problem::ProblemKind;
-use super::rules::ChannelRule;
 use crate::dataset::channel::ChannelSide;
+use crate::names::channel_alias::same_channel;
+use crate::names::signed_name::sign_between;
+use crate::names::{ChannelRule, SignedName};
 use crate::units::number;
+use crate::units::physical_unit::conversion_factor;
 
-/// A file channel that maps to a dataset channel.
+/// A file channel matched to a dataset channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelUse {
     /// Index in the file.
     pub index: usize,
     /// Dataset units per file unit; negative where the file has the opposite sign.
     pub factor: f64,
-    /// Description of the conversion, if any ("rad/s → deg/s"), or a note that the unit was
-    /// declared for all files.
+    /// Note on the conversion ("rad/s → deg/s") or on an assumed unit, if any.
     pub words: Option<String>,
 }
 
-/// The channels on one side of a model, in the dataset's order.
+/// The channels on a side of a model, in the dataset's order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChannelMatch {
-    /// One entry per channel of the dataset; `None` where it is missing.
+    /// An entry per dataset channel; `None` where the model lacks the channel.
     pub uses: Vec<Option<ChannelUse>>,
     pub problems: Vec<ProblemKind>,
     /// Assumptions made where the file is silent.
     pub notes: Vec<String>,
-    /// Whether the channels have no names in the file and were matched in the dataset's order.
+    /// Whether the file has no channel names, so that the channels were matched by position.
     pub by_position: bool,
 }
 
-impl ChannelMatch {
-    /// Matches the channels of one side; with `partial`, some channels may be missing, but not all.
-    pub fn of(
-        side: ChannelSide,
-        labels: &[ChannelLabel],
-        rules: &[ChannelRule],
-        declared: &DeclaredChannels<'_>,
-        partial: bool,
-    ) -> Self {
-        let mut found = Self::default();
-        let unnamed = !labels.is_empty() && labels.iter().all(|label| label.name.is_none());
-        if unnamed && labels.len() != rules.len() {
-            found.problems.push(match partial {
-                true => unmatched(side, labels, rules),
-                false => ProblemKind::Unnamed {
-                    side,
-                    expected: rules.len(),
-                    found: labels.len(),
-                },
-            });
-            found.uses = vec![None; rules.len()];
-            return found;
+/// Everything needed to match the channels on a side of a model.
+#[derive(Clone, Copy)]
+pub(super) struct ChannelMatcher<'a> {
+    pub side: ChannelSide,
+    /// The model's channels in the file's order.
+    pub labels: &'a [ChannelLabel],
+    /// The dataset's channels.
+    pub rules: &'a [ChannelRule],
+    pub declared: &'a DeclaredChannels<'a>,
+    /// Whether some channels may be missing, as in a measured response; not all may.
+    pub partial: bool,
+}
+
+impl ChannelMatcher<'_> {
+    /// Matches the channels.
+    ///
+    /// 1. Without any names, match by position if the counts agree.
+    /// 2. Find the file channel for each dataset channel.
+    /// 3. Determine its factor from declarations and units.
+    /// 4. Determine its sign from declarations and names.
+    pub(super) fn run(self) -> ChannelMatch {
+        let mut found = ChannelMatch {
+            by_position: !self.labels.is_empty()
+                && self.labels.iter().all(|label| label.name.is_none()),
+            ..ChannelMatch::default()
+        };
+        if found.by_position && self.labels.len() != self.rules.len() {
+            return self.wrong_count();
         }
-        if unnamed {
-            found.by_position = true;
-        }
-        for (place, rule) in rules.iter().enumerate() {
-            let index = if unnamed {
+        for (place, rule) in self.rules.iter().enumerate() {
+            let index = if found.by_position {
                 Some(place)
             } else {
-                found.find(side, labels, rule, partial)
+                self.find(rule, &mut found.problems)
             };
             let used = index.map(|index| {
-                let used = found.used(index, &labels[index], rule, declared);
-                found.signed(
-                    used,
-                    labels[index].name.as_deref(),
-                    rule,
-                    declared.sign_of(&rule.name),
-                )
+                let used = self.converted(index, rule, &mut found);
+                self.signed(used, rule, &mut found.problems)
             });
             found.uses.push(used);
         }
-        let is_used = |index: usize| found.uses.iter().flatten().any(|used| used.index == index);
-        let unused: Vec<&str> = labels
-            .iter()
-            .enumerate()
-            .filter(|(index, _)| !is_used(*index))
-            .filter_map(|(_, label)| label.name.as_deref())
-            .collect();
-        if found.problems.is_empty() && !unused.is_empty() {
-            found.notes.push(format!(
-                "{side}s of the file that the dataset does not have: {}",
-                unused.join(", ")
-            ));
-        }
-        if partial && found.problems.is_empty() && found.uses.iter().all(Option::is_none) {
-            found.problems.push(unmatched(side, labels, rules));
+        self.note_unused(&mut found);
+        if self.partial && found.problems.is_empty() && found.uses.iter().all(Option::is_none) {
+            found.problems.push(self.unmatched());
         }
         found
     }
 
-    /// Finds the file channel for `rule`: an exact name match, or a synonym from the field or the
-    /// rule.
-    fn find(
-        &mut self,
-        side: ChannelSide,
-        labels: &[ChannelLabel],
-        rule: &ChannelRule,
-        partial: bool,
-    ) -> Option<usize> {
-        let named = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
-            let indices = labels.iter().enumerate();
-            indices
-                .filter(|(_, label)| label.name.as_deref().is_some_and(is_it))
-                .map(|(index, _)| index)
-                .collect()
-        };
-        let is_alias = |is_it: &dyn Fn(&str) -> bool| rule.aliases.iter().any(|alias| is_it(alias));
-        let plain = |name: &str| SignedName::of(name).name;
-        // Order of preference: exact name, name with sign marks, synonym from the field.
-        let ways: [&dyn Fn(&str) -> bool; 4] = [
-            &|name| name == rule.name,
-            &|name| is_alias(&|alias| alias == name),
-            &|name| {
-                plain(name) == plain(&rule.name) || is_alias(&|alias| plain(alias) == plain(name))
-            },
-            &|name| {
-                same_channel(&plain(name), &plain(&rule.name))
-                    || is_alias(&|alias| same_channel(&plain(name), &plain(alias)))
-            },
-        ];
-        let candidates = ways
-            .into_iter()
-            .map(named)
-            .find(|found| !found.is_empty())
-            .unwrap_or_default();
-        let names = |indices: &mut dyn Iterator<Item = usize>| {
-            let names: Vec<&str> = indices
-                .filter_map(|index| labels[index].name.as_deref())
-                .collect();
-            if names.is_empty() {
-                "none".to_owned()
-            } else {
-                names.join(", ")
+    /// Returns the result for unnamed channels whose count differs from the dataset's.
+    fn wrong_count(&self) -> ChannelMatch {
+        let problem = if self.partial {
+            self.unmatched()
+        } else {
+            ProblemKind::Unnamed {
+                side: self.side,
+                expected: self.rules.len(),
+                found: self.labels.len(),
             }
         };
-        let channel = rule.name.clone();
+        ChannelMatch {
+            uses: vec![None; self.rules.len()],
+            problems: vec![problem],
+            ..ChannelMatch::default()
+        }
+    }
+
+    /// Finds the file channel for a dataset channel, and reports a missing or ambiguous channel.
+    fn find(&self, rule: &ChannelRule, problems: &mut Vec<ProblemKind>) -> Option<usize> {
+        let candidates = self.candidates(rule);
         match candidates.as_slice() {
             [index] => Some(*index),
             [] => {
-                if !partial {
-                    self.problems.push(ProblemKind::NoChannel {
-                        side,
-                        channel,
-                        found: names(&mut (0..labels.len())),
+                if !self.partial {
+                    let every: Vec<usize> = (0..self.labels.len()).collect();
+                    problems.push(ProblemKind::NoChannel {
+                        side: self.side,
+                        channel: rule.name.clone(),
+                        found: self.list_names(&every),
                     });
                 }
                 None
             }
             several => {
-                let found = names(&mut several.iter().copied());
-                self.problems.push(ProblemKind::AmbiguousChannel {
-                    side,
-                    channel,
-                    found,
+                problems.push(ProblemKind::AmbiguousChannel {
+                    side: self.side,
+                    channel: rule.name.clone(),
+                    found: self.list_names(several),
                 });
                 None
             }
         }
     }
 
-    /// Returns the channel with its declared sign, or the sign implied by its name; reports a
-    /// problem where neither gives one.
-    fn signed(
-        &mut self,
-        used: ChannelUse,
-        name: Option<&str>,
-        rule: &ChannelRule,
-        said: Option<f64>,
-    ) -> ChannelUse {
-        let of_name = || {
-            let Some(name) = name else { return Some(1.0) };
-            let plain = |name: &str| SignedName::of(name).name;
-            let alias = rule.aliases.iter().find(|alias| *alias == name);
-            let alias = alias.or_else(|| {
-                rule.aliases
-                    .iter()
-                    .find(|alias| plain(alias) == plain(name))
-            });
-            sign_between(
-                name,
-                alias
-                    .filter(|_| name != rule.name)
-                    .map_or(&rule.name, |alias| alias),
-            )
+    /// Returns the file channels with the closest likeness to a dataset channel.
+    fn candidates(&self, rule: &ChannelRule) -> Vec<usize> {
+        for likeness in Likeness::CLOSEST_FIRST {
+            let mut candidates = Vec::new();
+            for (index, label) in self.labels.iter().enumerate() {
+                if let Some(name) = &label.name
+                    && likeness.holds(name, rule)
+                {
+                    candidates.push(index);
+                }
+            }
+            if !candidates.is_empty() {
+                return candidates;
+            }
+        }
+        Vec::new()
+    }
+
+    /// Lists the names of file channels; "none" where they have no names.
+    fn list_names(&self, indices: &[usize]) -> String {
+        let names: Vec<&str> = indices
+            .iter()
+            .filter_map(|index| self.labels[*index].name.as_deref())
+            .collect();
+        if names.is_empty() {
+            "none".to_owned()
+        } else {
+            names.join(", ")
+        }
+    }
+
+    /// Returns the channel with its factor: declared, or from the units.
+    ///
+    /// A declared unit overrides the unit in the file; without either, the rule's unit for files
+    /// applies.
+    fn converted(&self, index: usize, rule: &ChannelRule, found: &mut ChannelMatch) -> ChannelUse {
+        let mut used = ChannelUse {
+            index,
+            factor: 1.0,
+            words: None,
         };
-        let Some(sign) = said.or_else(of_name) else {
-            let channel = rule.name.clone();
-            let found = name.unwrap_or_default().to_owned();
-            self.problems.push(ProblemKind::Sign { channel, found });
+        if let Some(factor) = self.declared.channels.factors.get(&rule.name) {
+            used.factor = *factor;
+            used.words = Some(format!("{} × {}, as declared", rule.name, number(*factor)));
+            return used;
+        }
+        let declared_unit = self.declared.channels.units.get(&rule.name);
+        let file_unit = self.labels[index]
+            .unit
+            .as_ref()
+            .filter(|unit| !unit.trim().is_empty());
+        if let Some(declared_unit) = declared_unit
+            && let Some(file_unit) = file_unit
+            && declared_unit != file_unit
+        {
+            found.notes.push(format!(
+                "{}: declared to be in {declared_unit}, although the file says {file_unit}",
+                rule.name
+            ));
+        }
+        let unit = declared_unit.or(file_unit).or(rule.unit_in_files.as_ref());
+        let Some(unit) = unit else {
+            found
+                .problems
+                .push(ProblemKind::UnitOfFile(rule.name.clone()));
+            return used;
+        };
+        let factor = match self.declared.conversion(&rule.name, unit) {
+            Some(factor) => Some(factor),
+            None => conversion_factor(unit, &rule.unit),
+        };
+        let Some(factor) = factor else {
+            found.problems.push(ProblemKind::Conversion {
+                channel: rule.name.clone(),
+                from: unit.clone(),
+                to: rule.unit.clone(),
+            });
+            return used;
+        };
+        used.factor = factor;
+        if factor != 1.0 {
+            used.words = Some(format!("{} {unit} → {} (× {factor})", rule.name, rule.unit));
+        } else if file_unit.is_none() {
+            used.words = Some(format!("{} taken to be in {unit}", rule.name));
+        }
+        used
+    }
+
+    /// Returns the channel with its declared sign, or with the sign that its name implies; reports
+    /// a sign that neither gives.
+    fn signed(
+        &self,
+        used: ChannelUse,
+        rule: &ChannelRule,
+        problems: &mut Vec<ProblemKind>,
+    ) -> ChannelUse {
+        let declared = self.declared.sign_of(&rule.name);
+        let name = self.labels[used.index].name.as_deref();
+        let sign = match (declared, name) {
+            (Some(sign), _) => Some(sign),
+            (None, Some(name)) => sign_between(name, matched_name(name, rule)),
+            (None, None) => Some(1.0),
+        };
+        let Some(sign) = sign else {
+            problems.push(ProblemKind::Sign {
+                channel: rule.name.clone(),
+                found: name.unwrap_or_default().to_owned(),
+            });
             return used;
         };
         if sign > 0.0 {
             return used;
         }
-        let why = match (said, name) {
-            (None, Some(name)) => format!(
-                "{}: turned, as its name in the file, \"{name}\", says",
-                rule.name
-            ),
-            _ => format!("{}: turned (× -1), as is said", rule.name),
+        let note = match (declared, name) {
+            (None, Some(name)) => {
+                format!("{}: sign reversed, from its name \"{name}\"", rule.name)
+            }
+            _ => format!("{}: sign reversed (× -1), as declared", rule.name),
         };
-        let words = used
-            .words
-            .into_iter()
-            .chain([why])
-            .collect::<Vec<_>>()
-            .join("; ");
+        let words = match used.words {
+            Some(words) => format!("{words}; {note}"),
+            None => note,
+        };
         ChannelUse {
+            index: used.index,
             factor: -used.factor,
             words: Some(words),
-            ..used
         }
     }
 
-    fn used(
-        &mut self,
-        index: usize,
-        label: &ChannelLabel,
-        rule: &ChannelRule,
-        declared: &DeclaredChannels<'_>,
-    ) -> ChannelUse {
-        if let Some(factor) = declared.channels.factors.get(&rule.name) {
-            let words = Some(format!("{} × {}, as declared", rule.name, number(*factor)));
-            return ChannelUse {
-                index,
-                factor: *factor,
-                words,
-            };
+    /// Notes the file channels that match no dataset channel.
+    fn note_unused(&self, found: &mut ChannelMatch) {
+        let mut unused: Vec<&str> = Vec::new();
+        for (index, label) in self.labels.iter().enumerate() {
+            let is_used = found.uses.iter().flatten().any(|used| used.index == index);
+            if let Some(name) = &label.name
+                && !is_used
+            {
+                unused.push(name);
+            }
         }
-        let of_file = label.unit.as_deref().filter(|unit| !unit.trim().is_empty());
-        let of_rules = declared.channels.units.get(&rule.name).map(String::as_str);
-        if let (Some(of_rules), Some(of_file)) = (of_rules, of_file)
-            && of_rules != of_file
-        {
-            self.notes.push(format!(
-                "{}: declared to be in {of_rules}, although the file says {of_file}",
-                rule.name
+        if found.problems.is_empty() && !unused.is_empty() {
+            found.notes.push(format!(
+                "{}s in the file but not in the dataset: {}",
+                self.side,
+                unused.join(", ")
             ));
         }
-        let said = of_rules.or(of_file);
-        let from = said.or(rule.unit_in_files.as_deref());
-        let Some(from) = from else {
-            self.problems
-                .push(ProblemKind::UnitOfFile(rule.name.clone()));
-            return ChannelUse {
-                index,
-                factor: 1.0,
-                words: None,
-            };
-        };
-        let mut conversions = declared.conversions.iter();
-        let by_rule = conversions
-            .find(|of| of.channel == rule.name && of.from.trim() == from.trim())
-            .map(|of| of.factor);
-        let Some(factor) = by_rule.or_else(|| conversion_factor(from, &rule.unit)) else {
-            let channel = rule.name.clone();
-            let to = rule.unit.clone();
-            self.problems.push(ProblemKind::Conversion {
-                channel,
-                from: from.to_owned(),
-                to,
-            });
-            return ChannelUse {
-                index,
-                factor: 1.0,
-                words: None,
-            };
-        };
-        let words = match (factor == 1.0, of_file) {
-            (true, Some(_)) => None,
-            (true, None) => Some(format!("{} taken to be in {from}", rule.name)),
-            (false, _) => Some(format!("{} {from} → {} (× {factor})", rule.name, rule.unit)),
-        };
-        ChannelUse {
-            index,
-            factor,
-            words,
-        }
-    }
-}
-
-/// Builds the problem of a measured response with no dataset channel on one side.
-fn unmatched(side: ChannelSide, labels: &[ChannelLabel], rules: &[ChannelRule]) -> ProblemKind {
-    let found: Vec<&str> = labels
-        .iter()
-        .filter_map(|label| label.name.as_deref())
-        .collect();
-    let known: Vec<&str> = rules.iter().map(|rule| rule.name.as_str()).collect();
-    ProblemKind::ResponseUnmatched {
-        side,
-        found: found.join(", "),
-        known: known.join(", "),
-    }
-}
-
-// Names of channels, time and sample time in the spellings that files use.
-
-/// Synonyms of each channel, folded (see [`folded_name`]); the first name of a row is canonical.
-/// Names such as "elevyoke1" come from a flight simulator. A name appears in one row only.
-const ALIASES: [&str; 16] = [
-    "lon long longitudinal longcyc cyclong dlon deltalon dlong deltalong db deltab de deltae xb xlon b1s theta1s \
-     pitchstick elevator loncyc lonstick longstick loncyclic cycliclon longitudinalcyclic longitudinalstick elevyoke1",
-    "lat lateral latcyc cyclat dlat deltalat da deltaa xa xlat a1s theta1c rollstick aileron latstick latcyclic cycliclat \
-     lateralcyclic lateralstick ailrnyoke1",
-    "ped pedal pedals dped deltaped dp deltap dr deltar xp xped thetatr thetat rudder tailrotor yawpedal ruddryoke1",
-    "col coll collective dcol deltacol dcoll dc deltac xc xcol theta0 theta0m",
-    "p rollrate pb pbody omegax",
-    "q pitchrate qb qbody omegay",
-    "r yawrate rb rbody omegaz",
-    "nx ax axb longitudinalacceleration longaccel accx gloadaxial",
-    "ny ay ayb lateralacceleration lataccel accy gloadside",
-    "nz az azb verticalacceleration vertaccel normalacceleration loadfactor accz gloadnorml",
-    "u ub ubody forwardspeed",
-    "v vb vbody sidewardspeed sidespeed",
-    "w wb wbody heave verticalspeed heavevelocity",
-    "phi roll rollangle rollattitude bank bankangle",
-    "theta pitch pitchangle pitchattitude",
-    "psi yaw heading yawangle",
-];
-
-/// Number of leading rows with names of inputs.
-pub(super) const FIELD_INPUTS: usize = 4;
-
-/// Returns the folded names of each channel known in the field.
-pub(super) fn field_names() -> impl Iterator<Item = std::str::Split<'static, char>> {
-    ALIASES.iter().map(|row| row.split(' '))
-}
-
-/// Folds a name: no case, marks or blanks, Greek letters spelt out. "δ_a" becomes "deltaa",
-/// "Sample_Time" becomes "sampletime".
-pub fn folded_name(name: &str) -> String {
-    let mut words = String::with_capacity(name.len());
-    for letter in name.chars().flat_map(char::to_lowercase) {
-        match letter {
-            'δ' | 'Δ' => words.push_str("delta"),
-            'θ' | 'ϑ' => words.push_str("theta"),
-            'φ' | 'ϕ' => words.push_str("phi"),
-            'ψ' => words.push_str("psi"),
-            'ω' => words.push_str("omega"),
-            letter if letter.is_alphanumeric() => words.push(letter),
-            _ => {}
-        }
-    }
-    words
-}
-
-/// Returns the canonical name of a channel.
-pub(super) fn canonical(name: &str) -> String {
-    let name = folded_name(name);
-    let first = field_names()
-        .find(|row| row.clone().any(|other| other == name))
-        .and_then(|mut row| row.next());
-    first.map_or_else(|| name.clone(), str::to_owned)
-}
-
-/// Returns whether two names denote the same channel: equal but for case and marks, or synonyms in
-/// the field.
-pub fn same_channel(a: &str, b: &str) -> bool {
-    a == b || canonical(a) == canonical(b)
-}
-
-/// Names of the acceleration along the z axis, which points down in some programs and up in others;
-/// and names of the load factor, which is positive up.
-const ALONG_Z: [&str; 5] = ["az", "azb", "accz", "verticalacceleration", "vertaccel"];
-const LOAD_FACTOR: [&str; 4] = ["nz", "loadfactor", "normalacceleration", "gloadnorml"];
-
-/// A name and its sign marks: `-az`, `az (down)`, `az[+down]`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SignedName {
-    pub name: String,
-    /// Whether a minus precedes it.
-    pub minus: bool,
-    /// 1 where declared positive up, right or forward, -1 for the opposite direction.
-    pub direction: Option<f64>,
-}
-
-impl SignedName {
-    /// Parses the sign marks of a name.
-    pub fn of(text: &str) -> Self {
-        let text = text.trim();
-        let begins_name = |rest: &str| {
-            rest.trim_start()
-                .starts_with(|letter: char| letter.is_alphabetic() || letter == '#')
-        };
-        let (minus, rest) = match text
-            .strip_prefix(['-', '\u{2212}'])
-            .filter(|rest| begins_name(rest))
-        {
-            Some(rest) => (true, rest.trim_start()),
-            None => (
-                false,
-                text.strip_prefix('+')
-                    .filter(|rest| begins_name(rest))
-                    .unwrap_or(text),
-            ),
-        };
-        let marked = [('(', ')'), ('[', ']'), ('{', '}')]
-            .into_iter()
-            .find_map(|(open, close)| {
-                let (name, mark) = rest.strip_suffix(close)?.rsplit_once(open)?;
-                Some((name.trim(), direction_of(mark)?))
-            });
-        let (name, direction) = match marked.filter(|(name, _)| !name.is_empty()) {
-            Some((name, direction)) => (name, Some(direction)),
-            None => (rest, None),
-        };
-        Self {
-            name: name.to_owned(),
-            minus,
-            direction,
-        }
     }
 
-    /// Returns the declared direction, or the one implied by the name.
-    fn known_direction(&self) -> Option<f64> {
-        self.direction.or(LOAD_FACTOR
-            .contains(&folded_name(&self.name).as_str())
-            .then_some(1.0))
-    }
-}
-
-/// Parses a direction mark such as "down", "+down", "positive down", "-up": 1 where positive up,
-/// right or forward, -1 for the opposite direction.
-pub fn direction_of(mark: &str) -> Option<f64> {
-    let mark = mark.trim().to_lowercase();
-    let (sign, word) = match mark.strip_prefix(['-', '\u{2212}']) {
-        Some(word) => (-1.0, word),
-        None => (1.0, mark.trim_start_matches('+')),
-    };
-    let word = word
-        .trim()
-        .trim_start_matches("positive")
-        .trim_start_matches("pos")
-        .trim_start_matches(['.', ' ']);
-    let word = word
-        .trim_end_matches("positive")
-        .trim_end_matches('+')
-        .trim();
-    match word {
-        "up" | "right" | "forward" | "fwd" => Some(sign),
-        "down" | "dn" | "left" | "aft" | "rearward" => Some(-sign),
-        _ => None,
-    }
-}
-
-/// Returns the factor, 1 or -1, from a file channel `label` to a dataset channel `channel`; `None`
-/// where the names leave it open.
-///
-/// A minus is the sign. Where one direction is given, the other must be known too: a load factor is
-/// positive up. `az` and `NZ` are the same but for a sign that neither gives.
-pub fn sign_between(label: &str, channel: &str) -> Option<f64> {
-    if label.trim() == channel.trim() {
-        return Some(1.0);
-    }
-    let of_label = SignedName::of(label);
-    let of_channel = SignedName::of(channel);
-    let minus = if of_label.minus == of_channel.minus {
-        1.0
-    } else {
-        -1.0
-    };
-    match (of_label.direction, of_channel.direction) {
-        (None, None) => {
-            let family = |name: &SignedName| {
-                let name = folded_name(&name.name);
-                (
-                    ALONG_Z.contains(&name.as_str()),
-                    LOAD_FACTOR.contains(&name.as_str()),
-                )
-            };
-            let is_open = matches!(
-                (family(&of_label), family(&of_channel)),
-                ((true, _), (_, true)) | ((_, true), (true, _))
-            );
-            (!is_open || of_label.minus || of_channel.minus).then_some(minus)
-        }
-        _ => Some(minus * of_label.known_direction()? * of_channel.known_direction()?),
-    }
-}
-
-/// Usual names of the sample time \[s\].
-pub const SAMPLE_TIME_NAMES: [&str; 7] = [
-    "Ts",
-    "dt",
-    "tsam",
-    "sample_time_s",
-    "sample_time",
-    "sampling_time",
-    "Tsample",
-];
-
-/// Ranks how likely a name denotes the time of samples, 0 the most likely; `None` where it does
-/// not. A trailing unit of time does not change the rank: `time_s`, `t [ms]`.
-pub fn time_name_rank(name: &str) -> Option<u8> {
-    let words: Vec<String> = name
-        .split(|c: char| !c.is_alphanumeric())
-        .filter(|word| !word.is_empty())
-        .map(str::to_lowercase)
-        .collect();
-    let mut words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let is_time = |unit: PhysicalUnit| unit.dimension == Dimension::Time;
-    if words.len() > 1
-        && words
-            .last()
-            .is_some_and(|word| PhysicalUnit::of(word).is_some_and(is_time))
-    {
-        words.pop();
-    }
-    match words.concat().as_str() {
-        "time" | "t" | "times" => Some(0),
-        "tout" | "timestamp" | "timestamps" | "elapsed" | "seconds" | "tsec" | "timesec"
-        | "zeit" | "temps" | "tempo" => Some(1),
-        _ => words
+    /// Returns the problem of a measured response without any dataset channel on a side.
+    fn unmatched(&self) -> ProblemKind {
+        let found: Vec<&str> = self
+            .labels
             .iter()
-            .any(|word| matches!(*word, "time" | "timestamp"))
-            .then_some(2),
+            .filter_map(|label| label.name.as_deref())
+            .collect();
+        let known: Vec<&str> = self.rules.iter().map(|rule| rule.name.as_str()).collect();
+        ProblemKind::ResponseUnmatched {
+            side: self.side,
+            found: found.join(", "),
+            known: known.join(", "),
+        }
     }
+}
+
+/// How a file name can agree with the name of a dataset channel or with one of its aliases.
+#[derive(Clone, Copy)]
+enum Likeness {
+    /// The channel's name, letter by letter.
+    SameName,
+    /// An alias from the rules, letter by letter.
+    SameAlias,
+    /// The name or an alias from the rules, but for sign marks.
+    SameButForSign,
+    /// The same channel in the alias table.
+    SameChannel,
+}
+
+impl Likeness {
+    const CLOSEST_FIRST: [Self; 4] = [
+        Self::SameName,
+        Self::SameAlias,
+        Self::SameButForSign,
+        Self::SameChannel,
+    ];
+
+    fn holds(self, name: &str, rule: &ChannelRule) -> bool {
+        match self {
+            Self::SameName => name == rule.name,
+            Self::SameAlias => rule.aliases.iter().any(|alias| alias == name),
+            Self::SameButForSign => {
+                let unsigned = unsigned_name(name);
+                unsigned == unsigned_name(&rule.name)
+                    || rule
+                        .aliases
+                        .iter()
+                        .any(|alias| unsigned_name(alias) == unsigned)
+            }
+            Self::SameChannel => {
+                let unsigned = unsigned_name(name);
+                same_channel(&unsigned, &unsigned_name(&rule.name))
+                    || rule
+                        .aliases
+                        .iter()
+                        .any(|alias| same_channel(&unsigned, &unsigned_name(alias)))
+            }
+        }
+    }
+}
+
+/// Returns a name without its sign marks.
+fn unsigned_name(name: &str) -> String {
+    SignedName::parse(name).name
+}
+
+/// Returns the alias from the rules that a file name agrees with, or the channel's own name.
+fn matched_name<'r>(name: &str, rule: &'r ChannelRule) -> &'r str {
+    if name == rule.name {
+        return &rule.name;
+    }
+    if let Some(alias) = rule.aliases.iter().find(|alias| *alias == name) {
+        return alias;
+    }
+    let unsigned = unsigned_name(name);
+    for alias in &rule.aliases {
+        if unsigned_name(alias) == unsigned {
+            return alias;
+        }
+    }
+    &rule.name
 }
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeSet;
-
     use super::*;
-    use crate::assembly::declarations::ChannelDeclarations;
-    use crate::assembly::rules::UnitRule;
+    use crate::assembly::declarations::{ChannelDeclarations, UnitRule};
 
     /// Matches the channels of one side under rules without other declarations.
     fn matched(
@@ -538,7 +371,31 @@ mod tests {
         rules: &[ChannelRule],
         partial: bool,
     ) -> ChannelMatch {
-        ChannelMatch::of(side, labels, rules, &DeclaredChannels::default(), partial)
+        ChannelMatcher {
+            side,
+            labels,
+            rules,
+            declared: &DeclaredChannels::default(),
+            partial,
+        }
+        .run()
+    }
+
+    /// Matches all channels of one side under these declarations.
+    fn matched_as_declared(
+        side: ChannelSide,
+        labels: &[ChannelLabel],
+        rules: &[ChannelRule],
+        declared: &DeclaredChannels<'_>,
+    ) -> ChannelMatch {
+        ChannelMatcher {
+            side,
+            labels,
+            rules,
+            declared,
+            partial: false,
+        }
+        .run()
     }
 
     fn rule(name: &str, unit: &str) -> ChannelRule {
@@ -556,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn channels_are_found_by_name_in_whatever_order_and_converted() {
+    fn channels_are_found_by_name_in_any_order_and_converted() {
         let rules = [rule("P", "deg/s"), rule("NZ", "m/s^2")];
         let labels = [
             label("nz", "g"),
@@ -575,15 +432,15 @@ mod tests {
     }
 
     #[test]
-    fn a_unit_that_is_not_said_is_asked_for_and_never_guessed() {
+    fn a_missing_unit_is_a_problem() {
         let rules = [rule("LON", "%")];
         let found = matched(ChannelSide::Input, &[label("lon", "")], &rules, false);
         assert_eq!(found.problems, [ProblemKind::UnitOfFile("LON".into())]);
-        let said = [ChannelRule {
+        let with_unit = [ChannelRule {
             unit_in_files: Some("in".into()),
             ..rule("LON", "%")
         }];
-        let found = matched(ChannelSide::Input, &[label("lon", "")], &said, false);
+        let found = matched(ChannelSide::Input, &[label("lon", "")], &with_unit, false);
         assert!(matches!(
             &found.problems[..],
             [ProblemKind::Conversion { .. }]
@@ -597,18 +454,17 @@ mod tests {
             conversions: &[factor],
             ..DeclaredChannels::default()
         };
-        let found = ChannelMatch::of(
+        let found = matched_as_declared(
             ChannelSide::Input,
             &[label("lon", "")],
-            &said,
+            &with_unit,
             &declared,
-            false,
         );
         assert_eq!(found.uses[0].as_ref().map(|used| used.factor), Some(8.5));
     }
 
     #[test]
-    fn channels_without_names_are_taken_in_order_only_if_there_are_as_many() {
+    fn unnamed_channels_are_matched_by_position_if_the_counts_agree() {
         let rules = [rule("LON", "%"), rule("LAT", "%")];
         let unnamed = |count| {
             vec![
@@ -633,7 +489,7 @@ mod tests {
     }
 
     #[test]
-    fn two_channels_that_can_be_the_same_are_asked_about_unless_one_has_the_very_name() {
+    fn two_candidates_are_a_problem_unless_one_has_the_exact_name() {
         let rules = [rule("P", "deg/s")];
         let both = [label("p", "deg/s"), label("roll rate", "deg/s")];
         let found = matched(ChannelSide::Output, &both, &rules, false);
@@ -650,7 +506,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sign_is_that_of_the_mark_or_is_said_or_asked_for() {
+    fn the_sign_is_declared_or_marked_or_a_problem() {
         let rules = [
             rule("NZ", "m/s2"),
             ChannelRule {
@@ -658,9 +514,9 @@ mod tests {
                 ..rule("R", "deg/s")
             },
         ];
-        let factors = |name: &str, said: &[(&str, f64)]| {
+        let factors = |name: &str, declared: &[(&str, f64)]| {
             let labels = [label(name, "m/s2"), label("yaw", "deg/s")];
-            let signs = said
+            let signs = declared
                 .iter()
                 .map(|(name, sign)| ((*name).to_owned(), *sign))
                 .collect();
@@ -672,7 +528,7 @@ mod tests {
                 channels,
                 ..DeclaredChannels::default()
             };
-            let found = ChannelMatch::of(ChannelSide::Output, &labels, &rules, &declared, false);
+            let found = matched_as_declared(ChannelSide::Output, &labels, &rules, &declared);
             (
                 found
                     .uses
@@ -698,7 +554,7 @@ mod tests {
     }
 
     #[test]
-    fn a_declared_unit_or_factor_goes_before_the_file_s_and_a_factor_is_all_that_is_done() {
+    fn declared_units_and_factors_override_the_file() {
         let rules = [ChannelRule {
             unit_in_files: Some("deg/s".into()),
             ..rule("R", "deg/s")
@@ -708,7 +564,7 @@ mod tests {
                 channels,
                 ..DeclaredChannels::default()
             };
-            let found = ChannelMatch::of(ChannelSide::Output, &[label], &rules, &declared, false);
+            let found = matched_as_declared(ChannelSide::Output, &[label], &rules, &declared);
             assert!(found.problems.is_empty(), "{:?}", found.problems);
             found.uses[0].as_ref().map(|used| used.factor)
         };
@@ -743,7 +599,7 @@ mod tests {
     }
 
     #[test]
-    fn a_response_whose_channels_match_nothing_is_a_problem_and_one_that_lacks_some_is_none() {
+    fn a_measured_response_may_lack_some_channels_but_not_all() {
         let rules = [rule("LON", "%"), rule("LAT", "%")];
         let part = matched(
             ChannelSide::Input,
@@ -754,7 +610,7 @@ mod tests {
         assert!(part.problems.is_empty(), "{:?}", part.problems);
         assert_eq!(
             part.notes,
-            ["inputs of the file that the dataset does not have: latt"]
+            ["inputs in the file but not in the dataset: latt"]
         );
         for labels in [
             vec![label("delta", "%"), label("run2", "%")],
@@ -769,83 +625,5 @@ mod tests {
                 "{labels:?}"
             );
         }
-    }
-
-    #[test]
-    fn the_time_is_known_by_its_name_with_or_without_marks_and_unit() {
-        let ranks = [
-            ("t [ms]", 0),
-            ("Time_s", 0),
-            ("time_stamps", 1),
-            ("t_out", 1),
-            ("real,_time", 2),
-        ];
-        for (name, rank) in ranks {
-            assert_eq!(time_name_rank(name), Some(rank), "{name}");
-        }
-        assert!(
-            ["theta", "Ts", "tail rotor"]
-                .iter()
-                .all(|name| time_name_rank(name).is_none())
-        );
-    }
-
-    #[test]
-    fn the_names_of_the_field_are_one_another() {
-        for (a, b) in [
-            ("LAT", "δ_a"),
-            ("lat", "Xa"),
-            ("P", "roll rate"),
-            ("q", "Pitch_Rate"),
-            ("PED", "pedals"),
-            ("NZ", "az"),
-        ] {
-            assert!(same_channel(a, b), "{a} {b}");
-        }
-        for (a, b) in [
-            ("LON", "LAT"),
-            ("P", "PED"),
-            ("roll", "roll rate"),
-            ("P", "Q"),
-        ] {
-            assert!(!same_channel(a, b), "{a} {b}");
-        }
-    }
-
-    #[test]
-    fn a_mark_in_a_name_is_the_sign_and_is_never_dropped() {
-        for (label, channel, sign) in [
-            ("R", "R", Some(1.0)),
-            ("-R", "R", Some(-1.0)),
-            ("\u{2212}yaw rate", "R", Some(-1.0)),
-            ("-az", "NZ", Some(-1.0)),
-            ("az (down)", "NZ", Some(-1.0)),
-            ("az[+down]", "NZ", Some(-1.0)),
-            ("az (positive up)", "NZ", Some(1.0)),
-            ("az [-up]", "NZ", Some(-1.0)),
-            ("NZ", "nz", Some(1.0)),
-            ("az", "NZ", None),
-            ("w (down)", "W", None),
-            ("w (down)", "W (up)", Some(-1.0)),
-        ] {
-            assert_eq!(sign_between(label, channel), sign, "{label} as {channel}");
-        }
-        assert_eq!(SignedName::of("-az").name, "az");
-        assert_eq!(
-            SignedName::of("az (g)").name,
-            "az (g)",
-            "a unit is no direction"
-        );
-    }
-
-    #[test]
-    fn no_name_stands_for_two_channels() {
-        let names: Vec<&str> = ALIASES.iter().flat_map(|row| row.split(' ')).collect();
-        let unique: BTreeSet<&str> = names.iter().copied().collect();
-        assert_eq!(unique.len(), names.len());
-        assert!(
-            names.iter().all(|name| folded_name(name) == **name),
-            "they are folded"
-        );
     }
 }

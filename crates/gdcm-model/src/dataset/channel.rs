@@ -1,11 +1,11 @@
-//! Channels of the helicopter, a response of a dataset, and a table with one entry per response.
+//! Channels, responses and bundles of a dataset, tables with an entry per response, and the
+//! identity of conditions and models.
 
 use std::fmt;
 use std::ops::{Index, IndexMut};
 
 use serde::{Deserialize, Serialize};
 
-use crate::message_text::quoted;
 use crate::whole_number::whole;
 
 /// An input (a control position) or an output (a measured motion).
@@ -15,7 +15,7 @@ pub struct Channel {
     pub name: String,
     /// Unit in the dataset's spelling ("%", "deg/s").
     pub unit: String,
-    /// Meaning of the channel and its positive direction.
+    /// Meaning and positive direction.
     pub description: String,
 }
 
@@ -35,20 +35,20 @@ impl Channel {
 /// The index order is `[output, input]` everywhere (M1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Pair {
-    /// Index of the output channel, in the dataset's order.
+    /// Output index, in the dataset's order.
     pub output: usize,
-    /// Index of the input channel, in the dataset's order.
+    /// Input index, in the dataset's order.
     pub input: usize,
 }
 
 impl Pair {
-    /// Creates the response of output channel `output` to input channel `input`.
+    /// Creates the response from channel `input` to channel `output`.
     pub fn new(output: usize, input: usize) -> Self {
         Self { output, input }
     }
 }
 
-/// A table with one entry per response: `p` rows (outputs) by `m` columns (inputs).
+/// A table with an entry per response: `p` rows (outputs) by `m` columns (inputs).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairTable<T> {
     outputs: usize,
@@ -67,17 +67,17 @@ impl<T> PairTable<T> {
         }
     }
 
-    /// Returns the number of output channels, `p`.
+    /// Returns the output count, `p`.
     pub fn outputs(&self) -> usize {
         self.outputs
     }
 
-    /// Returns the number of input channels, `m`.
+    /// Returns the input count, `m`.
     pub fn inputs(&self) -> usize {
         self.inputs
     }
 
-    /// Returns the index of a response's entry.
+    /// Returns the place of an entry.
     fn place(&self, pair: Pair) -> usize {
         let outputs = self.outputs;
         let inputs = self.inputs;
@@ -90,7 +90,11 @@ impl<T> PairTable<T> {
 
     /// Returns the entry of a response; `None` where the table has no such response.
     pub fn get(&self, pair: Pair) -> Option<&T> {
-        (pair.output < self.outputs() && pair.input < self.inputs()).then(|| &self[pair])
+        if pair.output < self.outputs && pair.input < self.inputs {
+            Some(&self[pair])
+        } else {
+            None
+        }
     }
 
     /// Iterates over the responses, row by row.
@@ -114,6 +118,7 @@ impl<T> PairTable<T> {
     }
 }
 
+/// Iterates over the responses of a table, row by row.
 fn pairs(outputs: usize, inputs: usize) -> impl Iterator<Item = Pair> {
     (0..outputs).flat_map(move |output| (0..inputs).map(move |input| Pair { output, input }))
 }
@@ -153,7 +158,7 @@ impl<T> IndexMut<Pair> for PairTable<T> {
     }
 }
 
-/// Whether a channel is an input or an output of the aircraft.
+/// Whether a channel is an aircraft input or output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ChannelSide {
@@ -179,117 +184,7 @@ impl std::fmt::Display for ChannelSide {
     }
 }
 
-// Identifiers of conditions and models that do not depend on their order in a file, and locations
-// in a dataset.
-
-/// A condition of a dataset during reading.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ConditionPlace {
-    /// Position, counted from 1.
-    pub position: usize,
-    /// Its id, where readable.
-    pub id: Option<i64>,
-}
-
-/// A model of a dataset during reading.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ModelPlace {
-    pub bundle: BundleKind,
-    /// Position in the bundle, counted from 1.
-    pub position: usize,
-    /// Its name, where readable.
-    pub name: Option<String>,
-}
-
-/// A location in a dataset: condition, model, and entry (matrix, row, column), each where
-/// applicable.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Location {
-    pub condition: Option<ConditionPlace>,
-    pub model: Option<ModelPlace>,
-    /// The entry, in words; empty for the whole.
-    pub entry: String,
-}
-
-impl Location {
-    /// Creates a location from words: "on-axis pair 3".
-    pub fn entry(words: impl Into<String>) -> Self {
-        Self {
-            entry: words.into(),
-            ..Self::default()
-        }
-    }
-
-    /// Creates the location of a condition; `position` counts from 1.
-    pub fn condition(position: usize, id: i64) -> Self {
-        Self {
-            condition: Some(ConditionPlace {
-                position,
-                id: Some(id),
-            }),
-            ..Self::default()
-        }
-    }
-
-    /// Creates the location of a model in this condition; `position` counts from 1.
-    pub fn model(&self, bundle: BundleKind, position: usize, name: &str) -> Self {
-        let model = Some(ModelPlace {
-            bundle,
-            position,
-            name: Some(name.to_owned()),
-        });
-        Self {
-            condition: self.condition.clone(),
-            model,
-            entry: String::new(),
-        }
-    }
-
-    /// Creates the location of an entry in this condition or model.
-    pub fn at(&self, words: impl Into<String>) -> Self {
-        Self {
-            entry: words.into(),
-            ..self.clone()
-        }
-    }
-
-    /// Returns the location followed by a colon and a space; empty for the file as a whole.
-    pub fn before(&self) -> String {
-        let words = self.to_string();
-        if words.is_empty() {
-            words
-        } else {
-            words + ": "
-        }
-    }
-}
-
-impl fmt::Display for Location {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let condition = self
-            .condition
-            .as_ref()
-            .map(|ConditionPlace { position, id }| match id {
-                Some(id) => format!("condition {id} (number {position} in the file)"),
-                None => format!("condition number {position} in the file"),
-            });
-        let model = self.model.as_ref().map(
-            |ModelPlace {
-                 bundle,
-                 position,
-                 name,
-             }| match name {
-                Some(name) => format!("{bundle} model {} (number {position})", quoted(name)),
-                None => format!("{bundle} model number {position}"),
-            },
-        );
-        let entry = Some(self.entry.clone()).filter(|entry| !entry.is_empty());
-        let words: Vec<String> = [condition, model, entry].into_iter().flatten().collect();
-        formatter.write_str(&words.join(", "))
-    }
-}
-
-/// One of the two bundles of a condition.
+/// A bundle of models in a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum BundleKind {
     /// The physics models: one nominal, the others at perturbed trims.
@@ -320,7 +215,7 @@ impl fmt::Display for BundleKind {
     }
 }
 
-/// Identity of a flight condition: its id in the dataset.
+/// Identity of a flight condition in its dataset.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
 )]
@@ -342,7 +237,7 @@ pub struct ModelId {
 }
 
 impl ModelId {
-    /// Creates the identity of the model with this name in a bundle of a condition.
+    /// Creates the identity of a model, by its name in a bundle of a condition.
     pub fn new(condition: ConditionId, bundle: BundleKind, name: impl Into<String>) -> Self {
         Self {
             condition,

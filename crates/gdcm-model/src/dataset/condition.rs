@@ -1,4 +1,4 @@
-//! One flight condition with its two bundles of models and its flight records.
+//! A flight condition with its two bundles of models and its flight records.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::channel::{BundleKind, ConditionId};
 use super::model::Model;
 use crate::units::number;
 
-/// Description of a flight condition, without its models.
+/// A flight condition without its models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightState {
     pub id: ConditionId,
@@ -42,9 +42,10 @@ impl FlightState {
     }
 }
 
-/// One flight condition: a bundle of physics models, exactly one of them nominal, a bundle of
-/// identified models, and their flight records, where the dataset lists them. A condition without
-/// identified models has no reference yet: it is valid, but gives no result
+/// A flight condition: physics models, exactly one of them nominal, identified models, and flight
+/// records.
+///
+/// A condition without identified models has no reference yet: it is valid, but gives no result
 /// ([`Condition::has_reference`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
@@ -53,15 +54,15 @@ pub struct Condition {
     bundles: [Vec<Model>; 2],
     nominal: usize,
     records: Vec<ConditionRecord>,
-    /// Indices of the physics and identified models, sorted by name, because a list of a thousand
-    /// models looks up each one by name.
+    /// Indices of physics and identified models, sorted by name: a list of a thousand models looks
+    /// up each by name.
     by_name: [Vec<usize>; 2],
 }
 
-/// Why two bundles do not form a condition.
+/// Error for bundles that do not form a condition.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConditionError {
-    /// A value of the flight state is not finite, or an airspeed is negative.
+    /// A value that is not finite, or a negative airspeed or mass.
     #[error("{field}: expected a finite number{bound}, found {}", number(*value))]
     FlightState {
         /// The quantity with its unit.
@@ -70,12 +71,10 @@ pub enum ConditionError {
         bound: &'static str,
         value: f64,
     },
-    /// The physics bundle is empty, or the replacement for the identified bundle is.
     #[error("the {0} bundle: expected at least one model, found none")]
     EmptyBundle(BundleKind),
-    /// Two models of a bundle share a name.
     #[error(
-        "the {bundle} bundle: the name \"{name}\" stands twice (models {first} and {second}); names must differ"
+        "the {bundle} bundle: duplicate name \"{name}\" (models {first} and {second}); names must differ"
     )]
     DuplicateName {
         bundle: BundleKind,
@@ -85,18 +84,13 @@ pub enum ConditionError {
         /// Second model, counted from 1.
         second: usize,
     },
-    /// The physics bundle has no nominal model, or several.
     #[error("the physics bundle: expected exactly one nominal model, found {found}{names}")]
     Nominal {
-        /// Number of nominal models.
         found: usize,
         /// Their names in parentheses, where there are several.
         names: String,
     },
-    /// Two records share a name.
-    #[error(
-        "records: the name \"{name}\" stands twice (records {first} and {second}); names must differ"
-    )]
+    #[error("records: duplicate name \"{name}\" (records {first} and {second}); names must differ")]
     DuplicateRecord {
         name: String,
         /// First record, counted from 1.
@@ -104,22 +98,21 @@ pub enum ConditionError {
         /// Second record, counted from 1.
         second: usize,
     },
-    /// A sample time or the time of a piece is out of range.
+    /// Sample time or piece out of range.
     #[error("record \"{name}\" (number {position}), {field}: expected {expected}, found {}", number(*value))]
     Record {
         name: String,
-        /// Position of the record, counted from 1.
+        /// Record position, counted from 1.
         position: usize,
-        /// The quantity.
+        /// Key in the file.
         field: &'static str,
-        /// The permitted values.
         expected: &'static str,
         value: f64,
     },
 }
 
 impl Condition {
-    /// Creates a condition with these models, in file order.
+    /// Creates a condition from models in file order.
     pub fn new(
         flight_state: FlightState,
         physics: Vec<Model>,
@@ -136,7 +129,7 @@ impl Condition {
             .collect();
         match nominal[..] {
             [nominal] => {
-                let by_name = bundles.each_ref().map(|models| by_name(models));
+                let by_name = bundles.each_ref().map(|models| indices_by_name(models));
                 Ok(Self {
                     flight_state,
                     bundles,
@@ -147,12 +140,12 @@ impl Condition {
             }
             _ => Err(ConditionError::Nominal {
                 found: nominal.len(),
-                names: names_of(physics, &nominal),
+                names: list_names(physics, &nominal),
             }),
         }
     }
 
-    /// Returns the same condition with these flight records, in file order.
+    /// Returns the same condition with other flight records, in file order.
     ///
     /// # Errors
     /// [`ConditionError::DuplicateRecord`] and [`ConditionError::Record`].
@@ -162,9 +155,10 @@ impl Condition {
         Ok(self)
     }
 
-    /// Returns the same condition with these models as its identified bundle, and these flight
-    /// records. A record replaces the one with the same name, or else the one with the same samples
-    /// of the same file, or is appended. A record whose parts are added is no longer used, since
+    /// Returns the same condition with another identified bundle and additional flight records.
+    ///
+    /// A record replaces the record with the same name, or else with the same samples in the same
+    /// file; otherwise it is appended. A record whose parts are added is no longer used, since
     /// evidence counts once.
     ///
     /// # Errors
@@ -175,15 +169,16 @@ impl Condition {
         records: Vec<ConditionRecord>,
     ) -> Result<Self, ConditionError> {
         let mut kept = self.records.clone();
-        for whole in kept
-            .iter_mut()
-            .filter(|whole| records.iter().any(|part| part.is_part_of(whole)))
-        {
-            whole.used = false;
+        for whole in &mut kept {
+            if records.iter().any(|part| part.is_part_of(whole)) {
+                whole.used = false;
+            }
         }
         for record in records {
-            let of_name = kept.iter().position(|other| other.name == record.name);
-            match of_name.or_else(|| kept.iter().position(|other| other.is_same_as(&record))) {
+            let same_name = kept.iter().position(|other| other.name == record.name);
+            let replaced =
+                same_name.or_else(|| kept.iter().position(|other| other.is_same_as(&record)));
+            match replaced {
                 Some(index) => kept[index] = record,
                 None => kept.push(record),
             }
@@ -196,7 +191,7 @@ impl Condition {
         &self.records
     }
 
-    /// Returns the description of the condition, without its models.
+    /// Returns the condition without its models.
     pub fn flight_state(&self) -> &FlightState {
         &self.flight_state
     }
@@ -206,7 +201,7 @@ impl Condition {
         self.flight_state.id
     }
 
-    /// Returns the models of one bundle, in file order.
+    /// Returns the models in a bundle, in file order.
     pub fn bundle(&self, kind: BundleKind) -> &[Model] {
         &self.bundles[kind as usize]
     }
@@ -216,7 +211,7 @@ impl Condition {
         !self.bundle(BundleKind::Identified).is_empty()
     }
 
-    /// Returns the position of the named model in its bundle, in file order.
+    /// Returns the index of the named model in its bundle.
     pub fn position(&self, kind: BundleKind, name: &str) -> Option<usize> {
         let models = self.bundle(kind);
         let order = &self.by_name[kind as usize];
@@ -226,7 +221,7 @@ impl Condition {
         Some(order[place])
     }
 
-    /// Returns the named model of a bundle.
+    /// Returns the named model in a bundle.
     pub fn model(&self, kind: BundleKind, name: &str) -> Option<&Model> {
         Some(&self.bundle(kind)[self.position(kind, name)?])
     }
@@ -237,30 +232,39 @@ impl Condition {
     }
 }
 
-fn by_name(models: &[Model]) -> Vec<usize> {
+/// Returns the model indices in ascending order of names.
+fn indices_by_name(models: &[Model]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..models.len()).collect();
     order.sort_by(|a, b| models[*a].name.cmp(&models[*b].name));
     order
 }
 
 fn check_flight_state(state: &FlightState) -> Result<(), ConditionError> {
-    let figures = [
-        ("airspeed [kt]", Some(state.airspeed_kt), true),
-        ("altitude [ft]", state.altitude_ft, false),
-        ("mass [kg]", state.mass_kg, true),
-    ];
-    for (field, value, not_negative) in figures {
-        let Some(value) = value else { continue };
-        if !value.is_finite() || (not_negative && value < 0.0) {
-            let bound = if not_negative { " not below zero" } else { "" };
-            return Err(ConditionError::FlightState {
-                field,
-                bound,
-                value,
-            });
-        }
+    check_not_negative("airspeed [kt]", Some(state.airspeed_kt))?;
+    check_finite("altitude [ft]", state.altitude_ft)?;
+    check_not_negative("mass [kg]", state.mass_kg)
+}
+
+fn check_finite(field: &'static str, value: Option<f64>) -> Result<(), ConditionError> {
+    match value {
+        Some(value) if !value.is_finite() => Err(ConditionError::FlightState {
+            field,
+            bound: "",
+            value,
+        }),
+        _ => Ok(()),
     }
-    Ok(())
+}
+
+fn check_not_negative(field: &'static str, value: Option<f64>) -> Result<(), ConditionError> {
+    match value {
+        Some(value) if !value.is_finite() || value < 0.0 => Err(ConditionError::FlightState {
+            field,
+            bound: " not below zero",
+            value,
+        }),
+        _ => Ok(()),
+    }
 }
 
 /// Checks a bundle. An identified bundle may be empty: models can be identified later from flight
@@ -287,59 +291,79 @@ fn check_bundle(bundle: BundleKind, models: &[Model]) -> Result<(), ConditionErr
 }
 
 fn check_records(records: &[ConditionRecord]) -> Result<(), ConditionError> {
-    for (second, record) in records.iter().enumerate() {
-        if let Some(first) = records[..second]
+    for (index, record) in records.iter().enumerate() {
+        let earlier = records[..index]
             .iter()
-            .position(|earlier| earlier.name == record.name)
-        {
-            let name = record.name.clone();
+            .position(|earlier| earlier.name == record.name);
+        if let Some(first) = earlier {
             return Err(ConditionError::DuplicateRecord {
-                name,
+                name: record.name.clone(),
                 first: first + 1,
-                second: second + 1,
+                second: index + 1,
             });
         }
-        let wrong = |field, expected, value| {
-            let name = record.name.clone();
-            let position = second + 1;
-            Err(ConditionError::Record {
-                name,
-                position,
-                field,
-                expected,
-                value,
-            })
-        };
-        if let Some(value) = record
-            .sample_time_s
-            .filter(|value| !value.is_finite() || *value <= 0.0)
-        {
-            return wrong("sample_time_s", "a positive number of seconds", value);
-        }
-        let parts = record.part_s.iter().map(|part| ("part_s", part));
-        for (field, &[first, last]) in record
-            .used_s
-            .iter()
-            .map(|piece| ("used_s", piece))
-            .chain(parts)
-        {
-            if !first.is_finite() {
-                return wrong(field, "finite times", first);
-            }
-            if !last.is_finite() || last < first {
-                return wrong(field, "a finite last time, not before the first", last);
-            }
-        }
+        check_times(record).map_err(|fault| ConditionError::Record {
+            name: record.name.clone(),
+            position: index + 1,
+            field: fault.field,
+            expected: fault.expected,
+            value: fault.value,
+        })?;
     }
     Ok(())
 }
 
-fn names_of(models: &[Model], indices: &[usize]) -> String {
+/// A time out of range.
+struct TimeFault {
+    field: &'static str,
+    expected: &'static str,
+    value: f64,
+}
+
+/// Checks the sample time and the pieces of a record.
+fn check_times(record: &ConditionRecord) -> Result<(), TimeFault> {
+    if let Some(value) = record.sample_time_s
+        && (!value.is_finite() || value <= 0.0)
+    {
+        return Err(TimeFault {
+            field: "sample_time_s",
+            expected: "a positive number of seconds",
+            value,
+        });
+    }
+    for piece in &record.used_s {
+        check_piece("used_s", *piece)?;
+    }
+    if let Some(part) = record.part_s {
+        check_piece("part_s", part)?;
+    }
+    Ok(())
+}
+
+fn check_piece(field: &'static str, [first, last]: [f64; 2]) -> Result<(), TimeFault> {
+    if !first.is_finite() {
+        return Err(TimeFault {
+            field,
+            expected: "finite times",
+            value: first,
+        });
+    }
+    if !last.is_finite() || last < first {
+        return Err(TimeFault {
+            field,
+            expected: "a finite last time, not before the first",
+            value: last,
+        });
+    }
+    Ok(())
+}
+
+/// Lists the first names in parentheses, enough to find the mistake; empty for no models.
+fn list_names(models: &[Model], indices: &[usize]) -> String {
+    const SHOWN: usize = 5;
     if indices.is_empty() {
         return String::new();
     }
-    /// Enough names to find the mistake.
-    const SHOWN: usize = 5;
     let names: Vec<&str> = indices
         .iter()
         .take(SHOWN)
@@ -354,14 +378,13 @@ fn names_of(models: &[Model], indices: &[usize]) -> String {
     format!(" ({}{more})", names.join(", "))
 }
 
-/// The manoeuvre of a record.
+/// The manoeuvre flown in a record.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum RecordKind {
-    /// A frequency sweep.
     Sweep,
-    /// A sum of sines.
+    /// Sum of sines.
     Multisine,
-    /// A 3-2-1-1 input (steps of three, two, one and one time units), or doublets.
+    /// 3-2-1-1 (steps of three, two, one and one time units), or doublets.
     ThreeTwoOneOne,
     #[default]
     Other,
@@ -387,45 +410,43 @@ impl RecordKind {
     }
 
     /// Parses a keyword.
-    pub fn of(word: &str) -> Option<Self> {
+    pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.word() == word)
     }
 }
 
-/// Reference to a flight record of a condition: the file that holds its samples, and how they are
-/// used.
+/// Reference to a flight record: the file that holds its samples, and their use.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConditionRecord {
     /// Name, unique in the condition.
     pub name: String,
     /// Path relative to the dataset's file.
     pub file: String,
-    /// Name of the record or variable in the file; `None` where the file holds a single record.
+    /// Record or variable in the file; `None` where the file holds a single record.
     pub variable: Option<String>,
     /// SHA-256 of the file, in hexadecimal.
     pub sha256: Option<String>,
     pub kind: RecordKind,
-    /// Whether it is withheld from identification for validation.
+    /// Whether it is withheld from identification, for validation.
     pub held_out: bool,
     /// Whether it is used for anything.
     pub used: bool,
     /// Sample time \[s\], once known.
     pub sample_time_s: Option<f64>,
-    /// First and last time \[s\] of each piece in use, on the record's clock; empty for the whole
-    /// record.
+    /// Pieces in use: first and last time \[s\] on the record's clock; empty for the whole record.
     pub used_s: Vec<[f64; 2]>,
-    /// First and last time \[s\] of this record within the file's samples, on the file's clock;
-    /// `None` for the whole file.
+    /// First and last time \[s\] within the file's samples, on the file's clock; `None` for the
+    /// whole file.
     pub part_s: Option<[f64; 2]>,
     /// Corrections specific to this record, by channel.
     pub remedies: BTreeMap<String, ChannelRemedy>,
 }
 
-/// Correction of a channel in a single record that contradicts the others (M14.16).
+/// Correction for a channel in a record that contradicts the others (M14.16).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ChannelRemedy {
-    /// Extra logging delay relative to the other records \[s\], to be removed.
+    /// Extra logging delay relative to other records \[s\], to be removed.
     pub delay_s: f64,
     /// Factor on its samples, in addition to the unit conversion.
     pub factor: f64,
@@ -455,16 +476,19 @@ impl Default for ChannelRemedy {
 }
 
 impl ConditionRecord {
-    /// Returns whether both refer to the same record of the same file. Folders are ignored, because
-    /// the paths may be relative to different places.
+    /// Returns whether both refer to the same record of the same file. Folders are ignored: paths
+    /// may be relative to different places.
     fn is_of_same_source(&self, other: &ConditionRecord) -> bool {
-        let name = |record: &Self| record.file.rsplit('/').next().map(str::to_owned);
-        let differ = self
-            .sha256
-            .as_ref()
-            .zip(other.sha256.as_ref())
-            .is_some_and(|(a, b)| a != b);
-        name(self) == name(other) && self.variable == other.variable && !differ
+        let contents_differ = match (&self.sha256, &other.sha256) {
+            (Some(a), Some(b)) => a != b,
+            _ => false,
+        };
+        self.file_name() == other.file_name() && self.variable == other.variable && !contents_differ
+    }
+
+    /// Returns the file name without folders.
+    fn file_name(&self) -> &str {
+        self.file.rsplit('/').next().unwrap_or_default()
     }
 
     /// Returns whether both refer to the same samples, under any name.
@@ -472,7 +496,7 @@ impl ConditionRecord {
         self.part_s == other.part_s && self.is_of_same_source(other)
     }
 
-    /// Returns whether it is a part of the full record `whole`.
+    /// Returns whether this is a part of the full record `whole`.
     fn is_part_of(&self, whole: &ConditionRecord) -> bool {
         self.part_s.is_some() && whole.part_s.is_none() && self.is_of_same_source(whole)
     }

@@ -1,4 +1,4 @@
-//! The complete dataset, and the frequency band for the comparison of models.
+//! The complete dataset, and the frequency band in which models are compared.
 
 use std::sync::Arc;
 
@@ -11,29 +11,27 @@ use crate::units::number;
 
 /// Channels, on-axis responses, the default band, and the flight conditions with their models (M1).
 ///
-/// Checked once at construction: every model of every condition has `p` outputs and `m` inputs.
+/// Checked once at construction: every model has `p` outputs and `m` inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dataset {
     header: DatasetHeader,
     conditions: Vec<Arc<Condition>>,
 }
 
-/// Why channels and conditions do not form a dataset.
+/// Error for channels and conditions that do not form a dataset.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DatasetError {
-    /// There are no inputs, no outputs or no conditions.
+    /// List without entries: inputs, outputs or conditions.
     #[error("{0}: expected at least one entry, found none")]
     Empty(&'static str),
-    /// Two channels of a list share a name.
-    #[error("{list}: the name \"{name}\" stands twice; names must differ")]
+    #[error("{list}: duplicate name \"{name}\"; names must differ")]
     DuplicateChannel {
         /// `inputs` or `outputs`.
         list: &'static str,
         name: String,
     },
-    /// Two conditions share an id.
     #[error(
-        "conditions: the id {id} stands twice (conditions number {first} and {second}); ids must differ"
+        "conditions: duplicate id {id} (conditions number {first} and {second}); ids must differ"
     )]
     DuplicateId {
         id: ConditionId,
@@ -42,15 +40,13 @@ pub enum DatasetError {
         /// Second condition, counted from 1.
         second: usize,
     },
-    /// The on-axis table does not match the number of channels.
     #[error("on_axis: expected a {} x {} table, found {} x {}", expected.0, expected.1, found.0, found.1)]
     OnAxisShape {
-        /// Number of output and input channels.
+        /// Outputs and inputs of the dataset.
         expected: (usize, usize),
-        /// Rows and columns found.
+        /// Rows and columns.
         found: (usize, usize),
     },
-    /// A model has the wrong number of outputs or inputs.
     #[error(
         "condition {condition}, model \"{model}\": expected {} outputs x {} inputs, found {} x {}",
         expected.0, expected.1, found.0, found.1
@@ -58,7 +54,7 @@ pub enum DatasetError {
     ModelShape {
         condition: ConditionId,
         model: String,
-        /// Number of output and input channels.
+        /// Outputs and inputs of the dataset.
         expected: (usize, usize),
         /// Outputs and inputs of the model.
         found: (usize, usize),
@@ -76,14 +72,14 @@ pub struct DatasetHeader {
     pub inputs: Vec<Channel>,
     /// Output channels, in order.
     pub outputs: Vec<Channel>,
-    /// On-axis responses (the paper's Table 2).
+    /// On-axis responses (M1).
     pub on_axis: PairTable<bool>,
-    /// Default band of comparison.
+    /// Default comparison band.
     pub band: Band,
 }
 
 impl Dataset {
-    /// Creates a dataset of these conditions, in file order.
+    /// Creates a dataset from conditions in file order.
     pub fn new(header: DatasetHeader, conditions: Vec<Condition>) -> Result<Self, DatasetError> {
         check_channels("inputs", &header.inputs)?;
         check_channels("outputs", &header.outputs)?;
@@ -99,7 +95,7 @@ impl Dataset {
         })
     }
 
-    /// Returns the description of the dataset, without its conditions.
+    /// Returns the description, without the conditions.
     pub fn header(&self) -> DatasetHeader {
         self.header.clone()
     }
@@ -124,25 +120,26 @@ impl Dataset {
         &self.header.outputs
     }
 
-    /// Returns the on-axis responses (the paper's Table 2).
+    /// Returns the on-axis responses (M1).
     pub fn on_axis(&self) -> &PairTable<bool> {
         &self.header.on_axis
     }
 
-    /// Returns the default band of comparison.
+    /// Returns the default comparison band.
     pub fn band(&self) -> Band {
         self.header.band
     }
 
-    /// Returns the airspeeds of the slowest and the fastest condition \[kt\].
+    /// Returns the slowest and the fastest airspeed \[kt\].
     pub fn airspeed_range_kt(&self) -> (f64, f64) {
-        let airspeeds = self
-            .conditions
-            .iter()
-            .map(|condition| condition.flight_state().airspeed_kt);
-        airspeeds.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), kt| {
-            (least.min(kt), most.max(kt))
-        })
+        let mut slowest = f64::INFINITY;
+        let mut fastest = f64::NEG_INFINITY;
+        for condition in &self.conditions {
+            let airspeed_kt = condition.flight_state().airspeed_kt;
+            slowest = slowest.min(airspeed_kt);
+            fastest = fastest.max(airspeed_kt);
+        }
+        (slowest, fastest)
     }
 
     /// Returns the conditions, in file order.
@@ -150,12 +147,12 @@ impl Dataset {
         &self.conditions
     }
 
-    /// Returns the ids of the conditions, in file order.
+    /// Returns the condition ids, in file order.
     pub fn ids(&self) -> impl Iterator<Item = ConditionId> {
         self.conditions.iter().map(|condition| condition.id())
     }
 
-    /// Returns the conditions without identified models, hence without a reference, in file order.
+    /// Returns the conditions without identified models, which are the reference, in file order.
     pub fn without_reference(&self) -> Vec<ConditionId> {
         self.conditions
             .iter()
@@ -171,34 +168,32 @@ impl Dataset {
             .find(|condition| condition.id() == id)
     }
 
-    /// Returns the same dataset with this condition replacing the one with its id.
+    /// Returns the same dataset with a condition replaced by its id.
     ///
     /// # Errors
     /// [`DatasetError::ModelShape`].
     pub fn with_condition(&self, condition: Condition) -> Result<Self, DatasetError> {
         let shape = (self.header.outputs.len(), self.header.inputs.len());
         check_conditions(std::slice::from_ref(&condition), shape)?;
-        let id = condition.id();
         let condition = Arc::new(condition);
-        let replaced = |other: &Arc<Condition>| {
-            if other.id() == id {
-                condition.clone()
-            } else {
-                other.clone()
+        let mut dataset = self.clone();
+        for place in &mut dataset.conditions {
+            if place.id() == condition.id() {
+                place.clone_from(&condition);
             }
-        };
-        Ok(Self {
-            conditions: self.conditions.iter().map(replaced).collect(),
-            ..self.clone()
-        })
+        }
+        Ok(dataset)
     }
 
     /// Returns whether any identified model is measured with coherence.
     pub fn has_coherence(&self) -> bool {
-        let has = |model: &Model| matches!(&model.dynamics, Dynamics::Measured(response) if response.coherence().is_some());
         self.conditions
             .iter()
-            .any(|condition| condition.bundle(BundleKind::Identified).iter().any(has))
+            .flat_map(|condition| condition.bundle(BundleKind::Identified))
+            .any(|model| match &model.dynamics {
+                Dynamics::Measured(response) => response.coherence().is_some(),
+                Dynamics::StateSpace(_) => false,
+            })
     }
 
     /// Returns the model with this identity.
@@ -214,18 +209,15 @@ impl Dataset {
         )
     }
 
-    /// Returns the names of the inputs and of the outputs.
+    /// Returns the input names and the output names.
     pub fn names_of_channels(&self) -> (Vec<String>, Vec<String>) {
-        let names = |channels: &[Channel]| {
-            channels
-                .iter()
-                .map(|channel| channel.name.clone())
-                .collect()
-        };
-        (names(&self.header.inputs), names(&self.header.outputs))
+        (
+            channel_names(&self.header.inputs),
+            channel_names(&self.header.outputs),
+        )
     }
 
-    /// Returns the names of a response's channels, output first.
+    /// Returns the channel names of a response, output first.
     pub fn channel_names(&self, pair: Pair) -> (String, String) {
         (
             self.header.outputs[pair.output].name.clone(),
@@ -233,19 +225,12 @@ impl Dataset {
         )
     }
 
-    /// Returns the response of the named output to the named input.
+    /// Returns the response from the named input to the named output.
     pub fn find_pair(&self, output: &str, input: &str) -> Option<Pair> {
-        let output = self
-            .header
-            .outputs
-            .iter()
-            .position(|channel| channel.name == output)?;
-        let input = self
-            .header
-            .inputs
-            .iter()
-            .position(|channel| channel.name == input)?;
-        Some(Pair { output, input })
+        Some(Pair {
+            output: channel_index(&self.header.outputs, output)?,
+            input: channel_index(&self.header.inputs, input)?,
+        })
     }
 
     /// Returns the pairs that enter the objective of a model: the on-axis pairs, or all pairs where
@@ -257,6 +242,17 @@ impl Dataset {
             PairTable::filled(self.header.outputs.len(), self.header.inputs.len(), true)
         }
     }
+}
+
+fn channel_names(channels: &[Channel]) -> Vec<String> {
+    channels
+        .iter()
+        .map(|channel| channel.name.clone())
+        .collect()
+}
+
+fn channel_index(channels: &[Channel], name: &str) -> Option<usize> {
+    channels.iter().position(|channel| channel.name == name)
 }
 
 fn check_channels(list: &'static str, channels: &[Channel]) -> Result<(), DatasetError> {
@@ -327,7 +323,7 @@ pub struct Band {
     max: f64,
 }
 
-/// The error for a band that is empty or exceeds the frequency limits.
+/// Error for a band that is empty or exceeds the frequency limits.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "the frequency band must be {} <= min < max <= {} (rad/s), found min {}, max {}",
@@ -364,8 +360,7 @@ impl Band {
         }
     }
 
-    /// Creates a band that may exceed the limits of comparison, `0 < min < max`, such as the
-    /// plotted range around a band.
+    /// Creates a band that may exceed the limits, `0 < min < max`, such as a plotted range.
     pub fn beyond(min: f64, max: f64) -> Result<Self, BandError> {
         if 0.0 < min && min < max && max.is_finite() {
             Ok(Self { min, max })

@@ -6,8 +6,7 @@ use super::channel::{Pair, PairTable};
 use super::limits::{AVERAGES, WINDOW_S};
 use crate::units::number;
 
-/// A frequency response measured (or exported) at `N` frequencies, used instead of a state-space
-/// model.
+/// A frequency response measured (or exported) at `N` frequencies, instead of a state-space model.
 ///
 /// `omega` \[rad/s\] rises strictly from a positive value, `N >= 2`; every response has `N` finite
 /// values.
@@ -20,31 +19,28 @@ pub struct MeasuredResponse {
     estimate: Estimate,
 }
 
-/// Estimation settings of a response, as far as its author gives them. With coherence, they
-/// determine the error bars of the response (M13) and its weight in the fit of couplings (M16.2); a
-/// condition's own gains and delays do not depend on them.
+/// Settings with which a response was estimated, as far as its author gives them. With coherence,
+/// they determine error bars (M13) and the weight in the coupling fit (M16.2), but not the gains
+/// and delays of the condition itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
-    /// Number of independent averages.
+    /// Independent averages.
     pub averages: Option<f64>,
-    /// Length of the windows \[s\].
+    /// Window length \[s\].
     pub window_s: Option<f64>,
 }
 
-/// Why frequency data do not form a response.
+/// Error for frequency data that do not form a response.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeasuredResponseError {
-    /// Fewer than two frequencies.
     #[error("expected at least 2 frequencies, found {0}")]
     TooFewFrequencies(usize),
-    /// A frequency is not finite, not positive, or not above the previous one.
     #[error("frequency {entry}: expected finite, positive and rising frequencies, found {}", number(*value))]
     Frequency {
         /// Entry, counted from 1.
         entry: usize,
         value: f64,
     },
-    /// A response does not have one value per frequency.
     #[error("{array}, output {output}, input {input}: expected {expected} values, found {found}")]
     Length {
         /// `re`, `im` or `coherence`.
@@ -53,12 +49,12 @@ pub enum MeasuredResponseError {
         output: usize,
         /// Input, counted from 1.
         input: usize,
-        /// Number of frequencies.
+        /// Frequency count.
         expected: usize,
-        /// Number of values.
+        /// Value count.
         found: usize,
     },
-    /// A valid band does not start at or above zero, or ends before it starts.
+    /// Valid band that starts below zero, or ends before it starts.
     #[error(
         "valid_band_rad_s, output {output}, input {input}: expected two rising frequencies from 0, found {} and {}",
         number(band[0]), number(band[1])
@@ -70,7 +66,7 @@ pub enum MeasuredResponseError {
         input: usize,
         band: [f64; 2],
     },
-    /// The number or the window length of the averages is out of range.
+    /// Count or window length of averages out of range.
     #[error("{key}: expected a number from {} to {}, found {}", number(range[0]), number(range[1]), number(*value))]
     Estimate {
         /// `averages` or `window_s`.
@@ -79,7 +75,7 @@ pub enum MeasuredResponseError {
         range: [f64; 2],
         value: f64,
     },
-    /// A value is NaN or infinite, or a coherence lies outside 0 to 1.
+    /// Value that is NaN or infinite, or coherence outside 0 to 1.
     #[error("{array}, output {output}, input {input}, entry {entry}: expected {expected}, found {}", number(*value))]
     Value {
         /// `re`, `im` or `coherence`.
@@ -98,7 +94,7 @@ pub enum MeasuredResponseError {
 
 impl MeasuredResponse {
     /// Creates the response with real parts `re` and imaginary parts `im` at `omega` \[rad/s\],
-    /// both p x m tables of `N` values.
+    /// both p x m tables with `N` values per response.
     pub fn new(
         omega: Vec<f64>,
         re: &PairTable<Vec<f64>>,
@@ -132,7 +128,8 @@ impl MeasuredResponse {
         })
     }
 
-    /// Returns the same response, each pair trusted only between two frequencies \[rad/s\] (M4a).
+    /// Returns the same response with valid bands: first and last trusted frequency of each pair
+    /// \[rad/s\] (M4a).
     ///
     /// # Errors
     /// [`MeasuredResponseError::ValidBand`] where a band is not finite, negative, or ends before it
@@ -141,25 +138,24 @@ impl MeasuredResponse {
         mut self,
         bands: PairTable<[f64; 2]>,
     ) -> Result<Self, MeasuredResponseError> {
-        let is_band = |[low, high]: [f64; 2]| (0.0..=high).contains(&low) && high.is_finite();
-        if let Some((pair, &band)) = bands.iter().find(|(_, band)| !is_band(**band)) {
-            let output = pair.output + 1;
-            let input = pair.input + 1;
-            return Err(MeasuredResponseError::ValidBand {
-                output,
-                input,
-                band,
-            });
+        for (pair, &band) in bands.iter() {
+            let [low, high] = band;
+            if !((0.0..=high).contains(&low) && high.is_finite()) {
+                return Err(MeasuredResponseError::ValidBand {
+                    output: pair.output + 1,
+                    input: pair.input + 1,
+                    band,
+                });
+            }
         }
         self.valid_bands = Some(bands);
         Ok(self)
     }
 
-    /// Returns the same response with its estimation settings.
+    /// Returns the same response with other estimation settings.
     ///
     /// # Errors
-    /// [`MeasuredResponseError::Estimate`] where a number exceeds the limits that also apply to the
-    /// settings.
+    /// [`MeasuredResponseError::Estimate`] for a number outside its limits.
     pub fn with_estimate(mut self, estimate: Estimate) -> Result<Self, MeasuredResponseError> {
         for (key, value, range) in [
             ("averages", estimate.averages, AVERAGES),
@@ -180,13 +176,12 @@ impl MeasuredResponse {
         &self.omega
     }
 
-    /// Returns the values of each response, one per frequency.
+    /// Returns the values per response and frequency.
     pub fn values(&self) -> &PairTable<Vec<Complex<f64>>> {
         &self.values
     }
 
-    /// Returns the coherence of each response, from 0 to 1 at each frequency, where the file gives
-    /// it.
+    /// Returns the coherence per response and frequency, 0 to 1, where the file gives it.
     pub fn coherence(&self) -> Option<&PairTable<Vec<f64>>> {
         self.coherence.as_ref()
     }
@@ -216,6 +211,7 @@ impl MeasuredResponse {
     }
 }
 
+/// Checks that there are two or more finite, positive and rising frequencies.
 pub(super) fn check_frequencies(omega: &[f64]) -> Result<(), MeasuredResponseError> {
     if omega.len() < 2 {
         return Err(MeasuredResponseError::TooFewFrequencies(omega.len()));
@@ -233,6 +229,7 @@ pub(super) fn check_frequencies(omega: &[f64]) -> Result<(), MeasuredResponseErr
     Ok(())
 }
 
+/// Checks that every response has `length` acceptable values.
 pub(super) fn check_values(
     array: &'static str,
     table: &PairTable<Vec<f64>>,
@@ -244,26 +241,25 @@ pub(super) fn check_values(
         let output = pair.output + 1;
         let input = pair.input + 1;
         if values.len() != length {
-            let found = values.len();
             return Err(MeasuredResponseError::Length {
                 array,
                 output,
                 input,
                 expected: length,
-                found,
+                found: values.len(),
             });
         }
-        if let Some(index) = values.iter().position(|&value| !accepts(value)) {
-            let entry = index + 1;
-            let value = values[index];
-            return Err(MeasuredResponseError::Value {
-                array,
-                output,
-                input,
-                entry,
-                expected,
-                value,
-            });
+        for (index, &value) in values.iter().enumerate() {
+            if !accepts(value) {
+                return Err(MeasuredResponseError::Value {
+                    array,
+                    output,
+                    input,
+                    entry: index + 1,
+                    expected,
+                    value,
+                });
+            }
         }
     }
     Ok(())
@@ -297,8 +293,14 @@ mod tests {
             MeasuredResponse::new(vec![1.0, 2.0], &table(&[0.0; 2]), &table(&[0.0; 3]), None)
                 .unwrap_err();
         assert_eq!(
-            error.to_string(),
-            "im, output 1, input 1: expected 2 values, found 3"
+            error,
+            MeasuredResponseError::Length {
+                array: "im",
+                output: 1,
+                input: 1,
+                expected: 2,
+                found: 3
+            }
         );
     }
 

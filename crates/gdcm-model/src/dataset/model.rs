@@ -1,9 +1,8 @@
-//! One model of a bundle: its origin, dynamics, uncertainty and content hash.
+//! A model of a bundle: its origin, dynamics, uncertainty and content hash.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use nalgebra::DMatrix;
 use sha2::{Digest, Sha256};
 
 use super::channel::{ChannelSide, PairTable};
@@ -12,17 +11,16 @@ use super::measured_response::{
 };
 use super::state_space::{StateSpace, Timing};
 
-/// The dynamics of a model.
+/// Dynamics of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dynamics {
-    /// State-space matrices.
     StateSpace(StateSpace),
     /// Measured frequency data, interpolated (identified models only).
     Measured(MeasuredResponse),
 }
 
 impl Dynamics {
-    /// Returns `(p, m)`: the number of outputs and inputs.
+    /// Returns the output count p and the input count m.
     pub fn shape(&self) -> (usize, usize) {
         match self {
             Dynamics::StateSpace(model) => (model.outputs(), model.inputs()),
@@ -33,7 +31,7 @@ impl Dynamics {
     }
 }
 
-/// The origin of a model.
+/// Origin of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Origin {
     /// The physics model linearised at the condition's trim.
@@ -62,41 +60,45 @@ pub struct Provenance {
     pub file: Option<String>,
     /// SHA-256 of the file, in hexadecimal.
     pub sha256: Option<String>,
-    /// Its variable, or the flight record.
+    /// Variable in the file, or flight record.
     pub variable: Option<String>,
     /// Creation date, in the author's format.
     pub made: Option<String>,
     /// Further notes from the reader.
     pub note: Option<String>,
-    /// Names of the flight records from which an identified model was estimated; empty where
+    /// Names of the flight records that an identified model was estimated from; empty where
     /// unknown.
     pub records: Vec<String>,
     /// Unused variables of the file; the first model of a file lists them for the whole file.
     pub unused: Vec<String>,
-    /// The sides whose channels were matched by position, because the file has no names for them.
+    /// Sides whose channels have no names in the file and were matched by position.
     pub by_position: Vec<ChannelSide>,
 }
 
 impl Provenance {
     /// Describes the provenance: "models/roll+5.mat, variable sys, made 2026-03-01".
     pub fn words(&self) -> String {
-        let named = |name: &str, value: &Option<String>| {
-            value.as_ref().map(|value| format!("{name}{value}"))
-        };
-        let parts = [
-            self.file.clone(),
-            named("variable ", &self.variable),
-            named("made ", &self.made),
-            named("SHA-256 ", &self.sha256),
-            (!self.records.is_empty()).then(|| format!("the records {}", self.records.join(", "))),
-            self.note.clone(),
-            (!self.unused.is_empty()).then(|| format!("not used: {}", self.unused.join(", "))),
-        ];
-        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+        let mut parts: Vec<String> = Vec::new();
+        parts.extend(self.file.clone());
+        parts.extend(
+            self.variable
+                .as_ref()
+                .map(|name| format!("variable {name}")),
+        );
+        parts.extend(self.made.as_ref().map(|date| format!("made {date}")));
+        parts.extend(self.sha256.as_ref().map(|hash| format!("SHA-256 {hash}")));
+        if !self.records.is_empty() {
+            parts.push(format!("the records {}", self.records.join(", ")));
+        }
+        parts.extend(self.note.clone());
+        if !self.unused.is_empty() {
+            parts.push(format!("not used: {}", self.unused.join(", ")));
+        }
+        parts.join(", ")
     }
 }
 
-/// One model of a bundle.
+/// A model of a bundle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     /// Name, unique in its bundle.
@@ -105,7 +107,7 @@ pub struct Model {
     pub dynamics: Dynamics,
     /// Source file, where known.
     pub source: Option<Provenance>,
-    /// Names of the states, one per state; empty where unknown.
+    /// State names; empty where unknown.
     pub states: Arc<[String]>,
     /// Uncertainty of its response, where the identification gives it.
     pub bands: Option<Arc<ModelBands>>,
@@ -155,17 +157,17 @@ impl Model {
         }
     }
 
-    /// Returns a fingerprint that distinguishes models with the same name: a hash of the numbers,
-    /// bands, role and trim, as 16 hexadecimal digits.
+    /// Returns a fingerprint that distinguishes models with the same name: 16 hexadecimal digits
+    /// from a hash over numbers, bands, role and trim.
     pub fn fingerprint(&self) -> String {
         let mut hash = Sha256::new();
-        hash.update(ContentHash::of(&self.dynamics).bytes());
+        hash.update(ContentHash::new(&self.dynamics).bytes());
         hash.update([u8::from(self.is_nominal())]);
         for (coordinate, offset) in self.perturbation().into_iter().flatten() {
             hash.update(coordinate.as_bytes());
             hash.update(offset.to_le_bytes());
         }
-        // Absent bands add nothing, so that most models keep the fingerprint they have always had.
+        // Absent bands add nothing: fingerprints from before bands existed stay valid.
         if let Some(bands) = &self.bands {
             bands.add_to(&mut hash);
         }
@@ -175,8 +177,8 @@ impl Model {
             .collect()
     }
 
-    /// Returns the number of states, or the order reported by the identification; `None` for
-    /// measured data without an order.
+    /// Returns the state count, or the order reported by the identification; `None` for measured
+    /// data without an order.
     pub fn order(&self) -> Option<usize> {
         match (&self.dynamics, &self.origin) {
             (Dynamics::StateSpace(model), _) => Some(model.order()),
@@ -186,7 +188,7 @@ impl Model {
     }
 }
 
-/// Standard deviations of a model's response over frequency, as estimated by the identification
+/// Standard deviation of a model response over frequency, as estimated by the identification
 /// (M14).
 ///
 /// A curve lies between `H_dB - z sd_db` and `H_dB + z sd_db` with probability `1 - 2 Phi(-z)`; the
@@ -199,8 +201,8 @@ pub struct ModelBands {
 }
 
 impl ModelBands {
-    /// Creates bands from the standard deviations of magnitude \[dB\] and phase \[deg\] at `omega`
-    /// \[rad/s\], both p x m tables of `N` values.
+    /// Creates bands from standard deviations in magnitude \[dB\] and phase \[deg\] at `omega`
+    /// \[rad/s\], both p x m tables with `N` values per response.
     ///
     /// # Errors
     /// Frequencies that do not rise, tables of the wrong length, or numbers that are negative or
@@ -232,12 +234,12 @@ impl ModelBands {
         &self.omega
     }
 
-    /// Returns the standard deviation of the magnitude \[dB\], one value per frequency.
+    /// Returns the standard deviation in magnitude \[dB\] at each frequency.
     pub fn sd_db(&self) -> &PairTable<Vec<f64>> {
         &self.sd_db
     }
 
-    /// Returns the standard deviation of the phase \[deg\], one value per frequency.
+    /// Returns the standard deviation in phase \[deg\] at each frequency.
     pub fn sd_deg(&self) -> &PairTable<Vec<f64>> {
         &self.sd_deg
     }
@@ -247,22 +249,21 @@ impl ModelBands {
         hash.update(b"bands");
         add_numbers(hash, &self.omega);
         for table in [&self.sd_db, &self.sd_deg] {
-            table
-                .iter()
-                .for_each(|(_, deviations)| add_numbers(hash, deviations));
+            for (_, deviations) in table.iter() {
+                add_numbers(hash, deviations);
+            }
         }
     }
 }
 
-/// SHA-256 of all numbers that determine a model's response: models with equal hashes have equal
-/// responses.
+/// SHA-256 over all numbers that determine a model response: equal hashes mean equal responses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ContentHash([u8; 32]);
 
 impl ContentHash {
-    /// Computes the hash of a model's matrices and timing, or of its measured frequencies, values,
-    /// coherence and valid bands; shapes included.
-    pub fn of(dynamics: &Dynamics) -> Self {
+    /// Computes the hash over matrices and timing, or over measured frequencies, values, coherence
+    /// and valid bands; shapes included.
+    pub fn new(dynamics: &Dynamics) -> Self {
         let mut hash = Sha256::new();
         match dynamics {
             Dynamics::StateSpace(model) => add_state_space(&mut hash, model),
@@ -289,14 +290,11 @@ pub(super) fn add_numbers(hash: &mut Sha256, numbers: &[f64]) {
 
 fn add_state_space(hash: &mut Sha256, model: &StateSpace) {
     hash.update(b"state space");
-    let add = |hash: &mut Sha256, matrix: &DMatrix<f64>| {
+    for matrix in [model.a(), model.b(), model.c(), model.d()] {
         hash.update((matrix.nrows() as u64).to_le_bytes());
         add_numbers(hash, matrix.as_slice());
-    };
-    [model.a(), model.b(), model.c(), model.d()]
-        .into_iter()
-        .for_each(|matrix| add(hash, matrix));
-    // A plain model adds nothing: its hash stays the same as before timing existed.
+    }
+    // A plain timing adds nothing: hashes from before timing existed stay valid.
     if !model.timing().is_plain() {
         let Timing {
             sample_time_s,
@@ -321,16 +319,16 @@ fn add_measured(hash: &mut Sha256, response: &MeasuredResponse) {
             .collect();
         add_numbers(hash, &parts);
     }
-    for (_, coherence) in response
-        .coherence()
-        .into_iter()
-        .flat_map(|table| table.iter())
-    {
-        add_numbers(hash, coherence);
+    if let Some(coherence) = response.coherence() {
+        for (_, coherence) in coherence.iter() {
+            add_numbers(hash, coherence);
+        }
     }
     if let Some(bands) = response.valid_bands() {
         hash.update(b"valid bands");
-        bands.iter().for_each(|(_, band)| add_numbers(hash, band));
+        for (_, band) in bands.iter() {
+            add_numbers(hash, band);
+        }
     }
 }
 
@@ -339,7 +337,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_negative_deviation_is_refused_with_its_place() {
+    fn a_negative_deviation_is_an_error_with_its_place() {
         let table = |values: &[f64]| PairTable::filled(1, 1, values.to_vec());
         let bands =
             |sd_deg: &[f64]| ModelBands::new(vec![1.0, 2.0], table(&[0.0, 0.5]), table(sd_deg));
@@ -347,11 +345,17 @@ mod tests {
             bands(&[1.0, 2.0]).unwrap().sd_deg()[super::super::channel::Pair::new(0, 0)],
             [1.0, 2.0]
         );
-        let words = bands(&[1.0, -2.0]).unwrap_err().to_string();
-        assert_eq!(
-            words,
-            "sd_deg, output 1, input 1, entry 2: expected a number not below zero, found -2"
-        );
+        assert!(matches!(
+            bands(&[1.0, -2.0]),
+            Err(MeasuredResponseError::Value {
+                array: "sd_deg",
+                output: 1,
+                input: 1,
+                entry: 2,
+                value: -2.0,
+                ..
+            })
+        ));
         assert!(matches!(
             bands(&[1.0]),
             Err(MeasuredResponseError::Length {
@@ -365,6 +369,8 @@ mod tests {
 
 #[cfg(test)]
 mod content_tests {
+    use nalgebra::DMatrix;
+
     use super::*;
 
     fn model(a: f64, b: &[f64]) -> Dynamics {
@@ -382,25 +388,25 @@ mod content_tests {
     }
 
     #[test]
-    fn models_of_the_same_numbers_have_one_hash_and_any_other_number_gives_another() {
+    fn the_hash_depends_on_every_number() {
         assert_eq!(
-            ContentHash::of(&model(-1.0, &[2.0])),
-            ContentHash::of(&model(-1.0, &[2.0]))
+            ContentHash::new(&model(-1.0, &[2.0])),
+            ContentHash::new(&model(-1.0, &[2.0]))
         );
         let next = f64::from_bits((-1.0_f64).to_bits() + 1);
         assert_ne!(
-            ContentHash::of(&model(-1.0, &[2.0])),
-            ContentHash::of(&model(next, &[2.0]))
+            ContentHash::new(&model(-1.0, &[2.0])),
+            ContentHash::new(&model(next, &[2.0]))
         );
         assert_ne!(
-            ContentHash::of(&model(-1.0, &[2.0, 0.0])),
-            ContentHash::of(&model(-1.0, &[2.0]))
+            ContentHash::new(&model(-1.0, &[2.0, 0.0])),
+            ContentHash::new(&model(-1.0, &[2.0]))
         );
     }
 
     #[test]
-    fn a_model_without_timing_has_the_hash_that_it_always_had() {
-        let hash = |dynamics: &Dynamics| ContentHash::of(dynamics).bytes()[..4].to_vec();
+    fn the_hash_of_a_model_without_timing_is_stable() {
+        let hash = |dynamics: &Dynamics| ContentHash::new(dynamics).bytes()[..4].to_vec();
         let plain = model(-1.0, &[2.0]);
         assert_eq!(hash(&plain), [198, 153, 200, 246]);
         let Dynamics::StateSpace(matrices) = plain.clone() else {

@@ -19,10 +19,10 @@ pub struct StateSpace {
     timing: Timing,
 }
 
-/// Why four matrices do not form a state-space model.
+/// Error for matrices that do not form a state-space model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StateSpaceError {
-    /// A matrix does not have the shape required by the others.
+    /// Shape that does not fit the other matrices.
     #[error("matrix {matrix}: expected {} x {}, found {} x {}", expected.0, expected.1, found.0, found.1)]
     Shape {
         /// `A`, `B`, `C` or `D`.
@@ -32,7 +32,6 @@ pub enum StateSpaceError {
         /// Rows and columns found.
         found: (usize, usize),
     },
-    /// An entry is NaN or infinite.
     #[error("matrix {matrix}, row {row}, column {column}: expected a finite number, found {value}")]
     NotFinite {
         /// `A`, `B`, `C` or `D`.
@@ -43,14 +42,13 @@ pub enum StateSpaceError {
         column: usize,
         value: f64,
     },
-    /// The sample time or the delays are invalid.
     #[error(transparent)]
     Timing(#[from] TimingError),
 }
 
 impl StateSpace {
-    /// Creates the continuous-time model (A, B, C, D); `A` gives the order, the columns and rows of
-    /// `D` give the inputs and outputs.
+    /// Creates the continuous-time model (A, B, C, D); `A` gives the order, the shape of `D` the
+    /// outputs and inputs.
     pub fn new(
         a: DMatrix<f64>,
         b: DMatrix<f64>,
@@ -60,26 +58,13 @@ impl StateSpace {
         let n = a.nrows();
         let p = d.nrows();
         let m = d.ncols();
-        for (matrix, of, expected) in [('A', &a, (n, n)), ('B', &b, (n, m)), ('C', &c, (p, n))] {
-            if of.shape() != expected {
-                return Err(StateSpaceError::Shape {
-                    matrix,
-                    expected,
-                    found: of.shape(),
-                });
-            }
-        }
-        for (matrix, of) in [('A', &a), ('B', &b), ('C', &c), ('D', &d)] {
-            if let Some(at) = of.iter().position(|value| !value.is_finite()) {
-                let (row, column) = of.vector_to_matrix_index(at);
-                return Err(StateSpaceError::NotFinite {
-                    matrix,
-                    row: row + 1,
-                    column: column + 1,
-                    value: of[at],
-                });
-            }
-        }
+        check_shape('A', &a, (n, n))?;
+        check_shape('B', &b, (n, m))?;
+        check_shape('C', &c, (p, n))?;
+        check_finite('A', &a)?;
+        check_finite('B', &b)?;
+        check_finite('C', &c)?;
+        check_finite('D', &d)?;
         Ok(Self {
             a,
             b,
@@ -92,8 +77,7 @@ impl StateSpace {
     /// Returns the same matrices with a sample time or delays (M2a).
     ///
     /// # Errors
-    /// [`TimingError`] where they are out of range or their number differs from the number of
-    /// channels.
+    /// [`TimingError`] where they are out of range or their count differs from the channel count.
     pub fn timed(mut self, timing: Timing) -> Result<Self, StateSpaceError> {
         self.timing = timing.checked(self.outputs(), self.inputs())?;
         Ok(self)
@@ -124,23 +108,51 @@ impl StateSpace {
         &self.d
     }
 
-    /// Returns the number of states, `n`.
+    /// Returns the state count, `n`.
     pub fn order(&self) -> usize {
         self.a.nrows()
     }
 
-    /// Returns the number of inputs, `m`.
+    /// Returns the input count, `m`.
     pub fn inputs(&self) -> usize {
         self.d.ncols()
     }
 
-    /// Returns the number of outputs, `p`.
+    /// Returns the output count, `p`.
     pub fn outputs(&self) -> usize {
         self.d.nrows()
     }
 }
 
-/// Largest delay of a channel \[s\].
+fn check_shape(
+    name: char,
+    matrix: &DMatrix<f64>,
+    expected: (usize, usize),
+) -> Result<(), StateSpaceError> {
+    if matrix.shape() == expected {
+        return Ok(());
+    }
+    Err(StateSpaceError::Shape {
+        matrix: name,
+        expected,
+        found: matrix.shape(),
+    })
+}
+
+fn check_finite(name: char, matrix: &DMatrix<f64>) -> Result<(), StateSpaceError> {
+    let Some(index) = matrix.iter().position(|value| !value.is_finite()) else {
+        return Ok(());
+    };
+    let (row, column) = matrix.vector_to_matrix_index(index);
+    Err(StateSpaceError::NotFinite {
+        matrix: name,
+        row: row + 1,
+        column: column + 1,
+        value: matrix[index],
+    })
+}
+
+/// Largest channel delay \[s\].
 pub const GREATEST_CHANNEL_DELAY_S: f64 = 60.0;
 
 /// Sample time and channel delays of a model, which its matrices do not contain (M2a).
@@ -148,29 +160,26 @@ pub const GREATEST_CHANNEL_DELAY_S: f64 = 60.0;
 pub struct Timing {
     /// Sample time T \[s\] of a discrete-time model; `None` in continuous time.
     pub sample_time_s: Option<f64>,
-    /// Delay of each input \[s\]; `None` without delays.
+    /// Delay per input \[s\]; `None` without delays.
     pub input_delays_s: Option<Vec<f64>>,
-    /// Delay of each output \[s\]; `None` without delays.
+    /// Delay per output \[s\]; `None` without delays.
     pub output_delays_s: Option<Vec<f64>>,
 }
 
-/// Why a sample time or delays are invalid.
+/// Error for an invalid sample time or delay.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TimingError {
-    /// A sample time is not finite or not positive.
     #[error("sample_time_s: expected a positive number of seconds (none at all for continuous time), found {}", number(*.0))]
     SampleTime(f64),
-    /// The number of delays differs from the number of channels.
     #[error("{list}: expected {expected} delays, one for each channel, found {found}")]
     Count {
         /// `input_delays_s` or `output_delays_s`.
         list: &'static str,
-        /// Number of channels.
+        /// Channel count.
         expected: usize,
-        /// Number of delays.
+        /// Delay count.
         found: usize,
     },
-    /// A delay is negative, too long or not finite.
     #[error("{list}, entry {entry}: expected a delay from 0 to {GREATEST_CHANNEL_DELAY_S} s, found {}", number(*value))]
     Delay {
         /// `input_delays_s` or `output_delays_s`.
@@ -187,53 +196,40 @@ impl Timing {
         *self == Self::default()
     }
 
-    /// Returns the Nyquist frequency `pi / T` \[rad/s\], from which on a discrete-time model has no
-    /// response.
+    /// Returns the Nyquist frequency `pi / T` \[rad/s\], at and above which a discrete-time model has
+    /// no response; `None` in continuous time.
     pub fn nyquist_rad_s(&self) -> Option<f64> {
-        self.sample_time_s
-            .map(|sample_time_s| std::f64::consts::PI / sample_time_s)
+        let sample_time_s = self.sample_time_s?;
+        Some(std::f64::consts::PI / sample_time_s)
     }
 
-    /// Returns the delay `tau_o + tau_i` \[s\] of one response.
+    /// Returns the response delay `tau_o + tau_i` \[s\].
     pub fn delay_s(&self, output: usize, input: usize) -> f64 {
-        let of = |delays: &Option<Vec<f64>>, channel: usize| {
-            delays
-                .as_ref()
-                .and_then(|delays| delays.get(channel))
-                .copied()
-                .unwrap_or_default()
-        };
-        of(&self.output_delays_s, output) + of(&self.input_delays_s, input)
+        channel_delay(self.output_delays_s.as_deref(), output)
+            + channel_delay(self.input_delays_s.as_deref(), input)
     }
 
     /// Describes the timing: "discrete time, T = 0.01 s, input delays 0.02, 0 s"; empty where it is
     /// plain.
     pub fn words(&self) -> String {
-        let delays = |name: &str, delays: &Option<Vec<f64>>| {
-            let delays: Vec<String> = delays
-                .as_ref()?
-                .iter()
-                .map(|delay_s| number(*delay_s))
-                .collect();
-            Some(format!("{name} delays {} s", delays.join(", ")))
-        };
-        let sampled = self
-            .sample_time_s
-            .map(|sample_time_s| format!("discrete time, T = {} s", number(sample_time_s)));
-        let parts = [
-            sampled,
-            delays("input", &self.input_delays_s),
-            delays("output", &self.output_delays_s),
-        ];
-        parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+        let mut parts = Vec::new();
+        if let Some(sample_time_s) = self.sample_time_s {
+            parts.push(format!("discrete time, T = {} s", number(sample_time_s)));
+        }
+        if let Some(delays_s) = &self.input_delays_s {
+            parts.push(format!("input delays {} s", list(delays_s)));
+        }
+        if let Some(delays_s) = &self.output_delays_s {
+            parts.push(format!("output delays {} s", list(delays_s)));
+        }
+        parts.join(", ")
     }
 
     /// Checks the timing for a model with `outputs` and `inputs`, and removes delays that are all
     /// zero, so that such a model equals the one without delays.
     pub(super) fn checked(self, outputs: usize, inputs: usize) -> Result<Self, TimingError> {
-        if let Some(value) = self
-            .sample_time_s
-            .filter(|value| !value.is_finite() || *value <= 0.0)
+        if let Some(value) = self.sample_time_s
+            && (!value.is_finite() || value <= 0.0)
         {
             return Err(TimingError::SampleTime(value));
         }
@@ -245,6 +241,19 @@ impl Timing {
     }
 }
 
+/// Returns a channel delay \[s\]; zero without delays.
+fn channel_delay(delays_s: Option<&[f64]>, channel: usize) -> f64 {
+    let delay_s = delays_s.and_then(|delays_s| delays_s.get(channel));
+    delay_s.copied().unwrap_or_default()
+}
+
+/// Lists numbers: "0.02, 0".
+fn list(values: &[f64]) -> String {
+    let numbers: Vec<String> = values.iter().map(|value| number(*value)).collect();
+    numbers.join(", ")
+}
+
+/// Checks the delays of a side; `None` where all are zero.
 fn checked_delays(
     list: &'static str,
     delays: Option<Vec<f64>>,
@@ -270,7 +279,10 @@ fn checked_delays(
             value: delays[index],
         });
     }
-    Ok(Some(delays).filter(|delays| delays.iter().any(|delay| *delay != 0.0)))
+    if delays.iter().all(|delay| *delay == 0.0) {
+        return Ok(None);
+    }
+    Ok(Some(delays))
 }
 
 #[cfg(test)]
@@ -286,7 +298,14 @@ mod tests {
             DMatrix::zeros(1, 1),
         )
         .unwrap_err();
-        assert_eq!(error.to_string(), "matrix B: expected 2 x 1, found 3 x 1");
+        assert_eq!(
+            error,
+            StateSpaceError::Shape {
+                matrix: 'B',
+                expected: (2, 1),
+                found: (3, 1)
+            }
+        );
     }
 
     #[test]
@@ -332,14 +351,14 @@ mod timing_tests {
     }
 
     #[test]
-    fn delays_that_are_all_zero_are_no_delays() {
+    fn zero_delays_are_removed() {
         assert!(timing(None, &[0.0, 0.0]).checked(1, 2).unwrap().is_plain());
         let delayed = timing(None, &[0.0, 0.02]).checked(1, 2).unwrap();
         assert_eq!((delayed.delay_s(0, 0), delayed.delay_s(0, 1)), (0.0, 0.02));
     }
 
     #[test]
-    fn what_cannot_be_a_sample_time_or_a_delay_is_named() {
+    fn invalid_sample_times_and_delays_are_named() {
         let error = |timing: Timing| timing.checked(1, 2).unwrap_err().to_string();
         assert!(error(timing(Some(0.0), &[])).contains("none at all for continuous time"));
         assert!(error(timing(Some(f64::INFINITY), &[0.0; 2])).contains("sample_time_s"));
@@ -355,7 +374,7 @@ mod timing_tests {
     }
 
     #[test]
-    fn a_timing_is_told_in_words() {
+    fn a_timing_is_described() {
         assert_eq!(
             timing(Some(0.01), &[0.02, 0.0]).words(),
             "discrete time, T = 0.01 s, input delays 0.02, 0 s"

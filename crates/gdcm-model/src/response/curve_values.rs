@@ -1,6 +1,5 @@
-//! Operations on the values of a curve over frequency: phase unwrapping, and the whole turns that
-//! bring one curve closest to another (M2, M3); response and coherence between measured
-//! frequencies; order statistics.
+//! Values of a curve over frequency: phase unwrapping, whole turns between two curves (M2, M3), and
+//! interpolation between measured frequencies.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,6 +7,7 @@ use nalgebra::Complex;
 
 use crate::dataset::PairTable;
 use crate::dataset::measured_response::MeasuredResponse;
+use crate::statistics::median;
 use crate::units::{db_to_ratio, ratio_to_db};
 
 /// Returns the angle \[rad\] in (-pi, pi] that differs from `angle` by a multiple of 2 pi.
@@ -61,7 +61,9 @@ pub fn centred_unwrap(angles: &mut [f64], scratch: &mut Vec<f64>) {
     let shift = wrap(middle) - middle;
     // Most differences need no shift; adding a rounded zero would only cost accuracy.
     if shift.abs() > PI {
-        angles.iter_mut().for_each(|angle| *angle += shift);
+        for angle in angles {
+            *angle += shift;
+        }
     }
 }
 
@@ -84,105 +86,108 @@ pub fn nearest_turn_offset(phase: &[f64], reference: &[f64]) -> f64 {
     }
 }
 
-/// Interpolates the measured response at each `omega` \[rad/s\]: linear on log omega in dB and in
+/// Interpolates the measured response at each `omega` \[rad/s\]: linear on log omega, in dB and in
 /// unwrapped phase.
 ///
 /// NaN outside the measured frequencies: no extrapolation. Zero next to a measured zero, which has
 /// no dB value.
 pub fn interpolate(response: &MeasuredResponse, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
-    let places: Vec<Option<Place>> = omega
+    let places = places(response.omega(), omega);
+    response
+        .values()
+        .map(|_, values| interpolate_curve(values, &places))
+}
+
+/// Interpolates a curve at each place; NaN without a place.
+fn interpolate_curve(values: &[Complex<f64>], places: &[Option<Place>]) -> Vec<Complex<f64>> {
+    let magnitude_db: Vec<f64> = values
         .iter()
-        .map(|&omega| Place::of(response.omega(), omega))
+        .map(|value| ratio_to_db(value.norm()))
         .collect();
-    response.values().map(|_, values| {
-        let magnitude_db: Vec<f64> = values
-            .iter()
-            .map(|value| ratio_to_db(value.norm()))
-            .collect();
-        let mut phase: Vec<f64> = values.iter().map(|value| value.arg()).collect();
-        unwrap(&mut phase);
-        places
-            .iter()
-            .map(|place| match place {
-                Some(place) => Complex::from_polar(
-                    db_to_ratio(place.between_magnitudes_db(&magnitude_db)),
-                    place.between(&phase),
-                ),
-                None => Complex::new(f64::NAN, f64::NAN),
-            })
-            .collect()
-    })
+    let mut phase: Vec<f64> = values.iter().map(|value| value.arg()).collect();
+    unwrap(&mut phase);
+    let mut interpolated = Vec::with_capacity(places.len());
+    for place in places {
+        interpolated.push(match place {
+            Some(place) => Complex::from_polar(
+                db_to_ratio(place.magnitude_db(&magnitude_db)),
+                place.value(&phase),
+            ),
+            None => Complex::new(f64::NAN, f64::NAN),
+        });
+    }
+    interpolated
 }
 
 /// Interpolates the coherence of each measured response at each `omega` \[rad/s\], linear on log
-/// omega (M4a); `None` where there is no coherence.
+/// omega (M4a); `None` for a response without coherence.
 ///
 /// NaN outside the measured frequencies.
 pub fn coherence_at(response: &MeasuredResponse, omega: &[f64]) -> Option<PairTable<Vec<f64>>> {
-    let places: Vec<Option<Place>> = omega
-        .iter()
-        .map(|&omega| Place::of(response.omega(), omega))
-        .collect();
-    let at = |place: &Option<Place>, values: &[f64]| {
-        place
-            .as_ref()
-            .map_or(f64::NAN, |place| place.between(values))
-    };
-    Some(
-        response
-            .coherence()?
-            .map(|_, values| places.iter().map(|place| at(place, values)).collect()),
-    )
+    let coherence = response.coherence()?;
+    let places = places(response.omega(), omega);
+    Some(coherence.map(|_, values| {
+        places
+            .iter()
+            .map(|place| value_or_nan(place.as_ref(), values))
+            .collect()
+    }))
 }
 
-/// Interpolates the values of a curve, given at rising frequencies `known`, at each `omega`
-/// \[rad/s\]: linear on log omega, constant beyond the ends. At least one value is required.
+/// Interpolates values known at rising frequencies `known` at each `omega` \[rad/s\]: linear on log
+/// omega, constant beyond the ends; NaN for no values.
 pub fn interpolate_values(known: &[f64], values: &[f64], omega: &[f64]) -> Vec<f64> {
-    let (Some(&low), Some(&high)) = (known.first(), known.last()) else {
+    let (Some(&lowest), Some(&highest)) = (known.first(), known.last()) else {
         return vec![f64::NAN; omega.len()];
     };
-    let at = |omega: &f64| {
-        Place::of(known, omega.clamp(low, high)).map_or(f64::NAN, |place| place.between(values))
-    };
-    omega.iter().map(at).collect()
+    omega
+        .iter()
+        .map(|omega| {
+            let place = Place::find(known, omega.clamp(lowest, highest));
+            value_or_nan(place.as_ref(), values)
+        })
+        .collect()
 }
 
-/// Interpolates `values`, one per rising frequency in `known` \[rad/s\], at another `omega`: linear
-/// on log omega; `None` outside the range.
+/// Interpolates values known at rising frequencies `known` \[rad/s\] at `omega`: linear on log
+/// omega; `None` outside the range.
 pub fn between(known: &[f64], values: &[f64], omega: f64) -> Option<f64> {
-    Place::of(known, omega).map(|place| place.between(values))
+    Place::find(known, omega).map(|place| place.value(values))
 }
 
-/// Position of a frequency between two measured ones: at `after`, or `fraction` of the way from its
-/// predecessor.
+/// Position between two known frequencies: at index `after`, or `fraction` of the way to it from
+/// its predecessor.
 struct Place {
     after: usize,
+    /// From 0 to 1; 1 at a known frequency.
     fraction: f64,
 }
 
 impl Place {
-    fn of(measured: &[f64], omega: f64) -> Option<Self> {
-        let after = measured.partition_point(|&measured| measured < omega);
-        if after == measured.len() {
-            None
-        } else if measured[after] == omega {
-            Some(Self {
+    /// Finds `omega` among rising frequencies; `None` outside their range.
+    fn find(known: &[f64], omega: f64) -> Option<Self> {
+        let after = known.partition_point(|&known| known < omega);
+        if after == known.len() {
+            return None;
+        }
+        if known[after] == omega {
+            return Some(Self {
                 after,
                 fraction: 1.0,
-            })
-        } else if after == 0 {
-            None
-        } else {
-            let low = measured[after - 1];
-            let high = measured[after];
-            Some(Self {
-                after,
-                fraction: (omega / low).ln() / (high / low).ln(),
-            })
+            });
         }
+        if after == 0 {
+            return None;
+        }
+        let low = known[after - 1];
+        let high = known[after];
+        Some(Self {
+            after,
+            fraction: (omega / low).ln() / (high / low).ln(),
+        })
     }
 
-    fn between(&self, values: &[f64]) -> f64 {
+    fn value(&self, values: &[f64]) -> f64 {
         if self.fraction == 1.0 {
             return values[self.after];
         }
@@ -191,91 +196,30 @@ impl Place {
         low + self.fraction * (high - low)
     }
 
-    /// As [`Place::between`] for magnitudes \[dB\], which may be minus infinity for a zero value.
-    fn between_magnitudes_db(&self, values: &[f64]) -> f64 {
-        let value = self.between(values);
-        // The difference of two infinities, or an infinity weighted against a number.
+    /// Interpolates magnitudes \[dB\]: minus infinity beside a value of minus infinity, where
+    /// [`Place::value`] would be NaN.
+    fn magnitude_db(&self, values: &[f64]) -> f64 {
         let is_beside_zero =
             self.fraction < 1.0 && values[self.after - 1..=self.after].contains(&f64::NEG_INFINITY);
         if is_beside_zero {
             f64::NEG_INFINITY
         } else {
-            value
+            self.value(values)
         }
     }
 }
 
-/// Returns the median: the middle value, or the mean of the middle two for an even count (M6).
-///
-/// NaN for no values. The values must be finite; their order changes.
-pub fn median(values: &mut [f64]) -> f64 {
-    let count = values.len();
-    if count == 0 {
-        return f64::NAN;
-    }
-    let (below, upper, _) = values.select_nth_unstable_by(count / 2, f64::total_cmp);
-    if count % 2 == 1 {
-        return *upper;
-    }
-    let lower = below.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    0.5 * (lower + *upper)
-}
-
-/// Returns the weighted median: the smallest value at which the cumulative weight reaches half the
-/// total, or the mean of this value and the next where it is exactly half; equals [`median`] for
-/// equal weights (M4a).
-///
-/// NaN for no values. The values must be finite and the weights positive, one per value.
-pub fn weighted_median(values: &[f64], weights: &[f64]) -> f64 {
-    /// Relative rounding error allowed in sums of thousands of weights.
-    const ROUNDING: f64 = 1e-12;
-    let mut sorted: Vec<(f64, f64)> = values
+fn places(known: &[f64], omega: &[f64]) -> Vec<Option<Place>> {
+    omega
         .iter()
-        .copied()
-        .zip(weights.iter().copied())
-        .collect();
-    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let whole: f64 = sorted.iter().map(|(_, weight)| weight).sum();
-    let mut cumulated = 0.0;
-    for (index, &(value, weight)) in sorted.iter().enumerate() {
-        cumulated += weight;
-        let beyond_half = cumulated - 0.5 * whole;
-        if beyond_half.abs() <= ROUNDING * whole {
-            return sorted
-                .get(index + 1)
-                .map_or(value, |(next, _)| 0.5 * (value + next));
-        }
-        if beyond_half > 0.0 {
-            return value;
-        }
-    }
-    f64::NAN
+        .map(|omega| Place::find(known, *omega))
+        .collect()
 }
 
-/// Returns the arithmetic mean; NaN for no values.
-pub fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
-}
-
-/// Returns the quantile `q` from 0 to 1, linear between order statistics (numpy's default, Hyndman
-/// and Fan's type 7) (M7).
-///
-/// `h = q (n - 1)`, `x = x_[h] + (h - [h]) (x_[h]+1 - x_[h])`. NaN for no values. The values must
-/// be finite; their order changes.
-pub fn quantile(values: &mut [f64], q: f64) -> f64 {
-    if values.is_empty() {
-        return f64::NAN;
-    }
-    let position = q.clamp(0.0, 1.0) * (values.len() - 1) as f64;
-    let below = position.floor() as usize;
-    let (_, lower, above) = values.select_nth_unstable_by(below, f64::total_cmp);
-    let lower = *lower;
-    let upper = above.iter().copied().fold(f64::INFINITY, f64::min);
-    let fraction = position - below as f64;
-    if fraction == 0.0 {
-        lower
-    } else {
-        lower + fraction * (upper - lower)
+fn value_or_nan(place: Option<&Place>, values: &[f64]) -> f64 {
+    match place {
+        Some(place) => place.value(values),
+        None => f64::NAN,
     }
 }
 
@@ -286,8 +230,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_between_two_frequencies_are_on_a_line_over_their_logarithm_and_stay_beyond_the_ends()
-    {
+    fn values_are_linear_over_log_frequency_and_constant_beyond_the_ends() {
         let found = interpolate_values(&[1.0, 4.0], &[10.0, 20.0], &[0.5, 1.0, 2.0, 4.0, 9.0]);
         let miss = found
             .iter()
@@ -321,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_is_laid_on_its_reference_by_whole_turns() {
+    fn a_curve_is_shifted_to_its_reference_by_whole_turns() {
         assert_eq!(nearest_turn_offset(&[350.0_f64.to_radians()], &[0.0]), -TAU);
         assert_eq!(nearest_turn_offset(&[f64::NAN], &[0.0]), 0.0);
     }
@@ -361,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn between_two_points_decibels_and_phase_are_linear_in_log_frequency() {
+    fn decibels_and_phase_are_linear_in_log_frequency() {
         // From 0 dB, 0 deg at 1 rad/s to -40 dB, -90 deg at 100 rad/s: -20 dB, -45 deg at 10 rad/s.
         let value = at(10.0);
         assert!(
@@ -397,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn a_measured_zero_is_zero_beside_it_too() {
+    fn values_beside_a_measured_zero_are_zero() {
         let table = |values: [f64; 4]| PairTable::filled(1, 1, values.to_vec());
         let re = table([2.0, 0.0, 0.0, 2.0]);
         let im = table([0.0; 4]);
@@ -412,42 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_extrapolated() {
+    fn values_outside_the_measured_frequencies_are_nan() {
         assert!(at(0.99).re.is_nan() && at(100.1).re.is_nan());
-    }
-
-    #[test]
-    fn the_median_of_an_even_count_is_the_mean_of_the_middle_two() {
-        assert_eq!(median(&mut [4.0, 1.0, 3.0, 2.0]), 2.5);
-        assert_eq!(median(&mut [4.0, 1.0, 3.0]), 3.0);
-        assert!(median(&mut []).is_nan());
-    }
-
-    #[test]
-    fn the_weighted_median_is_where_half_of_the_weight_lies() {
-        assert_eq!(weighted_median(&[3.0, 1.0, 2.0], &[1.0, 1.0, 3.0]), 2.0);
-        assert_eq!(weighted_median(&[3.0, 1.0, 2.0], &[2.0, 1.0, 1.0]), 2.5);
-        assert_eq!(weighted_median(&[5.0], &[0.3]), 5.0);
-        assert!(weighted_median(&[], &[]).is_nan());
-    }
-
-    proptest! {
-        #[test]
-        fn equal_weights_give_the_median_to_the_last_digit(
-            values in prop::collection::vec(-1e3_f64..1e3, 1..300), weight in 0.05_f64..1.0,
-        ) {
-            let weights = vec![weight; values.len()];
-            prop_assert_eq!(weighted_median(&values, &weights), median(&mut values.clone()));
-        }
-    }
-
-    #[test]
-    fn quantiles_interpolate_as_numpy_does() {
-        // numpy.quantile([15, 20, 35, 40, 50], 0.4) == 29.0; q = 0.05 gives 16.0.
-        let values = [35.0, 20.0, 15.0, 50.0, 40.0];
-        assert!((quantile(&mut values.clone(), 0.4) - 29.0).abs() < 1e-12);
-        assert!((quantile(&mut values.clone(), 0.05) - 16.0).abs() < 1e-12);
-        assert_eq!(quantile(&mut values.clone(), 0.0), 15.0);
-        assert_eq!(quantile(&mut values.clone(), 1.0), 50.0);
     }
 }

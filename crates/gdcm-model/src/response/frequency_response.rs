@@ -6,8 +6,7 @@ use nalgebra::Complex;
 
 use super::curve_values::{nearest_turn_offset, unwrap, wrap};
 use super::lead_filter::GainDelay;
-use super::prepared_model::PreparedModel;
-use crate::dataset::{Band, Dynamics, Pair, PairTable};
+use crate::dataset::{Band, Pair, PairTable};
 use crate::units::ratio_to_db;
 
 /// `H(j omega)` for every response of a model on a grid of `N` frequencies: a p x m table of
@@ -21,28 +20,22 @@ pub struct FrequencyResponse {
 }
 
 impl FrequencyResponse {
-    /// Computes the response of a model on a single grid; for several grids prepare the model once,
-    /// see [`PreparedModel`].
-    pub fn of(dynamics: &Dynamics, grid: &FrequencyGrid) -> Self {
-        PreparedModel::of(dynamics).response(grid)
-    }
-
-    /// Creates a response from curves of `N` values each.
+    /// Creates a response from curves with `N` values each.
     pub fn new(curves: PairTable<Vec<Complex<f64>>>) -> Self {
         Self { curves }
     }
 
-    /// Returns the number of output channels, `p`.
+    /// Returns the output count, `p`.
     pub fn outputs(&self) -> usize {
         self.curves.outputs()
     }
 
-    /// Returns the number of input channels, `m`.
+    /// Returns the input count, `m`.
     pub fn inputs(&self) -> usize {
         self.curves.inputs()
     }
 
-    /// Returns the `N` values of one response.
+    /// Returns the `N` values of a response.
     pub fn curve(&self, pair: Pair) -> &[Complex<f64>] {
         &self.curves[pair]
     }
@@ -67,12 +60,13 @@ impl FrequencyResponse {
 
     /// Returns the responses that are not finite at some frequency.
     pub fn not_finite(&self) -> Vec<Pair> {
-        let not_finite = |curve: &[Complex<f64>]| curve.iter().any(|value| !value.is_finite());
-        self.curves
-            .iter()
-            .filter(|(_, curve)| not_finite(curve))
-            .map(|(pair, _)| pair)
-            .collect()
+        let mut found = Vec::new();
+        for (pair, curve) in self.curves.iter() {
+            if curve.iter().any(|value| !value.is_finite()) {
+                found.push(pair);
+            }
+        }
+        found
     }
 }
 
@@ -83,14 +77,14 @@ pub struct FrequencyGrid {
 }
 
 impl FrequencyGrid {
-    /// Creates a grid of [`log_spaced`] frequencies over the band, `N = max(points, 2)`.
+    /// Creates a grid of [`log_spaced`] frequencies over a band, `N = max(points, 2)`.
     pub fn logarithmic(band: Band, points: usize) -> Self {
         Self {
             omega: log_spaced(band.min(), band.max(), points),
         }
     }
 
-    /// Creates a grid of these rising frequencies \[rad/s\], at least two.
+    /// Creates a grid from rising frequencies \[rad/s\], at least two.
     pub fn at(omega: Vec<f64>) -> Self {
         Self { omega }
     }
@@ -100,7 +94,7 @@ impl FrequencyGrid {
         &self.omega
     }
 
-    /// Returns the number of frequencies, `N`.
+    /// Returns the frequency count, `N`.
     pub fn len(&self) -> usize {
         self.omega.len()
     }
@@ -121,11 +115,12 @@ pub fn log_spaced(lowest: f64, highest: f64, count: usize) -> Vec<f64> {
     let mut omega: Vec<f64> = (0..=last)
         .map(|k| (low + (high - low) * k as f64 / last as f64).exp())
         .collect();
-    (omega[0], omega[last]) = (lowest, highest);
+    omega[0] = lowest;
+    omega[last] = highest;
     omega
 }
 
-/// Magnitude \[dB\] and unwrapped phase \[deg\] of one response, for plots (M2).
+/// Magnitude and unwrapped phase of a response, for plots (M2).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseShape {
     /// Magnitude \[dB\] at each frequency; a value that is not finite leaves a gap.
@@ -137,35 +132,30 @@ pub struct ResponseShape {
 impl ResponseShape {
     /// Computes the shape. The phase is principal at the first finite value, then unwrapped; a
     /// value that is not finite leaves a gap (M2).
-    pub fn of(values: &[Complex<f64>]) -> Self {
+    pub fn new(values: &[Complex<f64>]) -> Self {
         let finite: Vec<usize> = (0..values.len())
             .filter(|&k| values[k].is_finite() && values[k].norm() > 0.0)
             .collect();
         let mut phase: Vec<f64> = finite.iter().map(|&k| values[k].arg()).collect();
         unwrap(&mut phase);
-        let mut shape = (vec![f64::NAN; values.len()], vec![f64::NAN; values.len()]);
+        let mut magnitude_db = vec![f64::NAN; values.len()];
+        let mut phase_deg = vec![f64::NAN; values.len()];
         for (&k, phase) in finite.iter().zip(phase) {
-            shape.0[k] = ratio_to_db(values[k].norm());
-            shape.1[k] = phase.to_degrees();
+            magnitude_db[k] = ratio_to_db(values[k].norm());
+            phase_deg[k] = phase.to_degrees();
         }
         Self {
-            magnitude_db: shape.0.into(),
-            phase_deg: shape.1.into(),
+            magnitude_db: magnitude_db.into(),
+            phase_deg: phase_deg.into(),
         }
     }
 
     /// Returns the shape shifted by whole turns, as close as possible to `reference` over the first
     /// `points` frequencies (M2).
     pub fn phase_aligned(self, reference: &Self, points: usize) -> Self {
-        let radians = |phase: &[f64]| {
-            phase
-                .iter()
-                .take(points)
-                .map(|degrees| degrees.to_radians())
-                .collect::<Vec<f64>>()
-        };
-        let offset = nearest_turn_offset(&radians(&self.phase_deg), &radians(&reference.phase_deg))
-            .to_degrees();
+        let own = radians(self.phase_deg.iter().take(points));
+        let other = radians(reference.phase_deg.iter().take(points));
+        let offset = nearest_turn_offset(&own, &other).to_degrees();
         if offset == 0.0 {
             return self;
         }
@@ -180,26 +170,15 @@ impl ResponseShape {
         if points >= self.phase_deg.len() {
             return self;
         }
-        let cut = |values: &[f64]| -> Arc<[f64]> {
-            values
-                .iter()
-                .enumerate()
-                .map(|(k, value)| if k < points { *value } else { f64::NAN })
-                .collect()
-        };
         Self {
-            magnitude_db: cut(&self.magnitude_db),
-            phase_deg: cut(&self.phase_deg),
+            magnitude_db: first_values(&self.magnitude_db, points),
+            phase_deg: first_values(&self.phase_deg, points),
         }
     }
 
     /// Returns the shape after a correction (M10).
     pub fn corrected(&self, omega: &[f64], correction: GainDelay) -> Self {
-        let phase: Vec<f64> = self
-            .phase_deg
-            .iter()
-            .map(|degrees| degrees.to_radians())
-            .collect();
+        let phase = radians(self.phase_deg.iter());
         Self {
             magnitude_db: correction
                 .magnitudes_db(&self.magnitude_db, omega)
@@ -212,6 +191,18 @@ impl ResponseShape {
     }
 }
 
+/// Converts degrees to radians.
+fn radians<'v>(degrees: impl Iterator<Item = &'v f64>) -> Vec<f64> {
+    degrees.map(|degrees| degrees.to_radians()).collect()
+}
+
+/// Keeps the first `points` values; the others become NaN.
+fn first_values(values: &[f64], points: usize) -> Arc<[f64]> {
+    let mut first = values.to_vec();
+    first[points..].fill(f64::NAN);
+    first.into()
+}
+
 /// Wraps a continuous phase \[deg\] to -180 to 180 degrees, with a gap at each jump instead of a
 /// line from edge to edge.
 pub fn wrapped_deg(phase_deg: &[f64]) -> Vec<f64> {
@@ -219,13 +210,16 @@ pub fn wrapped_deg(phase_deg: &[f64]) -> Vec<f64> {
         .iter()
         .map(|phase| wrap(phase.to_radians()).to_degrees())
         .collect();
-    let jumps = |k: usize| k > 0 && (wrapped[k] - wrapped[k - 1]).abs() > 180.0;
-    (0..wrapped.len())
-        .map(|k| if jumps(k) { f64::NAN } else { wrapped[k] })
-        .collect()
+    let mut with_gaps = wrapped.clone();
+    for k in 1..wrapped.len() {
+        if (wrapped[k] - wrapped[k - 1]).abs() > 180.0 {
+            with_gaps[k] = f64::NAN;
+        }
+    }
+    with_gaps
 }
 
-/// One response as `N` magnitudes \[dB\] and `N` principal phases \[rad\]; all finite.
+/// A response as `N` magnitudes \[dB\] and `N` principal phases \[rad\], all finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolarCurve {
     /// `20 log10 |H|`.
@@ -235,8 +229,8 @@ pub struct PolarCurve {
 }
 
 impl PolarCurve {
-    /// Converts one response, if it is finite and not zero at every frequency.
-    pub fn of(values: &[Complex<f64>]) -> Option<Self> {
+    /// Converts a response; `None` where it is zero or not finite at some frequency.
+    pub fn from_values(values: &[Complex<f64>]) -> Option<Self> {
         let magnitude_db: Vec<f64> = values.iter().map(magnitude_db).collect();
         if magnitude_db.iter().any(|magnitude| !magnitude.is_finite()) {
             return None;
@@ -261,29 +255,30 @@ fn magnitude_db(value: &Complex<f64>) -> f64 {
 
 /// Magnitude and phase of every response of a model.
 ///
-/// An entry is `None` where the response is zero or not finite at some frequency (a structurally
-/// zero response, a pole on the imaginary axis, measured data with too short a range): it has no G,
-/// D or J (M6).
+/// An entry is `None` for a response that is zero or not finite at some frequency (structural zero,
+/// pole on the imaginary axis, measured data with too short a range): it has no G, D or J (M6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolarResponse {
     curves: PairTable<Option<PolarCurve>>,
 }
 
 impl PolarResponse {
-    /// Computes magnitude and phase of every response.
-    pub fn of(response: &FrequencyResponse) -> Self {
+    /// Computes magnitude and phase for every response.
+    pub fn new(response: &FrequencyResponse) -> Self {
         Self {
-            curves: response.curves.map(|_, curve| PolarCurve::of(curve)),
+            curves: response
+                .curves
+                .map(|_, curve| PolarCurve::from_values(curve)),
         }
     }
 
-    /// Computes magnitude and phase of the marked responses; the others stay undefined, because a
-    /// logarithm and an arc tangent cost more than the response itself.
-    pub fn of_marked(response: &FrequencyResponse, marked: &PairTable<bool>) -> Self {
+    /// Computes magnitude and phase for the marked responses only: a logarithm and an arc tangent
+    /// cost more than the response itself.
+    pub fn from_marked(response: &FrequencyResponse, marked: &PairTable<bool>) -> Self {
         Self {
             curves: response.curves.map(|pair, curve| {
                 if marked[pair] {
-                    PolarCurve::of(curve)
+                    PolarCurve::from_values(curve)
                 } else {
                     None
                 }
@@ -296,32 +291,28 @@ impl PolarResponse {
     /// Numerical differentiation leaves such values for exact zeros.
     pub fn numerically_nothing(&self) -> PairTable<bool> {
         const LEAST_DB: f64 = -120.0;
-        let peaks = self.curves.map(|_, curve| {
-            curve
-                .iter()
-                .flat_map(|curve| &curve.magnitude_db)
-                .copied()
-                .fold(f64::NEG_INFINITY, f64::max)
+        let peaks = self.curves.map(|_, curve| match curve {
+            Some(curve) => largest(curve.magnitude_db.iter()),
+            None => f64::NEG_INFINITY,
         });
-        let greatest = |of: &dyn Fn(Pair) -> bool| {
-            peaks
-                .iter()
-                .filter(|(pair, _)| of(*pair))
-                .map(|(_, peak)| *peak)
-                .fold(f64::NEG_INFINITY, f64::max)
-        };
+        let outputs = peaks.outputs();
+        let inputs = peaks.inputs();
         self.curves.map(|pair, curve| {
-            let of_output = || greatest(&|other| other.output == pair.output);
-            let of_input = || greatest(&|other| other.input == pair.input);
-            curve.is_some()
-                && peaks[pair] < of_output() + LEAST_DB
-                && peaks[pair] < of_input() + LEAST_DB
+            let Pair { output, input } = pair;
+            if curve.is_none() {
+                return false;
+            }
+            let output_peak = largest((0..inputs).map(|input| &peaks[Pair { output, input }]));
+            let input_peak = largest((0..outputs).map(|output| &peaks[Pair { output, input }]));
+            peaks[pair] < output_peak + LEAST_DB && peaks[pair] < input_peak + LEAST_DB
         })
     }
 
     /// Makes the marked responses undefined.
     pub fn clear(&mut self, marked: &PairTable<bool>) {
-        marked.marked().for_each(|pair| self.curves[pair] = None);
+        for pair in marked.marked() {
+            self.curves[pair] = None;
+        }
     }
 
     /// Returns the curves, `[output, input]`.
@@ -330,8 +321,13 @@ impl PolarResponse {
     }
 }
 
+/// Returns the largest value; minus infinity for no values.
+fn largest<'v>(values: impl Iterator<Item = &'v f64>) -> f64 {
+    values.copied().fold(f64::NEG_INFINITY, f64::max)
+}
+
 #[cfg(test)]
-mod frequency_grid_tests {
+mod tests {
     use super::*;
 
     #[test]
@@ -347,16 +343,11 @@ mod frequency_grid_tests {
             assert!((pair[1] / pair[0] / ratio - 1.0).abs() < 1e-14);
         }
     }
-}
-
-#[cfg(test)]
-mod response_shape_tests {
-    use super::*;
 
     #[test]
-    fn a_gap_leaves_a_gap_and_the_phase_goes_on_behind_it() {
+    fn the_phase_is_continuous_across_a_gap() {
         let turned = |degrees: f64| Complex::from_polar(10.0, degrees.to_radians());
-        let shape = ResponseShape::of(&[turned(-170.0), Complex::new(0.0, 0.0), turned(170.0)]);
+        let shape = ResponseShape::new(&[turned(-170.0), Complex::new(0.0, 0.0), turned(170.0)]);
         assert!(shape.magnitude_db[1].is_nan() && shape.phase_deg[1].is_nan());
         // A few roundings of angles of 3 rad.
         assert!(
@@ -366,7 +357,7 @@ mod response_shape_tests {
     }
 
     #[test]
-    fn a_shape_is_moved_by_whole_turns_only() {
+    fn a_shape_is_shifted_by_whole_turns_only() {
         let shape = |phase: f64| ResponseShape {
             magnitude_db: [0.0, 0.0].into(),
             phase_deg: [phase, phase].into(),
@@ -374,21 +365,16 @@ mod response_shape_tests {
         let laid = shape(350.0).phase_aligned(&shape(-20.0), usize::MAX);
         assert!((laid.phase_deg[0] + 10.0).abs() < 1e-12);
     }
-}
-
-#[cfg(test)]
-mod polar_tests {
-    use super::*;
 
     #[test]
-    fn a_response_is_nothing_only_beside_both_its_output_and_its_input() {
+    fn a_response_is_zero_only_relative_to_both_channels() {
         // 2 x 2 responses: only the last is small relative to both; the third belongs to an output
         // in small units.
         let values = [[1.0, 1.0], [1e-7, 0.99e-13]];
         let curves = PairTable::from_fn(2, 2, |pair| {
             vec![Complex::from(values[pair.output][pair.input]); 3]
         });
-        let mut polar = PolarResponse::of(&FrequencyResponse::new(curves));
+        let mut polar = PolarResponse::new(&FrequencyResponse::new(curves));
         let nothing = polar.numerically_nothing();
         assert_eq!(nothing.marked().collect::<Vec<_>>(), [Pair::new(1, 1)]);
         polar.clear(&nothing);
@@ -398,16 +384,16 @@ mod polar_tests {
     }
 
     #[test]
-    fn the_only_response_of_an_output_is_never_nothing() {
+    fn the_only_response_of_an_output_is_not_zero() {
         let curves = PairTable::from_fn(2, 1, |pair| {
             vec![Complex::from([1.0, 1e-20][pair.output]); 3]
         });
-        let polar = PolarResponse::of(&FrequencyResponse::new(curves));
+        let polar = PolarResponse::new(&FrequencyResponse::new(curves));
         assert_eq!(polar.numerically_nothing().marked().count(), 0);
     }
 
     #[test]
-    fn magnitudes_beyond_the_range_of_their_squares_are_right() {
+    fn magnitudes_beyond_the_range_of_their_squares_are_exact() {
         for (magnitude, db) in [
             (1e-200, -4000.0),
             (1e-20, -400.0),

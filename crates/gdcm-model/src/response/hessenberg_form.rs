@@ -6,14 +6,14 @@ use std::ops::Range;
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
 
-use super::elimination::Subdiagonal;
+use super::subdiagonal::Subdiagonal;
 use crate::dataset::{Pair, StateSpace};
 
 /// Smallest `alpha`, 2^-450 rad/s: at any frequency in use, all poles of a slower model are
 /// effectively zero.
 const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 
-/// The system matrix of a model, prepared for elimination of its states.
+/// The system matrix of a model, prepared for state elimination.
 ///
 /// ```text
 /// [ G - (s / alpha) I   K  ]
@@ -21,133 +21,104 @@ const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 /// ```
 ///
 /// G (n x n) is zero below its first subdiagonal; L has a row per input, and its first row is zero
-/// except for the last entry; K has a column per output. All are derived from the model (A, B, C,
-/// D) in these steps: balancing (a diagonal similarity) removes the influence of the states' units;
-/// alpha and another power of two scale the largest entries of A and B to order 1; Householder
-/// reflections make A Hessenberg and the first column of B a multiple of the first unit vector;
-/// then the system matrix is transposed, and the order of the states reversed, which restores the
-/// Hessenberg form.
+/// except for the last entry; K has a column per output. Steps from the model (A, B, C, D):
 ///
-/// The cost per frequency grows with the rows of L. A model with fewer outputs than inputs is
+/// 1. Balance A by a diagonal similarity, which removes the influence of state units.
+/// 2. Scale A by alpha and B by another power of two, so that their largest entries are near 1.
+/// 3. Householder reflections make A Hessenberg and the first column in B a multiple of the first
+///    unit vector.
+/// 4. Transpose the system matrix and reverse the states, which restores the Hessenberg form.
+///
+/// The cost per frequency grows with the row count of L. A model with fewer outputs than inputs is
 /// therefore stored as its dual `(A', C', B', D')`, whose response is the transpose and whose
-/// inputs are the outputs of the model.
+/// inputs are the model's outputs.
 #[derive(Clone, Debug)]
 pub(super) struct HessenbergForm {
-    /// Number of states, `n`.
+    /// State count, `n`.
     pub order: usize,
-    /// Rows of L: inputs of the model, or of its dual.
+    /// Row count of L: inputs (of the dual).
     pub inputs: usize,
-    /// Columns of K: outputs of the model, or of its dual.
+    /// Column count of K: outputs (of the dual).
     pub outputs: usize,
-    /// Whether this is the dual: rows of L then belong to outputs and columns of K to inputs.
+    /// Whether this is the dual: L then has a row per output, K a column per input.
     pub dual: bool,
-    /// Input in the first row of L, the one with the largest column of B; it trades places with the
-    /// first input.
+    /// Index of the input in the first row of L: it has the largest column in B, and swaps places
+    /// with the first input.
     first_input: usize,
     /// `1 / alpha`.
     pub frequency_scale: f64,
-    /// The single entry of the first row of L.
+    /// The only nonzero entry in the first row of L.
     pub gain: f64,
-    /// The subdiagonal entry of each column of G except the last.
+    /// Subdiagonal entry in each column of G except the last.
     pub subdiagonals: Vec<Subdiagonal>,
-    /// The first row of `[G K]` and all rows of `[L D']` except the first.
+    /// First row of `[G K]`, then all rows of `[L D']` except the first.
     pub complex_rows: Vec<f64>,
-    /// The other rows of `[G K]`, each divided by its subdiagonal entry.
+    /// Other rows of `[G K]`, each divided by its subdiagonal entry.
     next_rows: Vec<f64>,
-    /// The first row of D'.
+    /// First row of D'.
     pub feed_through: Vec<f64>,
 }
 
 impl HessenbergForm {
     /// Computes the reduced form of a model with `a` replacing its A: the same bits on every
     /// instruction set, which affects only the time.
-    pub fn of(arch: Arch, a: DMatrix<f64>, model: &StateSpace) -> Self {
-        let dual = model.outputs() < model.inputs();
-        let mut a = if dual { a.transpose() } else { a };
-        let [mut b, mut c, mut d] = if dual {
-            [model.c(), model.b(), model.d()].map(DMatrix::transpose)
-        } else {
-            [model.b(), model.c(), model.d()].map(DMatrix::clone)
-        };
-        balance(&mut a, &mut b, &mut c);
-        let frequency_scale = 1.0 / power_of_two_below(a.amax()).max(LEAST_ALPHA);
-        let first_input = (0..b.ncols())
-            .rev()
-            .max_by(|&x, &y| b.column(x).amax().total_cmp(&b.column(y).amax()));
-        let first_input = first_input.unwrap_or(0);
-        let input_scale = 1.0 / power_of_two_below(b.amax());
-        a *= frequency_scale;
-        b *= input_scale;
-        // Applied one after the other, the larger first: a result within range must not underflow
-        // in between.
-        let one = frequency_scale;
-        let other = 1.0 / input_scale;
-        c *= one.max(other);
-        c *= one.min(other);
-        if first_input > 0 {
-            b.swap_columns(0, first_input);
-            d.swap_columns(0, first_input);
-        }
-        let order = a.nrows();
-        let inputs = b.ncols();
-        let outputs = c.nrows();
-        let mut rows = DMatrix::zeros(order + inputs, order + outputs);
-        for (matrix, row, column) in [(a, 0, 0), (b, 0, order), (c, order, 0), (d, order, order)] {
-            rows.view_mut((column, row), (matrix.ncols(), matrix.nrows()))
-                .tr_copy_from(&matrix);
-        }
+    pub fn new(arch: Arch, a: DMatrix<f64>, model: &StateSpace) -> Self {
+        let mut system = ScaledSystem::new(a, model);
+        let first_input = system.swap_largest_input_first();
+        let order = system.a.nrows();
+        let inputs = system.b.ncols();
+        let outputs = system.c.nrows();
+        let dual = system.dual;
+        let frequency_scale = system.frequency_scale;
+        let mut rows = system.into_rows();
         arch.dispatch(HouseholderReduction {
             rows: &mut rows,
             states: order,
         });
-        // An entry of the system matrix: transposed, with the states in reversed order.
-        let reversed = |state: usize| {
-            if state < order {
-                order - 1 - state
-            } else {
-                state
-            }
-        };
-        let entry = |row: usize, column: usize| rows[(reversed(row), reversed(column))];
-        let subdiagonals: Vec<_> = (1..order)
-            .map(|row| Subdiagonal::new(entry(row, row - 1), order))
-            .collect();
+        let reduced = ReversedSystem { rows, order };
+        let mut subdiagonals = Vec::new();
+        let mut next_rows = Vec::new();
+        for row in 1..order {
+            let subdiagonal = Subdiagonal::new(reduced.entry(row, row - 1), order);
+            next_rows.extend(reduced.scaled_row(row, order + outputs, subdiagonal.reciprocal));
+            subdiagonals.push(subdiagonal);
+        }
         let width = order + outputs;
-        let row_of =
-            |row: usize, factor: f64| (0..width).map(move |column| factor * entry(row, column));
-        let next_rows = (1..order)
-            .flat_map(|row| row_of(row, subdiagonals[row - 1].reciprocal))
-            .collect();
-        let active = if order > 0 {
-            row_of(0, 1.0).collect()
+        let mut complex_rows = Vec::new();
+        if order > 0 {
+            complex_rows.extend(reduced.scaled_row(0, width, 1.0));
         } else {
-            vec![0.0; width]
+            complex_rows.resize(width, 0.0);
+        }
+        for row in order + 1..order + inputs {
+            complex_rows.extend(reduced.scaled_row(row, width, 1.0));
+        }
+        let gain = if order > 0 && inputs > 0 {
+            reduced.entry(order, order - 1)
+        } else {
+            0.0
         };
-        let others = (order + 1..order + inputs).flat_map(|row| row_of(row, 1.0));
+        let feed_through = if inputs > 0 {
+            reduced.scaled_row(order, width, 1.0).skip(order).collect()
+        } else {
+            vec![0.0; outputs]
+        };
         Self {
-            gain: if order > 0 && inputs > 0 {
-                entry(order, order - 1)
-            } else {
-                0.0
-            },
-            complex_rows: active.into_iter().chain(others).collect(),
-            feed_through: if inputs > 0 {
-                row_of(order, 1.0).skip(order).collect()
-            } else {
-                vec![0.0; outputs]
-            },
-            next_rows,
-            subdiagonals,
             order,
             inputs,
             outputs,
             dual,
             first_input,
             frequency_scale,
+            gain,
+            subdiagonals,
+            complex_rows,
+            next_rows,
+            feed_through,
         }
     }
 
-    /// Returns the model's response for a row of L and a column of K.
+    /// Returns the model response for row `input` of L and column `output` of K.
     pub fn pair(&self, input: usize, output: usize) -> Pair {
         let input = if input == 0 {
             self.first_input
@@ -163,15 +134,121 @@ impl HessenbergForm {
         }
     }
 
-    /// Returns the number of entries in a row of `[G K]`.
+    /// Returns the entry count in a row of `[G K]`.
     pub fn width(&self) -> usize {
         self.order + self.outputs
     }
 
-    /// Returns the row with a one below the diagonal in this column, from the next column on.
+    /// Returns the row with a one below the diagonal in this column, beginning at the next column.
     #[inline(always)]
     pub fn next_row(&self, column: usize) -> &[f64] {
         &self.next_rows[column * self.width()..][column + 1..self.width()]
+    }
+}
+
+/// A model or its dual, balanced, with the largest entries in A and B between 1 and 2.
+struct ScaledSystem {
+    a: DMatrix<f64>,
+    b: DMatrix<f64>,
+    c: DMatrix<f64>,
+    d: DMatrix<f64>,
+    dual: bool,
+    /// `1 / alpha`.
+    frequency_scale: f64,
+}
+
+impl ScaledSystem {
+    fn new(a: DMatrix<f64>, model: &StateSpace) -> Self {
+        let dual = model.outputs() < model.inputs();
+        let mut a = if dual { a.transpose() } else { a };
+        let [mut b, mut c, d] = if dual {
+            [model.c(), model.b(), model.d()].map(DMatrix::transpose)
+        } else {
+            [model.b(), model.c(), model.d()].map(DMatrix::clone)
+        };
+        balance(&mut a, &mut b, &mut c);
+        let frequency_scale = 1.0 / power_of_two_below(a.amax()).max(LEAST_ALPHA);
+        let input_scale = 1.0 / power_of_two_below(b.amax());
+        a *= frequency_scale;
+        b *= input_scale;
+        // The larger factor first: a result within range must not underflow in between.
+        let output_scale = 1.0 / input_scale;
+        c *= frequency_scale.max(output_scale);
+        c *= frequency_scale.min(output_scale);
+        Self {
+            a,
+            b,
+            c,
+            d,
+            dual,
+            frequency_scale,
+        }
+    }
+
+    /// Swaps the first input with the input that has the largest column in B; returns its index.
+    fn swap_largest_input_first(&mut self) -> usize {
+        let mut largest = 0;
+        for input in 1..self.b.ncols() {
+            let is_larger = self
+                .b
+                .column(input)
+                .amax()
+                .total_cmp(&self.b.column(largest).amax())
+                .is_gt();
+            if is_larger {
+                largest = input;
+            }
+        }
+        if largest > 0 {
+            self.b.swap_columns(0, largest);
+            self.d.swap_columns(0, largest);
+        }
+        largest
+    }
+
+    /// Returns the rows of `[A B; C D]`, each stored in a column.
+    fn into_rows(self) -> DMatrix<f64> {
+        let order = self.a.nrows();
+        let inputs = self.b.ncols();
+        let outputs = self.c.nrows();
+        let mut rows = DMatrix::zeros(order + inputs, order + outputs);
+        for (matrix, row, column) in [
+            (self.a, 0, 0),
+            (self.b, 0, order),
+            (self.c, order, 0),
+            (self.d, order, order),
+        ] {
+            rows.view_mut((column, row), (matrix.ncols(), matrix.nrows()))
+                .tr_copy_from(&matrix);
+        }
+        rows
+    }
+}
+
+/// The reduced system matrix, transposed, with the states in reversed order.
+struct ReversedSystem {
+    /// The rows before transposition, each stored in a column.
+    rows: DMatrix<f64>,
+    /// State count.
+    order: usize,
+}
+
+impl ReversedSystem {
+    fn entry(&self, row: usize, column: usize) -> f64 {
+        self.rows[(self.reversed(row), self.reversed(column))]
+    }
+
+    fn reversed(&self, index: usize) -> usize {
+        if index < self.order {
+            self.order - 1 - index
+        } else {
+            index
+        }
+    }
+
+    /// Returns the first `width` entries of a row times a factor.
+    fn scaled_row(&self, row: usize, width: usize, factor: f64) -> impl Iterator<Item = f64> {
+        (0..width).map(move |column| factor * self.entry(row, column))
     }
 }
 
@@ -184,15 +261,15 @@ fn power_of_two_below(value: f64) -> f64 {
     value.log2().floor().clamp(-1e3, 1e3).exp2()
 }
 
-/// Number of partial sums of a scalar product.
+/// Count of partial sums in a scalar product.
 const LANES: usize = 8;
 
 /// Transforms `[A B; C D]` to `[Q' A Q, Q' B; C Q, D]` with Q orthogonal, `Q' A Q` upper
 /// Hessenberg, and the first column of `Q' B` zero below its first entry.
 ///
-/// One reflection `I - beta v v'` for that column, then one for each column of A (Golub & Van Loan,
-/// "Matrix Computations", 4th ed. 2013, 7.4.2), applied from both sides in one pass over the matrix
-/// T, as `T - y v' - v w'` with
+/// A reflection `I - beta v v'` clears that column, another each column of A (Golub & Van Loan,
+/// "Matrix Computations", 4th ed. 2013, 7.4.2). It is applied from both sides in a single pass over
+/// the matrix T, as `T - y v' - v w'` with
 ///
 /// ```text
 /// y = beta T v,   w = beta T' v - gamma v,   gamma = beta v' y
@@ -202,9 +279,9 @@ const LANES: usize = 8;
 /// multiply-add is fused, in software where necessary: the result has the same bits on every
 /// instruction set.
 struct HouseholderReduction<'a> {
-    /// The rows of `[A B; C D]`, each stored in one column.
+    /// The rows of `[A B; C D]`, each stored in a column.
     rows: &'a mut DMatrix<f64>,
-    /// Number of rows of A.
+    /// Row count of A.
     states: usize,
 }
 
@@ -220,8 +297,8 @@ impl WithSimd for HouseholderReduction<'_> {
     }
 }
 
-/// Clears a column below row `first` by a reflection of the states from `first` on, applied from
-/// both sides; the column does not belong to these states.
+/// Clears a column below row `first` by reflecting the states from `first` on, from both sides; the
+/// column does not belong to these states.
 #[inline(always)]
 fn clear(rows: &mut DMatrix<f64>, states: usize, column: usize, first: usize) {
     let mut v = vec![0.0; rows.nrows()];
@@ -235,7 +312,7 @@ fn clear(rows: &mut DMatrix<f64>, states: usize, column: usize, first: usize) {
     if tail == 0.0 {
         return;
     }
-    // The largest entries of A and B are of order 1: squares that underflow are negligible.
+    // The largest entries in A and B are near 1: squares that underflow are negligible.
     let norm = (*head * *head + tail).sqrt();
     let left = -norm.copysign(*head);
     let beta = 1.0 / (norm * (norm + head.abs()));
@@ -308,24 +385,23 @@ fn subtract_multiple(from: &mut [f64], factor: f64, row: &[f64]) {
     }
 }
 
-/// Balances row k and column k of `a`, for each state k, to norms within a factor of two of each
-/// other, by a diagonal similarity with powers of two, hence without rounding: `a <- S^-1 a S`,
+/// Balances row k and column k of `a`, for each state k, to norms that differ by less than a factor
+/// two. The diagonal similarity has powers of two and rounds nothing: `a <- S^-1 a S`,
 /// `b <- S^-1 b`, `c <- c S`.
 ///
 /// Balancing of Parlett and Reinsch with 2-norms (James, Langou & Lowery, arXiv:1401.5766,
-/// algorithm 3). For entries far beyond any real machine's, the number of sweeps over the states is
-/// limited (each sweep leaves a similar model), and so is the scale, so that B and C do not
-/// overflow.
+/// algorithm 3). For entries far beyond any real machine's, the sweep count is limited (each sweep
+/// leaves a similar model), and so is the scale, so that B and C do not overflow.
 pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatrix<f64>) {
-    /// A helicopter model takes three to six.
+    /// Most sweeps; a helicopter model takes three to six.
     const MOST_SWEEPS: usize = 100;
-    /// 30 decades in either direction.
+    /// Largest scale: 30 decades in either direction.
     const LARGEST_SCALE: f64 = (1_u128 << 100) as f64;
     let mut scales = vec![1.0; a.nrows()];
     for _ in 0..MOST_SWEEPS {
         let mut balanced = true;
         for (state, scale) in scales.iter_mut().enumerate() {
-            let Some(factor) = factor(a, state) else {
+            let Some(factor) = balancing_factor(a, state) else {
                 continue;
             };
             if (LARGEST_SCALE.recip()..=LARGEST_SCALE).contains(&(*scale * factor)) {
@@ -347,7 +423,7 @@ pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatri
 
 /// Returns the power of two that brings a column and its row closest together; `None` where it
 /// reduces their squares by less than 5 %.
-fn factor(a: &DMatrix<f64>, state: usize) -> Option<f64> {
+fn balancing_factor(a: &DMatrix<f64>, state: usize) -> Option<f64> {
     let column = a.column(state).norm_squared();
     let row = a.row(state).norm_squared();
     let whole = column + row;
@@ -358,12 +434,20 @@ fn factor(a: &DMatrix<f64>, state: usize) -> Option<f64> {
         return None;
     }
     while column < row / 2.0 {
-        (column, row, factor) = (column * 2.0, row / 2.0, factor * 2.0);
+        column *= 2.0;
+        row /= 2.0;
+        factor *= 2.0;
     }
     while column >= row * 2.0 {
-        (column, row, factor) = (column / 2.0, row * 2.0, factor / 2.0);
+        column /= 2.0;
+        row *= 2.0;
+        factor /= 2.0;
     }
-    (column * column + row * row < 0.95 * whole).then_some(factor)
+    if column * column + row * row < 0.95 * whole {
+        Some(factor)
+    } else {
+        None
+    }
 }
 
 #[cfg(test)]
@@ -374,7 +458,7 @@ mod tests {
     use super::*;
 
     fn form(model: &StateSpace) -> HessenbergForm {
-        HessenbergForm::of(Arch::new(), model.a().clone(), model)
+        HessenbergForm::new(Arch::new(), model.a().clone(), model)
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! A realisable filter that gives a channel phase lead (M15.3), and the effect of the correction of
-//! two channels on a response, eq. (12), M15.5.
+//! A realisable filter that gives a channel phase lead (M15.3), and the correction of a response by
+//! gain, delay and lead filters of its two channels (eq. (12), M15.5).
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::units::{db_to_ratio, ratio_to_db};
 
-/// Order of a lead filter's numerator and denominator.
+/// Order of numerator and denominator in a lead filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "f64", into = "usize")]
 pub enum LeadOrder {
@@ -27,17 +27,29 @@ impl LeadOrder {
             LeadOrder::Second => 2,
         }
     }
+
+    /// Returns `1 + j x`, or `1 + sqrt(2) j x - x^2` for second order.
+    fn polynomial(self, x: f64) -> Complex<f64> {
+        match self {
+            LeadOrder::First => Complex::new(1.0, x),
+            LeadOrder::Second => Complex::new(1.0 - x * x, SQRT_2 * x),
+        }
+    }
 }
 
 impl TryFrom<f64> for LeadOrder {
     type Error = String;
 
     fn try_from(order: f64) -> Result<Self, String> {
-        let orders = [Self::First, Self::Second];
-        let found = orders
-            .into_iter()
-            .find(|known| known.number() as f64 == order);
-        found.ok_or_else(|| format!("order of the lead filters: expected 1 or 2, found {order}"))
+        if order == 1.0 {
+            Ok(Self::First)
+        } else if order == 2.0 {
+            Ok(Self::Second)
+        } else {
+            Err(format!(
+                "order of the lead filters: expected 1 or 2, found {order}"
+            ))
+        }
     }
 }
 
@@ -53,9 +65,9 @@ impl From<LeadOrder> for usize {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeadFilter {
     pub order: LeadOrder,
-    /// Time constant of its numerator, `a` \[s\].
+    /// Numerator time constant, `a` \[s\].
     pub zero_s: f64,
-    /// Time constant of its denominator, `b` \[s\].
+    /// Denominator time constant, `b` \[s\].
     pub lag_s: f64,
 }
 
@@ -118,26 +130,19 @@ impl LeadFilter {
     /// `|L|^2 = (1 + (a omega)^4) / (1 + (b omega)^4)`.
     pub fn magnitude_db(self, omega: f64) -> f64 {
         let power = 2 * self.order.number() as i32;
-        let square = |time_s: f64| 1.0 + (time_s * omega).powi(power);
-        10.0 * (square(self.zero_s) / square(self.lag_s)).log10()
+        let numerator = 1.0 + (self.zero_s * omega).powi(power);
+        let denominator = 1.0 + (self.lag_s * omega).powi(power);
+        10.0 * (numerator / denominator).log10()
     }
 
     /// Returns `L(j omega)`.
     pub fn at(self, omega: f64) -> Complex<f64> {
-        let side = |time_s: f64| {
-            let x = time_s * omega;
-            match self.order {
-                LeadOrder::First => Complex::new(1.0, x),
-                LeadOrder::Second => Complex::new(1.0 - x * x, SQRT_2 * x),
-            }
-        };
-        side(self.zero_s) / side(self.lag_s)
+        self.order.polynomial(self.zero_s * omega) / self.order.polynomial(self.lag_s * omega)
     }
 }
 
-/// `k e^(-j omega tau) L_o L_i`: the factor of the correction on a response (eq. (12), M10), with
-/// the optional lead filters of its output and its input (M15). Exact in frequency, without Pade
-/// approximation.
+/// `k e^(-j omega tau) L_o L_i`: the correction factor on a response (eq. (12), M10), with optional
+/// lead filters on its output and its input (M15). Exact in frequency, without Pade approximation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainDelay {
     gain_db: f64,
@@ -169,33 +174,37 @@ impl GainDelay {
 
     /// Returns its value at `omega` \[rad/s\].
     pub fn at(self, omega: f64) -> Complex<f64> {
-        let filters = self.leads.iter().flatten();
-        let pure = Complex::from_polar(db_to_ratio(self.gain_db), -omega * self.delay_s);
-        filters.fold(pure, |product, filter| product * filter.at(omega))
+        let mut value = Complex::from_polar(db_to_ratio(self.gain_db), -omega * self.delay_s);
+        for filter in self.leads.iter().flatten() {
+            value *= filter.at(omega);
+        }
+        value
     }
 
-    /// Returns the corrected magnitudes \[dB\] at `omega`: adds `20 log10 k` and the contribution
-    /// of the filters.
+    /// Returns the corrected magnitudes \[dB\] at `omega`: adds `20 log10 k` and the filter
+    /// magnitudes.
     pub fn magnitudes_db(self, magnitudes_db: &[f64], omega: &[f64]) -> impl Iterator<Item = f64> {
         magnitudes_db
             .iter()
             .zip(omega)
             .map(move |(magnitude, omega)| {
-                let filters = self.leads.iter().flatten();
-                filters.fold(magnitude + self.gain_db, |sum, filter| {
-                    sum + filter.magnitude_db(*omega)
-                })
+                let mut corrected = magnitude + self.gain_db;
+                for filter in self.leads.iter().flatten() {
+                    corrected += filter.magnitude_db(*omega);
+                }
+                corrected
             })
     }
 
-    /// Returns the corrected phases \[rad\] at `omega`: subtracts `omega tau` and adds the
-    /// contribution of the filters.
+    /// Returns the corrected phases \[rad\] at `omega`: subtracts `omega tau` and adds the filter
+    /// phases.
     pub fn phases(self, phases: &[f64], omega: &[f64]) -> impl Iterator<Item = f64> {
         phases.iter().zip(omega).map(move |(phase, omega)| {
-            let filters = self.leads.iter().flatten();
-            filters.fold(phase - omega * self.delay_s, |sum, filter| {
-                sum + filter.phase(*omega)
-            })
+            let mut corrected = phase - omega * self.delay_s;
+            for filter in self.leads.iter().flatten() {
+                corrected += filter.phase(*omega);
+            }
+            corrected
         })
     }
 }
@@ -207,7 +216,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_lead_of_nothing_leaves_everything() {
+    fn a_zero_lead_leaves_the_response_unchanged() {
         let filter = LeadFilter::new(LeadOrder::Second, 0.0, 0.02);
         assert_eq!(
             (
@@ -234,11 +243,6 @@ mod tests {
             prop_assert!((filter.lead_s() - lead_s).abs() < 1e-15);
         }
     }
-}
-
-#[cfg(test)]
-mod gain_delay_tests {
-    use super::{LeadOrder, *};
 
     #[test]
     fn a_correction_multiplies_the_magnitude_and_delays_the_phase() {

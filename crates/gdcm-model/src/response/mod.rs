@@ -1,17 +1,23 @@
 //! Frequency responses: grid, evaluation of a model, magnitude and phase (M2, M3); poles and zeros
 //! of a model.
 
+mod complex_lanes;
+pub mod connection;
 pub mod curve_values;
 pub mod eigenvalues;
 pub mod elimination;
 pub mod frequency_response;
 mod hessenberg_form;
+pub mod large_entry;
 pub mod lead_filter;
 pub mod pole_estimate;
 pub mod prepared_model;
+mod s_plane;
+pub mod schur_form;
+mod subdiagonal;
 pub mod zeros;
 
-pub use curve_values::{median, wrap};
+pub use curve_values::wrap;
 pub use eigenvalues::{Mode, modes};
 pub use elimination::evaluate;
 pub use frequency_response::{FrequencyGrid, FrequencyResponse, PolarResponse};

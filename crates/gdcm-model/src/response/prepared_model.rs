@@ -1,25 +1,25 @@
 //! A model prepared for its frequency response on any grid.
 //!
-//! Frequency response of a discrete-time model (M2a).
+//! A discrete-time model is evaluated in a form that loses no digits for fast sampling (M2a):
 //!
 //! ```text
-//! H = C (sI - F)^-1 B + D,   F = A - I,   s = z - 1 = 2j sin(omega T / 2) e^(j omega T / 2): fast sampling rounds nothing away
+//! H = C (sI - F)^-1 B + D,   F = A - I,   s = z - 1 = 2j sin(omega T / 2) e^(j omega T / 2)
 //! ```
-//!
-//! Structural connection from inputs to outputs.
 
 use std::f64::consts::PI;
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
 use pulp::Arch;
 
+use super::connection::connected;
 use super::curve_values::interpolate;
-use super::eigenvalues::SPlane;
 use super::elimination::Elimination;
 use super::frequency_response::{FrequencyGrid, FrequencyResponse};
 use super::hessenberg_form::HessenbergForm;
+use super::large_entry::LargeEntry;
+use super::s_plane::SPlane;
 use crate::dataset::measured_response::MeasuredResponse;
-use crate::dataset::{Dynamics, Pair, PairTable, StateSpace};
+use crate::dataset::{Dynamics, PairTable, StateSpace};
 
 /// The part of a response that does not depend on the grid: computed once per model, and used for
 /// every band and plot.
@@ -29,103 +29,63 @@ use crate::dataset::{Dynamics, Pair, PairTable, StateSpace};
 #[derive(Clone, Debug)]
 pub struct PreparedModel {
     source: Source,
-    /// Delay of each response \[s\], where there is any.
+    /// Delay of each response \[s\]; `None` for a model without delays.
     delays_s: Option<PairTable<f64>>,
 }
 
 #[derive(Clone, Debug)]
 enum Source {
-    StateSpace {
-        form: Box<HessenbergForm>,
-        sample_time_s: Option<f64>,
-        connected: PairTable<bool>,
-    },
+    StateSpace(PreparedStateSpace),
     Measured(MeasuredResponse),
-    /// No response can be computed.
+    /// A model with a [`LargeEntry`].
     TooLarge {
         outputs: usize,
         inputs: usize,
     },
 }
 
-/// An entry of a model's matrices beyond `LARGEST_ENTRY`.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "its matrix {matrix} has {value:e} in row {row}, column {column}, and nothing beyond {LARGEST_ENTRY:e} can be computed with"
-)]
-pub struct LargeEntry {
-    /// `A`, `B`, `C` or `D`.
-    pub matrix: char,
-    /// Row, counted from 1.
-    pub row: usize,
-    /// Column, counted from 1.
-    pub column: usize,
-    pub value: f64,
-}
-
-/// The largest entry accepted in computations. Products of three matrices in any units of the
-/// states (to 2^100) then stay far below the largest double, and no entry of a helicopter model
-/// comes close.
-pub const LARGEST_ENTRY: f64 = 1e75;
-
-impl LargeEntry {
-    /// Returns the first entry of a model that is too large to compute with.
-    pub fn of(model: &StateSpace) -> Option<Self> {
-        [
-            ('A', model.a()),
-            ('B', model.b()),
-            ('C', model.c()),
-            ('D', model.d()),
-        ]
-        .into_iter()
-        .find_map(|(matrix, of)| {
-            let at = of.iter().position(|value| value.abs() > LARGEST_ENTRY)?;
-            let (row, column) = of.vector_to_matrix_index(at);
-            Some(Self {
-                matrix,
-                row: row + 1,
-                column: column + 1,
-                value: of[at],
-            })
-        })
-    }
+#[derive(Clone, Debug)]
+struct PreparedStateSpace {
+    form: Box<HessenbergForm>,
+    sample_time_s: Option<f64>,
+    connected: PairTable<bool>,
 }
 
 impl PreparedModel {
     /// Prepares a model.
     pub fn of(dynamics: &Dynamics) -> Self {
-        let source = match dynamics {
-            Dynamics::StateSpace(model) if LargeEntry::of(model).is_some() => Source::TooLarge {
-                outputs: model.outputs(),
-                inputs: model.inputs(),
-            },
+        match dynamics {
             Dynamics::StateSpace(model) => {
-                let plane = SPlane::of(model);
-                Source::StateSpace {
-                    form: Box::new(HessenbergForm::of(
-                        Arch::new(),
-                        plane.matrix(model.a()),
-                        model,
-                    )),
-                    sample_time_s: model.timing().sample_time_s,
-                    connected: connected(model),
+                let source = if LargeEntry::find(model).is_some() {
+                    Source::TooLarge {
+                        outputs: model.outputs(),
+                        inputs: model.inputs(),
+                    }
+                } else {
+                    Source::StateSpace(PreparedStateSpace::new(model))
+                };
+                Self {
+                    source,
+                    delays_s: response_delays(model),
                 }
             }
-            Dynamics::Measured(response) => Source::Measured(response.clone()),
-        };
-        Self {
-            source,
-            delays_s: delays_of(dynamics),
+            Dynamics::Measured(response) => Self {
+                source: Source::Measured(response.clone()),
+                delays_s: None,
+            },
         }
     }
 
-    /// Computes `H(j omega) = C (j omega I - A)^-1 B + D` on the grid, or measured data
-    /// interpolated on it (M2); for a discrete-time model `C (zI - A)^-1 B + D` at
-    /// `z = e^(j omega T)`, NaN from `pi / T` on; times `e^(-j omega (tau_o + tau_i))` for delayed
-    /// channels (M2a).
+    /// Computes the response on a grid (M2, M2a).
     ///
-    /// A response that its input cannot reach is exactly zero; all responses of a model with a
-    /// [`LargeEntry`] are NaN.
+    /// | model | response |
+    /// |---|---|
+    /// | continuous time | `C (j omega I - A)^-1 B + D` |
+    /// | discrete time | `C (zI - A)^-1 B + D`, `z = e^(j omega T)`; NaN from `pi / T` on |
+    /// | measured | interpolated; NaN outside the measured frequencies |
+    ///
+    /// Delayed channels multiply it by `e^(-j omega (tau_o + tau_i))`. A response that its input
+    /// cannot reach is exactly zero; all responses of a model with a [`LargeEntry`] are NaN.
     pub fn response(&self, grid: &FrequencyGrid) -> FrequencyResponse {
         self.at(grid.omega())
     }
@@ -133,38 +93,19 @@ impl PreparedModel {
     /// As [`PreparedModel::response`], at any frequencies `omega` \[rad/s\].
     pub fn at(&self, omega: &[f64]) -> FrequencyResponse {
         let mut response = self.undelayed(omega);
-        for (pair, &delay_s) in self
-            .delays_s
-            .iter()
-            .flat_map(|delays_s| delays_s.iter())
-            .filter(|(_, by)| **by > 0.0)
-        {
-            let turned = |omega: &f64| Complex::from_polar(1.0, -omega * delay_s);
-            response.curves[pair]
-                .iter_mut()
-                .zip(omega)
-                .for_each(|(value, omega)| *value *= turned(omega));
+        if let Some(delays_s) = &self.delays_s {
+            for (pair, &delay_s) in delays_s.iter() {
+                if delay_s > 0.0 {
+                    delay(&mut response.curves[pair], omega, delay_s);
+                }
+            }
         }
         response
     }
 
     fn undelayed(&self, omega: &[f64]) -> FrequencyResponse {
         match &self.source {
-            Source::StateSpace {
-                form,
-                sample_time_s,
-                connected,
-            } => {
-                let at: Vec<_> = omega
-                    .iter()
-                    .map(|omega| shifted(*omega, *sample_time_s))
-                    .collect();
-                let mut response = Arch::new().dispatch(Elimination { form, at: &at });
-                // Without a connection from input to output, the values are rounding errors.
-                let apart = connected.iter().filter(|(_, connected)| !**connected);
-                apart.for_each(|(pair, _)| response.curves[pair].fill(Complex::new(0.0, 0.0)));
-                response
-            }
+            Source::StateSpace(prepared) => prepared.response(omega),
             Source::TooLarge { outputs, inputs } => {
                 let curve = vec![Complex::new(f64::NAN, f64::NAN); omega.len()];
                 FrequencyResponse::new(PairTable::filled(*outputs, *inputs, curve))
@@ -174,92 +115,72 @@ impl PreparedModel {
     }
 }
 
-/// Returns `j omega`, or `e^(j omega T) - 1` in discrete time, which is NaN from `omega = pi / T`
-/// on.
-fn shifted(omega: f64, sample_time_s: Option<f64>) -> Complex<f64> {
-    match sample_time_s.map(|sample_time_s| omega * sample_time_s) {
-        None => Complex::new(0.0, omega),
-        Some(angle) if angle >= PI => Complex::new(f64::NAN, f64::NAN),
-        Some(angle) => Complex::from_polar(2.0 * (0.5 * angle).sin(), 0.5 * angle) * Complex::i(),
+impl FrequencyResponse {
+    /// Computes the response of a model on a single grid; for several grids prepare the model once,
+    /// see [`PreparedModel`].
+    pub fn of(dynamics: &Dynamics, grid: &FrequencyGrid) -> Self {
+        PreparedModel::of(dynamics).response(grid)
     }
 }
 
-/// Returns the delays of a model's responses, where there are any.
-fn delays_of(dynamics: &Dynamics) -> Option<PairTable<f64>> {
-    let Dynamics::StateSpace(model) = dynamics else {
-        return None;
-    };
-    let timing = model.timing();
-    let is_delayed = timing.input_delays_s.is_some() || timing.output_delays_s.is_some();
-    is_delayed.then(|| {
-        PairTable::from_fn(model.outputs(), model.inputs(), |pair| {
-            timing.delay_s(pair.output, pair.input)
-        })
-    })
-}
-
-/// Returns whether each response of a model is more than a structural zero: whether a chain of
-/// nonzero entries leads from the input through `B`, any number of times through `A`, and `C` (or
-/// directly through `D`) to the output.
-///
-/// A structural zero has zero response at every frequency. Its computed values would be rounding
-/// errors, for which ratios are meaningless (M6).
-pub fn connected(model: &StateSpace) -> PairTable<bool> {
-    let reached: Vec<Vec<bool>> = (0..model.inputs())
-        .map(|input| reached_states(model, input))
-        .collect();
-    PairTable::from_fn(model.outputs(), model.inputs(), |pair| {
-        let through_states = || {
-            let row = model.c().row(pair.output);
-            row.iter()
-                .zip(&reached[pair.input])
-                .any(|(c, reached)| *reached && *c != 0.0)
-        };
-        model.d()[(pair.output, pair.input)] != 0.0 || through_states()
-    })
-}
-
-/// Returns the states on a chain of nonzero entries from the input of a response to its output.
-pub(super) fn leading_states(model: &StateSpace, pair: Pair) -> Vec<usize> {
-    let reached = reached_states(model, pair.input);
-    let seen = spread(
-        &model.a().transpose(),
-        model
-            .c()
-            .row(pair.output)
-            .iter()
-            .map(|c| *c != 0.0)
-            .collect(),
-    );
-    (0..model.order())
-        .filter(|&state| reached[state] && seen[state])
-        .collect()
-}
-
-fn reached_states(model: &StateSpace, input: usize) -> Vec<bool> {
-    spread(
-        model.a(),
-        model.b().column(input).iter().map(|b| *b != 0.0).collect(),
-    )
-}
-
-/// Returns the marked states and all states reachable from them through the columns of `a`.
-fn spread(a: &DMatrix<f64>, mut reached: Vec<bool>) -> Vec<bool> {
-    let mut open: Vec<usize> = (0..reached.len()).filter(|&state| reached[state]).collect();
-    let mut left = reached.len() - open.len();
-    while let Some(from) = open.pop() {
-        if left == 0 {
-            break;
+impl PreparedStateSpace {
+    fn new(model: &StateSpace) -> Self {
+        let a = SPlane::new(model).matrix(model.a());
+        Self {
+            form: Box::new(HessenbergForm::new(Arch::new(), a, model)),
+            sample_time_s: model.timing().sample_time_s,
+            connected: connected(model),
         }
-        for (to, a) in a.column(from).iter().enumerate() {
-            if *a != 0.0 && !reached[to] {
-                reached[to] = true;
-                left -= 1;
-                open.push(to);
+    }
+
+    fn response(&self, omega: &[f64]) -> FrequencyResponse {
+        let s: Vec<Complex<f64>> = omega
+            .iter()
+            .map(|omega| evaluation_point(*omega, self.sample_time_s))
+            .collect();
+        let form = &self.form;
+        let mut response = Arch::new().dispatch(Elimination { form, s: &s });
+        for (pair, is_connected) in self.connected.iter() {
+            if !is_connected {
+                // Without a connection the values are rounding errors.
+                response.curves[pair].fill(Complex::new(0.0, 0.0));
             }
         }
+        response
     }
-    reached
+}
+
+/// Multiplies a curve by `e^(-j omega tau)`.
+fn delay(curve: &mut [Complex<f64>], omega: &[f64], delay_s: f64) {
+    for (value, omega) in curve.iter_mut().zip(omega) {
+        *value *= Complex::from_polar(1.0, -omega * delay_s);
+    }
+}
+
+/// Returns `s = j omega`, or `s = e^(j omega T) - 1` in discrete time, which is NaN from
+/// `omega = pi / T` on.
+fn evaluation_point(omega: f64, sample_time_s: Option<f64>) -> Complex<f64> {
+    let Some(sample_time_s) = sample_time_s else {
+        return Complex::new(0.0, omega);
+    };
+    let angle = omega * sample_time_s;
+    if angle >= PI {
+        return Complex::new(f64::NAN, f64::NAN);
+    }
+    Complex::from_polar(2.0 * (0.5 * angle).sin(), 0.5 * angle) * Complex::i()
+}
+
+/// Returns the delay of each response \[s\]; `None` for a model without delays.
+fn response_delays(model: &StateSpace) -> Option<PairTable<f64>> {
+    let timing = model.timing();
+    if timing.input_delays_s.is_none() && timing.output_delays_s.is_none() {
+        return None;
+    }
+    Some(PairTable::from_fn(
+        model.outputs(),
+        model.inputs(),
+        |pair| timing.delay_s(pair.output, pair.input),
+    ))
 }
 
 #[cfg(test)]
@@ -356,7 +277,7 @@ mod tests {
 
 #[cfg(test)]
 mod discrete_form_tests {
-    use nalgebra::dmatrix;
+    use nalgebra::{DMatrix, dmatrix};
 
     use super::*;
     use crate::dataset::Pair;
@@ -369,19 +290,16 @@ mod discrete_form_tests {
 
     fn discrete(model: &StateSpace, sample_time_s: f64, omega: &[f64]) -> FrequencyResponse {
         let order = model.order();
-        let form = HessenbergForm::of(
+        let form = HessenbergForm::new(
             Arch::new(),
             model.a() - DMatrix::identity(order, order),
             model,
         );
-        let at: Vec<_> = omega
+        let s: Vec<_> = omega
             .iter()
-            .map(|omega| shifted(*omega, Some(sample_time_s)))
+            .map(|omega| evaluation_point(*omega, Some(sample_time_s)))
             .collect();
-        Arch::new().dispatch(Elimination {
-            form: &form,
-            at: &at,
-        })
+        Arch::new().dispatch(Elimination { form: &form, s: &s })
     }
 
     #[test]
@@ -465,34 +383,5 @@ mod discrete_form_tests {
             let error: Complex<f64> = value - expected;
             assert!(error.norm() < 1e-14 * expected.norm(), "{omega}");
         }
-    }
-}
-
-#[cfg(test)]
-mod structure_tests {
-    use nalgebra::dmatrix;
-
-    use super::*;
-
-    #[test]
-    fn two_separate_lags_do_not_answer_to_each_other() {
-        let a = dmatrix![-1.0, 0.0; 0.0, -2.0];
-        let b = dmatrix![1.0, 0.0; 0.0, 1.0];
-        let c = dmatrix![1.0, 0.0; 0.0, 1.0];
-        let model = StateSpace::new(a, b, c, dmatrix![0.0, 0.0; 0.0, 0.0]).unwrap();
-        let table = connected(&model);
-        assert_eq!(
-            table.marked().collect::<Vec<_>>(),
-            [Pair::new(0, 0), Pair::new(1, 1)]
-        );
-    }
-
-    #[test]
-    fn a_chain_of_states_or_the_feed_through_connects() {
-        let a = dmatrix![-1.0, 0.0; 3.0, -2.0];
-        let b = dmatrix![1.0, 0.0; 0.0, 0.0];
-        let c = dmatrix![0.0, 1.0];
-        let model = StateSpace::new(a, b, c, dmatrix![0.0, 5.0]).unwrap();
-        assert_eq!(connected(&model).marked().count(), 2);
     }
 }

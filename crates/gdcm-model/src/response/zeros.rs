@@ -1,13 +1,13 @@
-//! Transmission zeros of one response.
+//! Transmission zeros of a single response.
 //!
 //! ```text
-//! 1  keep the states that a chain of entries leads to from the input and from which one leads to the output; balance A
-//! 2  keep what the input reaches and the output sees (staircase): no pole is left that a zero would cancel
-//! 3  A Hessenberg, b = beta e_1. While d is negligible, the first state is at the same time what the input drives and what is
-//!    at rest in a zero: it becomes the input,
+//! 1  keep the states on a chain of nonzero entries from the input to the output; balance A
+//! 2  keep the controllable and observable states (staircase): no pole is left that a zero would cancel
+//! 3  A Hessenberg, b = beta e_1. While d is negligible, the input drives the first state only, which is at rest in a zero:
+//!    it becomes the input,
 //!       A <- A_22, b <- A_21, c <- c_2, d <- c_1       (a zero at infinity each time)
 //! 4  zeros are where [A - sI  b; c  d] loses rank: the eigenvalues of A - b c / d
-//! 5  Newton: z <- z - H(z) / H'(z) on what step 2 left, while |H| falls
+//! 5  Newton: z <- z - H(z) / H'(z) on the model of step 2, while |H| falls
 //! ```
 //!
 //! Emami-Naeini & Van Dooren, "Computation of zeros of linear multivariable systems", Automatica
@@ -17,88 +17,87 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::eigenvalues::{SPlane, SchurForm};
+use super::connection::connecting_states;
 use super::hessenberg_form::balance;
-use super::prepared_model::{LargeEntry, leading_states};
+use super::large_entry::LargeEntry;
+use super::s_plane::SPlane;
+use super::schur_form::SchurForm;
 use crate::dataset::{Dynamics, Pair, StateSpace};
 
-/// The transmission zeros of one response.
+/// Transmission zeros of a response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TransmissionZeros {
-    /// The finite zeros \[rad/s\], in ascending modulus; pairs are exact conjugates, the zero above
-    /// the real axis first.
+    /// Finite zeros \[rad/s\] in ascending modulus; pairs are exact conjugates, the zero above the
+    /// real axis first.
     pub finite: Vec<Complex<f64>>,
-    /// Number of zeros at infinity: the number of poles minus the number of finite zeros. In
-    /// discrete time it includes the zeros at `z = 0`, which have no `s`.
+    /// Count of zeros at infinity: poles minus finite zeros. In discrete time it includes the zeros
+    /// at `z = 0`, which have no `s`.
     pub infinite: usize,
 }
 
-/// Why the zeros of a response are unavailable.
+/// Reason why a response has no zeros.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ZerosError {
-    /// An entry is too large to compute with.
     #[error("{0}")]
     TooLarge(LargeEntry),
-    /// The input does not act on the output at any frequency.
     #[error("the input does not act on this output: the response is zero everywhere")]
     NoResponse,
-    /// The eigenvalue iteration did not converge.
-    #[error("the zeros were not found: the iteration for the eigenvalues does not come to an end")]
+    #[error("the zeros were not found: the eigenvalue iteration does not converge")]
     NotConverged,
-    /// The model has no such response.
     #[error("the model has no output number {} or no input number {}", pair.output + 1, pair.input + 1)]
-    OutsideModel {
-        /// The requested response.
-        pair: Pair,
-    },
+    OutsideModel { pair: Pair },
 }
 
 /// Returns the finite transmission zeros of a model's response; empty for a measured response,
 /// which has no states, and for a response that the model does not have.
 pub fn finite_zeros(dynamics: &Dynamics, pair: Pair) -> Vec<Complex<f64>> {
     match dynamics {
-        Dynamics::StateSpace(model) => transmission_zeros(model, pair)
-            .map(|zeros| zeros.finite)
-            .unwrap_or_default(),
+        Dynamics::StateSpace(model) => match transmission_zeros(model, pair) {
+            Ok(zeros) => zeros.finite,
+            Err(_) => Vec::new(),
+        },
         Dynamics::Measured(_) => Vec::new(),
     }
 }
 
-/// Computes the transmission zeros of the response of one output to one input: the zeros of
-/// `H(z) = C (zI - A)^-1 B + D`. Cancelled poles (uncontrollable or unobservable) are not counted
-/// as zeros either. Discrete-time zeros are given as `s = ln z / T` (M2a).
+/// Computes the zeros of `H(z) = C (zI - A)^-1 B + D` for a single output and input. Poles that
+/// cancel (uncontrollable or unobservable) do not count as zeros either. Discrete-time zeros are
+/// given as `s = ln z / T` (M2a).
 ///
 /// # Errors
 /// [`ZerosError`] where there is no response, or the computation fails.
 pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<TransmissionZeros, ZerosError> {
-    if let Some(entry) = LargeEntry::of(model) {
+    if let Some(entry) = LargeEntry::find(model) {
         return Err(ZerosError::TooLarge(entry));
     }
     if pair.output >= model.outputs() || pair.input >= model.inputs() {
         return Err(ZerosError::OutsideModel { pair });
     }
-    let plane = SPlane::of(model);
-    let minimal = single(model, plane, pair)
-        .reached()
+    let plane = SPlane::new(model);
+    let minimal = SingleResponse::new(model, plane, pair)
+        .controllable()
         .transposed()
-        .reached()
+        .controllable()
         .transposed()
-        .reached();
-    let (reduced, mut infinite) =
-        without_infinite_zeros(minimal.clone()).ok_or(ZerosError::NoResponse)?;
+        .controllable();
+    let ReducedResponse {
+        model: reduced,
+        mut infinite,
+    } = without_infinite_zeros(minimal.clone()).ok_or(ZerosError::NoResponse)?;
     let closed = &reduced.a - &reduced.b * reduced.c.transpose() / reduced.d;
-    let form = SchurForm::of(&closed).ok_or(ZerosError::NotConverged)?;
+    let form = SchurForm::new(&closed).ok_or(ZerosError::NotConverged)?;
     let mut finite = Vec::with_capacity(closed.nrows());
     for zero in form.eigenvalues().into_iter().filter(|zero| zero.im >= 0.0) {
         let zero = polished(&minimal, zero);
-        let mirrored = zero.im > 0.0;
+        let has_conjugate = zero.im > 0.0;
         match plane.value(zero) {
-            Some(zero) => finite.extend(
-                [Some(zero), mirrored.then(|| zero.conj())]
-                    .into_iter()
-                    .flatten(),
-            ),
-            None => infinite += 1 + usize::from(mirrored),
+            Some(zero) => {
+                finite.push(zero);
+                if has_conjugate {
+                    finite.push(zero.conj());
+                }
+            }
+            None => infinite += 1 + usize::from(has_conjugate),
         }
     }
     finite.sort_by(|a, b| {
@@ -110,27 +109,17 @@ pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<Transmission
     Ok(TransmissionZeros { finite, infinite })
 }
 
-/// Extracts the balanced model between one input and one output.
-fn single(model: &StateSpace, plane: SPlane, pair: Pair) -> SingleResponse {
-    let states = leading_states(model, pair);
-    let mut a = plane.matrix(&model.a().select_rows(&states).select_columns(&states));
-    let mut b = model.b().columns(pair.input, 1).select_rows(&states);
-    let mut c = model.c().rows(pair.output, 1).select_columns(&states);
-    balance(&mut a, &mut b, &mut c);
-    SingleResponse {
-        a,
-        b: b.column(0).into_owned(),
-        c: c.row(0).transpose(),
-        d: model.d()[(pair.output, pair.input)],
-    }
+/// A response without zeros at infinity, and the count of zeros removed.
+struct ReducedResponse {
+    model: SingleResponse,
+    infinite: usize,
 }
 
-/// Removes the zeros at infinity from a Hessenberg model, and counts them; `None` where nothing is
-/// left.
+/// Removes the zeros at infinity from a Hessenberg model (step 3); `None` where nothing is left.
 ///
 /// A feed-through counts as zero where it would put a zero 1e10 times as far out as `|A|`, or where
 /// it is at the rounding level of c.
-fn without_infinite_zeros(mut model: SingleResponse) -> Option<(SingleResponse, usize)> {
+fn without_infinite_zeros(mut model: SingleResponse) -> Option<ReducedResponse> {
     const FARTHEST: f64 = 1e10;
     const ROUNDING: f64 = 1e-12;
     let size = model.a.norm().max(f64::MIN_POSITIVE);
@@ -144,7 +133,7 @@ fn without_infinite_zeros(mut model: SingleResponse) -> Option<(SingleResponse, 
             ROUNDING * model.c.norm()
         };
         if model.d != 0.0 && model.d.abs() > rounding.max(through_states / FARTHEST) {
-            return Some((model, infinite));
+            return Some(ReducedResponse { model, infinite });
         }
         if states == 0 {
             return None;
@@ -161,35 +150,45 @@ fn without_infinite_zeros(mut model: SingleResponse) -> Option<(SingleResponse, 
     }
 }
 
-/// Returns `H(s)` and `H'(s) = -c (sI - A)^-2 b`; `None` at a pole.
-fn response_and_slope(
-    model: &SingleResponse,
-    s: Complex<f64>,
-) -> Option<(Complex<f64>, Complex<f64>)> {
+/// A response at a point of the s-plane.
+struct PointValue {
+    /// `H(s)`.
+    value: Complex<f64>,
+    /// `H'(s) = -c (sI - A)^-2 b`.
+    slope: Complex<f64>,
+}
+
+/// Computes a response and its slope; `None` at a pole.
+fn response_and_slope(model: &SingleResponse, s: Complex<f64>) -> Option<PointValue> {
     let resolvent = DMatrix::from_fn(model.a.nrows(), model.a.nrows(), |row, column| {
         let diagonal = if row == column { s } else { Complex::from(0.0) };
         diagonal - model.a[(row, column)]
     });
     let factors = resolvent.lu();
-    let through = |vector: &DVector<Complex<f64>>| -> Complex<f64> {
-        model.c.iter().zip(vector.iter()).map(|(c, x)| x * *c).sum()
-    };
     let states = factors.solve(&model.b.map(Complex::from))?;
-    let slope = factors.solve(&states)?;
-    Some((through(&states) + model.d, -through(&slope)))
+    let state_slopes = factors.solve(&states)?;
+    Some(PointValue {
+        value: output(model, &states) + model.d,
+        slope: -output(model, &state_slopes),
+    })
 }
 
-/// Moves a zero to the nearby minimum of the response, if there is one.
+/// Returns `c x`.
+fn output(model: &SingleResponse, states: &DVector<Complex<f64>>) -> Complex<f64> {
+    model.c.iter().zip(states.iter()).map(|(c, x)| x * *c).sum()
+}
+
+/// Moves a zero to the nearby minimum of the response, if there is one (step 5).
 fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
     const MOST_STEPS: usize = 4;
     /// Relative distance by which rounding may have moved a zero.
     const CLOSE: f64 = 1e-3;
     let mut best = zero;
-    let Some((mut value, mut slope)) = response_and_slope(model, zero) else {
+    let Some(mut last) = response_and_slope(model, zero) else {
         return zero;
     };
     for _ in 0..MOST_STEPS {
-        let mut next = best - value / slope;
+        let mut next = best - last.value / last.slope;
         if zero.im == 0.0 {
             next.im = 0.0;
         }
@@ -198,9 +197,9 @@ fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
             break;
         }
         match response_and_slope(model, next) {
-            Some(there) if there.0.norm() < value.norm() => {
+            Some(there) if there.value.norm() < last.value.norm() => {
                 best = next;
-                (value, slope) = there;
+                last = there;
             }
             _ => break,
         }
@@ -217,17 +216,32 @@ pub(super) struct SingleResponse {
     pub(super) d: f64,
 }
 
-/// A coupling below this share of |A| counts as rounding of the reflections.
+/// Share of |A| below which a coupling is a rounding error of the reflections.
 const NEGLIGIBLE: f64 = 1e-12;
 
 impl SingleResponse {
+    /// Extracts the balanced model between an input and an output (step 1).
+    fn new(model: &StateSpace, plane: SPlane, pair: Pair) -> Self {
+        let states = connecting_states(model, pair);
+        let mut a = plane.matrix(&model.a().select_rows(&states).select_columns(&states));
+        let mut b = model.b().columns(pair.input, 1).select_rows(&states);
+        let mut c = model.c().rows(pair.output, 1).select_columns(&states);
+        balance(&mut a, &mut b, &mut c);
+        Self {
+            a,
+            b: b.column(0).into_owned(),
+            c: c.row(0).transpose(),
+            d: model.d()[(pair.output, pair.input)],
+        }
+    }
+
     /// Returns the same response without the uncontrollable states: A is then Hessenberg, and b is
     /// zero except for its first entry.
     ///
     /// Reflections align b with the first state, then each column of A with its subdiagonal; the
     /// chain from the input ends at the first negligible subdiagonal entry (the staircase of Van
     /// Dooren, IEEE Trans. Automatic Control 26(1), 1981, for one input).
-    pub(super) fn reached(mut self) -> Self {
+    pub(super) fn controllable(mut self) -> Self {
         let size = self.a.nrows();
         let negligible = NEGLIGIBLE * self.a.norm();
         for column in 0..size {
@@ -506,11 +520,11 @@ mod tests {
                 // a condition number of about 1e3.
                 prop_assert!(nearest < 1e-6, "{zero}: {found:?}");
             }
-            let minimal = single(&model, SPlane::of(&model), ONLY);
+            let minimal = SingleResponse::new(&model, SPlane::new(&model), ONLY);
             let peak = (0..200).filter_map(|k| response_and_slope(&minimal, Complex::new(0.0, 0.1 * f64::from(k))))
-                .map(|(value, _)| value.norm()).fold(0.0, f64::max);
+                .map(|there| there.value.norm()).fold(0.0, f64::max);
             for zero in &found.finite {
-                let (value, _) = response_and_slope(&minimal, *zero).unwrap();
+                let value = response_and_slope(&minimal, *zero).unwrap().value;
                 // Of sixteen digits the coordinates cost three and the entries of the canonical
                 // form four, as above; a zero far to the left lies where the response is steeper
                 // than on the axis used for the peak.
@@ -536,7 +550,7 @@ mod staircase_tests {
             c: dvector![1.0, 0.0],
             d: 0.25,
         };
-        let reached = model.clone().reached();
+        let reached = model.clone().controllable();
         assert_eq!(reached.a.nrows(), 1);
         // 0.25 + 1 / (s + 1): the rounding of one reflection.
         assert!(
@@ -544,7 +558,7 @@ mod staircase_tests {
                 && (reached.b[0] * reached.c[0] - 1.0).abs() < 1e-14
         );
         assert_eq!(
-            model.transposed().reached().a.nrows(),
+            model.transposed().controllable().a.nrows(),
             2,
             "the first state alone sees both"
         );
@@ -562,7 +576,7 @@ mod staircase_tests {
             c: b.clone(),
             d: 0.0,
         }
-        .reached();
+        .controllable();
         assert_eq!(reached.a.nrows(), 6);
         assert_eq!(reached.b.iter().filter(|entry| **entry != 0.0).count(), 1);
         let below = (0..6).flat_map(|column| (column + 2..6).map(move |row| (row, column)));

@@ -24,7 +24,7 @@ pub struct FirstOrderHold {
 impl FirstOrderHold {
     /// Discretises `model` at `sample_time_s` \[s\]; `None` where the result is not finite.
     #[must_use]
-    pub fn of(model: &StateSpace, sample_time_s: f64) -> Option<Self> {
+    pub fn new(model: &StateSpace, sample_time_s: f64) -> Option<Self> {
         let n = model.order();
         let m = model.inputs();
         let mut exponent = DMatrix::zeros(n + 2 * m, n + 2 * m);
@@ -39,36 +39,36 @@ impl FirstOrderHold {
             return None;
         }
         let exponential = exponent.exp();
-        exponential
-            .iter()
-            .all(|entry| entry.is_finite())
-            .then(|| Self {
-                phi: exponential.view((0, 0), (n, n)).into_owned(),
-                gamma: exponential.view((0, n), (n, m)).into_owned(),
-                gamma_slope: exponential.view((0, n + m), (n, m)).into_owned(),
-                c: model.c().clone(),
-                d: model.d().clone(),
-            })
+        if exponential.iter().any(|entry| !entry.is_finite()) {
+            return None;
+        }
+        Some(Self {
+            phi: exponential.view((0, 0), (n, n)).into_owned(),
+            gamma: exponential.view((0, n), (n, m)).into_owned(),
+            gamma_slope: exponential.view((0, n + m), (n, m)).into_owned(),
+            c: model.c().clone(),
+            d: model.d().clone(),
+        })
     }
 
-    /// Simulates the outputs from the state `initial` for `inputs`, both with one row per sample.
+    /// Simulates the outputs from the state `initial`; inputs and outputs have a row per sample.
     #[must_use]
     pub fn simulate(&self, initial: &DVector<f64>, inputs: &DMatrix<f64>) -> DMatrix<f64> {
         let mut outputs = DMatrix::zeros(inputs.nrows(), self.c.nrows());
         let mut x = initial.clone();
-        let input = |n: usize| inputs.row(n).transpose();
         for n in 0..inputs.nrows() {
-            let u = input(n);
+            let u = inputs.row(n).transpose();
             outputs.set_row(n, &(&self.c * &x + &self.d * &u).transpose());
             if n + 1 < inputs.nrows() {
-                x = &self.phi * x + &self.gamma * &u + &self.gamma_slope * (input(n + 1) - &u);
+                let next = inputs.row(n + 1).transpose();
+                x = &self.phi * x + &self.gamma * &u + &self.gamma_slope * (next - &u);
             }
         }
         outputs
     }
 
-    /// Returns the free response of the outputs to each initial state: `C Phi^n` for `samples`
-    /// samples, (samples x outputs) x states, with all outputs of a sample in consecutive rows.
+    /// Returns the free response to each initial state, `C Phi^n` for `samples` samples: a column
+    /// per state, a row per sample and output, the outputs of a sample in consecutive rows.
     #[must_use]
     pub fn free_responses(&self, samples: usize) -> DMatrix<f64> {
         let (outputs, states) = self.c.shape();

@@ -6,36 +6,36 @@ use nalgebra::{DMatrix, DVectorView};
 
 use crate::dataset::channel::ChannelSide;
 
-/// A flight record: samples of every input and output with time stamps, in the units of the file.
+/// A flight record: time stamps and samples for all inputs and outputs, in file units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightRecord {
     /// Display name.
     pub name: String,
-    /// Time of each sample \[s\]; NaN where the stamp is missing.
+    /// Time stamps \[s\]; NaN where missing.
     pub time_s: Vec<f64>,
-    /// Inputs, one row per sample, one column per channel; NaN where the sample is missing.
+    /// Inputs: a row per sample, a column per channel; NaN where missing.
     pub inputs: DMatrix<f64>,
-    /// Outputs, one row per sample, one column per channel; NaN where the sample is missing.
+    /// Outputs: a row per sample, a column per channel; NaN where missing.
     pub outputs: DMatrix<f64>,
 }
 
 /// A gap-free segment of a flight record on a uniform time grid, with all samples finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
-    /// Index of its record, counted from 0.
+    /// Record index, counted from 0.
     pub record: usize,
-    /// Time of its first sample \[s\], on the record's clock.
+    /// First sample \[s\], on the record's clock.
     pub start_s: f64,
     /// Sample time \[s\].
     pub sample_time_s: f64,
-    /// Inputs, one row per sample.
+    /// Inputs: a row per sample, a column per channel.
     pub inputs: DMatrix<f64>,
-    /// Outputs, one row per sample.
+    /// Outputs: a row per sample, a column per channel.
     pub outputs: DMatrix<f64>,
 }
 
 impl FlightRecord {
-    /// Returns the samples of one channel.
+    /// Returns a channel's samples.
     #[must_use]
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         signal
@@ -46,7 +46,7 @@ impl FlightRecord {
 }
 
 impl Segment {
-    /// Returns the samples of one channel.
+    /// Returns a channel's samples.
     #[must_use]
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         signal
@@ -66,10 +66,9 @@ pub fn centred(mut samples: DMatrix<f64>) -> DMatrix<f64> {
     samples
 }
 
-/// A channel of the flight records, by index and name.
+/// A channel in flight records, by index and name.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Signal {
-    /// Input or output.
     pub role: ChannelSide,
     /// Index among the inputs or outputs, counted from 0.
     pub index: usize,

@@ -8,7 +8,7 @@ use super::flight_record::Segment;
 
 /// Half length of the filter in periods of the cut-off frequency.
 const PERIODS: f64 = 4.0;
-/// Cut-off above this share of the Nyquist frequency needs no filter.
+/// Share of the Nyquist frequency above which a cut-off needs no filter.
 const NEAR_NYQUIST: f64 = 0.8;
 /// Largest half length in samples; exceeded only for an absurd cut-off.
 const LONGEST: f64 = 1e5;
@@ -19,8 +19,8 @@ const LONGEST: f64 = 1e5;
 /// h[n] ~ sin(wc n dt) / (pi n) (0.54 + 0.46 cos(pi n / M)),   n = -M ... M,   M = ceil(4 * 2 pi / (wc dt))
 /// ```
 ///
-/// It has zero phase, and since every channel of a record passes through the same filter, the
-/// responses between channels are unchanged. At both ends the signal is extended by odd reflection,
+/// It has zero phase. All channels of a record pass through the same filter, so that the responses
+/// between channels are unchanged. At both ends the signal is extended by odd reflection,
 /// `2 x[0] - x[n]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LowPass {
@@ -29,9 +29,10 @@ pub struct LowPass {
 }
 
 impl LowPass {
-    /// Creates the filter with cut-off `omega` \[rad/s\] for a sample time \[s\]; `None` where
-    /// `omega dt > 0.8 pi`, since there is nothing to remove, where either is not greater than 0,
-    /// and where `M` would exceed 100 000.
+    /// Creates the filter with cut-off `omega` \[rad/s\] for a sample time \[s\].
+    ///
+    /// `None` where `omega dt > 0.8 pi`, since there is nothing to remove, where either is not
+    /// positive, and where `M` would exceed 100 000.
     #[must_use]
     pub fn new(omega: f64, sample_time_s: f64) -> Option<Self> {
         let step = omega * sample_time_s;
@@ -42,18 +43,13 @@ impl LowPass {
         if length > LONGEST {
             return None;
         }
-        let tap = |n: usize| {
-            let n = n as f64;
-            let sinc = if n == 0.0 {
-                step / PI
-            } else {
-                (step * n).sin() / (PI * n)
-            };
-            sinc * (0.54 + 0.46 * (PI * n / length).cos())
-        };
-        let mut half: Vec<f64> = (0..=length as usize).map(tap).collect();
+        let mut half: Vec<f64> = (0..=length as usize)
+            .map(|n| windowed_sinc(n as f64, step, length))
+            .collect();
         let sum = half[0] + 2.0 * half.iter().skip(1).sum::<f64>();
-        half.iter_mut().for_each(|h| *h /= sum);
+        for h in &mut half {
+            *h /= sum;
+        }
         Some(Self { half })
     }
 
@@ -62,13 +58,21 @@ impl LowPass {
     pub fn filter(&self, samples: &[f64]) -> Vec<f64> {
         let reach = self.half.len() - 1;
         let extended = oddly_reflected(samples, reach);
-        let filtered = |n: usize| {
-            let centre = n + reach;
-            let sides = |(k, h): (usize, &f64)| h * (extended[centre - k] + extended[centre + k]);
-            self.half[0] * extended[centre]
-                + self.half.iter().enumerate().skip(1).map(sides).sum::<f64>()
-        };
-        (0..samples.len()).map(filtered).collect()
+        (reach..reach + samples.len())
+            .map(|centre| self.filtered_sample(&extended, centre))
+            .collect()
+    }
+
+    /// Returns the filtered value at index `centre` of an extended signal.
+    fn filtered_sample(&self, extended: &[f64], centre: usize) -> f64 {
+        let sides: f64 = self
+            .half
+            .iter()
+            .enumerate()
+            .skip(1)
+            .map(|(k, h)| h * (extended[centre - k] + extended[centre + k]))
+            .sum();
+        self.half[0] * extended[centre] + sides
     }
 
     /// Filters every channel of a segment with cut-off `omega` \[rad/s\]; unchanged where there is
@@ -78,26 +82,38 @@ impl LowPass {
         let Some(low_pass) = Self::new(omega, segment.sample_time_s) else {
             return segment.clone();
         };
-        let side = |samples: &DMatrix<f64>| {
-            let filtered: Vec<f64> = samples
-                .as_slice()
-                .chunks(samples.nrows().max(1))
-                .flat_map(|x| low_pass.filter(x))
-                .collect();
-            DMatrix::from_vec(samples.nrows(), samples.ncols(), filtered)
-        };
         Segment {
-            inputs: side(&segment.inputs),
-            outputs: side(&segment.outputs),
+            inputs: low_pass.filter_columns(&segment.inputs),
+            outputs: low_pass.filter_columns(&segment.outputs),
             ..segment.clone()
         }
     }
+
+    /// Filters each column.
+    fn filter_columns(&self, samples: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut filtered = Vec::with_capacity(samples.len());
+        for column in samples.as_slice().chunks(samples.nrows().max(1)) {
+            filtered.extend(self.filter(column));
+        }
+        DMatrix::from_vec(samples.nrows(), samples.ncols(), filtered)
+    }
+}
+
+/// Returns `sin(wc n dt) / (pi n)` times the Hamming window of half length `length`, for a cut-off
+/// of `step = wc dt`.
+fn windowed_sinc(n: f64, step: f64, length: f64) -> f64 {
+    let sinc = if n == 0.0 {
+        step / PI
+    } else {
+        (step * n).sin() / (PI * n)
+    };
+    sinc * (0.54 + 0.46 * (PI * n / length).cos())
 }
 
 /// Extends `samples` by `reach` at each end through repeated odd reflection; a single sample is
 /// extended by its value.
 fn oddly_reflected(samples: &[f64], reach: usize) -> Vec<f64> {
-    let Some((&first, &last)) = samples.first().zip(samples.last()) else {
+    let (Some(&first), Some(&last)) = (samples.first(), samples.last()) else {
         return Vec::new();
     };
     let length = samples.len();

@@ -1,4 +1,4 @@
-//! Validation of a model against records in the time domain.
+//! Validation in the time domain: a model simulated against records.
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
@@ -9,11 +9,12 @@ use crate::dataset::StateSpace;
 use crate::executor::{Executor, each};
 use crate::response::eigenvalues::poles;
 
-/// Window length in time constants of the fastest diverging mode (M14, 6).
+/// Window length for an unstable model, in time constants of its fastest diverging mode (M14, 6).
 const TIME_CONSTANTS: f64 = 3.0;
-/// Minimum ratio of samples of all outputs to unknowns (initial state and offsets) in a window.
+/// Smallest ratio between samples of all outputs and unknowns (initial state and offsets) in a
+/// window.
 const OVER_UNKNOWNS: usize = 3;
-/// Initial states whose effect is below this share of the largest are not estimated.
+/// Share of the largest effect below which an initial state is not estimated.
 const RANK_TOLERANCE: f64 = 1e-9;
 
 /// Settings for validation in the time domain.
@@ -21,14 +22,13 @@ const RANK_TOLERANCE: f64 = 1e-9;
 pub struct ValidationSettings {
     /// The longest window \[s\].
     pub longest_window_s: f64,
-    /// Cut-off of the low-pass filter for inputs and outputs \[rad/s\]; `None` compares the raw
-    /// signals.
+    /// Low-pass cut-off for inputs and outputs \[rad/s\]; `None` compares raw signals.
     pub low_pass: Option<f64>,
 }
 
 impl ValidationSettings {
-    /// Returns windows of 10 s with signals low-pass filtered at twice the highest line in use,
-    /// `highest` \[rad/s\] (M14, 6).
+    /// Returns settings with 10 s windows and signals low-pass filtered at twice the highest line
+    /// in use, `highest` \[rad/s\] (M14, 6).
     #[must_use]
     pub fn filtered(highest: f64) -> Self {
         Self {
@@ -37,7 +37,7 @@ impl ValidationSettings {
         }
     }
 
-    /// Returns windows of 10 s with raw signals, for plots.
+    /// Returns settings with 10 s windows and raw signals, for plots.
     #[must_use]
     pub fn unfiltered() -> Self {
         Self {
@@ -46,28 +46,29 @@ impl ValidationSettings {
         }
     }
 
-    /// Returns the same settings with windows common to all of `models`: the shortest that any of
-    /// them needs. A model with too few samples in its own windows is not compared, and does not
-    /// shorten the windows of the others.
+    /// Returns the same settings with windows common to all models: the shortest that any of them
+    /// needs. A model with too few samples in its own windows is not compared, and does not shorten
+    /// the windows for the others.
     #[must_use]
     pub fn common_to<'m>(
         self,
         models: impl IntoIterator<Item = &'m StateSpace>,
         segments: &[Segment],
     ) -> Self {
-        let own = |model: &StateSpace| {
-            let window_s = window_s(model, self.longest_window_s)?;
-            segments
+        let mut shortest_s = self.longest_window_s;
+        for model in models {
+            let Some(own_s) = window_s(model, self.longest_window_s) else {
+                continue;
+            };
+            let is_compared = segments
                 .iter()
-                .any(|segment| windows_in(model, segment, window_s).is_some())
-                .then_some(window_s)
-        };
-        let longest_window_s = models
-            .into_iter()
-            .filter_map(own)
-            .fold(self.longest_window_s, f64::min);
+                .any(|segment| window_count(model, segment, own_s).is_some());
+            if is_compared {
+                shortest_s = shortest_s.min(own_s);
+            }
+        }
         Self {
-            longest_window_s,
+            longest_window_s: shortest_s,
             ..self
         }
     }
@@ -82,13 +83,13 @@ pub struct ValidationWindow {
     pub start_s: f64,
     /// Sample time \[s\].
     pub sample_time_s: f64,
-    /// Measured outputs after filtering, one row per sample.
+    /// Measured outputs after filtering: a row per sample, a column per output.
     pub measured: DMatrix<f64>,
-    /// Outputs of the model, one row per sample.
+    /// Simulated outputs: a row per sample, a column per output.
     pub simulated: DMatrix<f64>,
 }
 
-/// Validation of a model against records in the time domain.
+/// Agreement between a model and records in the time domain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Validation {
     /// The windows, by segment and time; at least one.
@@ -101,31 +102,27 @@ pub struct Validation {
     pub theil: Vec<Option<f64>>,
 }
 
-/// Why a model cannot be compared with a record in the time domain.
+/// Error for a model that cannot be compared with a record in the time domain.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ValidationError {
-    /// There are no segments.
     #[error("there is no record to compare the model with")]
     NoSegments,
-    /// The model's inputs or outputs differ from a segment's; index of the record, counted from 0.
+    /// Inputs or outputs differ from those of a segment; index of its record, counted from 0.
     #[error("record {} has other channels than the model", .0 + 1)]
     ChannelsDiffer(usize),
-    /// The response of the model over one sample is not finite.
+    /// Response over a single sample that is not finite.
     #[error(
         "the model cannot be simulated: its matrices do not fit each other or hold values that are not finite"
     )]
     NotSimulated,
-    /// The longest window is not a valid time.
     #[error("windows must last longer than 0 s")]
     NoWindow,
-    /// Too few samples both to estimate an initial state and to compare; length of the longest
-    /// window \[s\].
+    /// Too few samples to estimate an initial state and to compare; longest window \[s\].
     #[error(
         "too short to compare in time: windows of {0:.2} s, the record or {TIME_CONSTANTS} time constants of the \
          model's fastest diverging mode, hold too few samples for its initial state"
     )]
     TooShort(f64),
-    /// The simulation overflows.
     #[error("the simulated outputs are not finite")]
     NotFinite,
 }
@@ -152,10 +149,10 @@ pub fn validate(
     if segments.is_empty() {
         return Err(ValidationError::NoSegments);
     }
-    let differs =
-        |segment: &&Segment| (segment.outputs.ncols(), segment.inputs.ncols()) != model.d().shape();
-    if let Some(segment) = segments.iter().find(differs) {
-        return Err(ValidationError::ChannelsDiffer(segment.record));
+    for segment in segments {
+        if (segment.outputs.ncols(), segment.inputs.ncols()) != model.d().shape() {
+            return Err(ValidationError::ChannelsDiffer(segment.record));
+        }
     }
     if settings.longest_window_s.is_nan() || settings.longest_window_s <= 0.0 {
         return Err(ValidationError::NoWindow);
@@ -179,7 +176,7 @@ pub fn validate(
     if windows.is_empty() {
         return Err(ValidationError::TooShort(window_s));
     }
-    let (fit_percent, theil) = figures(&windows);
+    let Agreement { fit_percent, theil } = agreement(&windows);
     Ok(Validation {
         windows,
         fit_percent,
@@ -187,7 +184,7 @@ pub fn validate(
     })
 }
 
-/// Returns the length of a window \[s\]; `None` where the model is not finite or its poles cannot
+/// Returns the window length \[s\]; `None` where the model is not finite or its poles cannot
 /// be computed.
 fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
     let fastest = poles(model)?.iter().map(|pole| pole.re).fold(0.0, f64::max);
@@ -198,18 +195,23 @@ fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
     })
 }
 
-/// Returns the number of windows in a segment; `None` where they hold too few samples for the
-/// initial state of a model.
-fn windows_in(model: &StateSpace, segment: &Segment, window_s: f64) -> Option<usize> {
+/// Returns the count of equal windows in a segment; `None` where they hold too few samples for the
+/// initial state.
+fn window_count(model: &StateSpace, segment: &Segment, window_s: f64) -> Option<usize> {
     let (samples, outputs) = segment.outputs.shape();
     // A millionth of a window counts as rounding.
     let count = (samples as f64 * segment.sample_time_s / window_s - 1e-6)
         .ceil()
         .clamp(1.0, samples.max(1) as f64) as usize;
-    ((samples / count) * outputs >= OVER_UNKNOWNS * (model.order() + outputs)).then_some(count)
+    if (samples / count) * outputs >= OVER_UNKNOWNS * (model.order() + outputs) {
+        Some(count)
+    } else {
+        None
+    }
 }
 
-/// Returns the windows of one segment; `None` where it is too short.
+/// Simulates the windows of a segment; none where it is too short. `std` has the standard deviation
+/// per output.
 fn windows(
     model: &StateSpace,
     segment: &Segment,
@@ -217,37 +219,35 @@ fn windows(
     std: &[f64],
 ) -> Result<Vec<ValidationWindow>, ValidationError> {
     let held =
-        FirstOrderHold::of(model, segment.sample_time_s).ok_or(ValidationError::NotSimulated)?;
-    let Some(count) = windows_in(model, segment, window_s) else {
+        FirstOrderHold::new(model, segment.sample_time_s).ok_or(ValidationError::NotSimulated)?;
+    let Some(count) = window_count(model, segment, window_s) else {
         return Ok(Vec::new());
     };
     let samples = segment.outputs.nrows();
     let longest = samples.div_ceil(count);
     let free = held.free_responses(longest);
-    let window = |k: usize| {
-        // The product may be large and uses 128 bits.
-        let bound = |k: usize| (samples as u128 * k as u128 / count as u128) as usize;
-        let from = bound(k);
-        let length = bound(k + 1) - bound(k);
+    let mut windows = Vec::with_capacity(count);
+    for k in 0..count {
+        let from = window_start(k, count, samples);
+        let length = window_start(k + 1, count, samples) - from;
         let measured = segment.outputs.rows(from, length).into_owned();
-        let simulated = best_simulation(
-            &held,
-            &free,
-            segment.inputs.rows(from, length).into_owned(),
-            &measured,
-            std,
-        )?;
-        Some(ValidationWindow {
+        let inputs = segment.inputs.rows(from, length).into_owned();
+        let simulated = best_simulation(&held, &free, inputs, &measured, std)
+            .ok_or(ValidationError::NotFinite)?;
+        windows.push(ValidationWindow {
             record: segment.record,
             start_s: segment.start_s + segment.sample_time_s * from as f64,
             sample_time_s: segment.sample_time_s,
             measured,
             simulated,
-        })
-    };
-    (0..count)
-        .map(|k| window(k).ok_or(ValidationError::NotFinite))
-        .collect()
+        });
+    }
+    Ok(windows)
+}
+
+/// Returns the first sample of window `k`, in 128 bits because the product may be large.
+fn window_start(k: usize, count: usize, samples: usize) -> usize {
+    (samples as u128 * k as u128 / count as u128) as usize
 }
 
 /// Simulates `inputs` with the initial state and offsets that bring the outputs closest to
@@ -280,7 +280,11 @@ fn best_simulation(
     let simulated = DMatrix::from_fn(samples, outputs, |n, o| {
         forced[(n, o)] + free_part[n * outputs + o] + unknowns[states + o]
     });
-    simulated.iter().all(|y| y.is_finite()).then_some(simulated)
+    if simulated.iter().all(|y| y.is_finite()) {
+        Some(simulated)
+    } else {
+        None
+    }
 }
 
 /// Returns the least-squares solution `x` of `[a | b]` for `a x = b`, of minimum norm for columns
@@ -293,9 +297,8 @@ fn solve(rows: DMatrix<f64>) -> Option<DVector<f64>> {
     let r = rows.qr().unpack_r();
     let mut a = r.view((0, 0), (unknowns, unknowns)).into_owned();
     let lengths = RowDVector::from_fn(unknowns, |_, column| {
-        Some(a.column(column).norm())
-            .filter(|x| *x > 0.0)
-            .unwrap_or(1.0)
+        let length = a.column(column).norm();
+        if length > 0.0 { length } else { 1.0 }
     });
     for (mut column, length) in a.column_iter_mut().zip(lengths.iter()) {
         column /= *length;
@@ -311,26 +314,24 @@ fn solve(rows: DMatrix<f64>) -> Option<DVector<f64>> {
     Some(solution.column(0).component_div(&lengths.transpose()))
 }
 
-/// Returns the standard deviation of each column about its mean over all `parts`, 1 for a constant
-/// column.
+/// Returns the standard deviation per column over all `parts`; 1 for a constant column.
 fn deviations<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> {
     let means = means(parts.clone());
     let squares = sums(parts.clone(), |o, y| (y - means[o]).powi(2));
     let samples: usize = parts.map(DMatrix::nrows).sum();
-    let deviation = |square: &f64| (square / samples.max(1) as f64).sqrt();
-    squares
-        .iter()
-        .map(deviation)
-        .map(|std| {
-            if std > 0.0 && std.is_finite() {
-                std
-            } else {
-                1.0
-            }
-        })
-        .collect()
+    let mut deviations = Vec::with_capacity(squares.len());
+    for square in squares {
+        let std = (square / samples.max(1) as f64).sqrt();
+        deviations.push(if std > 0.0 && std.is_finite() {
+            std
+        } else {
+            1.0
+        });
+    }
+    deviations
 }
 
+/// Returns the column means over all `parts`.
 fn means<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> {
     let samples: usize = parts.clone().map(DMatrix::nrows).sum();
     sums(parts, |_, y| y)
@@ -339,7 +340,7 @@ fn means<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> 
         .collect()
 }
 
-/// Returns the sum over all samples of `term(column, value)`, for each column.
+/// Sums `term(column, value)` over all samples, for each column.
 fn sums<'a>(
     parts: impl Iterator<Item = &'a DMatrix<f64>>,
     term: impl Fn(usize, f64) -> f64,
@@ -354,8 +355,14 @@ fn sums<'a>(
     sums
 }
 
-/// Returns fit \[%\] and Theil's coefficient of each output over all windows.
-fn figures(windows: &[ValidationWindow]) -> (Vec<Option<f64>>, Vec<Option<f64>>) {
+/// Agreement per output over all windows.
+struct Agreement {
+    fit_percent: Vec<Option<f64>>,
+    theil: Vec<Option<f64>>,
+}
+
+/// Computes fit \[%\] and Theil's coefficient per output.
+fn agreement(windows: &[ValidationWindow]) -> Agreement {
     let measured = windows.iter().map(|window| &window.measured);
     let means = means(measured.clone());
     let errors: Vec<DMatrix<f64>> = windows
@@ -367,12 +374,21 @@ fn figures(windows: &[ValidationWindow]) -> (Vec<Option<f64>>, Vec<Option<f64>>)
     let simulated = sums(windows.iter().map(|window| &window.simulated), |o, y| {
         (y - means[o]).powi(2)
     });
-    // Every sum runs over the same samples, so that their number cancels.
-    let finite = |value: f64| Some(value).filter(|value| value.is_finite());
-    let fit = |o: usize| finite(100.0 * (1.0 - (error[o] / power[o]).sqrt()));
-    let theil = |o: usize| finite(error[o].sqrt() / (power[o].sqrt() + simulated[o].sqrt()));
-    (
-        (0..means.len()).map(fit).collect(),
-        (0..means.len()).map(theil).collect(),
-    )
+    // All sums run over the same samples, so that their count cancels.
+    let mut agreement = Agreement {
+        fit_percent: Vec::new(),
+        theil: Vec::new(),
+    };
+    for o in 0..means.len() {
+        let fit = 100.0 * (1.0 - (error[o] / power[o]).sqrt());
+        let theil = error[o].sqrt() / (power[o].sqrt() + simulated[o].sqrt());
+        agreement.fit_percent.push(finite(fit));
+        agreement.theil.push(finite(theil));
+    }
+    agreement
+}
+
+/// Returns the value, or `None` where it is not finite.
+fn finite(value: f64) -> Option<f64> {
+    if value.is_finite() { Some(value) } else { None }
 }

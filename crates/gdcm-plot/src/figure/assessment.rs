@@ -5,10 +5,12 @@ use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::units::signed;
 use gdcm_study::results::analysis::Analysis;
-use gdcm_study::results::assessment_table::{
-    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable,
-};
-use gdcm_study::results::table::Table;
+use gdcm_study::results::assessment_table::AssessedCorrection;
+use gdcm_study::results::assessment_table::AssessedModel;
+use gdcm_study::results::assessment_table::AssessmentChoice;
+use gdcm_study::results::assessment_table::AssessmentTable;
+use gdcm_words::table::Table;
+use gdcm_words::assessment::not_assessed_text;
 
 pub use super::evidence::evidence_figure;
 
@@ -181,7 +183,8 @@ fn caption(analysis: &Analysis, table: &AssessmentTable) -> String {
     for left_out in &table.left_out {
         caption.push_str(&format!(
             " Condition {} is left out: {}.",
-            left_out.condition, left_out.why
+            left_out.condition,
+            not_assessed_text(&left_out.why, &study.dataset)
         ));
     }
     caption

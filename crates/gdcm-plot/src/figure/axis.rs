@@ -1,7 +1,6 @@
 //! A panel's axis: its quantity and unit, its scale, the range shown, and its ticks.
 
 pub use super::display_units::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
-pub use super::number_text::{compact, decimals};
 pub use super::range::Range;
 pub use super::ticks::{Scale, Tick, TickGaps, ticks_of};
 

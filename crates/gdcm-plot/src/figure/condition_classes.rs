@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use gdcm_model::dataset::Dataset;
 use gdcm_model::dataset::condition::FlightState;
-use gdcm_study::decisions::study::ConditionChoice;
+use gdcm_study::decisions::choices::ConditionChoice;
 
 /// Classes that come first in their order, whatever the others are called.
 const FIRST: [&str; 2] = ["low", "light"];

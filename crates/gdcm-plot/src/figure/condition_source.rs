@@ -8,15 +8,14 @@ use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_method::schedule::{Schedule, ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Model, ModelId, Pair};
+use gdcm_model::number_format::compact;
 use gdcm_model::response::GainDelay;
 use gdcm_model::units::s_to_ms;
 use gdcm_study::decisions::settings::Settings;
-use gdcm_study::stages::condition_responses::ConditionCurves;
+use gdcm_study::stages::condition_curves::ConditionCurves;
 use gdcm_study::{ConditionAnalysis, CouplingCorrection, PhaseCorrection, Study};
 
 pub use super::bode_curve::CurveId;
-
-use super::axis::compact;
 use super::bode_curve::BodeCurve;
 use super::bode_options::BodeOptions;
 use super::role::Role;

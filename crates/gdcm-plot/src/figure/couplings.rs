@@ -4,6 +4,7 @@ use nalgebra::Complex;
 
 use gdcm_method::couplings::{LoopMargin, PoleShift};
 use gdcm_model::dataset::ConditionId;
+use gdcm_words::couplings::couplings_heading;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 
 use super::arrow::{arrow, spans};
@@ -37,7 +38,7 @@ pub fn couplings_figure(
     };
     let title = format!("Couplings: {}", assessment.couplings.name());
     let figure = Figure::new(title)
-        .caption(assessment.heading())
+        .caption(couplings_heading(assessment))
         .columns(2)
         .aspect(0.72)
         .plot(loop_plot(assessment, shown, unit))

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::units::rad_s_to_hz;
 
-use super::number_text::three_digits;
+use gdcm_model::number_format::three_digits;
 
 /// Unit for displayed frequencies; internally they are always rad/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use gdcm_method::fidelity::{CoherenceWeights, Mismatch};
 use gdcm_model::dataset::{BundleKind, Pair};
-use gdcm_model::response::curve_values::quantile;
+use gdcm_model::number_format::with_minus_sign;
+use gdcm_model::statistics::quantile;
 use gdcm_model::response::frequency_response::PolarCurve;
 use gdcm_model::response::{FrequencyResponse, GainDelay};
 use gdcm_model::units::{ratio_to_db, s_to_ms};
 use gdcm_study::ConditionAnalysis;
-use gdcm_study::stages::condition_responses::ConditionCurves;
+use gdcm_study::stages::condition_curves::ConditionCurves;
 
 pub use super::muad::{muad_about, noticed};
 
@@ -247,7 +248,7 @@ impl ErrorSource {
 
     /// Returns a response in the band; `None` if it is zero or not finite somewhere in it.
     fn polar(&self, response: &FrequencyResponse) -> Option<PolarCurve> {
-        PolarCurve::of(response.curve(self.key.pair).get(self.band_indices())?)
+        PolarCurve::from_values(response.curve(self.key.pair).get(self.band_indices())?)
     }
 
     /// Returns weights for the frequencies `omega`, from the reference's coherence; `None` without
@@ -341,7 +342,7 @@ fn gain_rule(kind: ReferenceKind, label: String, gain: f64) -> ReferenceLine {
 
 /// Formats a value with one decimal and a true minus sign.
 fn signed(value: f64) -> String {
-    format!("{value:.1}").replace('-', "\u{2212}")
+    with_minus_sign(&format!("{value:.1}"))
 }
 
 /// Returns lines at delta gain G and delta delay D (M6), as far as they are defined.

@@ -2,8 +2,9 @@
 
 use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::Pair;
+use gdcm_words::uncertainty::differences_summary;
 use gdcm_study::results::analysis::Analysis;
-use gdcm_study::stages::uncertainty::{PairScatter, Uncertainty};
+use gdcm_study::results::uncertainty::{PairScatter, Uncertainty};
 
 use super::axis::{Axis, Range};
 use super::condition_source::{schedule_words, settings_words};
@@ -200,7 +201,7 @@ fn caption(analysis: &Analysis, uncertainty: &Uncertainty) -> String {
     format!(
         "{} Of ln(k_o k_i), about the mean of each airspeed and about the schedule ({}): shares of the variance, and standard \
          deviations. Trim, identification: expected from the bundles; unexplained: what neither makes. Above the bars: scatter, × expected. {}",
-        uncertainty.differences_in_words(),
+        differences_summary(uncertainty),
         schedule_words(&settings.schedule),
         settings_words(&analysis.study.dataset, settings)
     )

@@ -6,16 +6,14 @@ use gdcm_method::uncertainty::{BandWidths, Bar};
 use gdcm_model::dataset::Pair;
 use gdcm_model::units::s_to_ms;
 use gdcm_study::results::analysis::Analysis;
-use gdcm_study::stages::uncertainty::{AirspeedDifference, Uncertainty};
+use gdcm_study::results::uncertainty::{AirspeedDifference, Uncertainty};
 
 use super::axis::{Axis, Range};
 use super::condition_classes::{Classes, class_words};
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::Panel;
 use super::gain_quantity::{Across, GainQuantity, PlacedResult, placed_results};
-use super::marks::{
-    Bracket, Brackets, Curve, Dot, DotShape, Dots, Envelope, Intervals, MarkId, Rule, Spans,
-};
+use super::marks::{Bracket, Brackets, Curve, Dot, DotShape, Dots, Envelope, Intervals, MarkId, Rule, Spans};
 use super::role::Role;
 
 /// Line without correction.

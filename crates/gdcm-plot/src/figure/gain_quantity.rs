@@ -8,7 +8,7 @@ use gdcm_model::dataset::condition::FlightState;
 use gdcm_model::units::s_to_ms;
 use gdcm_study::results::analysis::{Analysis, ConditionAnalysis};
 
-use super::number_text::decimals;
+use gdcm_model::number_format::decimals;
 
 /// Number of intervals between the samples of a schedule.
 const SAMPLES: usize = 120;

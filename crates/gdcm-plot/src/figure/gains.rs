@@ -3,11 +3,12 @@
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_study::results::analysis::Analysis;
-use gdcm_study::stages::uncertainty::Uncertainty;
-
-pub use super::condition_classes::{Classes, class_names};
-pub use super::gain_quantity::{Across, GainQuantity, Measure};
-
+use gdcm_study::results::uncertainty::Uncertainty;
+pub use super::condition_classes::Classes;
+pub use super::condition_classes::class_names;
+pub use super::gain_quantity::Across;
+pub use super::gain_quantity::GainQuantity;
+pub use super::gain_quantity::Measure;
 use super::condition_source::{schedule_words, settings_words};
 use super::figure::{Figure, Panel, Plot};
 use super::gain_panel::{GainPanel, SIGNIFICANT};

@@ -1,6 +1,6 @@
 //! Legend of a figure: an entry for each different key among its marks.
 
-use gdcm_study::results::requirements::RequirementRole;
+use gdcm_study::results::requirement_role::RequirementRole;
 
 use super::drawing::{Color, Stroke};
 use super::marks::{DotShape, Mark};

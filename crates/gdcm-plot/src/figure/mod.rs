@@ -8,7 +8,7 @@
 //! | files | contents |
 //! |---|---|
 //! | [`figure`], [`marks`], [`legend`] | describe a figure |
-//! | [`axis`], `range`, `ticks`, `display_units`, `number_text` | axes, their ticks and texts |
+//! | [`axis`], `range`, `ticks`, `display_units` | axes, their ticks and units |
 //! | [`role`], [`drawing`] | line styles and colours by meaning |
 //! | [`bode`], [`error`], [`gains`], [`assessment`], [`poles`], [`leads`], [`requirements`] | a figure for each view |
 //! | [`condition_source`], [`responses`] | curves for a condition, from models and corrections |
@@ -40,7 +40,8 @@ use std::sync::Arc;
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{ModelId, Pair};
 use gdcm_model::progress::Unobserved;
-use gdcm_study::jobs::job::{AcrossRole, ConditionModes};
+use gdcm_study::jobs::curve_jobs::AcrossRole;
+use gdcm_study::jobs::curve_jobs::ConditionModes;
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::results::assessment_table::AssessmentChoice;
 use gdcm_study::results::condition_answers::{RecordHistory, TestAnswers};
@@ -79,7 +80,6 @@ pub mod legend;
 pub mod letters;
 pub mod marks;
 mod muad;
-mod number_text;
 pub mod paint;
 mod paint_axes;
 mod paint_dots;
@@ -97,7 +97,7 @@ pub mod thinning;
 mod ticks;
 mod time_histories;
 
-pub use axis::{Range, decimals};
+pub use axis::Range;
 pub use condition_source::ConditionSource;
 pub use drawing::Color;
 pub use figure::{Figure, Panel};

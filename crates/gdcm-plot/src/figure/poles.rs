@@ -5,7 +5,7 @@ use nalgebra::Complex;
 use gdcm_method::couplings::PoleShift;
 use gdcm_model::dataset::{BundleKind, ModelId, Pair};
 use gdcm_model::response::zeros::finite_zeros;
-use gdcm_study::jobs::job::ConditionModes;
+use gdcm_study::jobs::curve_jobs::ConditionModes;
 
 pub use super::couplings::couplings_figure;
 pub use super::damping_grid::damping_grid;

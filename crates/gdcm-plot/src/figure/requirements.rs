@@ -6,7 +6,8 @@ use gdcm_method::requirements::level_boundary::LevelBoundary;
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_model::units::s_to_ms;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
-use gdcm_study::results::requirements::{RequirementRole, Requirements};
+use gdcm_study::results::requirement_role::RequirementRole;
+use gdcm_study::results::requirements::Requirements;
 
 pub use super::time_histories::{record_history_figure, test_answers_figure};
 

@@ -10,8 +10,8 @@ use gdcm_model::dataset::{
 use gdcm_model::response::frequency_response::{ResponseShape, wrapped_deg};
 use gdcm_model::response::{FrequencyResponse, GainDelay};
 use gdcm_model::units::signed;
-use gdcm_study::jobs::job::AcrossCurves;
-use gdcm_study::stages::condition_responses::{ConditionCurves, display_band};
+use gdcm_study::jobs::curve_jobs::AcrossCurves;
+use gdcm_study::stages::condition_curves::{ConditionCurves, display_band};
 use gdcm_study::{AcrossRole, Analysis};
 use gdcm_sysid::diagnostics::bands::TWO_SIDED_95;
 
@@ -170,7 +170,7 @@ impl ResponseCache {
             .identified
             .get(source.reference)
             .map(|response| PhaseReference {
-                shape: ResponseShape::of(response.curve(source.pair)),
+                shape: ResponseShape::new(response.curve(source.pair)),
                 points,
             });
         self.physics = self.aligned_shapes(&source, BundleKind::Physics);
@@ -194,7 +194,7 @@ impl ResponseCache {
 
     /// Returns a response's shape, with its phase aligned with the reference.
     fn aligned_shape(&self, response: &FrequencyResponse, pair: Pair) -> ResponseShape {
-        let shape = ResponseShape::of(response.curve(pair));
+        let shape = ResponseShape::new(response.curve(pair));
         match &self.reference {
             Some(reference) => shape.phase_aligned(&reference.shape, reference.points),
             None => shape,
@@ -326,7 +326,7 @@ impl AirspeedCache {
         }
         self.shapes.clear();
         for (id, response) in &curves.responses {
-            let mut shape = ResponseShape::of(response.curve(pair));
+            let mut shape = ResponseShape::new(response.curve(pair));
             if let Some(first) = self.shapes.first() {
                 shape = shape.phase_aligned(&first.shape, usize::MAX);
             }

@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use gdcm_model::message_text::sanitized;
-use gdcm_study::Table;
+use gdcm_model::number_format::full_precision;
+use gdcm_words::Table;
 
 use super::axis::Axis;
 use super::figure::{Figure, Panel};
@@ -354,12 +355,7 @@ fn x_cell(axis: &Axis, value: f64) -> String {
 
 /// Formats a number at full precision; empty if it is not finite.
 fn number_cell(value: f64) -> String {
-    // Debug writes an exponent, unlike Display, which may write hundreds of zeros.
-    if value.is_finite() {
-        format!("{value:?}")
-    } else {
-        String::new()
-    }
+    full_precision(Some(value))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Ticks on a numeric axis: round values, labelled as densely as their room allows.
 
-use super::number_text::compact;
+use gdcm_model::number_format::compact;
 use super::range::Range;
 
 /// Mapping from values to positions along an axis.

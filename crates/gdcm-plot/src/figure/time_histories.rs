@@ -6,7 +6,7 @@ use gdcm_method::requirements::{RecordCheck, TestInputShape};
 use gdcm_model::dataset::Dataset;
 use gdcm_model::units::number;
 use gdcm_study::results::condition_answers::{QuantityHistory, RecordHistory, TestAnswers};
-use gdcm_study::results::requirements::RequirementRole;
+use gdcm_study::results::requirement_role::RequirementRole;
 
 use super::axis::Axis;
 use super::drawing::{Color, Hue, Stroke};

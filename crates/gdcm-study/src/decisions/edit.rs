@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use gdcm_method::correction::Channel;
-use gdcm_model::dataset::dataset::BandError;
-use gdcm_model::dataset::{BundleKind, Condition, ConditionId, ModelId, Pair, PairTable};
-use gdcm_model::units::number;
+use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair, PairTable};
 
-use super::changed_models::{AdoptedModels, SignRole};
+use super::adopted_models::AdoptedModels;
+use super::choices::{BundleChoice, ConditionChoice};
+use super::edit_refusal::{EditRefusal, check_length};
+use super::requirement_settings::RequirementSettings;
 use super::setting_row::{Setting, Value};
-use super::study::{ConditionChoice, Study};
-use crate::results::requirements::RequirementSettings;
+use super::signs::SignRole;
+use super::study::Study;
 
 /// One decision about a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +22,7 @@ pub enum Edit {
         model: ModelId,
         reason: String,
     },
-    /// Sets the reason of a rejection; an empty reason removes it.
+    /// Sets a rejection's reason; an empty reason removes it.
     SetReason(ModelId, String),
     Restore(ModelId),
     /// Restores every rejected model of a condition, in both bundles.
@@ -92,73 +93,18 @@ pub enum Edit {
 /// Greatest length of a rejection's reason, in characters.
 pub const LONGEST_REASON: usize = 1000;
 
-/// Why a decision was refused; the study is unchanged.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum EditRefusal {
-    #[error(
-        "condition {condition}: \"{model}\" is the last model kept in its bundle; at least one must stay"
-    )]
-    LastModel {
-        condition: ConditionId,
-        model: String,
-    },
-    #[error(
-        "condition {condition}: \"{model}\" is rejected; restore it before using it as representative"
-    )]
-    PinRejected {
-        condition: ConditionId,
-        model: String,
-    },
-    #[error("condition {condition}: \"{model}\" is not rejected; a reason goes with a rejection")]
-    ReasonOfKept {
-        condition: ConditionId,
-        model: String,
-    },
-    #[error("{what}: expected at most {most} characters, found {found}")]
-    TooLong {
-        what: &'static str,
-        most: usize,
-        found: usize,
-    },
-    /// The models do not fit the condition.
-    #[error("condition {condition}: {why}")]
-    Models { condition: ConditionId, why: String },
-    #[error("a variant needs a name")]
-    VariantWithoutName,
-    #[error("there is a variant \"{name}\" already")]
-    VariantExists { name: String },
-    #[error("there is no variant \"{name}\"")]
-    NoVariant { name: String },
-    #[error("{setting}: expected {expected}, found {}", number(*found))]
-    OutOfRange {
-        setting: &'static str,
-        expected: String,
-        found: f64,
-    },
-    /// The two ends of the band are invalid.
-    #[error(transparent)]
-    Band(#[from] BandError),
-    #[error("{setting}: this is not one of its values")]
-    NotAValue { setting: &'static str },
-    #[error("the dataset has no condition {condition}")]
-    NoCondition { condition: ConditionId },
-    #[error("condition {} has no {} model \"{}\"", model.condition, model.bundle, model.name)]
-    NoModel { model: ModelId },
-    #[error("the dataset has no {}", channel.name(&[], &[]))]
-    NoChannel { channel: Channel },
-    #[error("the dataset has no response of output number {} to input number {}", pair.output + 1, pair.input + 1)]
-    NoResponse { pair: Pair },
+impl Setting {
+    /// Returns the decision that sets this value.
+    pub fn to(&'static self, value: impl Into<Value>) -> Edit {
+        Edit::Set(self, value.into())
+    }
 }
 
 impl Edit {
     /// Returns the decision that rejects physics models of a condition, by name.
     pub fn reject_physics(condition: ConditionId, models: &[String]) -> Self {
-        Self::RejectEach(
-            models
-                .iter()
-                .map(|name| ModelId::new(condition, BundleKind::Physics, name))
-                .collect(),
-        )
+        let named = |name: &String| ModelId::new(condition, BundleKind::Physics, name);
+        Self::RejectEach(models.iter().map(named).collect())
     }
 
     /// Returns a short label for the undo list: "reject nominal (condition 10)".
@@ -190,26 +136,20 @@ impl Edit {
             }
             Edit::ConstrainOnAxis => "hold the on-axis responses".to_owned(),
             Edit::Hold(pair, held) => {
-                format!(
-                    "{} {}",
-                    if *held { "hold" } else { "release" },
-                    study.dataset.pair_name(*pair)
-                )
+                let verb = if *held { "hold" } else { "release" };
+                format!("{verb} {}", study.dataset.pair_name(*pair))
             }
             Edit::Fit(pair, fitted) => {
-                format!(
-                    "{} {}",
-                    if *fitted { "fit" } else { "ignore" },
-                    study.dataset.pair_name(*pair)
-                )
+                let verb = if *fitted { "fit" } else { "ignore" };
+                format!("{verb} {}", study.dataset.pair_name(*pair))
             }
             Edit::Set(setting, _) => setting.name.to_owned(),
             Edit::SetSign { channel, of } => {
                 let name = channel.name_in(&study.dataset);
-                of.map_or_else(
-                    || format!("turn {name} back"),
-                    |of| format!("turn {name} ({})", of.word()),
-                )
+                match of {
+                    Some(role) => format!("turn {name} ({})", role.word()),
+                    None => format!("turn {name} back"),
+                }
             }
             Edit::TakeModels(taken) => match taken.as_slice() {
                 [(condition, _)] => format!("use identified models (condition {condition})"),
@@ -243,74 +183,65 @@ impl Study {
     /// Applies one decision, or refuses it and leaves the study unchanged.
     pub fn apply(&mut self, edit: &Edit) -> Result<(), EditRefusal> {
         match edit {
-            Edit::Reject(id) => return self.reject(id),
-            Edit::RejectEach(models) => {
-                return self.attempt(|of| models.iter().try_for_each(|model| of.reject(model)));
-            }
-            Edit::RestoreEach(models) => {
-                return self.attempt(|of| models.iter().try_for_each(|model| of.restore(model)));
-            }
-            Edit::Pin(id) => return self.pin(id),
-            Edit::Restore(id) => return self.restore(id),
-            Edit::RestoreAll { condition } => self.condition(*condition)?.1.restore_all(),
-            Edit::RejectBecause { model, reason } => {
-                return self
-                    .attempt(|of| of.reject(model).and_then(|()| of.set_reason(model, reason)));
-            }
-            Edit::SetReason(id, reason) => return self.set_reason(id, reason),
+            Edit::Reject(id) => self.reject(id)?,
+            Edit::RejectBecause { model, reason } => self.reject_because(model, reason)?,
+            Edit::SetReason(id, reason) => self.set_reason(id, reason)?,
+            Edit::Restore(id) => self.restore(id)?,
+            Edit::RestoreAll { condition } => self.choice_mut(*condition)?.restore_all(),
+            Edit::RejectEach(models) => self.reject_each(models)?,
+            Edit::RestoreEach(models) => self.restore_each(models)?,
+            Edit::Pin(id) => self.pin(id)?,
             Edit::Unpin { condition, bundle } => {
-                self.condition(*condition)?.1.bundle_mut(*bundle).pinned = None
+                self.choice_mut(*condition)?.bundle_mut(*bundle).pinned = None;
             }
             Edit::SetScheduled {
                 condition,
                 scheduled,
-            } => self.condition(*condition)?.1.scheduled = *scheduled,
+            } => self.choice_mut(*condition)?.scheduled = *scheduled,
             Edit::SetHeldOut {
                 condition,
                 held_out,
-            } => self.condition(*condition)?.1.held_out = *held_out,
+            } => self.choice_mut(*condition)?.held_out = *held_out,
             Edit::ConstrainOnAxis => self.settings.constrained = self.dataset.on_axis().clone(),
             Edit::Hold(pair, held) => mark(&mut self.settings.constrained, *pair, *held)?,
             Edit::Fit(pair, fitted) => mark(&mut self.settings.ignored, *pair, !*fitted)?,
-            Edit::Set(setting, value) => return setting.set(&mut self.settings, *value),
-            Edit::SetSign { channel, of } => return self.set_sign(*channel, *of),
-            Edit::TakeModels(taken) => return self.take_models(taken),
-            Edit::ReturnModels { condition } => return self.return_models(*condition),
+            Edit::Set(setting, value) => setting.set(&mut self.settings, *value)?,
+            Edit::SetSign { channel, of } => self.set_sign(*channel, *of)?,
+            Edit::TakeModels(taken) => self.take_models(taken)?,
+            Edit::ReturnModels { condition } => self.return_models(*condition)?,
             Edit::SetRequirements(_, settings) => self.requirements = Arc::clone(settings),
-            Edit::KeepVariant { name } => return self.keep_variant(name),
-            Edit::TakeVariant { name } => return self.take_variant(name),
-            Edit::RemoveVariant { name } => return self.remove_variant(name),
-            Edit::RenameVariant { from, to } => return self.rename_variant(from, to),
+            Edit::KeepVariant { name } => self.keep_variant(name)?,
+            Edit::TakeVariant { name } => self.take_variant(name)?,
+            Edit::RemoveVariant { name } => self.remove_variant(name)?,
+            Edit::RenameVariant { from, to } => self.rename_variant(from, to)?,
         }
         Ok(())
     }
 
-    /// Returns a condition with its choices, mutable.
-    fn condition(
-        &mut self,
-        id: ConditionId,
-    ) -> Result<(&Condition, &mut ConditionChoice), EditRefusal> {
-        let found = self
-            .dataset
-            .condition(id)
-            .map(Arc::as_ref)
-            .zip(self.choices.get_mut(&id));
-        found.ok_or(EditRefusal::NoCondition { condition: id })
+    /// Returns a condition's choices, mutable.
+    fn choice_mut(&mut self, id: ConditionId) -> Result<&mut ConditionChoice, EditRefusal> {
+        self.choices
+            .get_mut(&id)
+            .ok_or(EditRefusal::NoCondition { condition: id })
     }
 
-    /// Works as [`Study::condition`], and checks that the model exists.
-    fn model(&mut self, id: &ModelId) -> Result<(&Condition, &mut ConditionChoice), EditRefusal> {
-        let (condition, choice) = self.condition(id.condition)?;
+    /// Returns the choices about a model's bundle, mutable; refuses a model that does not exist.
+    fn bundle_choice_mut(&mut self, id: &ModelId) -> Result<&mut BundleChoice, EditRefusal> {
+        let Some(condition) = self.dataset.condition(id.condition) else {
+            return Err(EditRefusal::NoCondition {
+                condition: id.condition,
+            });
+        };
         if condition.position(id.bundle, &id.name).is_none() {
             return Err(EditRefusal::NoModel { model: id.clone() });
         }
-        Ok((condition, choice))
+        Ok(self.choice_mut(id.condition)?.bundle_mut(id.bundle))
     }
 
     fn reject(&mut self, id: &ModelId) -> Result<(), EditRefusal> {
-        let (condition, choice) = self.model(id)?;
-        let models = condition.bundle(id.bundle).len();
-        let choice = choice.bundle_mut(id.bundle);
+        let condition = self.dataset.condition(id.condition);
+        let models = condition.map_or(0, |condition| condition.bundle(id.bundle).len());
+        let choice = self.bundle_choice_mut(id)?;
         if !choice.rejected.contains(&id.name) && choice.rejected.len() + 1 == models {
             return Err(EditRefusal::LastModel {
                 condition: id.condition,
@@ -324,26 +255,40 @@ impl Study {
         Ok(())
     }
 
-    fn restore(&mut self, id: &ModelId) -> Result<(), EditRefusal> {
-        self.model(id)?.1.bundle_mut(id.bundle).restore(&id.name);
+    fn reject_because(&mut self, id: &ModelId, reason: &str) -> Result<(), EditRefusal> {
+        let mut trial = self.clone();
+        trial.reject(id)?;
+        trial.set_reason(id, reason)?;
+        *self = trial;
         Ok(())
     }
 
-    /// Applies several decisions as one: all of them, or none.
-    fn attempt(
-        &mut self,
-        decide: impl FnOnce(&mut Self) -> Result<(), EditRefusal>,
-    ) -> Result<(), EditRefusal> {
+    fn reject_each(&mut self, models: &[ModelId]) -> Result<(), EditRefusal> {
         let mut trial = self.clone();
-        decide(&mut trial)?;
+        for id in models {
+            trial.reject(id)?;
+        }
+        *self = trial;
+        Ok(())
+    }
+
+    fn restore(&mut self, id: &ModelId) -> Result<(), EditRefusal> {
+        self.bundle_choice_mut(id)?.restore(&id.name);
+        Ok(())
+    }
+
+    fn restore_each(&mut self, models: &[ModelId]) -> Result<(), EditRefusal> {
+        let mut trial = self.clone();
+        for id in models {
+            trial.restore(id)?;
+        }
         *self = trial;
         Ok(())
     }
 
     fn set_reason(&mut self, id: &ModelId, reason: &str) -> Result<(), EditRefusal> {
         let reason = reason.trim();
-        let (_, choice) = self.model(id)?;
-        let choice = choice.bundle_mut(id.bundle);
+        let choice = self.bundle_choice_mut(id)?;
         if !choice.rejected.contains(&id.name) {
             return Err(EditRefusal::ReasonOfKept {
                 condition: id.condition,
@@ -360,8 +305,7 @@ impl Study {
     }
 
     fn pin(&mut self, id: &ModelId) -> Result<(), EditRefusal> {
-        let (_, choice) = self.model(id)?;
-        let choice = choice.bundle_mut(id.bundle);
+        let choice = self.bundle_choice_mut(id)?;
         if choice.rejected.contains(&id.name) {
             return Err(EditRefusal::PinRejected {
                 condition: id.condition,
@@ -379,13 +323,4 @@ fn mark(table: &mut PairTable<bool>, pair: Pair, value: bool) -> Result<(), Edit
     }
     table[pair] = value;
     Ok(())
-}
-
-pub(crate) fn check_length(what: &'static str, text: &str, most: usize) -> Result<(), EditRefusal> {
-    let found = text.chars().count();
-    if found > most {
-        Err(EditRefusal::TooLong { what, most, found })
-    } else {
-        Ok(())
-    }
 }

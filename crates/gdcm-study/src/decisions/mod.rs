@@ -1,9 +1,18 @@
-//! Decisions of the engineer: settings, rejections, constraints, signs, and the edits that change them.
+//! Decisions of the engineer: settings, rejections, constraints, signs, and the edits that change
+//! them.
 
+pub mod adopted_models;
 pub mod changed_models;
+pub mod choices;
 pub mod differences;
 pub mod edit;
+pub mod edit_refusal;
+pub mod history;
+pub mod named_decisions;
+pub mod requirement_settings;
 pub mod setting;
 pub mod setting_row;
 pub mod settings;
+pub mod signs;
 pub mod study;
+pub mod variants;

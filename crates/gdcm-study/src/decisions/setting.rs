@@ -1,6 +1,6 @@
-//! The table of settings: name, key in files, command-line option, allowed values and window
-//! control of each. Undo, comparisons of decisions, refusals, the report, the command line and the
-//! window read it.
+//! The settings table, with name, key in files, command-line option, allowed values and window
+//! control. Undo, compared decisions, refusals, the report, the command line and the window read
+//! it.
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};
@@ -10,13 +10,14 @@ use gdcm_model::dataset::dataset::{GREATEST_OMEGA, LEAST_OMEGA};
 use gdcm_model::dataset::{Band, limits};
 use gdcm_model::response::LeadOrder;
 
+use super::edit_refusal::EditRefusal;
 use super::setting_row::{Choice, Control, Digits, Kind, Place, Setting, Unit};
 use super::settings::{
     CouplingCorrection, DEFAULT_COHERENCE, DelayFrom, PhaseCorrection, Settings,
 };
 use super::study::Study;
 
-/// Returns a row of name, key and option, with defaults for the rest.
+/// Returns a row with name, key and option, and defaults for the rest.
 const fn row([name, key, option]: [&'static str; 3], help: &'static str, kind: Kind) -> Setting {
     let control = Control {
         place: Place::Elsewhere,
@@ -50,7 +51,7 @@ impl Setting {
         }
     }
 
-    /// Sets the value of the option without an argument.
+    /// Sets the option's value without an argument.
     const fn bare(self, word: &'static str) -> Self {
         Self {
             bare: Some(word),
@@ -71,7 +72,7 @@ impl Setting {
         }
     }
 
-    /// Sets the drag step of the number and its decimals in the control.
+    /// Sets the number's drag step and decimals in the control.
     const fn digits(self, step: f64, digits: Digits) -> Self {
         Self {
             control: Control {
@@ -120,8 +121,7 @@ const fn choice(
     Kind::Choice { words, get, set }
 }
 
-/// Weight of the regularisation of the output gains, eq. (7); beyond its range the optimum is
-/// constant.
+/// Regularisation weight for the output gains, eq. (7); beyond its range the optimum is constant.
 pub static ALPHA_GAIN: Setting = row(
     ["α of the gains", "alpha_gain", "--alpha"],
     "Weight that keeps the output gains, eq. (7), near 1; 0 is the limit α → 0",
@@ -133,7 +133,7 @@ pub static ALPHA_GAIN: Setting = row(
 )
 .at(Place::Slider, "α gains", "α gains");
 
-/// Weight of the regularisation of the output delays, eq. (11), or of all signed delays (M15.4).
+/// Regularisation weight for the output delays, eq. (11), or for all signed delays (M15.4).
 pub static ALPHA_DELAY: Setting = row(
     ["α of the delays", "alpha_delay", "--alpha-delay"],
     "Weight that keeps the output delays, eq. (11), or all signed delays (M15) near 0; 0 is the limit α → 0",
@@ -141,7 +141,7 @@ pub static ALPHA_DELAY: Setting = row(
 )
 .at(Place::Slider, "α delays", "α delays");
 
-/// Correction of the phase.
+/// Phase correction.
 pub static PHASE: Setting = row(
     ["phase correction", "phase", "--phase"],
     "How the phase is corrected: not at all, by delays, or by a delay or a lead filter a channel",
@@ -177,7 +177,7 @@ pub static DELAY_FROM: Setting = row(
 .at(Place::Beside, "Delay estimate", "Delay estimate")
 .where_it(|study| study.settings.phase == PhaseCorrection::Delay);
 
-/// Order of the lead filters.
+/// The lead filters' order.
 pub static LEAD_ORDER: Setting = row(
     ["order of the lead filters", "lead.order", "--lead-order"],
     "Order of every lead filter (M15.3)",
@@ -205,7 +205,7 @@ fn has_leads(study: &Study) -> bool {
     study.settings.phase == PhaseCorrection::Lead
 }
 
-/// `n` of the lead filters, whose lag time constant is `1 / (n omega_B)` (M15.3).
+/// The lead filters' `n`: their lag time constant is `1 / (n omega_B)` (M15.3).
 pub static LEAD_POLE: Setting = row(
     ["n of the lead filters", "lead.n", "--lead-n"],
     "Lag of every lead filter: 1/(n ω_B), ω_B the top of the band; smaller: less noise, and more lead in reach",
@@ -215,7 +215,7 @@ pub static LEAD_POLE: Setting = row(
 .digits(0.05, Digits::Significant)
 .where_it(has_leads);
 
-/// Greatest gain of a lead filter at high frequency, 0 to 40 dB.
+/// A lead filter's greatest gain at high frequency, 0 to 40 dB.
 pub static LEAD_LIMIT: Setting = row(
     ["R_max of the lead filters", "lead.r_max", "--lead-r-max"],
     "Greatest gain of one channel's filter far above the band (10 is 20 dB): it bounds the lead of a channel",
@@ -225,7 +225,7 @@ pub static LEAD_LIMIT: Setting = row(
 .digits(0.1, Digits::Significant)
 .where_it(has_leads);
 
-/// Correction of couplings and modes.
+/// How couplings and modes are corrected.
 pub static COUPLINGS: Setting = row(
     ["couplings", "couplings", "--couplings"],
     "What corrects couplings and modes, the same for all conditions, before the channels are corrected: nothing, a mixing of the \
@@ -246,7 +246,7 @@ pub static COUPLINGS: Setting = row(
 )
 .at(Place::Top, "Couplings", "Couplings");
 
-/// Band of comparison.
+/// The comparison band.
 pub static BAND: Setting = row(
     ["frequency band", "band_rad_s", "--band"],
     "Band of comparison [rad/s]; drag its lines in the plot too",
@@ -265,7 +265,7 @@ pub static BAND: Setting = row(
 .unit("rad/s", "rad/s", 1.0)
 .at(Place::Line, "Band", "Band");
 
-/// Number of frequencies in the band.
+/// Frequency count in the band.
 pub static POINTS: Setting = row(
     ["number of frequencies", "points", "--points"],
     "Number of logarithmically spaced frequencies in the band",
@@ -292,7 +292,7 @@ pub static QUANTILE: Setting = row(
 .at(Place::Beside, "bound quantile", "Bound quantile")
 .digits(0.1, Digits::Decimals(1));
 
-/// Manual bounds of the gains, -120 to 120 dB; no value restores the quantiles.
+/// Manual gain bounds, -120 to 120 dB; no value restores the quantiles.
 pub static GAIN_BOUNDS: Setting = row(
     ["gain bounds", "gain_bounds", "--gain-bounds"],
     "Least and greatest gain of every channel set by hand, for every condition; auto: from the quantiles of each",
@@ -310,7 +310,7 @@ pub static GAIN_BOUNDS: Setting = row(
 .at(Place::Line, "Gain bounds", "Gain bounds")
 .digits(0.002, Digits::Gain);
 
-/// Manual upper bound of the delays \[s\]; no value restores the quantile.
+/// Manual upper delay bound \[s\]; no value restores the quantile.
 pub static DELAY_UPPER: Setting = row(
     ["upper delay bound", "delay_upper_s", "--delay-bound"],
     "Greatest delay of every channel set by hand, for every condition; auto: from the quantiles of each",
@@ -326,7 +326,7 @@ pub static DELAY_UPPER: Setting = row(
 .at(Place::Line, "Delay bound", "Upper delay bound")
 .digits(0.2, Digits::Decimals(1));
 
-/// Mismatch of a loop of constrained gains that counts as agreement \[dB\].
+/// A loop mismatch up to this counts as agreement \[dB\].
 pub static AGREEMENT: Setting = row(
     ["loop tolerance", "agreement_db", "--agreement"],
     "A loop of held gains that disagrees by no more than this [dB] counts as agreeing",
@@ -362,7 +362,7 @@ pub static COST_AVERAGE: Setting = row(
 )
 .at(Place::Line, "Method", "Average in J");
 
-/// Objective of the gains.
+/// The gain objective.
 pub static GAIN_OBJECTIVE: Setting = row(
     [
         "objective of the gains",
@@ -412,7 +412,7 @@ pub static GAIN_SOURCE: Setting = row(
 )
 .at(Place::Line, "G from", "Source of G");
 
-/// Level of every error bar, interval and test.
+/// Level for all error bars, intervals and tests.
 pub static LEVEL: Setting = row(
     ["confidence level", "error_bars.level", "--level"],
     "Level of every error bar, interval and test",
@@ -426,7 +426,7 @@ pub static LEVEL: Setting = row(
 .at(Place::Line, "Confidence level", "Confidence level")
 .digits(0.5, Digits::Decimals(1));
 
-/// Greatest number of degrees of freedom that a condition's identification part borrows.
+/// The most degrees that a condition's identification part borrows.
 pub static POOLING: Setting = row(
     ["pooling (degrees of freedom borrowed)", "error_bars.prior_degrees", "--pooling"],
     "Degrees of freedom that a condition's identification part borrows from the other conditions at most; 0 trusts the condition \
@@ -436,7 +436,7 @@ pub static POOLING: Setting = row(
 .at(Place::Beside, "pooling", "Pooling (degrees of freedom borrowed)")
 .digits(0.1, Digits::Significant);
 
-/// Least coherence of a frequency with weight.
+/// Least coherence at a frequency with weight.
 pub static COHERENCE: Setting = row(
     ["coherence threshold", "coherence_threshold", "--coherence"],
     "Least coherence γ² of measured responses that is used: off, on, or the least (on is 0.6); off: every frequency counts alike",
@@ -451,7 +451,7 @@ pub static COHERENCE: Setting = row(
 .at(Place::Line, "Coherence", "Least coherence")
 .where_it(|study| study.settings.coherence_threshold.is_some() || study.dataset.has_coherence());
 
-/// Number of averages of measured responses that do not state it.
+/// Averages that measured responses are taken to have where they do not state it.
 pub static AVERAGES: Setting = row(
     [
         "averages of measured responses",
@@ -468,7 +468,7 @@ pub static AVERAGES: Setting = row(
     },
 );
 
-/// Length of the windows of measured responses that do not state it \[s\].
+/// Window length that measured responses are taken to have where they do not state it \[s\].
 pub static WINDOW: Setting = row(
     [
         "windows of measured responses",
@@ -486,7 +486,7 @@ pub static WINDOW: Setting = row(
 )
 .unit("seconds", "s", 1.0);
 
-/// Whether the windows of measured responses that do not state it overlap by half.
+/// Whether windows are taken to overlap by half where measured responses do not state it.
 pub static HALF_OVERLAP: Setting = row(
     [
         "windows overlap",
@@ -501,7 +501,7 @@ pub static HALF_OVERLAP: Setting = row(
     },
 );
 
-/// Form of the schedule.
+/// The schedule's form.
 pub static SCHEDULE: Setting = row(
     ["schedule", "schedule.kind", "--degree"],
     "Degree of the schedule's polynomial in airspeed, 0 to 3, or a lookup table",
@@ -564,7 +564,7 @@ pub static SCHEDULE_DELAYS: Setting = row(
 .at(Place::Line, "Over airspeed", "Schedule of delays")
 .where_it(|study| !has_leads(study));
 
-/// Degree of the polynomial of signed delays.
+/// Degree for the signed delays' polynomial.
 pub static TAU_DEGREE: Setting = row(
     ["degree of the signed delays", "schedule.tau_degree", "--tau-degree"],
     "Degree of the polynomial of signed delays in airspeed; 0: lags of servos and sensors do not depend on it (M15.5)",
@@ -668,3 +668,18 @@ pub static SETTINGS: [&Setting; 29] = [
     &WINDOW,
     &HALF_OVERLAP,
 ];
+
+impl Settings {
+    /// Refuses values outside their ranges: returns the first, with its setting.
+    ///
+    /// # Errors
+    /// The setting, and why its value is refused.
+    pub fn check(&self) -> Result<(), (&'static Setting, EditRefusal)> {
+        for setting in SETTINGS {
+            setting
+                .check(setting.value(self))
+                .map_err(|refusal| (setting, refusal))?;
+        }
+        Ok(())
+    }
+}

@@ -1,53 +1,51 @@
-//! Rows of the table of settings, and their operations: setting, checking, formatting and parsing a
+//! Rows in the settings table, and their operations: setting, checking, formatting and parsing a
 //! value.
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};
 use gdcm_method::fidelity::CostAverage;
-use gdcm_method::schedule::{
-    DelayScheduling, SCHEDULE_KINDS, ScheduleKind, ScheduledQuantity, SecondVariable,
-};
+use gdcm_method::schedule::form_comparison::SCHEDULE_KINDS;
+use gdcm_method::schedule::{DelayScheduling, ScheduleKind, ScheduledQuantity, SecondVariable};
 use gdcm_model::dataset::Band;
+use gdcm_model::number_format::{number, six_digits};
 use gdcm_model::response::LeadOrder;
-use gdcm_model::units::{number, six_digits};
 
-use super::edit::{Edit, EditRefusal};
-use super::setting::SETTINGS;
+use super::edit_refusal::EditRefusal;
 use super::settings::{CouplingCorrection, DelayFrom, PhaseCorrection, Settings};
 use super::study::Study;
 
-/// One setting: a row of [`SETTINGS`].
+/// One setting: a row of [`SETTINGS`](super::setting::SETTINGS).
 #[derive(Debug)]
 pub struct Setting {
-    /// Its name in running text: "α of the gains".
+    /// Name in running text: "α of the gains".
     pub name: &'static str,
-    /// Its key in the settings of files; a dot separates the key of a nested object: "lead.n".
+    /// Key in files; a dot separates a nested object's key: "lead.n".
     pub key: &'static str,
-    /// Its option of the command line: "--alpha".
+    /// Command-line option: "--alpha".
     pub option: &'static str,
-    /// Value of the option without an argument; `None` where an argument is required.
+    /// The option's value without an argument; `None` where an argument is required.
     pub bare: Option<&'static str>,
     /// Description in one sentence.
     pub help: &'static str,
     pub unit: Unit,
-    /// Type and range of the value.
+    /// The value's type and range.
     pub kind: Kind,
     /// Its control in the window.
     pub control: Control,
 }
 
-/// Unit of a setting in files and on a command line, and the displayed unit.
+/// A setting's unit in files and on a command line, and the displayed unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Unit {
     /// Unit in files.
     pub file: &'static str,
     /// Displayed unit.
     pub shown: &'static str,
-    /// Number of displayed units in one file unit.
+    /// How many displayed units make a file unit.
     pub scale: f64,
 }
 
-/// Type and range of a setting, with access to its field of [`Settings`].
+/// A setting's type and range, with access to its field in [`Settings`].
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
     Number {
@@ -89,13 +87,13 @@ pub enum Kind {
     },
 }
 
-/// Control of a setting in the window.
+/// A setting's control in the window.
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
     pub place: Place,
     pub caption: &'static str,
     pub label: &'static str,
-    /// Change of the displayed value per point of dragging.
+    /// Change in the displayed value for each dragged point.
     pub step: f64,
     pub digits: Digits,
     /// Whether the setting has an effect.
@@ -107,31 +105,31 @@ pub struct Control {
 pub enum Digits {
     /// Three significant digits.
     Significant,
-    /// A fixed number of decimals.
+    /// Fixed decimals.
     Decimals(usize),
-    /// Format of a gain: three decimals, two where the third is zero.
+    /// A gain: three decimals, two where the third is zero.
     Gain,
 }
 
-/// Place of the control of a setting.
+/// Where a setting's control is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// Above the table of settings, with a slider.
+    /// Above the settings table, with a slider.
     Slider,
     /// Above the table, on its own line.
     Top,
     /// On its own line.
     Line,
-    /// On the line of the setting before it.
+    /// On the previous setting's line.
     Beside,
-    /// In the view of its subject.
+    /// In its subject's view.
     Elsewhere,
 }
 
-/// The value of a setting.
+/// A setting's value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
-    /// A number in the unit of files.
+    /// A number in the file unit.
     Number(f64),
     /// No value, where that is allowed.
     Nothing,
@@ -140,16 +138,16 @@ pub enum Value {
     Choice(usize),
 }
 
-/// A type with one value for each choice of a setting.
+/// A type whose values are a setting's choices.
 pub trait Choice: Copy + PartialEq + 'static {
-    /// All values, in the order of the setting's words.
+    /// All values, ordered as the setting's words.
     const ALL: &'static [Self];
 
     /// Returns its index among all values.
     fn index(self) -> usize {
         Self::ALL
             .iter()
-            .position(|one| *one == self)
+            .position(|choice| *choice == self)
             .unwrap_or_default()
     }
 }
@@ -253,11 +251,6 @@ impl PartialEq for Setting {
 }
 
 impl Setting {
-    /// Returns the decision that sets this value.
-    pub fn to(&'static self, value: impl Into<Value>) -> Edit {
-        Edit::Set(self, value.into())
-    }
-
     /// Returns the present value.
     pub fn value(&self, settings: &Settings) -> Value {
         match self.kind {
@@ -288,49 +281,44 @@ impl Setting {
     /// Refuses a value that the setting does not allow.
     pub fn check(&self, value: Value) -> Result<(), EditRefusal> {
         match (self.kind, value) {
-            (
-                Kind::Number {
-                    range, whole: true, ..
-                },
-                Value::Number(found),
-            ) if found.fract() == 0.0 => self.check_range("a whole number", found, range),
-            (
-                Kind::Number {
-                    range, whole: true, ..
-                },
-                Value::Number(found),
-            ) => Err(self.out_of_range("a whole number", found, range)),
-            (Kind::Number { range, .. } | Kind::Optional { range, .. }, Value::Number(found)) => {
-                self.check_range(&self.a_number(), found, range)
+            (Kind::Number { range, whole, .. }, Value::Number(found)) => {
+                self.check_number(found, range, whole)
             }
-            // The band, which must have a value, describes its own range.
-            (Kind::Range { nothing: None, .. }, Value::Range([min, max])) => {
-                Ok(Band::new(min, max).map(drop)?)
+            (Kind::Optional { range, .. }, Value::Number(found)) => {
+                self.check_number(found, range, false)
             }
-            (
-                Kind::Range {
-                    range: [least, most],
-                    ..
-                },
-                Value::Range([lower, upper]),
-            ) => {
-                self.check_range("a lower end", lower, [least, most])?;
-                self.check_range("an upper end", upper, [lower, most])
+            (Kind::Range { range, nothing, .. }, Value::Range(ends)) => {
+                if nothing.is_none() {
+                    // The band, which must have a value, describes its own range.
+                    Band::new(ends[0], ends[1])?;
+                    return Ok(());
+                }
+                self.check_ends(ends, range)
             }
-            (Kind::Choice { words, .. }, Value::Choice(index)) => self.check_range(
-                "a whole number",
-                index as f64,
-                [0.0, words.len() as f64 - 1.0],
-            ),
+            (Kind::Choice { words, .. }, Value::Choice(index)) => {
+                let range = [0.0, words.len() as f64 - 1.0];
+                self.check_range("a whole number", index as f64, range)
+            }
             (Kind::Flag { .. }, Value::Flag(_)) | (Kind::Optional { .. }, Value::Nothing) => Ok(()),
-            (
-                Kind::Range {
-                    nothing: Some(_), ..
-                },
-                Value::Nothing,
-            ) => Ok(()),
+            (Kind::Range { nothing, .. }, Value::Nothing) if nothing.is_some() => Ok(()),
             _ => Err(EditRefusal::NotAValue { setting: self.name }),
         }
+    }
+
+    fn check_number(&self, found: f64, range: [f64; 2], whole: bool) -> Result<(), EditRefusal> {
+        if !whole {
+            return self.check_range(&self.a_number(), found, range);
+        }
+        if found.fract() != 0.0 {
+            return Err(self.out_of_range("a whole number", found, range));
+        }
+        self.check_range("a whole number", found, range)
+    }
+
+    fn check_ends(&self, ends: [f64; 2], range: [f64; 2]) -> Result<(), EditRefusal> {
+        let [lower, upper] = ends;
+        self.check_range("a lower end", lower, range)?;
+        self.check_range("an upper end", upper, [lower, range[1]])
     }
 
     fn check_range(&self, what: &str, found: f64, range: [f64; 2]) -> Result<(), EditRefusal> {
@@ -366,26 +354,21 @@ impl Setting {
 
     /// Formats a value, with at most six significant digits: "20 ms", "by the quantile", "median".
     pub fn text(&self, value: Value) -> String {
-        let Unit { shown, scale, .. } = self.unit;
-        let unit = if shown.is_empty() {
-            String::new()
-        } else {
-            format!(" {shown}")
+        let unit = match self.unit.shown {
+            "" => String::new(),
+            shown => format!(" {shown}"),
         };
+        let shown = |value: f64| six_digits(self.unit.scale * value);
         match (self.kind, value) {
-            (_, Value::Number(value)) => format!("{}{unit}", six_digits(scale * value)),
+            (_, Value::Number(value)) => format!("{}{unit}", shown(value)),
             (_, Value::Range([lower, upper])) => {
-                format!(
-                    "{} to {}{unit}",
-                    six_digits(scale * lower),
-                    six_digits(scale * upper)
-                )
+                format!("{} to {}{unit}", shown(lower), shown(upper))
             }
             (Kind::Flag { words, .. }, Value::Flag(flag)) => words[usize::from(flag)].to_owned(),
             (Kind::Choice { words, .. }, Value::Choice(index)) => words[index][1].to_owned(),
+            (Kind::Optional { nothing, .. }, _) => nothing[1].to_owned(),
             (
-                Kind::Optional { nothing, .. }
-                | Kind::Range {
+                Kind::Range {
                     nothing: Some(nothing),
                     ..
                 },
@@ -395,24 +378,17 @@ impl Setting {
         }
     }
 
-    /// Returns the syntax of the option's argument: "none|delay|lead", "off|on|NUMBER".
+    /// Returns the option argument's syntax: "none|delay|lead", "off|on|NUMBER".
     pub fn syntax(&self) -> String {
         match self.kind {
             Kind::Number { .. } => "NUMBER".to_owned(),
             Kind::Optional { nothing, on, .. } => {
-                format!(
-                    "{}{}|NUMBER",
-                    nothing[0],
-                    if on.is_some() { "|on" } else { "" }
-                )
+                let on = if on.is_some() { "|on" } else { "" };
+                format!("{}{on}|NUMBER", nothing[0])
             }
             Kind::Range { .. } => "LO HI".to_owned(),
             Kind::Flag { .. } => String::new(),
-            Kind::Choice { words, .. } => words
-                .iter()
-                .map(|words| words[0])
-                .collect::<Vec<_>>()
-                .join("|"),
+            Kind::Choice { words, .. } => option_words(words).join("|"),
         }
     }
 
@@ -421,54 +397,26 @@ impl Setting {
     /// # Errors
     /// Expected and found value.
     pub fn read(&self, said: &[&str]) -> Result<Value, String> {
-        let real = |text: &str| {
-            text.trim()
-                .parse::<f64>()
-                .map_err(|_| format!("expected a number, found {text}"))
-        };
         match (self.kind, said) {
             (Kind::Flag { .. }, _) => Ok(Value::Flag(true)),
-            (
-                Kind::Optional { nothing, .. }
-                | Kind::Range {
-                    nothing: Some(nothing),
-                    ..
-                },
-                [word],
-            ) if *word == nothing[0] => Ok(Value::Nothing),
-            (Kind::Optional { on: Some(on), .. }, ["on"]) => Ok(Value::Number(on)),
-            (Kind::Optional { nothing, on, .. }, [text]) => {
-                text.parse().map(Value::Number).map_err(|_| {
-                    let on = if on.is_some() { ", on" } else { "" };
-                    format!("expected {}{on} or a number, found {text}", nothing[0])
-                })
+            (Kind::Number { range, whole, .. }, [text]) => {
+                let number = if whole {
+                    read_whole(text, range)?
+                } else {
+                    read_number(text)?
+                };
+                Ok(Value::Number(number))
             }
-            (
-                Kind::Number {
-                    range: [least, most],
-                    whole: true,
-                    ..
-                },
-                [text],
-            ) => {
-                let found = text.trim().parse::<usize>().ok().map(|count| count as f64);
-                let found = found.filter(|count| (least..=most).contains(count));
-                let expected =
-                    || format!("expected a whole number from {least} to {most}, found {text}");
-                found.map(Value::Number).ok_or_else(expected)
+            (Kind::Optional { nothing, on, .. }, [text]) => read_optional(text, nothing[0], on),
+            (Kind::Range { nothing, .. }, [word])
+                if nothing.is_some_and(|nothing| nothing[0] == *word) =>
+            {
+                Ok(Value::Nothing)
             }
-            (Kind::Number { .. }, [text]) => real(text).map(Value::Number),
-            (Kind::Range { .. }, [lower, upper]) => Ok(Value::Range([real(lower)?, real(upper)?])),
-            (Kind::Choice { words, .. }, [text]) => {
-                let found = words.iter().position(|words| words[0] == *text);
-                found.map(Value::Choice).ok_or_else(|| {
-                    let (last, others) = words
-                        .split_last()
-                        .map_or(("", words), |(last, others)| (last[0], others));
-                    let others: Vec<&str> = others.iter().map(|words| words[0]).collect();
-                    format!("expected {} or {last}, found {text}", others.join(", "))
-                })
+            (Kind::Range { .. }, [lower, upper]) => {
+                Ok(Value::Range([read_number(lower)?, read_number(upper)?]))
             }
+            (Kind::Choice { words, .. }, [text]) => read_choice(text, words),
             _ => Err(format!(
                 "expected {}, found {}",
                 self.syntax(),
@@ -478,17 +426,52 @@ impl Setting {
     }
 }
 
-impl Settings {
-    /// Refuses values outside their ranges: returns the first, with its setting.
-    ///
-    /// # Errors
-    /// The setting, and why its value is refused.
-    pub fn check(&self) -> Result<(), (&'static Setting, EditRefusal)> {
-        let check = |setting: &&'static Setting| {
-            setting
-                .check(setting.value(self))
-                .map_err(|refusal| (*setting, refusal))
-        };
-        SETTINGS.iter().try_for_each(check)
+fn read_number(text: &str) -> Result<f64, String> {
+    text.trim()
+        .parse()
+        .map_err(|_| format!("expected a number, found {text}"))
+}
+
+fn read_whole(text: &str, range: [f64; 2]) -> Result<f64, String> {
+    let [least, most] = range;
+    if let Ok(count) = text.trim().parse::<usize>() {
+        let count = count as f64;
+        if (least..=most).contains(&count) {
+            return Ok(count);
+        }
     }
+    Err(format!(
+        "expected a whole number from {least} to {most}, found {text}"
+    ))
+}
+
+/// Parses a number, the word for no value, or "on" where that stands for a number.
+fn read_optional(text: &str, nothing: &str, on: Option<f64>) -> Result<Value, String> {
+    if text == nothing {
+        return Ok(Value::Nothing);
+    }
+    if let Some(on) = on
+        && text == "on"
+    {
+        return Ok(Value::Number(on));
+    }
+    text.parse().map(Value::Number).map_err(|_| {
+        let on = if on.is_some() { ", on" } else { "" };
+        format!("expected {nothing}{on} or a number, found {text}")
+    })
+}
+
+fn read_choice(text: &str, words: &[[&str; 3]]) -> Result<Value, String> {
+    let words = option_words(words);
+    if let Some(index) = words.iter().position(|word| *word == text) {
+        return Ok(Value::Choice(index));
+    }
+    let (last, others) = words.split_last().unwrap_or((&"", &[]));
+    let others = others.join(", ");
+    Err(format!("expected {others} or {last}, found {text}"))
+}
+
+/// Returns the choices' words on the command line.
+fn option_words<'a>(words: &[[&'a str; 3]]) -> Vec<&'a str> {
+    words.iter().map(|[option, ..]| *option).collect()
 }

@@ -11,22 +11,22 @@ use gdcm_method::correction::{GainBounds, GainObjective};
 use gdcm_method::couplings::CouplingKind;
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::{DelayScheduling, ScheduleSettings};
-use gdcm_method::uncertainty::bar::UncertaintySettings;
+use gdcm_method::uncertainty::settings::UncertaintySettings;
 use gdcm_model::dataset::limits::MOST_PAIRS;
 use gdcm_model::dataset::{Band, Dataset, PairTable};
 use gdcm_model::whole_number::whole;
 
-/// Default mismatch of a loop of constrained gains that counts as agreement \[dB\].
+/// By default, a loop mismatch up to this counts as agreement \[dB\].
 const DEFAULT_AGREEMENT_DB: f64 = 0.05;
 
-/// Default least coherence of a frequency with weight (M4a).
+/// By default, a frequency with less coherence has no weight (M4a).
 pub const DEFAULT_COHERENCE: f64 = 0.6;
 
-/// Correction of the phase.
+/// Phase correction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PhaseCorrection {
-    /// No correction of the phase: gains alone.
+    /// No phase correction: gains alone.
     None,
     /// By delays (the paper, M9).
     #[default]
@@ -35,17 +35,16 @@ pub enum PhaseCorrection {
     Lead,
 }
 
-/// Correction of the couplings and modes of the physics models, before their channels are corrected
-/// (M16).
+/// How the physics models' couplings and modes are corrected, before their channels are (M16).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CouplingCorrection {
     /// No correction: the physics models are unchanged (the paper).
     #[default]
     None,
-    /// A mixing of the inputs.
+    /// The inputs are mixed.
     Mixing,
-    /// A mixing of the inputs, and a feedback of outputs to inputs.
+    /// The inputs are mixed, and outputs are fed back to inputs.
     #[serde(rename = "feedback")]
     MixingAndFeedback,
 }
@@ -60,7 +59,7 @@ impl CouplingCorrection {
         }
     }
 
-    /// Returns the kind of couplings to fit; `None` without couplings.
+    /// Returns which couplings to fit; `None` without couplings.
     pub fn kind(self) -> Option<CouplingKind> {
         match self {
             Self::None => None,
@@ -90,7 +89,7 @@ impl fmt::Display for DelayFrom {
     }
 }
 
-/// Responses by the names of their channels, output first, as stored in files.
+/// Responses by their channels' names, output first, as stored in files.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<(String, String)>")]
 pub struct ResponseNames(pub Vec<(String, String)>);
@@ -116,13 +115,12 @@ impl TryFrom<Vec<(String, String)>> for ResponseNames {
 pub struct Settings<R = PairTable<bool>> {
     #[serde(rename = "band_rad_s")]
     pub band: Band,
-    /// Number of logarithmically spaced frequencies in the band, both ends included (M2).
+    /// How many logarithmically spaced frequencies the band has, both ends included (M2).
     #[serde(deserialize_with = "whole")]
     pub points: usize,
-    /// Weight of the regularisation of the output gains, eq. (7).
+    /// Regularisation weight for the output gains, eq. (7).
     pub alpha_gain: f64,
-    /// Weight of the regularisation of the output delays, eq. (11), or of all signed delays
-    /// (M15.4).
+    /// Regularisation weight for the output delays, eq. (11), or for all signed delays (M15.4).
     pub alpha_delay: f64,
     /// Quantile that sets the bounds, and its complement (M7).
     pub quantile: f64,
@@ -132,43 +130,43 @@ pub struct Settings<R = PairTable<bool>> {
     pub ignored: R,
     /// Average over frequency in J: the median (the paper) or the mean (Tischler) (M4).
     pub cost_average: CostAverage,
-    /// Least coherence of a frequency with weight, where the reference is measured with coherence,
+    /// Least coherence at a frequency with weight, where the reference is measured with coherence,
     /// which then weights J, G and D too; `None`: coherence is not used (M4a).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coherence_threshold: Option<f64>,
-    /// Objective of the gains.
+    /// The gain objective.
     pub gain_objective: GainObjective,
-    /// Manual bounds of every channel gain, instead of the quantiles.
+    /// Manual bounds on every channel gain, instead of the quantiles.
     pub gain_bounds: Option<GainBounds>,
-    /// Manual upper bound of every channel delay \[s\], instead of the quantile.
+    /// Manual upper bound on every channel delay \[s\], instead of the quantile.
     pub delay_upper_s: Option<f64>,
-    /// Correction of the phase (M9, M15).
+    /// Phase correction (M9, M15).
     #[serde(default)]
     pub phase: PhaseCorrection,
     /// The D that the delays are fitted to (M15.2).
     #[serde(default)]
     pub delay_from: DelayFrom,
-    /// Common parameters of the lead filters (M15.3).
+    /// Parameters common to all lead filters (M15.3).
     #[serde(default, skip_serializing_if = "is_default")]
     pub lead: LeadSettings,
-    /// Correction of couplings and modes (M16).
+    /// How couplings and modes are corrected (M16).
     #[serde(default, skip_serializing_if = "is_default")]
     pub couplings: CouplingCorrection,
-    /// Mismatch \[dB\] up to which a loop of constrained gains counts as agreeing: each gain is
+    /// Mismatch \[dB\] up to which constrained gains around a loop count as agreeing: each gain is
     /// then constrained at the nearest consistent value.
     #[serde(default = "default_agreement_db")]
     pub agreement_db: f64,
-    /// Schedule of the channel gains with airspeed (M11).
+    /// How channel gains are scheduled with airspeed (M11).
     #[serde(default)]
     pub schedule: ScheduleSettings,
-    /// Whether the schedule has delays too (M11). Files of older programs have `schedule.delays`
+    /// Whether the schedule has delays too (M11). Older programs' files have `schedule.delays`
     /// alone ([`Settings::complete_delay_scheduling`]).
     #[serde(default = "never_scheduled")]
     pub schedule_delays: DelayScheduling,
     /// The models that G is computed from.
     #[serde(default, rename = "gain_from")]
     pub gain_source: GainSource,
-    /// Options of the error bars (M13).
+    /// Options for error bars (M13).
     #[serde(default, rename = "error_bars")]
     pub uncertainty: UncertaintySettings,
 }
@@ -186,8 +184,8 @@ pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 }
 
 impl<R> Settings<R> {
-    /// Returns the same settings with another representation of the marked responses; `of` receives
-    /// the verb, "hold" or "ignore".
+    /// Returns the same settings with the marked responses represented otherwise; `of` receives the
+    /// verb, "hold" or "ignore".
     pub fn with_responses<Q>(&self, mut of: impl FnMut(&'static str, &R) -> Q) -> Settings<Q> {
         Settings {
             band: self.band,
@@ -221,7 +219,7 @@ impl<R> Settings<R> {
         self.schedule.delays = scheduling == DelayScheduling::Always;
     }
 
-    /// Adopts `schedule.delays` of a file without the newer setting: `true` is always, `false`
+    /// Adopts `schedule.delays` from a file without the newer setting: `true` is always, `false`
     /// never.
     pub fn complete_delay_scheduling(&mut self) {
         if self.schedule_delays == DelayScheduling::Never {
@@ -231,7 +229,7 @@ impl<R> Settings<R> {
 }
 
 impl Settings {
-    /// Returns the initial settings of a dataset.
+    /// Returns a dataset's initial settings.
     pub fn of(dataset: &Dataset) -> Self {
         let none = PairTable::filled(dataset.outputs().len(), dataset.inputs().len(), false);
         Self {
@@ -283,7 +281,8 @@ impl Settings {
         let words = self.gain_source.words();
         if self.gain_source == GainSource::MeanOfPairs && self.phase == PhaseCorrection::Lead {
             return format!(
-                "{words}, without effect: with leads, G is that of what they leave of the representatives"
+                "{words}, without effect: with leads, G is that of what they leave of the \
+                 representatives"
             );
         }
         words.to_owned()

@@ -1,3 +1,15 @@
 //! Units of background work.
 
+pub mod analysis_jobs;
+#[cfg(test)]
+mod condition_answers_tests;
+#[cfg(test)]
+mod coupling_costs_tests;
+#[cfg(test)]
+pub(crate) mod couplings_tests;
+pub mod curve_jobs;
+pub mod identification_jobs;
 pub mod job;
+pub mod requirement_jobs;
+#[cfg(test)]
+mod time_histories_tests;

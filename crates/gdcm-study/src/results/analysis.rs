@@ -1,4 +1,4 @@
-//! The result of a whole study.
+//! A study's whole result.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -8,60 +8,91 @@ use gdcm_method::correction::{ChannelCorrection, GainBounds, Problem, Solution};
 use gdcm_method::couplings::problem::CouplingError;
 use gdcm_method::fidelity::Discontinuity;
 use gdcm_method::fidelity::distance::Representative;
-use gdcm_method::schedule::assessment::{compare_forms, compare_lead_degrees};
-use gdcm_method::schedule::{CostChange, FormComparison, LeadDegreeFit, Schedule, ScheduleError};
+use gdcm_method::schedule::{CostChange, Schedule, ScheduleError};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Model, Pair, PairTable};
 
 use super::caution::Caution;
+use super::comparison::{BundleMetrics, Comparison};
 use super::convention_doubt::ConventionDoubt;
 use super::couplings_assessment::CouplingsAssessment;
-use super::couplings_words::no_couplings;
-use super::remark::Remark;
+use super::fitted_couplings::{CoupledCondition, FittedCouplings};
+use super::lead_compensation::{LeadCompensated, LeadOffer};
+use super::uncertainty::Uncertainty;
+use crate::decisions::requirement_settings::RequirementSettings;
 use crate::decisions::study::Study;
-use crate::stages::comparison::{BundleMetrics, Comparison};
-use crate::stages::engine::{schedule_settings, scheduled_points};
-use crate::stages::fitted_couplings::{CoupledCondition, FittedCouplings};
-use crate::stages::lead_compensation::{LeadCompensated, LeadOffer};
-use crate::stages::uncertainty::Uncertainty;
 
-/// J of every response of a condition's nominal model before and after the scheduled correction
-/// (M12), or the reason in words why the condition is left out.
-pub type Assessed = Result<PairTable<Option<CostChange>>, String>;
+/// Each condition's result, or why it has none.
+pub(crate) type Outcomes = BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>;
 
-/// Complete result of a study.
+/// The nominal model's J by response, before and after the scheduled correction (M12), or why the
+/// condition is left out.
+pub type Assessed = Result<PairTable<Option<CostChange>>, NotAssessed>;
+
+/// Why an assessment leaves a condition out.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotAssessed {
+    NotAnalysed,
+    NominalRejected,
+    NoResult(ConditionFailure),
+    NoSchedule(ScheduleError),
+}
+
+impl NotAssessed {
+    /// Returns the stable code.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NotAnalysed => "not-analysed",
+            Self::NominalRejected => "nominal-rejected",
+            Self::NoResult(failure) => failure.code(),
+            Self::NoSchedule(_) => "no-schedule",
+        }
+    }
+}
+
+/// A study's complete result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
     pub study: Study,
-    /// Frequencies of comparison \[rad/s\].
+    /// Comparison frequencies \[rad/s\].
     pub omega: Arc<[f64]>,
+    /// Each condition's result, or why it has none.
     pub conditions: BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>,
     /// Couplings put on every physics model, or why there are none; `None` where none are requested
     /// (M16).
     pub couplings: Option<Result<Arc<FittedCouplings>, CouplingError>>,
-    /// Benefit and cost of the couplings, once assessed
-    /// ([`super::couplings_assessment::CouplingsJob`]).
+    /// The couplings' benefit and cost, once assessed
+    /// ([`Engine::assess_couplings`](crate::stages::engine::Engine::assess_couplings)).
     pub coupling_assessment: Option<Arc<CouplingsAssessment>>,
     /// Channels with an apparent sign or unit difference between the two sides; reported first.
     pub doubts: Vec<ConventionDoubt>,
-    /// Schedule of the chosen conditions.
+    /// Schedule for the chosen conditions.
     pub schedule: Result<Schedule, ScheduleError>,
     pub assessment: BTreeMap<ConditionId, Assessed>,
-    /// Uncertainty of the figures, once computed
+    /// The figures' uncertainty, once computed
     /// ([`Engine::uncertainty`](crate::stages::engine::Engine::uncertainty)).
     pub uncertainty: Option<Arc<Uncertainty>>,
 }
 
 impl Analysis {
-    /// Returns the result of one condition, where there is one.
+    /// Returns a condition's result, where there is one.
     pub fn condition(&self, id: ConditionId) -> Option<&ConditionAnalysis> {
         self.conditions.get(&id)?.as_ref().ok()
     }
 
-    /// Returns the result of one condition, or the reason in words why there is none.
+    /// Returns a condition's result, or the reason in words why there is none.
     pub(crate) fn result(&self, id: ConditionId) -> Result<&ConditionAnalysis, String> {
-        let outcome = self.conditions.get(&id).ok_or("it was not analysed")?;
-        outcome.as_ref().map_err(ToString::to_string)
+        match self.conditions.get(&id) {
+            Some(outcome) => outcome.as_ref().map_err(ToString::to_string),
+            None => Err("it was not analysed".to_owned()),
+        }
+    }
+
+    /// Returns the same analysis with other requirement settings.
+    pub fn asked_with(&self, settings: &Arc<RequirementSettings>) -> Self {
+        let mut analysis = self.clone();
+        analysis.study.requirements = Arc::clone(settings);
+        analysis
     }
 
     /// Returns the couplings put on every physics model, where there are any.
@@ -75,83 +106,32 @@ impl Analysis {
     /// The reason, naming the channels, why the requested couplings are unavailable: an export
     /// without them would not match the request.
     pub fn asked_couplings(&self) -> Result<Option<&Arc<FittedCouplings>>, String> {
-        let words = |error: &CouplingError| error.words(&self.study.dataset.names_of_channels().0);
-        self.couplings
-            .as_ref()
-            .map(|found| found.as_ref().map_err(words))
-            .transpose()
-    }
-
-    /// Returns the remarks on the couplings: why there are none, or their meaning, benefit and
-    /// cost, as far as requested.
-    pub fn coupling_remarks(&self) -> Vec<Remark> {
-        match (self.asked_couplings(), &self.coupling_assessment) {
-            (Err(why), _) => vec![no_couplings(&why)],
-            (Ok(Some(_)), Some(assessment)) => assessment.remarks(&self.study.dataset),
-            _ => Vec::new(),
+        match &self.couplings {
+            None => Ok(None),
+            Some(Ok(fitted)) => Ok(Some(fitted)),
+            Some(Err(error)) => {
+                let (inputs, _) = self.study.dataset.names_of_channels();
+                Err(error.words(&inputs))
+            }
         }
-    }
-
-    /// Returns the conditions in the schedule, in the dataset's order: the chosen conditions with a
-    /// result.
-    pub fn scheduled(&self) -> Vec<ConditionId> {
-        self.study
-            .dataset
-            .ids()
-            .filter(|id| self.study.choice(*id).is_in_schedule() && self.condition(*id).is_some())
-            .collect()
-    }
-
-    /// Fits the schedule of the chosen conditions without one of them.
-    ///
-    /// # Errors
-    /// [`ScheduleError`] where these conditions have no schedule.
-    pub fn schedule_without(&self, left_out: ConditionId) -> Result<Schedule, ScheduleError> {
-        let mut others = self.study.clone();
-        if let Some(choice) = others.choices.get_mut(&left_out) {
-            choice.scheduled = false;
-        }
-        let settings = schedule_settings(&others, &self.conditions);
-        Schedule::of(&scheduled_points(&others, &self.conditions), settings)
-    }
-
-    /// Compares the forms of the schedule, with lists in the order of [`Analysis::scheduled`]
-    /// (M11). Solves some hundred small least squares problems.
-    ///
-    /// # Errors
-    /// [`ScheduleError`] where there is no schedule.
-    pub fn compare_forms(&self) -> Result<FormComparison, ScheduleError> {
-        compare_forms(
-            &scheduled_points(&self.study, &self.conditions),
-            self.study.settings.schedule,
-        )
-    }
-
-    /// Compares the degrees of the scheduled signed delays; `None` where leads are not requested
-    /// (M15.5).
-    pub fn compare_lead_degrees(&self) -> Vec<LeadDegreeFit> {
-        compare_lead_degrees(
-            &scheduled_points(&self.study, &self.conditions),
-            self.study.settings.schedule,
-        )
     }
 }
 
-/// Result of one condition.
+/// A condition's result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionAnalysis {
     /// The analysed condition; its models define the order of the figures below.
     pub condition: Arc<Condition>,
-    /// Distances and discontinuity ratios of the bundles.
+    /// The bundles' distances and discontinuity ratios.
     pub figures: Arc<BundleMetrics>,
     /// Changes due to the couplings; `None` without couplings.
     pub coupled: Option<CoupledCondition>,
     /// Representatives, G and D, with the couplings on the physics models where there are any
     /// (M16.3).
     pub comparison: Arc<Comparison>,
-    /// Problem of the gains.
+    /// The gain problem.
     pub gain_problem: Arc<Problem>,
-    /// Problem of the delays, or of the signed delays.
+    /// The delay problem, with signed delays if requested.
     pub delay_problem: Arc<Problem>,
     /// Optimal gains, eq. (7).
     pub gains: Arc<Solution>,
@@ -159,11 +139,12 @@ pub struct ConditionAnalysis {
     pub delays: Arc<Solution>,
     /// Difference left after the leads, where leads are requested (M15.5).
     pub compensated: Option<Arc<LeadCompensated>>,
-    /// Benefit of leads, where all constrained responses want lead and leads are not requested.
+    /// What leads would gain, where all constrained responses want lead and leads are not
+    /// requested.
     pub offer: Option<LeadOffer>,
     /// Gains and delays as one correction.
     pub correction: ChannelCorrection,
-    /// J of the physics representative before and after this correction.
+    /// The physics representative's J before and after this correction.
     pub cost: Arc<PairTable<Option<CostChange>>>,
     /// Channels with an apparent sign or unit difference in this condition.
     pub doubts: Vec<ConventionDoubt>,
@@ -171,11 +152,12 @@ pub struct ConditionAnalysis {
 }
 
 impl ConditionAnalysis {
-    /// Returns the comparison of the models before the couplings, where there are any.
+    /// Returns the models' comparison before the couplings, where there are any.
     pub fn before_couplings(&self) -> &Comparison {
-        self.coupled
-            .as_ref()
-            .map_or(&self.comparison, |coupled| &coupled.before)
+        match &self.coupled {
+            Some(coupled) => &coupled.before,
+            None => &self.comparison,
+        }
     }
 
     /// Returns the constrained responses that are defined.
@@ -188,13 +170,13 @@ impl ConditionAnalysis {
         self.gain_problem.delta[pair]
     }
 
-    /// Returns the D used in the delay problem \[s\]: of eq. (9), or of M15.2.
+    /// Returns the D used in the delay problem \[s\], by eq. (9) or M15.2.
     pub fn wanted_delay_s(&self, pair: Pair) -> Option<f64> {
         self.delay_problem.delta[pair]
     }
 
-    /// Returns whether the delays are fitted to the D of M15.2 (always so for leads) instead of the
-    /// D of eq. (9).
+    /// Returns whether the delays are fitted to D by M15.2 (always so for leads) instead of eq.
+    /// (9).
     pub fn asks_band_delays(&self) -> bool {
         let asked = &self.delay_problem.delta;
         let delta = &self.comparison.delta;
@@ -203,20 +185,19 @@ impl ConditionAnalysis {
 
     /// Returns the scalar behind [`Self::wanted_delay_s`], to look up its error bar (M13).
     pub fn wanted_delay(&self, pair: Pair) -> Scalar {
-        let is_median = self.delay_problem.delta[pair] == self.comparison.delta.delay_s[pair];
-        if is_median {
+        if self.delay_problem.delta[pair] == self.comparison.delta.delay_s[pair] {
             Scalar::Delay(pair)
         } else {
             Scalar::BandDelay(pair)
         }
     }
 
-    /// Returns the bounds of every channel gain.
+    /// Returns the bounds on every channel gain.
     pub fn gain_bounds(&self) -> GainBounds {
         self.gain_problem.bounds
     }
 
-    /// Returns the least and greatest delay of every channel \[s\]; leads are negative (M15.4).
+    /// Returns every channel's least and greatest delay \[s\]; leads are negative (M15.4).
     pub fn delay_bounds_s(&self) -> [f64; 2] {
         // Adding zero turns minus zero into zero.
         [
@@ -225,12 +206,12 @@ impl ConditionAnalysis {
         ]
     }
 
-    /// Returns the upper bound of every channel delay \[s\].
+    /// Returns the upper bound on every channel delay \[s\].
     pub fn delay_upper_s(&self) -> f64 {
         self.delay_problem.bounds.upper
     }
 
-    /// Returns the names of the physics models suggested as outliers, including rejected models.
+    /// Returns the physics models suggested as outliers, including rejected models.
     pub fn suggested(&self) -> Vec<String> {
         let suggested = self
             .figures
@@ -245,7 +226,7 @@ impl ConditionAnalysis {
             .collect()
     }
 
-    /// Returns the representative of a bundle, with the scores of its models in the order of
+    /// Returns a bundle's representative, with its models' scores ordered as in
     /// [`ConditionAnalysis::condition`].
     pub fn representative(&self, kind: BundleKind) -> &Representative {
         kind.pick(&self.comparison.physics, &self.comparison.identified)
@@ -256,17 +237,17 @@ impl ConditionAnalysis {
         &self.condition.bundle(kind)[self.representative(kind).model]
     }
 
-    /// Returns the name of the model that represents a bundle.
+    /// Returns the representative's name in a bundle.
     pub fn representative_name(&self, kind: BundleKind) -> &str {
         &self.representative_model(kind).name
     }
 
-    /// Returns the mean distance of a model to the other kept models, where it has one.
+    /// Returns a model's mean distance to the other kept models, if defined.
     pub fn score(&self, kind: BundleKind, name: &str) -> Option<f64> {
         self.representative(kind).scores[self.condition.position(kind, name)?]
     }
 
-    /// Returns the discontinuity ratio of a physics model, where it has one.
+    /// Returns a physics model's discontinuity ratio, if defined.
     pub fn discontinuity_ratio(&self, name: &str) -> Option<f64> {
         let ratios = &self.figures.discontinuity.as_ref().ok()?.ratios;
         ratios[self.condition.position(BundleKind::Physics, name)?]
@@ -277,25 +258,27 @@ impl ConditionAnalysis {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConditionFailure {
     #[error(
-        "no identified models yet, so there is no reference to compare the physics models with; identify them from the condition's \
-         flight records (gdcm identify RECORDS --into DATASET, or Identify from records in the window), or add identified models"
+        "no identified models yet, so there is no reference to compare the physics models with; \
+         identify them from the condition's flight records (gdcm identify RECORDS --into DATASET, \
+         or Identify from records in the window), or add identified models"
     )]
     NoReference,
     /// The two representatives have no response in common that is defined over the whole band.
     #[error(
-        "no response of \"{physics}\" can be compared with \"{identified}\" over the whole band: each is zero, not finite or out of \
-         the range of gains somewhere; choose another representative, or another band{because}"
+        "no response of \"{physics}\" can be compared with \"{identified}\" over the whole band: \
+         each is zero, not finite or out of the range of gains somewhere; choose another \
+         representative, or another band"
     )]
     NothingToCompare {
         physics: String,
         identified: String,
-        /// Known facts about the models' responses, each after "; ".
-        because: String,
+        /// Known facts about the models' responses.
+        cautions: Vec<Caution>,
     },
     /// Every kept model is set aside (M5b).
     #[error(
-        "no {bundle} model is left to compare: each one kept lacks a measuring response that another model of the bundle \
-         has; restore one that has them all, or narrow the band"
+        "no {bundle} model is left to compare: each one kept lacks a measuring response that \
+         another model of the bundle has; restore one that has them all, or narrow the band"
     )]
     AllSetAside { bundle: BundleKind },
     #[error("the gains could not be computed: {0}")]
@@ -305,7 +288,7 @@ pub enum ConditionFailure {
 }
 
 impl ConditionFailure {
-    /// Returns the stable code of the reason, for programs and tests.
+    /// Returns the reason's stable code, for programs and tests.
     pub fn code(&self) -> &'static str {
         match self {
             Self::NoReference => "no-reference",

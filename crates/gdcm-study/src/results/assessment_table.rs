@@ -1,21 +1,17 @@
-//! Benefit of a correction, response by response and condition by condition, for the chosen model
+//! What a correction gains, response by response and condition by condition, for the chosen model
 //! and correction (M12, Figures 8 to 19).
-
-use std::sync::Arc;
 
 use gdcm_method::correction::ChannelCorrection;
 use gdcm_method::fidelity::CostAverage;
-use gdcm_method::schedule::{CostChange, ScheduleError, corrected_cost};
-use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Pair, PairTable};
-use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_method::schedule::{CostChange, ScheduleError};
+use gdcm_method::schedule::assessment::corrected_cost;
+use gdcm_model::dataset::{BundleKind, ConditionId, Pair, PairTable};
 use gdcm_model::response::GainDelay;
-use gdcm_model::units::{number, signed};
 
-use super::analysis::{Analysis, ConditionAnalysis};
+use super::analysis::{Analysis, ConditionAnalysis, NotAssessed};
+use super::caution::Undefined;
+use super::comparison::ModelMismatch;
 use crate::decisions::settings::Settings;
-use crate::jobs::job::{Job, Shared};
-use crate::stages::comparison::ModelMismatch;
-use crate::stages::execution::in_turn;
 
 /// The physics model that is assessed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -33,17 +29,17 @@ pub enum AssessedCorrection {
     /// The schedule at the condition's airspeed (the paper).
     #[default]
     Scheduled,
-    /// The schedule without the lead filters of its signed delays (M15).
+    /// The schedule without its signed delays' lead filters (M15).
     ScheduledWithoutLeads,
-    /// The schedule of the other conditions at the condition's airspeed: a prediction for a flight
-    /// not used in the fit.
+    /// The other conditions' schedule at the condition's airspeed: a prediction for a flight not
+    /// used in the fit.
     ScheduleOfOthers,
     /// The condition's own optimum.
     Own,
 }
 
 impl AssessedCorrection {
-    /// Returns the correction of a condition.
+    /// Returns a condition's correction.
     ///
     /// # Errors
     /// [`ScheduleError`] where the requested schedule does not exist.
@@ -52,78 +48,89 @@ impl AssessedCorrection {
         analysis: &Analysis,
         result: &ConditionAnalysis,
     ) -> Result<ChannelCorrection, ScheduleError> {
-        let id = result.condition.id();
         let state = result.condition.flight_state();
-        let scheduled = || {
-            analysis
-                .schedule
-                .as_ref()
-                .map(|schedule| schedule.at_state(state))
-                .map_err(|error| *error)
+        let schedule = match self {
+            Self::Own => return Ok(result.correction.clone()),
+            Self::ScheduleOfOthers => {
+                let others = analysis.schedule_without(result.condition.id())?;
+                return Ok(others.at_state(state));
+            }
+            Self::Scheduled | Self::ScheduledWithoutLeads => {
+                analysis.schedule.as_ref().map_err(|error| *error)?
+            }
         };
-        match self {
-            Self::Own => Ok(result.correction.clone()),
-            Self::Scheduled => scheduled(),
-            Self::ScheduledWithoutLeads => Ok(scheduled()?.without_leads()),
-            Self::ScheduleOfOthers => Ok(analysis.schedule_without(id)?.at_state(state)),
-        }
-    }
-
-    /// Returns the origin of the correction in words.
-    pub(crate) fn source(self, airspeed_kt: f64) -> String {
-        let at = format!("at {} kt", number(airspeed_kt));
-        match self {
-            Self::Own => "the condition's own optimum".to_owned(),
-            Self::Scheduled => format!("the schedule {at}"),
-            Self::ScheduledWithoutLeads => format!("the schedule {at}, its leads left out"),
-            Self::ScheduleOfOthers => format!("the schedule of the other conditions {at}"),
+        let scheduled = schedule.at_state(state);
+        if self == Self::ScheduledWithoutLeads {
+            Ok(scheduled.without_leads())
+        } else {
+            Ok(scheduled)
         }
     }
 }
 
-/// Choices of an assessment: model, correction and average.
+/// An assessment's choices: model, correction and average.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct AssessmentChoice {
     pub model: AssessedModel,
     pub correction: AssessedCorrection,
-    /// Average of squared errors over frequency in J.
+    /// How J averages squared errors over frequency.
     pub average: CostAverage,
 }
 
 impl AssessmentChoice {
     /// The paper's assessment: the nominal model under the schedule.
     pub(crate) fn of_paper(settings: &Settings) -> Self {
-        let model = AssessedModel::Nominal;
-        let correction = AssessedCorrection::Scheduled;
         Self {
-            model,
-            correction,
+            model: AssessedModel::Nominal,
+            correction: AssessedCorrection::Scheduled,
             average: settings.cost_average,
         }
     }
 }
 
-/// Assessment of one condition.
+/// A condition's assessment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessedCondition {
     pub condition: ConditionId,
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
     pub model: String,
-    /// J of each response before and after, against the identified representative.
+    /// J before and after against the identified representative, response by response.
     pub changes: PairTable<Option<CostChange>>,
     /// Why a response has no J.
-    pub missing: Vec<(Pair, String)>,
+    pub missing: Vec<(Pair, MissingCost)>,
 }
 
-/// A condition left out of an assessment, and why.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Why a response has no J before and after a correction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MissingCost {
+    /// The correction has no positive net gain for it.
+    NetGainNotPositive,
+    /// The representatives cannot be compared in it.
+    Undefined(Undefined),
+    /// The nominal model has no usable response.
+    NominalUndefined,
+}
+
+impl MissingCost {
+    /// Returns the stable code.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::NetGainNotPositive => "net-gain-not-positive",
+            Self::Undefined(why) => why.code(),
+            Self::NominalUndefined => "nominal-response-undefined",
+        }
+    }
+}
+
+/// A condition that an assessment leaves out, and why.
+#[derive(Clone, Debug, PartialEq)]
 pub struct LeftOut {
     pub condition: ConditionId,
-    pub why: String,
+    pub why: NotAssessed,
 }
 
-/// J before and after of every response of every condition (M12).
+/// J before and after, for every condition and response (M12).
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentTable {
     pub choice: AssessmentChoice,
@@ -131,42 +138,46 @@ pub struct AssessmentTable {
     pub left_out: Vec<LeftOut>,
 }
 
-/// Summary of an assessment: how many responses come closer, and which moves farthest away.
+/// An assessment's summary: how many responses come closer, and which moves farthest away.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentSummary {
-    /// Number of responses whose J decreases.
+    /// How many responses have a lower J.
     pub better: usize,
-    /// Number of responses compared, counted in each condition.
+    /// How many responses are compared, counted in each condition.
     pub compared: usize,
-    /// The response with the greatest change of J, and the change.
+    /// The response whose J rises most, and by how much.
     pub worst: Option<(ConditionId, Pair, f64)>,
 }
 
 impl AssessmentTable {
-    /// Assesses an analysis from its stored mismatches: two averages over frequency for each
-    /// response.
-    pub fn of(analysis: &Analysis, choice: AssessmentChoice) -> Self {
-        let mut table = Self {
+    /// Creates a table without conditions.
+    pub(crate) fn new(choice: AssessmentChoice) -> Self {
+        Self {
             choice,
             conditions: Vec::new(),
             left_out: Vec::new(),
-        };
-        analysis
-            .study
-            .dataset
-            .ids()
-            .for_each(|id| table.add(analysis, id));
+        }
+    }
+
+    /// Assesses an analysis from its stored mismatches: two averages over frequency for each
+    /// response.
+    pub fn of(analysis: &Analysis, choice: AssessmentChoice) -> Self {
+        let mut table = Self::new(choice);
+        for id in analysis.study.dataset.ids() {
+            table.add(analysis, id);
+        }
         table
     }
 
-    fn add(&mut self, analysis: &Analysis, condition: ConditionId) {
+    /// Assesses one more condition.
+    pub(crate) fn add(&mut self, analysis: &Analysis, condition: ConditionId) {
         match assessed(analysis, condition, self.choice) {
-            Ok(found) => self.conditions.push(found),
+            Ok(assessed) => self.conditions.push(assessed),
             Err(why) => self.left_out.push(LeftOut { condition, why }),
         }
     }
 
-    /// Returns J before and after of one response in one condition.
+    /// Returns a response's J before and after in a condition.
     pub fn change(&self, condition: ConditionId, pair: Pair) -> Option<CostChange> {
         self.conditions
             .iter()
@@ -174,7 +185,7 @@ impl AssessmentTable {
             .changes[pair]
     }
 
-    /// Summarises the assessment of the marked responses.
+    /// Summarises the marked responses' assessment.
     pub fn summary(&self, marked: &PairTable<bool>) -> AssessmentSummary {
         let mut summary = AssessmentSummary {
             better: 0,
@@ -182,12 +193,15 @@ impl AssessmentTable {
             worst: None,
         };
         for assessed in &self.conditions {
-            for (pair, change) in marked
-                .marked()
-                .filter_map(|pair| Some((pair, assessed.changes[pair]?.total())))
-            {
+            for pair in marked.marked() {
+                let Some(change) = assessed.changes[pair] else {
+                    continue;
+                };
+                let change = change.total();
                 summary.compared += 1;
-                summary.better += usize::from(change < 0.0);
+                if change < 0.0 {
+                    summary.better += 1;
+                }
                 if summary.worst.is_none_or(|(.., worst)| change > worst) {
                     summary.worst = Some((assessed.condition, pair, change));
                 }
@@ -197,107 +211,58 @@ impl AssessmentTable {
     }
 }
 
-impl AssessmentSummary {
-    /// Writes the sentence: "better in 41 of 50, worst PED → NY in condition 5: +12.3".
-    pub fn words(&self, dataset: &Dataset) -> String {
-        let Some((condition, pair, change)) = self.worst else {
-            return "nothing to assess".to_owned();
-        };
-        let pair = dataset.pair_name(pair);
-        let change = signed(change, 1);
-        format!(
-            "better in {} of {}, worst {pair} in condition {condition}: {change}",
-            self.better, self.compared
-        )
-    }
-}
-
-/// Compares the schedule on the held-out conditions with the conditions in its fit: "held out (3,
-/// 8): better in 9 of 10 on-axis responses, mean ΔJ −12.3; the others: better in 40 of 45, mean ΔJ
-/// −15.0". `None` where no condition is held out.
-pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option<String> {
-    let is_held_out = |id: ConditionId| analysis.study.choice(id).held_out;
-    let held_out = analysis.study.dataset.ids().filter(|id| is_held_out(*id));
-    let held_out: Vec<String> = held_out.map(|id| id.to_string()).collect();
-    if held_out.is_empty() {
-        return None;
-    }
-    let table = AssessmentTable::of(analysis, choice);
-    let measuring = analysis.study.dataset.measuring_pairs();
-    let words = |wanted: bool| {
-        let conditions = table
-            .conditions
-            .iter()
-            .filter(|of| is_held_out(of.condition) == wanted);
-        let changes = conditions.flat_map(|of| {
-            measuring
-                .marked()
-                .filter_map(|pair| Some(of.changes[pair]?.total()))
-        });
-        let changes: Vec<f64> = changes.collect();
-        if changes.is_empty() {
-            return "nothing to assess".to_owned();
-        }
-        let better = changes.iter().filter(|change| **change < 0.0).count();
-        let mean = changes.iter().sum::<f64>() / changes.len() as f64;
-        format!(
-            "better in {better} of {} responses, mean ΔJ {}",
-            changes.len(),
-            signed(mean, 1)
-        )
-    };
-    Some(format!(
-        "held out ({}): {}; the others: {}",
-        held_out.join(", "),
-        words(true),
-        words(false)
-    ))
-}
-
-/// Assesses one condition, or returns why it is left out.
-pub(crate) fn assessed(
+/// Assesses a condition.
+///
+/// # Errors
+/// [`NotAssessed`] where the condition is left out.
+pub fn assessed(
     analysis: &Analysis,
     id: ConditionId,
     choice: AssessmentChoice,
-) -> Result<AssessedCondition, String> {
-    let result = analysis.result(id);
+) -> Result<AssessedCondition, NotAssessed> {
     let condition = analysis
         .study
         .dataset
         .condition(id)
-        .ok_or("it was not analysed")?;
+        .ok_or(NotAssessed::NotAnalysed)?;
     let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()].name;
-    let by_nominal = choice.model == AssessedModel::Nominal;
-    if by_nominal && analysis.study.choice(id).physics.rejected.contains(nominal) {
-        return Err("the nominal model is rejected".to_owned());
+    let is_nominal = choice.model == AssessedModel::Nominal;
+    if is_nominal && analysis.study.choice(id).physics.rejected.contains(nominal) {
+        return Err(NotAssessed::NominalRejected);
     }
-    let result = result?;
-    let airspeed_kt = condition.flight_state().airspeed_kt;
+    let result = match analysis.conditions.get(&id) {
+        None => return Err(NotAssessed::NotAnalysed),
+        Some(Err(failure)) => return Err(NotAssessed::NoResult(failure.clone())),
+        Some(Ok(result)) => result,
+    };
     let correction = choice
         .correction
         .of(analysis, result)
-        .map_err(|error| error.to_string())?;
-    let models = if by_nominal {
-        &result.comparison.nominal
+        .map_err(NotAssessed::NoSchedule)?;
+    let (model, models) = if is_nominal {
+        (nominal.as_str(), &result.comparison.nominal)
     } else {
-        &result.comparison.representative
+        (
+            result.representative_name(BundleKind::Physics),
+            &result.comparison.representative,
+        )
     };
     let changes = changes(analysis, models, &correction, choice.average);
-    let model = if by_nominal {
-        nominal.as_str()
-    } else {
-        result.representative_name(BundleKind::Physics)
-    };
-    let missing = missing(result, models, &changes);
+    let missing = changes
+        .iter()
+        .filter(|(_, change)| change.is_none())
+        .map(|(pair, _)| (pair, missing_cost(result, models, pair)))
+        .collect();
     Ok(AssessedCondition {
         condition: id,
-        airspeed_kt,
+        airspeed_kt: condition.flight_state().airspeed_kt,
         model: model.to_owned(),
         changes,
         missing,
     })
 }
 
+/// Computes a model's J before and after a correction, response by response.
 fn changes(
     analysis: &Analysis,
     models: &ModelMismatch,
@@ -305,20 +270,15 @@ fn changes(
     average: CostAverage,
 ) -> PairTable<Option<CostChange>> {
     let omega = &analysis.omega;
-    let is_known = average == analysis.study.settings.cost_average;
+    // J before the correction is stored for the study's own average.
+    let is_stored = average == analysis.study.settings.cost_average;
     let corrected = corrected_cost(&models.mismatch, correction, omega, average);
     corrected.map(|pair, corrected| {
-        let uncorrected = || {
-            Some(
-                models.mismatch[pair]
-                    .as_ref()?
-                    .cost(omega, GainDelay::NONE, average),
-            )
-        };
-        let uncorrected = if is_known {
+        let uncorrected = if is_stored {
             models.cost[pair]?
         } else {
-            uncorrected()?
+            let mismatch = models.mismatch[pair].as_ref()?;
+            mismatch.cost(omega, GainDelay::NONE, average)
         };
         Some(CostChange {
             uncorrected,
@@ -327,48 +287,13 @@ fn changes(
     })
 }
 
-fn missing(
-    result: &ConditionAnalysis,
-    models: &ModelMismatch,
-    changes: &PairTable<Option<CostChange>>,
-) -> Vec<(Pair, String)> {
-    let without = changes
-        .iter()
-        .filter(|(_, change)| change.is_none())
-        .map(|(pair, _)| pair);
-    let why = |pair: Pair| {
-        match (&models.mismatch[pair], result.comparison.undefined[pair]) {
-        (Some(_), _) => "the scheduled net gain is not positive".to_owned(),
-        (None, Some(why)) => why.to_string(),
-        (None, None) => {
-            "the nominal model's response is zero, numerically nothing or not finite somewhere in the band".to_owned()
-        }
+/// Returns why a response has no J.
+fn missing_cost(result: &ConditionAnalysis, models: &ModelMismatch, pair: Pair) -> MissingCost {
+    if models.mismatch[pair].is_some() {
+        return MissingCost::NetGainNotPositive;
     }
-    };
-    without.map(|pair| (pair, why(pair))).collect()
-}
-
-/// Job for an assessment of hundreds of conditions, which may take longer than a frame.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AssessmentJob {
-    pub analysis: Shared<Analysis>,
-    pub choice: AssessmentChoice,
-}
-
-impl Job for AssessmentJob {
-    type Tools = ();
-    type Output = Arc<AssessmentTable>;
-
-    fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let mut table = AssessmentTable {
-            choice: self.choice,
-            conditions: Vec::new(),
-            left_out: Vec::new(),
-        };
-        let conditions = self.analysis.study.dataset.conditions();
-        in_turn(conditions, progress, |condition| {
-            table.add(&self.analysis, condition.id())
-        })?;
-        Ok(Arc::new(table))
+    match result.comparison.undefined[pair] {
+        Some(why) => MissingCost::Undefined(why),
+        None => MissingCost::NominalUndefined,
     }
 }

@@ -1,29 +1,30 @@
 //! A channel logged late in all records alike, detected against a physics model (M14, section 10).
 //!
-//! The records alone cannot distinguish a delay common to all of them from dynamics. Comparison
-//! with a physics model can, where the responses of one channel lag in proportion to frequency and
-//! those of the other channels do not.
+//! The records alone cannot distinguish a common delay from dynamics. Comparison with a physics
+//! model can, where the responses to or from a channel lag in proportion to frequency and the other
+//! responses do not.
 //!
 //! ```text
-//! 1  of each response that is coherent over half of the band:   phi = arg(measured / physics), unwrapped
+//! 1  each response that is coherent over half the band:   phi = arg(measured / physics), unwrapped
 //!       d = -sum W omega phi / sum W omega^2,   W = 1 / (var phi + (3 deg)^2)
-//! 2  of each output (a row of responses) and input (a column):
-//!       common = median of d over all other responses,   s = 1.48 median |d - common| over them
-//!       delay = median of d over its own - common
-//! 3  it is late where |delay| > t and |d - common - delay| <= t for each of its own, t = max(5 ms, 2.5 s),
+//! 2  each output (a row of responses) and input (a column):
+//!       common = median d of all other responses,   s = 1.48 median |d - common| over them
+//!       delay = median d of its own responses - common
+//! 3  late where |delay| > t and |d - common - delay| <= t for each own response, t = max(5 ms, 2.5 s),
 //!    and the delay explains four fifths of sum W (phi + omega common)^2
-//! 4  of two channels each is late where the other is early: the one with the least |common| is named
+//! 4  two channels, each late where the other is early: the channel with the least |common|
 //! ```
 //!
-//! `common`, the delay that all channels share, cannot be assigned to one channel: the leads report
-//! it (M15, section 6).
+//! `common`, the delay that all channels share, cannot be assigned to a channel: the leads report it
+//! (M15, section 6).
 
+use gdcm_model::statistics::median;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::{Band, BundleKind, Condition, Dataset, Dynamics, Pair};
 use gdcm_model::response::curve_values::unwrap;
-use gdcm_model::response::{FrequencyGrid, FrequencyResponse, median};
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 use gdcm_model::simulation::Signal;
-use gdcm_model::units::{s_to_ms, telling};
+use gdcm_sysid::spectra::response_estimate::EstimatePoint;
 use gdcm_sysid::identification::{ResponseEstimate, TRUSTED_COHERENCE};
 
 /// Least share of the points in the band at which a response must be coherent.
@@ -32,10 +33,10 @@ const LEAST_SHOWN: f64 = 0.5;
 const PHYSICS_SD: f64 = 3.0 * std::f64::consts::PI / 180.0;
 /// Least delay that is reported \[s\].
 const LEAST_S: f64 = 5e-3;
-/// Multiple of the scatter of the other responses beyond which a delay is significant.
+/// Delays beyond this multiple of the other responses' scatter are significant.
 const STANDS_OUT: f64 = 2.5;
-/// Ratio of the standard deviation to the median modulus of a normal scatter.
-const OF_MEDIAN: f64 = 1.4826;
+/// Ratio of the standard deviation to the median modulus for a normal distribution.
+const SD_OVER_MEDIAN: f64 = 1.4826;
 /// Greatest share of the squared phase that a delay may leave unexplained.
 const MOST_LEFT: f64 = 0.2;
 
@@ -50,25 +51,25 @@ pub struct ChannelTimeSkew {
 }
 
 impl ChannelTimeSkew {
-    /// Finds the channel whose delay explains the lag of a measured response against a physics
-    /// model; `None` where no delay is significant.
-    pub fn of(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Option<Self> {
-        let lags = lags(measured, band, physics)?;
+    /// Finds the channel whose delay explains the lag of a measured response in a band \[rad/s\]
+    /// against a physics model; `None` where no delay is significant.
+    pub fn find(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Option<Self> {
+        let lags = response_lags(measured, band, physics)?;
         let (outputs, inputs) = measured.points.first()?.response.shape();
-        let rows = (0..outputs).map(|index| (ChannelSide::Output, index, inputs));
-        let columns = (0..inputs).map(|index| (ChannelSide::Input, index, outputs));
-        let suspects: Vec<Suspect> = rows
-            .chain(columns)
-            .filter_map(|of| Suspect::of(&lags, of))
-            .collect();
+        let mut suspects = Vec::new();
+        for output in 0..outputs {
+            suspects.extend(Suspect::test(&lags, ChannelSide::Output, output, inputs));
+        }
+        for input in 0..inputs {
+            suspects.extend(Suspect::test(&lags, ChannelSide::Input, input, outputs));
+        }
         let most = suspects
             .iter()
             .map(|suspect| suspect.explained)
             .fold(0.0, f64::max);
-        let suspects = suspects
-            .into_iter()
-            .filter(|suspect| suspect.explained >= 0.5 * most);
+        suspects.retain(|suspect| suspect.explained >= 0.5 * most);
         suspects
+            .into_iter()
             .min_by(|a, b| a.common_s.abs().total_cmp(&b.common_s.abs()))
             .map(|suspect| suspect.channel)
     }
@@ -79,18 +80,16 @@ impl ChannelTimeSkew {
         band: [f64; 2],
         condition: &Condition,
     ) -> Option<Self> {
-        let nominal = condition
-            .bundle(BundleKind::Physics)
-            .get(condition.nominal())?;
-        Self::of(measured, band, &nominal.dynamics)
+        let models = condition.bundle(BundleKind::Physics);
+        let nominal = models.get(condition.nominal())?;
+        Self::find(measured, band, &nominal.dynamics)
     }
 
-    /// Returns the channel of a dataset.
+    /// Returns a dataset's channel.
     pub fn signal(&self, dataset: &Dataset) -> Option<Signal> {
-        let channels = if self.role == ChannelSide::Input {
-            dataset.inputs()
-        } else {
-            dataset.outputs()
+        let channels = match self.role {
+            ChannelSide::Input => dataset.inputs(),
+            ChannelSide::Output => dataset.outputs(),
         };
         let name = channels.get(self.index)?.name.clone();
         Some(Signal {
@@ -99,41 +98,89 @@ impl ChannelTimeSkew {
             name,
         })
     }
-
-    /// Returns the finding in words; `name` is the channel's name, `physics` the physics model's.
-    pub fn words(&self, name: &str, physics: &str) -> String {
-        let ms = telling(s_to_ms(self.delay_s.abs()), 0);
-        let how = if self.delay_s < 0.0 { "early" } else { "late" };
-        format!(
-            "{name} seems to be logged {ms} ms {how} in all records: against the physics model \"{physics}\" its responses differ as by a \
-             delay, and the others do not. That delay can be taken out. Leave it where the sensor or servo is as slow as that: the \
-             correction has a delay for it"
-        )
-    }
 }
 
-/// Lag of one response against that of a physics model.
+/// Phase difference at a frequency, with its weight.
+struct PhasePoint {
+    /// Frequency \[rad/s\].
+    omega: f64,
+    /// Phase \[rad\].
+    phase: f64,
+    weight: f64,
+}
+
+/// Lag of a response against that of a physics model.
 struct Lag {
     pair: Pair,
     delay_s: f64,
-    /// Frequency \[rad/s\], phase \[rad\] and weight.
-    phase: Vec<[f64; 3]>,
+    points: Vec<PhasePoint>,
 }
 
 impl Lag {
-    /// Returns `sum W (phi + omega d)^2`.
-    fn left(&self, delay_s: f64) -> f64 {
-        self.phase
+    /// Fits a response's delay; `None` where it is coherent at too few points.
+    fn fit(points: &[&EstimatePoint], physics: &FrequencyResponse, pair: Pair) -> Option<Self> {
+        let at = (pair.output, pair.input);
+        let mut angles = Vec::new();
+        let mut weighted = Vec::new();
+        for (point, modelled) in points.iter().zip(physics.curve(pair)) {
+            let measured = point.response[at];
+            let is_trusted = point.partial_coherence[at] >= TRUSTED_COHERENCE;
+            if !(is_trusted && modelled.norm() > 0.0 && measured.norm() > 0.0) {
+                continue;
+            }
+            angles.push((measured / modelled).arg());
+            let variance = 0.5 * point.variance[at] / measured.norm_sqr();
+            weighted.push((point.omega, 1.0 / (variance + PHYSICS_SD * PHYSICS_SD)));
+        }
+        if (angles.len() as f64) < LEAST_SHOWN * points.len() as f64 {
+            return None;
+        }
+        unwrap(&mut angles);
+        let points: Vec<PhasePoint> = angles
+            .into_iter()
+            .zip(weighted)
+            .map(|(phase, (omega, weight))| PhasePoint {
+                omega,
+                phase,
+                weight,
+            })
+            .collect();
+        let numerator: f64 = points
             .iter()
-            .map(|[omega, phase, weight]| weight * (phase + omega * delay_s).powi(2))
+            .map(|point| point.weight * point.omega * point.phase)
+            .sum();
+        let denominator: f64 = points
+            .iter()
+            .map(|point| point.weight * point.omega * point.omega)
+            .sum();
+        let delay_s = -numerator / denominator;
+        if !delay_s.is_finite() {
+            return None;
+        }
+        Some(Self {
+            pair,
+            delay_s,
+            points,
+        })
+    }
+
+    /// Returns `sum W (phi + omega d)^2`.
+    fn squared_phase(&self, delay_s: f64) -> f64 {
+        self.points
+            .iter()
+            .map(|point| point.weight * (point.phase + point.omega * delay_s).powi(2))
             .sum()
     }
 }
 
 /// Computes the lags of the responses that are coherent over half of the band; `None` where the
 /// physics model has no response at these frequencies.
-fn lags(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Option<Vec<Lag>> {
-    let points: Vec<_> = measured
+fn response_lags(
+    measured: &ResponseEstimate,
+    band: [f64; 2],
+    physics: &Dynamics,
+) -> Option<Vec<Lag>> {
+    let points: Vec<&EstimatePoint> = measured
         .points
         .iter()
         .filter(|point| (band[0]..=band[1]).contains(&point.omega))
@@ -141,56 +188,30 @@ fn lags(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Opti
     let first = points.first()?;
     let last = points.last()?;
     let grid = FrequencyGrid::logarithmic(Band::new(first.omega, last.omega).ok()?, points.len());
-    let same = grid.len() == points.len()
+    let is_same_grid = grid.len() == points.len()
         && grid
             .omega()
             .iter()
             .zip(&points)
             .all(|(omega, point)| (omega / point.omega - 1.0).abs() < 1e-9);
-    let physics = Some(FrequencyResponse::of(physics, &grid)).filter(|_| same)?;
+    if !is_same_grid {
+        return None;
+    }
+    let physics = FrequencyResponse::of(physics, &grid);
     let (outputs, inputs) = first.response.shape();
-    let lag = |pair: Pair| {
-        let at = (pair.output, pair.input);
-        let modelled = physics.curve(pair);
-        let trusted = points.iter().zip(modelled).filter(|(point, value)| {
-            point.partial_coherence[at] >= TRUSTED_COHERENCE
-                && value.norm() > 0.0
-                && point.response[at].norm() > 0.0
-        });
-        let mut angles = Vec::new();
-        let mut others = Vec::new();
-        for (point, value) in trusted {
-            angles.push((point.response[at] / value).arg());
-            let variance = 0.5 * point.variance[at] / point.response[at].norm_sqr();
-            others.push((point.omega, 1.0 / (variance + PHYSICS_SD * PHYSICS_SD)));
+    let mut lags = Vec::new();
+    for output in 0..outputs {
+        for input in 0..inputs {
+            lags.extend(Lag::fit(&points, &physics, Pair { output, input }));
         }
-        if (angles.len() as f64) < LEAST_SHOWN * points.len() as f64 {
-            return None;
-        }
-        unwrap(&mut angles);
-        let phase: Vec<[f64; 3]> = angles
-            .iter()
-            .zip(&others)
-            .map(|(phase, (omega, weight))| [*omega, *phase, *weight])
-            .collect();
-        let sum = |of: fn(&[f64; 3]) -> f64| phase.iter().map(of).sum::<f64>();
-        let delay_s = -sum(|[omega, phase, weight]| weight * omega * phase)
-            / sum(|[omega, _, weight]| weight * omega * omega);
-        delay_s.is_finite().then_some(Lag {
-            pair,
-            delay_s,
-            phase,
-        })
-    };
-    let pairs =
-        (0..outputs).flat_map(|output| (0..inputs).map(move |input| Pair { output, input }));
-    Some(pairs.filter_map(lag).collect())
+    }
+    Some(lags)
 }
 
 /// A channel with a significant delay.
 struct Suspect {
     channel: ChannelTimeSkew,
-    /// Delay common to the others \[s\].
+    /// Median delay of the other responses \[s\].
     common_s: f64,
     /// Squared phase explained by its delay.
     explained: f64,
@@ -198,35 +219,37 @@ struct Suspect {
 
 impl Suspect {
     /// Tests a channel with this many responses for a delay.
-    fn of(lags: &[Lag], (role, index, responses): (ChannelSide, usize, usize)) -> Option<Self> {
-        let is_own = |lag: &&Lag| match role {
+    fn test(lags: &[Lag], role: ChannelSide, index: usize, responses: usize) -> Option<Self> {
+        let (own, others): (Vec<&Lag>, Vec<&Lag>) = lags.iter().partition(|lag| match role {
             ChannelSide::Output => lag.pair.output == index,
             ChannelSide::Input => lag.pair.input == index,
-        };
-        let (own, others): (Vec<&Lag>, Vec<&Lag>) = lags.iter().partition(is_own);
+        });
         if own.len() < 2 || 2 * own.len() <= responses || others.len() < 2 {
             return None;
         }
-        let middle = |of: &mut dyn Iterator<Item = f64>| median(&mut of.collect::<Vec<f64>>());
-        let common_s = middle(&mut others.iter().map(|lag| lag.delay_s));
-        let scatter_s =
-            OF_MEDIAN * middle(&mut others.iter().map(|lag| (lag.delay_s - common_s).abs()));
-        let delay_s = middle(&mut own.iter().map(|lag| lag.delay_s)) - common_s;
+        let common_s = median_of(others.iter().map(|lag| lag.delay_s));
+        let deviations_s = others.iter().map(|lag| (lag.delay_s - common_s).abs());
+        let scatter_s = SD_OVER_MEDIAN * median_of(deviations_s);
+        let late_s = median_of(own.iter().map(|lag| lag.delay_s)) - common_s;
         let tolerance_s = LEAST_S.max(STANDS_OUT * scatter_s);
-        let agree = own
+        let agrees = own
             .iter()
-            .all(|lag| (lag.delay_s - common_s - delay_s).abs() <= tolerance_s);
-        let left = |delay_s: f64| own.iter().map(|lag| lag.left(delay_s)).sum::<f64>();
-        let before = left(common_s);
-        let after = left(common_s + delay_s);
-        let is_late = delay_s.abs() > tolerance_s && agree && after <= MOST_LEFT * before;
+            .all(|lag| (lag.delay_s - common_s - late_s).abs() <= tolerance_s);
+        let before: f64 = own.iter().map(|lag| lag.squared_phase(common_s)).sum();
+        let after: f64 = own
+            .iter()
+            .map(|lag| lag.squared_phase(common_s + late_s))
+            .sum();
+        let is_significant = late_s.abs() > tolerance_s && agrees && after <= MOST_LEFT * before;
+        if !is_significant {
+            return None;
+        }
         // The responses to an input that is logged late are early.
-        let delay_s = if role == ChannelSide::Output {
-            delay_s
-        } else {
-            -delay_s
+        let delay_s = match role {
+            ChannelSide::Output => late_s,
+            ChannelSide::Input => -late_s,
         };
-        is_late.then_some(Self {
+        Some(Self {
             channel: ChannelTimeSkew {
                 role,
                 index,
@@ -236,4 +259,8 @@ impl Suspect {
             explained: before - after,
         })
     }
+}
+
+fn median_of(values: impl Iterator<Item = f64>) -> f64 {
+    median(&mut values.collect::<Vec<f64>>())
 }

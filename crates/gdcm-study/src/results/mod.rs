@@ -1,22 +1,26 @@
-//! Results and their typed facts: analyses, remarks, cautions, assessments, requirements, and their tables.
+//! Results as typed facts: an analysis with its comparisons, cautions, couplings and uncertainty; and
+//! what follows from a finished analysis: assessments, requirements, time histories.
 
 pub mod analysis;
+pub mod asked_condition;
 pub mod assessment_table;
 pub mod caution;
 pub mod channel_time_skew;
+pub mod comparison;
 pub mod condition_answers;
 pub mod convention_doubt;
+pub mod coupled_model;
 pub mod couplings_assessment;
-#[cfg(test)]
-mod couplings_tests;
-pub mod couplings_words;
-pub mod derivation;
-pub mod remark;
+pub mod fitted_couplings;
+pub mod lead_compensation;
+pub mod model_swap;
+pub mod record_comparison;
+pub mod reported_error;
 pub mod required_bandwidth;
 pub mod required_modes;
+pub mod requirement_role;
 pub mod requirements;
-pub mod requirements_tables;
 pub mod schedule_losses;
-pub mod table;
+pub mod scheduled_conditions;
 pub mod time_histories;
-pub mod time_history_tables;
+pub mod uncertainty;

@@ -1,5 +1,5 @@
-//! The modes of the physics representative, without and with the couplings of the study, against
-//! those of the identified representative, where the matrices of both are known (M17.3).
+//! The physics representative's modes, without and with the study's couplings, against the
+//! identified representative's, where both models' matrices are known (M17.3).
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use gdcm_method::correction::Pade;
 use gdcm_method::requirements::mode_comparison::{
-    ComparedMode, ModeRow, ModeTolerance, ModeValues, ModelModes, compare_modes,
+    ComparedMode, ModeTolerance, ModeValues, ModelModes, compare_modes,
 };
 use gdcm_method::requirements::{ModeName, ModeVerdict, NamedBy};
 use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics, Model};
@@ -15,9 +15,9 @@ use gdcm_model::response::Mode;
 use gdcm_model::response::eigenvalues::modes_of;
 use gdcm_model::response::pole_estimate::PoleEstimate;
 
-use super::requirements::AskedCondition;
+use super::asked_condition::AskedCondition;
 
-/// Identified poles of conditions with their uncertainty, which a dataset does not store.
+/// Identified poles with their uncertainty, which a dataset does not store.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KnownPoles(BTreeMap<ConditionId, Vec<PoleEstimate>>);
 
@@ -28,19 +28,22 @@ impl FromIterator<(ConditionId, Vec<PoleEstimate>)> for KnownPoles {
 }
 
 impl KnownPoles {
-    /// Returns the poles of a condition; empty where no model was identified for it.
-    fn of(&self, condition: ConditionId) -> &[PoleEstimate] {
-        self.0.get(&condition).map_or(&[], Vec::as_slice)
+    /// Returns a condition's poles; empty where no model was identified for it.
+    fn poles(&self, condition: ConditionId) -> &[PoleEstimate] {
+        match self.0.get(&condition) {
+            Some(poles) => poles,
+            None => &[],
+        }
     }
 }
 
-/// A mode of one model.
+/// A model's mode.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModeNumbers {
     pub model: String,
-    /// Real part of its pole \[rad/s\].
+    /// Its pole's real part \[rad/s\].
     pub pole_real_rad_s: f64,
-    /// Imaginary part of its pole \[rad/s\], not negative.
+    /// Its pole's imaginary part \[rad/s\], not negative.
     pub pole_imaginary_rad_s: f64,
     #[serde(flatten)]
     pub values: ModeValues,
@@ -49,24 +52,24 @@ pub struct ModeNumbers {
 }
 
 impl ModeNumbers {
-    fn of(mode: &ComparedMode, model: &str) -> Self {
+    fn new(mode: &ComparedMode, model: &str) -> Self {
         let values = mode.values;
-        let reasons = [
-            ("period_s", values.period_s, "it does not oscillate"),
-            (
-                "time_to_half_s",
-                values.time_to_half_s,
-                "it neither decays nor grows",
-            ),
-            ("damping_ratio", values.damping_ratio, "its pole is at zero"),
-        ];
-        let absent = reasons.into_iter().filter(|(_, value, _)| value.is_none());
+        let mut absent = BTreeMap::new();
+        if values.period_s.is_none() {
+            absent.insert("period_s", "it does not oscillate");
+        }
+        if values.time_to_half_s.is_none() {
+            absent.insert("time_to_half_s", "it neither decays nor grows");
+        }
+        if values.damping_ratio.is_none() {
+            absent.insert("damping_ratio", "its pole is at zero");
+        }
         Self {
             model: model.to_owned(),
             pole_real_rad_s: mode.pole.re,
             pole_imaginary_rad_s: mode.pole.im,
             values,
-            absent: absent.map(|(name, _, why)| (name, why)).collect(),
+            absent,
         }
     }
 
@@ -82,28 +85,28 @@ impl ModeNumbers {
     }
 }
 
-/// A mode of the identified representative, and the matching modes of the physics representative.
+/// An identified mode, and the physics modes that match it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModeFinding {
     pub condition: ConditionId,
     /// Its true airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// Number of the mode in this condition, from 1, by rising frequency.
+    /// The mode's number in this condition, from 1, by rising frequency.
     pub number: usize,
     /// Its name; `None` where neither states nor frequency determine it.
     pub name: Option<ModeName>,
-    /// Basis of the name; a name by frequency and damping alone is a guess.
+    /// What the name is based on; a name by frequency and damping alone is a guess.
     pub named_by: NamedBy,
     /// Verdict on the physics mode.
     pub verdict: ModeVerdict,
     pub identified: ModeNumbers,
-    /// Standard deviations of its numbers; `None` where the source identification is unknown.
+    /// Its numbers' standard deviations; `None` where the source identification is unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub identified_deviation: Option<ModeValues>,
-    /// The matching mode of the physics representative, where there is one.
+    /// The physics representative's matching mode, if any.
     pub physics: Option<ModeNumbers>,
-    /// Verdict with the couplings of the study; `None` without couplings, because gains and delays
-    /// move no pole.
+    /// Verdict with the study's couplings; `None` without couplings, because gains and delays move
+    /// no pole.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corrected_verdict: Option<ModeVerdict>,
     /// The matching mode with the couplings; `None` also without couplings.
@@ -113,7 +116,7 @@ pub struct ModeFinding {
     pub tolerance: Option<ModeTolerance>,
 }
 
-/// Compares the modes of a condition.
+/// Compares a condition's modes.
 ///
 /// # Errors
 /// The reason in words why there are no modes.
@@ -121,78 +124,75 @@ pub(crate) fn mode_findings(
     asked: &AskedCondition<'_>,
     known: &KnownPoles,
 ) -> Result<Vec<ModeFinding>, String> {
-    let tolerances = &asked.analysis.study.requirements.mode_tolerances;
     let [physics, identified] =
         BundleKind::BOTH.map(|kind| asked.result.representative_model(kind));
-    let of_physics = known_modes(physics)?;
-    let of_identified = known_modes(identified)?;
-    let of_corrected = coupled_modes(asked, physics)?;
+    let physics_modes = known_modes(physics)?;
+    let identified_modes = known_modes(identified)?;
+    let coupled_modes = coupled_modes(asked, physics)?;
     let flown = ModelModes {
-        modes: &of_identified,
+        modes: &identified_modes,
         states: &identified.states,
     };
-    let models: Vec<ModelModes<'_>> = std::iter::once(&of_physics)
-        .chain(&of_corrected)
+    let models: Vec<ModelModes<'_>> = std::iter::once(&physics_modes)
+        .chain(&coupled_modes)
         .map(|modes| ModelModes {
             modes,
             states: &physics.states,
         })
         .collect();
+    let study = &asked.analysis.study;
     let rows = compare_modes(
         flown,
         &models,
-        known.of(asked.id()),
-        asked.analysis.study.settings.band,
-        tolerances,
+        known.poles(asked.id()),
+        study.settings.band,
+        &study.requirements.mode_tolerances,
     );
-    let numbers = |row: &ModeRow, of: usize| {
-        row.models
-            .get(of)
-            .copied()
-            .flatten()
-            .map(|mode| ModeNumbers::of(&mode, &physics.name))
-    };
-    let finding = |(index, row): (usize, ModeRow)| ModeFinding {
-        condition: asked.id(),
-        airspeed_kt: asked.airspeed_kt(),
-        number: index + 1,
-        name: row.name,
-        named_by: row.named_by,
-        verdict: row
-            .verdicts
-            .first()
-            .copied()
-            .unwrap_or(ModeVerdict::NotPaired),
-        identified: ModeNumbers::of(&row.flown, &identified.name),
-        identified_deviation: row.deviation,
-        physics: numbers(&row, 0),
-        corrected_verdict: row.verdicts.get(1).copied(),
-        corrected: numbers(&row, 1),
-        tolerance: row.tolerance,
-    };
-    Ok(rows.into_iter().enumerate().map(finding).collect())
+    let mut findings = Vec::new();
+    for row in rows {
+        let numbers = |model: usize| {
+            let mode = row.models.get(model).copied().flatten()?;
+            Some(ModeNumbers::new(&mode, &physics.name))
+        };
+        findings.push(ModeFinding {
+            condition: asked.id(),
+            airspeed_kt: asked.airspeed_kt(),
+            number: findings.len() + 1,
+            name: row.name,
+            named_by: row.named_by,
+            verdict: match row.verdicts.first() {
+                Some(verdict) => *verdict,
+                None => ModeVerdict::NotPaired,
+            },
+            identified: ModeNumbers::new(&row.flown, &identified.name),
+            identified_deviation: row.deviation,
+            physics: numbers(0),
+            corrected_verdict: row.verdicts.get(1).copied(),
+            corrected: numbers(1),
+            tolerance: row.tolerance,
+        });
+    }
+    Ok(findings)
 }
 
-/// Returns the modes of a physics model with the couplings of the study; `None` without couplings.
+/// Returns a physics model's modes with the study's couplings; `None` without couplings.
 fn coupled_modes(asked: &AskedCondition<'_>, physics: &Model) -> Result<Option<Vec<Mode>>, String> {
-    let Some(matrices) = physics
-        .state_space()
-        .filter(|_| asked.result.coupled.is_some())
-    else {
+    let Some(matrices) = physics.state_space() else {
         return Ok(None);
     };
-    let named =
-        |error: &dyn std::fmt::Display| format!("\"{}\" with couplings: {error}", physics.name);
+    if asked.result.coupled.is_none() {
+        return Ok(None);
+    }
     let coupled = asked
         .result
         .coupled_model(matrices, Pade::default())
-        .map_err(|error| named(&error))?;
-    modes_of(&Dynamics::StateSpace(coupled.into_owned()))
-        .map(Some)
-        .map_err(|error| named(&error))
+        .map_err(|error| format!("\"{}\" with couplings: {error}", physics.name))?;
+    let modes = modes_of(&Dynamics::StateSpace(coupled.into_owned()))
+        .map_err(|error| format!("\"{}\" with couplings: {error}", physics.name))?;
+    Ok(Some(modes))
 }
 
-/// Returns the modes of a model, or why they are unknown.
+/// Returns a model's modes, or why they are unknown.
 fn known_modes(model: &Model) -> Result<Vec<Mode>, String> {
     if model.state_space().is_none() {
         return Err(format!(
@@ -209,9 +209,9 @@ mod tests {
     use gdcm_method::requirements::mode_pairing::LARGEST_PAIR_DISTANCE;
 
     use super::*;
-    use crate::results::couplings_tests::EXAMPLE;
+    use crate::execution::Execution;
+    use crate::jobs::couplings_tests::EXAMPLE;
     use crate::results::requirements::requirements_of;
-    use crate::stages::execution::Execution;
 
     #[test]
     fn modes_of_the_example_are_paired_and_named_once_and_within_the_distance() {
@@ -276,12 +276,6 @@ mod tests {
             .find(judged)
             .expect("a Dutch roll within the band");
         assert_eq!(mode.identified_deviation, None);
-        assert!(
-            unknown
-                .mode_table(mode.condition)
-                .title
-                .contains("not known")
-        );
         let verdict = |sd: f64, moved: f64| {
             let numbers = &mode.identified;
             let pole = nalgebra::Complex::new(

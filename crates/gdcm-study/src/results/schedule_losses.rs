@@ -1,26 +1,26 @@
-//! Losses of the schedule against the conditions' own corrections: omitted delays, and J.
+//! What the schedule loses against the conditions' own corrections: omitted delays, and J.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::assessment::corrected_cost_on;
-use gdcm_method::schedule::{ScheduleCaution, ScheduledCost};
-use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Pair};
-use gdcm_model::units::s_to_ms;
+use gdcm_method::schedule::ScheduleCaution;
+use gdcm_method::schedule::caution::ScheduledCost;
+use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
 
 use super::analysis::{Analysis, ConditionAnalysis};
-use crate::stages::comparison::ModelMismatch;
+use super::comparison::ModelMismatch;
 
 /// Delay \[s\] below which a channel counts as having none: it is displayed as 0.0 ms.
 const NO_DELAY_S: f64 = 5e-5;
 
-/// A channel that has a delay in the own corrections of some conditions.
+/// A channel with a delay in some conditions' own corrections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DelayedChannel {
     pub channel: Channel,
-    /// Its delay in each of these conditions, the longest first.
+    /// Its delay in each such condition, the longest first.
     pub delays: Vec<OwnDelay>,
 }
 
-/// The delay of a channel in a condition's own correction.
+/// A channel's delay in a condition's own correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnDelay {
     pub condition: ConditionId,
@@ -28,36 +28,8 @@ pub struct OwnDelay {
     pub delay_s: f64,
 }
 
-impl DelayedChannel {
-    /// Describes the delay: "delay of output NX: 5.3 ms in condition 4".
-    pub fn words(&self, dataset: &Dataset) -> String {
-        let side = match self.channel {
-            Channel::Input(_) => "input",
-            Channel::Output(_) => "output",
-        };
-        let name = self.channel.name_in(dataset);
-        let Some(longest) = self.delays.first() else {
-            return format!("delay of {side} {name}: none");
-        };
-        let delay_ms = s_to_ms(longest.delay_s);
-        let condition = longest.condition;
-        match self.delays.len() {
-            1 => format!("delay of {side} {name}: {delay_ms:.1} ms in condition {condition}"),
-            2 => format!(
-                "delay of {side} {name}: up to {delay_ms:.1} ms, in condition {condition} and in 1 other"
-            ),
-            count => {
-                let others = count - 1;
-                format!(
-                    "delay of {side} {name}: up to {delay_ms:.1} ms, in condition {condition} and in {others} others"
-                )
-            }
-        }
-    }
-}
-
 impl Analysis {
-    /// Returns the channels with a delay in the own correction of one of these conditions.
+    /// Returns the channels with a delay in these conditions' own corrections.
     pub fn delayed_channels(&self, conditions: &[ConditionId]) -> Vec<DelayedChannel> {
         let mut found = Vec::new();
         for channel in Channel::all_of(&self.study.dataset) {
@@ -79,8 +51,8 @@ impl Analysis {
         found
     }
 
-    /// Returns the delays of the scheduled conditions that the schedule omits; empty where it has
-    /// delays, and where there is no schedule.
+    /// Returns the scheduled conditions' delays that the schedule omits; empty where it has delays,
+    /// and where there is no schedule.
     pub fn unscheduled_delays(&self) -> Vec<DelayedChannel> {
         match &self.schedule {
             Ok(schedule) if !schedule.has_delays() => self.delayed_channels(&self.scheduled()),
@@ -89,8 +61,8 @@ impl Analysis {
     }
 }
 
-/// Returns cautions about the conditions with more than twice the J of their own correction under
-/// the schedule (M12).
+/// Returns cautions about conditions where the schedule leads to more than twice the J that their
+/// own correction reaches (M12).
 pub(crate) fn schedule_cost_cautions(analysis: &Analysis) -> Vec<ScheduleCaution> {
     let mut cautions = Vec::new();
     for result in analysis
@@ -105,9 +77,9 @@ pub(crate) fn schedule_cost_cautions(analysis: &Analysis) -> Vec<ScheduleCaution
     cautions
 }
 
-/// Returns J of a condition under the schedule and under its own correction: of the nominal model,
-/// or of the representative where the nominal model is rejected. `None` without a schedule, or
-/// where no on-axis response can be compared.
+/// Returns a condition's J under the schedule and under its own correction, for the nominal model,
+/// or the representative where the nominal model is rejected. `None` without a schedule, or where
+/// no on-axis response can be compared.
 fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<ScheduledCost> {
     let schedule = analysis.schedule.as_ref().ok()?;
     let condition = &result.condition;
@@ -147,7 +119,7 @@ fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<Sch
     })
 }
 
-/// Returns J of a response of a model under a correction.
+/// Returns a model's J in a response under a correction.
 fn cost_of(
     analysis: &Analysis,
     models: &ModelMismatch,
@@ -159,7 +131,7 @@ fn cost_of(
     Some(corrected_cost_on(mismatch, correction, pair, &analysis.omega, average)?.total())
 }
 
-/// Sum of J over some responses.
+/// Sums J over responses.
 #[derive(Default)]
 struct CostSum {
     scheduled: f64,

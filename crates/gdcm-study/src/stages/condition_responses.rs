@@ -1,45 +1,41 @@
-//! Frequency responses of every model of a condition, each cached by its inputs.
+//! A condition's frequency responses, each cached by its inputs.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
-use gdcm_method::correction::lead_price::ABOVE_BAND;
 use gdcm_model::dataset::model::ContentHash;
 use gdcm_model::dataset::{Band, BundleKind, Condition, Model};
 use gdcm_model::progress::Cancelled;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
-use super::execution::{Execution, Memo};
-use super::fitted_couplings::FittedCouplings;
-use crate::decisions::settings::{PhaseCorrection, Settings};
-use crate::results::analysis::ConditionAnalysis;
+use crate::execution::{Execution, Memo};
+use crate::results::fitted_couplings::FittedCouplings;
 
-/// Dependencies of a response besides the numbers of its model: the band and the number of
-/// frequencies in it.
-pub(crate) type GridKey = (Band, usize);
+/// What a response depends on besides its model's numbers: the band, and how many frequencies it
+/// has.
+pub type GridKey = (Band, usize);
 
-/// Purpose of a response. The last response for each purpose is cached.
+/// What a response is for. The last response for each purpose is cached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// Comparison of models, in the band of comparison.
+    /// Comparing models, in the comparison band.
     Comparison,
     /// Drawing, in a wider band.
     Drawing,
 }
 
-/// Responses of every model of a condition on one grid.
+/// A condition's responses on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionResponses {
-    /// Responses of the physics models, in file order.
+    /// The physics models' responses, in file order.
     pub physics: Vec<Arc<FrequencyResponse>>,
-    /// Responses of the identified models, in file order.
+    /// The identified models' responses, in file order.
     pub identified: Vec<Arc<FrequencyResponse>>,
-    /// Responses of the physics models with couplings, where there are any.
+    /// The physics models' responses with couplings, where there are any.
     coupled: Option<CoupledResponses>,
 }
 
-/// Responses of the physics models of a condition with mixing and feedback (M16.3), each computed
-/// on first use.
+/// A condition's physics responses with mixing and feedback (M16.3), each computed on first use.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CoupledResponses {
     couplings: Arc<FittedCouplings>,
@@ -57,25 +53,24 @@ impl CoupledResponses {
             made,
         }
     }
+
+    /// Returns `H~` for a model with the response `physics`.
+    fn response(&self, model: usize, physics: &FrequencyResponse) -> Arc<FrequencyResponse> {
+        let coupled = self.made[model].get_or_init(|| {
+            let matrices = self.couplings.matrices();
+            Arc::new(matrices.response(physics, self.airspeed_kt))
+        });
+        Arc::clone(coupled)
+    }
 }
 
 impl ConditionResponses {
-    /// Returns the response of a model for comparison and correction: `H` of an identified model,
-    /// `H~` of a physics model, equal to `H` without couplings (M16.3).
+    /// Returns a model's response for comparison and correction: `H` if identified, `H~` if
+    /// physics, equal to `H` without couplings (M16.3).
     pub(crate) fn compared(&self, kind: BundleKind, model: usize) -> Arc<FrequencyResponse> {
         let response = &self.bundle(kind)[model];
         match &self.coupled {
-            Some(coupled) if kind == BundleKind::Physics => {
-                let couple = || {
-                    Arc::new(
-                        coupled
-                            .couplings
-                            .matrices()
-                            .response(response, coupled.airspeed_kt),
-                    )
-                };
-                Arc::clone(coupled.made[model].get_or_init(couple))
-            }
+            Some(coupled) if kind == BundleKind::Physics => coupled.response(model, response),
             _ => Arc::clone(response),
         }
     }
@@ -88,24 +83,24 @@ impl ConditionResponses {
         }
     }
 
-    /// Computes the responses of every model of `condition` on `points` frequencies of `band`.
+    /// Computes the responses of every model in the band.
     pub fn of(
         condition: &Arc<Condition>,
-        (band, points): (Band, usize),
+        key: GridKey,
         execution: &Execution<'_>,
     ) -> Result<Self, Cancelled> {
-        let models = ConditionModels::of(condition, &KnownModels::default());
-        let grid = FrequencyGrid::logarithmic(band, points);
-        models.responses(Purpose::Comparison, (band, points), &grid, execution)
+        let models = ConditionModels::new(condition, &KnownModels::default());
+        let grid = FrequencyGrid::logarithmic(key.0, key.1);
+        models.responses(Purpose::Comparison, key, &grid, execution)
     }
 
-    /// Returns the responses of one bundle.
+    /// Returns a bundle's responses.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
         kind.pick(&self.physics, &self.identified)
     }
 }
 
-/// The last responses of one model, and the model prepared for them.
+/// A model's last responses, and the model prepared for them.
 #[derive(Debug, Default)]
 struct ModelResponses {
     prepared: OnceLock<PreparedModel>,
@@ -136,9 +131,9 @@ impl ModelResponses {
     }
 }
 
-/// The models used by some condition of some engine, keyed by their numbers: a model that stays, or
-/// returns under another name or in another place, keeps its responses. Engines of one study that
-/// share them ([`super::engine::Engine::sharing`]) compute and store each only once.
+/// All engines' models, keyed by their numbers: a model that stays, or returns under another name
+/// or in another place, keeps its responses. A study's engines that share them
+/// ([`Engine::sharing`](super::engine::Engine::sharing)) compute and store each only once.
 #[derive(Clone, Debug, Default)]
 pub struct KnownModels {
     by_content: Arc<Mutex<HashMap<ContentHash, Weak<ModelResponses>>>>,
@@ -168,20 +163,32 @@ impl KnownModels {
     }
 }
 
-/// The models of a condition with their responses.
+/// A condition's models with their responses.
 #[derive(Clone, Debug)]
 pub(crate) struct ConditionModels {
     condition: Arc<Condition>,
-    /// Hash and responses of each model of both bundles, the physics models first.
-    models: Vec<(ContentHash, Arc<ModelResponses>)>,
+    /// Both bundles' models, the physics models first.
+    models: Vec<HashedModel>,
+}
+
+/// A model's hash, and its responses.
+#[derive(Clone, Debug)]
+struct HashedModel {
+    content: ContentHash,
+    responses: Arc<ModelResponses>,
 }
 
 impl ConditionModels {
-    /// Collects the models of `condition`; known models bring their responses.
-    pub(crate) fn of(condition: &Arc<Condition>, known: &KnownModels) -> Self {
-        let contents = models_of(condition).map(|model| ContentHash::of(&model.dynamics));
-        let models = contents
-            .map(|content| (content, known.responses_of(content)))
+    /// Collects a condition's models; known models bring their responses.
+    pub(crate) fn new(condition: &Arc<Condition>, known: &KnownModels) -> Self {
+        let models = models_of(condition)
+            .map(|model| {
+                let content = ContentHash::new(&model.dynamics);
+                HashedModel {
+                    content,
+                    responses: known.responses_of(content),
+                }
+            })
             .collect();
         Self {
             condition: Arc::clone(condition),
@@ -194,34 +201,32 @@ impl ConditionModels {
         &self.condition
     }
 
-    /// Returns the hash of the numbers of a model.
+    /// Hashes a model's numbers.
     pub(crate) fn content(&self, kind: BundleKind, model: usize) -> ContentHash {
         let before = if kind == BundleKind::Physics {
             0
         } else {
             self.condition.bundle(BundleKind::Physics).len()
         };
-        self.models[before + model].0
+        self.models[before + model].content
     }
 
     /// Returns whether the bundles contain the same models, by name, origin and numbers, in the
     /// same order.
     pub(crate) fn are_the_same_as(&self, other: &Self) -> bool {
-        let contents = |models: &Self| {
-            models
-                .models
-                .iter()
-                .map(|(content, _)| *content)
-                .collect::<Vec<_>>()
-        };
-        let named = |condition| models_of(condition).map(|model| (&model.name, &model.origin));
-        let physics = |models: &Self| models.condition.bundle(BundleKind::Physics).len();
-        physics(self) == physics(other)
-            && contents(self) == contents(other)
-            && named(&self.condition).eq(named(&other.condition))
+        let [own, others] = [self, other].map(|models| {
+            let contents: Vec<ContentHash> =
+                models.models.iter().map(|model| model.content).collect();
+            let physics = models.condition.bundle(BundleKind::Physics).len();
+            (physics, contents)
+        });
+        own == others
+            && models_of(&self.condition)
+                .zip(models_of(&other.condition))
+                .all(|(a, b)| a.name == b.name && a.origin == b.origin)
     }
 
-    /// Computes the responses of every model, model by model; each is a step.
+    /// Computes every model's responses, model by model; each is a step.
     pub(crate) fn responses(
         &self,
         purpose: Purpose,
@@ -229,28 +234,27 @@ impl ConditionModels {
         grid: &FrequencyGrid,
         execution: &Execution<'_>,
     ) -> Result<ConditionResponses, Cancelled> {
-        let physics = self.condition.bundle(BundleKind::Physics);
-        let bundle = |models: &[Model], responses: &[(ContentHash, Arc<ModelResponses>)]| {
-            let kept: Option<Vec<_>> = responses
+        let (physics, identified) = self
+            .models
+            .split_at(self.condition.bundle(BundleKind::Physics).len());
+        let bundle = |kind, hashed: &[HashedModel]| {
+            let models = self.condition.bundle(kind);
+            let kept: Option<Vec<Arc<FrequencyResponse>>> = hashed
                 .iter()
-                .map(|(_, responses)| responses.last(purpose).kept(&key).cloned())
+                .map(|model| model.responses.last(purpose).kept(&key).cloned())
                 .collect();
-            match kept {
-                Some(kept) => {
-                    execution.step(kept.len());
-                    Ok(kept)
-                }
-                None => execution.each(models.len(), 1, |index| {
-                    responses[index]
-                        .1
-                        .response(&models[index], purpose, key, grid)
-                }),
+            if let Some(kept) = kept {
+                execution.step(kept.len());
+                return Ok(kept);
             }
+            execution.each(models.len(), 1, |index| {
+                let responses = &hashed[index].responses;
+                responses.response(&models[index], purpose, key, grid)
+            })
         };
-        let (of_physics, of_identified) = self.models.split_at(physics.len());
-        let identified = bundle(self.condition.bundle(BundleKind::Identified), of_identified)?;
+        let identified = bundle(BundleKind::Identified, identified)?;
         Ok(ConditionResponses {
-            physics: bundle(physics, of_physics)?,
+            physics: bundle(BundleKind::Physics, physics)?,
             identified,
             coupled: None,
         })
@@ -258,8 +262,8 @@ impl ConditionModels {
 
     /// Drops the responses computed for drawing.
     pub(crate) fn forget_drawn(&self) {
-        for (_, responses) in &self.models {
-            *responses.last(Purpose::Drawing) = Memo::default();
+        for model in &self.models {
+            *model.responses.last(Purpose::Drawing) = Memo::default();
         }
     }
 }
@@ -268,99 +272,4 @@ fn models_of(condition: &Condition) -> impl Iterator<Item = &Model> {
     BundleKind::BOTH
         .into_iter()
         .flat_map(|kind| condition.bundle(kind))
-}
-
-/// Responses of every model of a condition on a grid for drawing.
-#[derive(Debug)]
-pub struct ConditionCurves {
-    /// The condition; its models define the order of the responses.
-    pub condition: Arc<Condition>,
-    pub grid: FrequencyGrid,
-    pub physics: Vec<Arc<FrequencyResponse>>,
-    pub identified: Vec<Arc<FrequencyResponse>>,
-    /// Coupled responses drawn last, with their inputs.
-    coupled: Mutex<Vec<CoupledCurve>>,
-}
-
-/// The response of one physics model with couplings.
-#[derive(Debug)]
-struct CoupledCurve {
-    fitted: Arc<FittedCouplings>,
-    model: usize,
-    response: Arc<FrequencyResponse>,
-}
-
-impl ConditionCurves {
-    pub(crate) fn new(
-        condition: Arc<Condition>,
-        grid: FrequencyGrid,
-        responses: ConditionResponses,
-    ) -> Self {
-        let ConditionResponses {
-            physics,
-            identified,
-            ..
-        } = responses;
-        Self {
-            condition,
-            grid,
-            physics,
-            identified,
-            coupled: Mutex::default(),
-        }
-    }
-
-    /// Returns `H~` of a physics model under the couplings of a result; `H` without couplings.
-    pub fn with_couplings(
-        &self,
-        result: &ConditionAnalysis,
-        model: usize,
-    ) -> Arc<FrequencyResponse> {
-        /// A result and a variant, each with its representative now and before.
-        const KEPT: usize = 4;
-        let Some(coupled) = &result.coupled else {
-            return Arc::clone(&self.physics[model]);
-        };
-        let mut kept = self.coupled.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_of =
-            |of: &&CoupledCurve| Arc::ptr_eq(&of.fitted, &coupled.fitted) && of.model == model;
-        if let Some(of) = kept.iter().find(is_of) {
-            return Arc::clone(&of.response);
-        }
-        let response = Arc::new(result.coupled_response(&self.physics[model]).into_owned());
-        kept.truncate(KEPT - 1);
-        let fitted = Arc::clone(&coupled.fitted);
-        kept.insert(
-            0,
-            CoupledCurve {
-                fitted,
-                model,
-                response: Arc::clone(&response),
-            },
-        );
-        response
-    }
-
-    /// Returns the responses of one bundle.
-    pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
-        kind.pick(&self.physics, &self.identified)
-    }
-}
-
-/// Number of frequencies of drawn curves.
-pub const CURVE_POINTS: usize = 500;
-
-/// Returns the band drawn around a band of comparison: wider by a factor of 1.7 on either side.
-pub fn display_band(band: Band) -> Band {
-    const MARGIN: f64 = 1.7;
-    Band::beyond(band.min() / MARGIN, band.max() * MARGIN).unwrap_or(band)
-}
-
-/// Returns the band of a condition's curves: [`display_band`], and up to ten times the band where
-/// leads are requested, to show their effect above it (M15.6).
-pub fn curves_band(settings: &Settings) -> Band {
-    let usual = display_band(settings.band);
-    let has_leads = settings.phase == PhaseCorrection::Lead;
-    let top = settings.band.max() * if has_leads { ABOVE_BAND } else { 1.0 };
-    Band::beyond(usual.min(), usual.max().max(top)).unwrap_or(usual)
 }

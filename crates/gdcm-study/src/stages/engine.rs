@@ -1,43 +1,56 @@
-//! The analysis of a study, stage by stage; each stage is cached while its inputs stay the same.
+//! A study's analysis, stage by stage; each stage is cached while its inputs stay the same.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use gdcm_method::correction::leads::ChannelLeads;
-use gdcm_method::correction::{Channel, Problem, ProofBudget, Solution};
-use gdcm_method::schedule::{
-    DelayScheduling, NOTABLE_DELAY_S, Schedule, ScheduleCaution, ScheduleSettings, ScheduledPoint,
-};
-use gdcm_model::dataset::{Band, Condition, ConditionId, Dataset};
+use gdcm_method::correction::{Problem, ProofBudget, Solution};
+use gdcm_method::schedule::{Schedule, ScheduleCaution};
+use gdcm_model::dataset::{Band, ConditionId, Dataset};
 use gdcm_model::executor::{Executor, Sequential};
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::response::FrequencyGrid;
 
-use super::condition_responses::{ConditionCurves, ConditionModels, KnownModels, Purpose};
-use super::condition_stages::{ConditionStages, Run, SUBSTITUTION_PROOF, model_count};
-use super::execution::{Execution, Memo};
-use super::fitted_couplings::{CouplingFitKey, CouplingOutcome, CouplingSource, FittedCouplings};
-use super::uncertainty::Uncertainty;
+use super::condition_curves::ConditionCurves;
+use super::condition_responses::{ConditionModels, GridKey, KnownModels, Purpose};
+use super::condition_stages::{ConditionStages, SUBSTITUTION_PROOF, model_count};
+use super::convention_check::convention_doubts;
+use super::coupling_fit::{CouplingFitKey, CouplingOutcome, CouplingSource};
+use super::run::Run;
+use super::schedule_cautions::signed_delays_apart;
 use crate::decisions::study::Study;
-use crate::results::analysis::{Analysis, ConditionAnalysis, ConditionFailure};
+use crate::execution::{Execution, Memo};
+use crate::results::analysis::{Analysis, ConditionAnalysis, ConditionFailure, Outcomes};
 use crate::results::assessment_table::{AssessmentChoice, assessed};
-use crate::results::convention_doubt::{ConventionDoubt, convention_doubts};
-use crate::results::schedule_losses;
+use crate::results::comparison::Mismatches;
+use crate::results::convention_doubt::ConventionDoubt;
+use crate::results::fitted_couplings::FittedCouplings;
+use crate::results::required_modes::KnownPoles;
+use crate::results::requirements::{Requirements, requirements_of};
+use crate::results::schedule_losses::schedule_cost_cautions;
+use crate::results::scheduled_conditions::{schedule_settings, scheduled_points};
+use crate::results::time_histories::{HistoryRecords, TimeHistories, time_histories_of};
+use crate::results::uncertainty::Uncertainty;
 
 /// Computes analyses and caches each stage's last result by the numbers in its inputs, whatever
-/// their source: for a dataset in which one model has changed, one response is computed.
-/// Responses (numbers of the model, band, points) -> distances -> representatives, G, D
-/// (rejections, pins, average) -> bounds (quantile) -> gains, delays (constraints, weights, alpha,
-/// bounds) -> schedule -> assessment. Where couplings are requested, they are fitted to the
-/// representatives, and all later stages use physics models with couplings.
+/// their source: for a dataset in which a single model has changed, one response is computed.
+///
+/// ```text
+/// responses                      (numbers of the model, band, points)
+/// distances                      (measuring responses, coherence)
+/// representatives, G, D          (rejections, pins, average)
+/// couplings, where requested: all later stages use the coupled physics models
+/// gains, delays                  (constraints, weights, alpha, bounds)
+/// schedule
+/// assessment
+/// ```
 ///
 /// Conditions and models are independent of one another: the result is the same to the last bit
 /// with any executor.
 #[derive(Clone)]
 pub struct Engine {
     executor: Arc<dyn Executor>,
-    /// Budget of the proof of each condition's gains.
+    /// Proof budget for each condition's gains.
     proofs: ProofBudget,
     dataset: Option<Arc<Dataset>>,
     known: KnownModels,
@@ -46,10 +59,11 @@ pub struct Engine {
     /// The condition drawn last.
     drawn: Option<ConditionId>,
     /// Curves of the condition drawn last.
-    curves: Memo<(Band, usize), Arc<ConditionCurves>>,
+    curves: Memo<GridKey, Arc<ConditionCurves>>,
 }
 
-/// Budget of a proof within a live answer; longer proofs run beside it ([`crate::jobs::job::ProofJob`]).
+/// Proof budget within a live answer; longer proofs run beside it
+/// ([`ProofJob`](crate::jobs::analysis_jobs::ProofJob)).
 pub const LIVE_PROOF: ProofBudget = ProofBudget {
     work: 1_000_000,
     listing: 100_000,
@@ -61,9 +75,6 @@ impl Default for Engine {
         Self::with_executor(Box::new(Sequential))
     }
 }
-
-/// Outcome of each condition.
-pub(crate) type Outcomes = BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>;
 
 impl Engine {
     /// Creates an engine that runs on `executor`.
@@ -93,7 +104,7 @@ impl Engine {
         self.executor.as_ref()
     }
 
-    /// Sets the budget of the proof of each condition's gains.
+    /// Sets the proof budget for each condition's gains.
     pub fn with_proofs_within(self, proofs: ProofBudget) -> Self {
         Self { proofs, ..self }
     }
@@ -109,9 +120,9 @@ impl Engine {
 
     /// Replaces cached gains of the same problem with gains proven elsewhere under a larger budget.
     pub fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
-        self.conditions
-            .values_mut()
-            .for_each(|stages| stages.take_gains(problem, solution));
+        for stages in self.conditions.values_mut() {
+            stages.take_gains(problem, solution);
+        }
     }
 
     /// Analyses `study`; stages whose inputs have not changed since the last call are not computed
@@ -124,7 +135,7 @@ impl Engine {
         self.analyze_first(study, None, progress)
     }
 
-    /// Works as [`Engine::analyze`], and reports the result of one condition before the others are
+    /// Works as [`Engine::analyze`], and reports a condition's result before the others are
     /// started.
     pub fn analyze_first(
         &mut self,
@@ -141,40 +152,33 @@ impl Engine {
             proofs: self.proofs,
             execution: &execution,
         };
-        let couplings = fit_of(run, &mut self.couplings, &mut self.conditions)?;
+        let couplings = fit_couplings(run, &mut self.couplings, &mut self.conditions)?;
         let fitted = couplings.as_ref().and_then(|outcome| outcome.as_ref().ok());
         let mut conditions = analyze_conditions(run, &mut self.conditions, fitted, first)?;
-        let doubts = doubts_of(study, &mut conditions);
+        let doubts = add_doubts(study, &mut conditions);
         let settings = schedule_settings(study, &conditions);
-        let mut schedule = Schedule::of(&scheduled_points(study, &conditions), settings);
-        if let Ok(schedule) = &mut schedule {
-            schedule
-                .cautions
-                .extend(signed_delays_apart(study, &conditions));
-        }
-        let study = study.clone();
-        let omega = grid.omega().into();
-        let assessment = BTreeMap::new();
+        let schedule = Schedule::of(&scheduled_points(study, &conditions), settings);
+        let apart = signed_delays_apart(study, &conditions);
         let mut analysis = Analysis {
-            study,
-            omega,
+            study: study.clone(),
+            omega: grid.omega().into(),
             conditions,
             couplings,
             coupling_assessment: None,
             doubts,
             schedule,
-            assessment,
+            assessment: BTreeMap::new(),
             uncertainty: None,
         };
-        let choice = AssessmentChoice::of_paper(&analysis.study.settings);
-        let ids: Vec<ConditionId> = analysis.study.dataset.ids().collect();
-        let assess = |place: usize| Ok(assessed(&analysis, ids[place], choice)?.changes);
-        let assessment = execution.each(ids.len(), 0, assess)?;
+        add_schedule_cautions(&mut analysis, apart);
+        let choice = AssessmentChoice::of_paper(&study.settings);
+        let ids: Vec<ConditionId> = study.dataset.ids().collect();
+        let assessment = execution.each(ids.len(), 0, |index| {
+            assessed(&analysis, ids[index], choice).map(|assessed| assessed.changes)
+        })?;
         analysis.assessment = ids.into_iter().zip(assessment).collect();
-        let costs = schedule_losses::schedule_cost_cautions(&analysis);
-        if let Ok(schedule) = &mut analysis.schedule {
-            schedule.cautions.extend(costs);
-        }
+        let costs = schedule_cost_cautions(&analysis);
+        add_schedule_cautions(&mut analysis, costs);
         Ok(analysis)
     }
 
@@ -188,49 +192,81 @@ impl Engine {
         let study = &analysis.study;
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
-        // One response and one substitution for each model.
+        // One response and one swap for each model.
         let total = study
             .dataset
             .conditions()
             .iter()
-            .map(|of| 2 * model_count(of))
+            .map(|condition| 2 * model_count(condition))
             .sum();
         let execution = Execution::new(self.executor.as_ref(), progress, total);
-        let analysed = self
-            .conditions
-            .iter_mut()
-            .filter_map(|(id, stages)| Some((*id, stages, analysis.condition(*id)?)));
+        let mut analysed = Vec::new();
+        for (id, stages) in &mut self.conditions {
+            if let Some(result) = analysis.condition(*id) {
+                analysed.push((*id, stages, result));
+            }
+        }
         let run = Run {
             study,
             grid: &grid,
             proofs: SUBSTITUTION_PROOF,
             execution: &execution,
         };
-        let substitutions = execution.each_mut(analysed.collect(), |(id, stages, condition)| {
-            Ok((
-                id,
-                stages.substitutions(run, (condition, analysis.fitted_couplings()))?,
-            ))
+        let couplings = analysis.fitted_couplings();
+        let swaps = execution.each_mut(analysed, |(id, stages, result)| {
+            Ok((id, stages.swaps(run, result, couplings)?))
         })?;
-        Ok(Uncertainty::of(analysis, &substitutions))
+        Ok(Uncertainty::new(analysis, &swaps))
     }
 
-    /// Returns the curves of every model of one condition on `points` frequencies of `band`; `None`
-    /// where the condition does not exist.
+    /// Computes the requirements on every condition's models; see [`requirements_of`].
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `progress` requests it.
+    pub fn requirements(
+        &self,
+        analysis: &Analysis,
+        known: &KnownPoles,
+        progress: &dyn Progress,
+    ) -> Result<Requirements, Cancelled> {
+        let steps = analysis.conditions.len();
+        let execution = Execution::new(self.executor(), progress, steps);
+        requirements_of(analysis, known, &execution)
+    }
+
+    /// Simulates an analysis's models with `records` and compares them within its study's
+    /// tolerances; see [`time_histories_of`].
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `progress` requests it.
+    pub fn time_histories(
+        &self,
+        analysis: &Analysis,
+        records: &[HistoryRecords],
+        progress: &dyn Progress,
+    ) -> Result<TimeHistories, Cancelled> {
+        let steps = HistoryRecords::steps(records);
+        let execution = Execution::new(self.executor(), progress, steps);
+        let tolerances = &analysis.study.requirements.tolerances;
+        time_histories_of(analysis, records, tolerances, &execution)
+    }
+
+    /// Returns the curves of every model of a condition in a band, on this number of frequencies;
+    /// `None` where the condition does not exist.
     pub fn curves(
         &mut self,
         dataset: &Arc<Dataset>,
         condition: ConditionId,
-        (band, points): (Band, usize),
+        grid: (Band, usize),
         progress: &dyn Progress,
     ) -> Result<Option<Arc<ConditionCurves>>, Cancelled> {
         self.take(dataset);
         if self.drawn != Some(condition) {
-            let before = self.drawn.replace(condition);
-            before
-                .and_then(|id| self.conditions.get(&id))
-                .iter()
-                .for_each(|stages| stages.models().forget_drawn());
+            if let Some(before) = self.drawn.replace(condition)
+                && let Some(stages) = self.conditions.get(&before)
+            {
+                stages.models().forget_drawn();
+            }
             self.curves = Memo::default();
         }
         let Some(stages) = self.conditions.get(&condition) else {
@@ -238,8 +274,8 @@ impl Engine {
         };
         let executor = self.executor.as_ref();
         let models = stages.models();
-        let curves = self.curves.get_or_fail((band, points), |&key| {
-            let grid = FrequencyGrid::logarithmic(band, points);
+        let curves = self.curves.get_or_fail(grid, |&key| {
+            let grid = FrequencyGrid::logarithmic(key.0, key.1);
             let execution = Execution::new(executor, progress, model_count(models.condition()));
             let responses = models.responses(Purpose::Drawing, key, &grid, &execution)?;
             Ok(Arc::new(ConditionCurves::new(
@@ -260,12 +296,12 @@ impl Engine {
         {
             return;
         }
-        let models = dataset
+        // Collect all before dropping any of the last dataset's: a model may have moved.
+        let models: Vec<ConditionModels> = dataset
             .conditions()
             .iter()
-            .map(|condition| ConditionModels::of(condition, &self.known));
-        // Collect all before dropping any of the last dataset's: a model may have moved.
-        let models: Vec<ConditionModels> = models.collect();
+            .map(|condition| ConditionModels::new(condition, &self.known))
+            .collect();
         let mut before = std::mem::take(&mut self.conditions);
         for models in models {
             let id = models.condition().id();
@@ -274,7 +310,7 @@ impl Engine {
                     stages.take(models);
                     stages
                 }
-                None => ConditionStages::of(models),
+                None => ConditionStages::new(models),
             };
             self.conditions.insert(id, stages);
         }
@@ -293,75 +329,81 @@ pub struct WantedFirst<'a> {
     pub tell: &'a (dyn Fn(&Result<ConditionAnalysis, ConditionFailure>) + Sync),
 }
 
-/// Returns the number of steps of an analysis: those of the conditions, plus, for the conditions
-/// that couplings are fitted to, once more for the inputs of the fit and once more for the fit.
+/// Returns the analysis step count: those of the conditions, plus, for the conditions that
+/// couplings are fitted to, once more for the inputs of the fit and once more for the fit.
 fn steps(study: &Study) -> usize {
-    let of = |condition: &Arc<Condition>| {
-        let is_fitted_to =
-            study.settings.couplings.kind().is_some() && !study.choice(condition.id()).held_out;
-        ConditionStages::steps(condition) * if is_fitted_to { 3 } else { 1 }
-    };
-    study.dataset.conditions().iter().map(of).sum()
+    let has_couplings = study.settings.couplings.kind().is_some();
+    let mut steps = 0;
+    for condition in study.dataset.conditions() {
+        let is_fitted_to = has_couplings && !study.choice(condition.id()).held_out;
+        let repetitions = if is_fitted_to { 3 } else { 1 };
+        steps += repetitions * ConditionStages::steps(condition);
+    }
+    steps
 }
 
-/// Fits the couplings of a study to the conditions that are analysed and not held out; `None` where
+/// Adds cautions to the schedule, where there is one.
+fn add_schedule_cautions(analysis: &mut Analysis, cautions: Vec<ScheduleCaution>) {
+    if let Ok(schedule) = &mut analysis.schedule {
+        schedule.cautions.extend(cautions);
+    }
+}
+
+/// Fits a study's couplings to the conditions that are analysed and not held out; `None` where
 /// couplings are not requested (M16.1).
-fn fit_of(
+fn fit_couplings(
     run: Run<'_>,
     kept: &mut Memo<CouplingFitKey, CouplingOutcome>,
     stages: &mut BTreeMap<ConditionId, ConditionStages>,
 ) -> Result<Option<CouplingOutcome>, Cancelled> {
-    let Run {
-        study,
-        grid,
-        execution,
-        ..
-    } = run;
+    let study = run.study;
+    let execution = run.execution;
     let Some(kind) = study.settings.couplings.kind() else {
         return Ok(None);
     };
-    let chosen: Vec<_> = stages
-        .iter_mut()
-        .filter(|(id, _)| !study.choice(**id).held_out)
-        .collect();
-    let steps = chosen
-        .iter()
-        .map(|(_, stages)| ConditionStages::steps(stages.models().condition()))
-        .sum();
-    let sources = execution.each_mut(chosen, |(_, stages)| stages.coupling_source(run))?;
+    let mut chosen = Vec::new();
+    let mut steps = 0;
+    for (id, stages) in stages {
+        if !study.choice(*id).held_out {
+            steps += ConditionStages::steps(stages.models().condition());
+            chosen.push(stages);
+        }
+    }
+    let sources = execution.each_mut(chosen, |stages| stages.coupling_source(run))?;
     let sources: Vec<CouplingSource> = sources.into_iter().flatten().collect();
-    let key = CouplingFitKey::of(study, kind, &sources);
-    let solves = Solves {
+    let key = CouplingFitKey::new(study, kind, &sources);
+    let progress = FitProgress {
         execution,
         steps,
-        told: AtomicUsize::new(0),
+        reported: AtomicUsize::new(0),
     };
     let fit = kept.get_or_fail(key, |key| {
-        key.fit(study, grid, &sources, (execution.parts().0, &solves))
+        key.fit(study, run.grid, &sources, execution.executor(), &progress)
     })?;
-    // No solve was reported where the fit is cached.
-    solves.advanced(1, 1);
+    // No progress was reported where the fit is cached.
+    progress.advanced(1, 1);
     Ok(Some(fit))
 }
 
-/// Reports the progress of a fit as steps of the analysis.
-struct Solves<'a> {
+/// Reports a fit's progress as steps of the analysis.
+struct FitProgress<'a> {
     execution: &'a Execution<'a>,
     /// Number of steps of the fit.
     steps: usize,
-    told: AtomicUsize,
+    /// Steps reported so far.
+    reported: AtomicUsize,
 }
 
-impl Progress for Solves<'_> {
+impl Progress for FitProgress<'_> {
     fn cancelled(&self) -> bool {
         self.execution.progress().cancelled()
     }
 
     fn advanced(&self, done: usize, total: usize) {
-        let told = self.steps * done / total.max(1);
+        let reached = self.steps * done / total.max(1);
         // Several threads may report at the same time; progress never goes backwards.
-        let before = self.told.fetch_max(told, Ordering::Relaxed);
-        self.execution.step(told.saturating_sub(before));
+        let before = self.reported.fetch_max(reached, Ordering::Relaxed);
+        self.execution.step(reached.saturating_sub(before));
     }
 }
 
@@ -393,119 +435,23 @@ fn analyze_conditions(
 }
 
 /// Collects suspected sign and unit differences, and adds each to the conditions that show it.
-fn doubts_of(study: &Study, outcomes: &mut Outcomes) -> Vec<ConventionDoubt> {
-    let solved = outcomes
-        .iter()
-        .filter_map(|(id, outcome)| Some((*id, outcome.as_ref().ok()?)));
+fn add_doubts(study: &Study, outcomes: &mut Outcomes) -> Vec<ConventionDoubt> {
     // Signs and units are judged on the models without couplings.
-    let mismatches =
-        solved.map(|(id, result)| (id, &result.before_couplings().representative.mismatch));
-    let doubts = convention_doubts(
-        &mismatches.collect::<Vec<_>>(),
-        &study.dataset.measuring_pairs(),
-    );
-    for (id, result) in outcomes
-        .iter_mut()
-        .filter_map(|(id, outcome)| Some((id, outcome.as_mut().ok()?)))
-    {
-        result.doubts = doubts
-            .iter()
-            .filter(|doubt| doubt.conditions.contains(id))
-            .cloned()
-            .collect();
+    let mut mismatches: Vec<(ConditionId, &Mismatches)> = Vec::new();
+    for (id, outcome) in outcomes.iter() {
+        if let Ok(result) = outcome {
+            mismatches.push((*id, &result.before_couplings().representative.mismatch));
+        }
+    }
+    let doubts = convention_doubts(&mismatches, &study.dataset.measuring_pairs());
+    for (id, outcome) in outcomes {
+        if let Ok(result) = outcome {
+            result.doubts = doubts
+                .iter()
+                .filter(|doubt| doubt.conditions.contains(id))
+                .cloned()
+                .collect();
+        }
     }
     doubts
-}
-
-/// Returns the scheduled conditions with a result, in the dataset's order.
-pub(crate) fn scheduled_points<'a>(
-    study: &Study,
-    outcomes: &'a Outcomes,
-) -> Vec<ScheduledPoint<'a>> {
-    let point = |analysis: &'a ConditionAnalysis| {
-        let state = analysis.condition.flight_state();
-        ScheduledPoint {
-            airspeed_kt: state.airspeed_kt,
-            correction: &analysis.correction,
-            delay_upper_s: analysis.delay_upper_s(),
-            second: study
-                .settings
-                .schedule
-                .second
-                .and_then(|variable| variable.value(state)),
-        }
-    };
-    in_schedule(study, outcomes).map(point).collect()
-}
-
-/// Returns the schedule settings for these conditions, with the choice about delays resolved for
-/// them (M11).
-pub(crate) fn schedule_settings(study: &Study, outcomes: &Outcomes) -> ScheduleSettings {
-    let delays = match study.settings.schedule_delays {
-        DelayScheduling::Always => true,
-        DelayScheduling::Never => false,
-        DelayScheduling::Automatic => in_schedule(study, outcomes).any(has_notable_delay),
-    };
-    ScheduleSettings {
-        delays,
-        ..study.settings.schedule
-    }
-}
-
-/// Returns whether a constrained response has a net delay above half a millisecond.
-fn has_notable_delay(result: &ConditionAnalysis) -> bool {
-    result
-        .held()
-        .marked()
-        .any(|pair| result.correction.net_delay_s(pair) > NOTABLE_DELAY_S)
-}
-
-/// Returns the results of the scheduled conditions, in file order.
-fn in_schedule<'a>(
-    study: &Study,
-    outcomes: &'a Outcomes,
-) -> impl Iterator<Item = &'a ConditionAnalysis> {
-    let chosen = study
-        .dataset
-        .ids()
-        .filter(|id| study.choice(*id).is_in_schedule());
-    chosen.filter_map(|id| outcomes.get(&id)?.as_ref().ok())
-}
-
-/// Returns cautions about the channels for which no schedule can reproduce the signed delays of all
-/// conditions (M15.6).
-fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCaution> {
-    /// Greatest distance \[s\] from the mean of a signed delay that can be scheduled.
-    const APART_S: f64 = 0.02;
-    /// Signed delays below this \[s\] have no meaningful sign.
-    const NOTHING_S: f64 = 2e-3;
-    let leads = in_schedule(study, outcomes)
-        .filter_map(|result| Some((result.condition.id(), &result.compensated.as_ref()?.leads)));
-    let leads: Vec<(ConditionId, &ChannelLeads)> = leads.collect();
-    let caution = |channel: Channel| {
-        let taus_s: Vec<(ConditionId, f64)> = leads
-            .iter()
-            .map(|(id, leads)| (*id, leads.taus_s[channel]))
-            .collect();
-        let sum_s: f64 = taus_s.iter().map(|(_, tau_s)| tau_s).sum();
-        let mean_s = sum_s / taus_s.len() as f64;
-        let apart = |tau_s: f64| (tau_s - mean_s).abs();
-        let &(condition, tau_s) = taus_s
-            .iter()
-            .max_by(|a, b| apart(a.1).total_cmp(&apart(b.1)))?;
-        let signs =
-            [-1.0, 1.0].map(|sign| taus_s.iter().any(|(_, tau_s)| sign * tau_s > NOTHING_S));
-        let elsewhere_s = (sum_s - tau_s) / (taus_s.len() as f64 - 1.0);
-        (taus_s.len() > 1 && (apart(tau_s) > APART_S || signs == [true; 2])).then_some(
-            ScheduleCaution::SignedDelayApart {
-                channel,
-                condition,
-                tau_s,
-                elsewhere_s,
-            },
-        )
-    };
-    Channel::all_of(&study.dataset)
-        .filter_map(caution)
-        .collect()
 }

@@ -21,8 +21,8 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use gdcm_model::executor::{Executor, each};
 use gdcm_model::response::frequency_response::log_spaced;
-use gdcm_model::response::median;
 use gdcm_model::simulation::Segment;
+use gdcm_model::statistics::median;
 
 use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::gram_matrix::scale_columns;

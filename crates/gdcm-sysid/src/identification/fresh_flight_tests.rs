@@ -343,7 +343,7 @@ fn aircraft(inputs: usize, outputs: usize, random: &mut Generator) -> StateSpace
 fn sweeps(model: &StateSpace, random: &mut Generator) -> Vec<FlightRecord> {
     const STEP_S: f64 = 0.02;
     let time_s: Vec<f64> = (0..3000).map(|k| STEP_S * f64::from(k)).collect();
-    let plant = FirstOrderHold::of(model, STEP_S).unwrap();
+    let plant = FirstOrderHold::new(model, STEP_S).unwrap();
     let mut records = Vec::new();
     for swept in 0..model.inputs() {
         let mut slow = vec![0.0; model.inputs()];

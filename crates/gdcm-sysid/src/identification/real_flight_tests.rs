@@ -8,8 +8,8 @@ use gdcm_model::dataset::channel::Pair;
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Shares, Unobserved};
 use gdcm_model::response::frequency_response::log_spaced;
-use gdcm_model::response::median;
 use gdcm_model::simulation::{FlightRecord, Segment};
+use gdcm_model::statistics::median;
 
 use super::identify::identify;
 use super::known_answers_tests::{matrix, number, numbers, response_at};

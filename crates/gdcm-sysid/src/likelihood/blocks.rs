@@ -11,7 +11,7 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use gdcm_model::dataset::StateSpace;
-use gdcm_model::response::eigenvalues::SchurForm;
+use gdcm_model::response::schur_form::SchurForm;
 
 /// Imaginary part over modulus up to which an eigenvalue is real: the Schur iteration's error.
 const REAL: f64 = 1e-9;
@@ -288,7 +288,7 @@ impl Modes {
     /// to be separated.
     fn of_model(model: &StateSpace) -> Option<Self> {
         let order = model.order();
-        let schur = SchurForm::of(model.a())?;
+        let schur = SchurForm::new(model.a())?;
         let mut modes = Self {
             complex: Vec::new(),
             real: Vec::new(),

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use gdcm_model::assembly::ChannelRule;
+use gdcm_model::names::channel_rule::ChannelRule;
 
 /// Channels by name, each with an optional unit and column.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -10,10 +10,11 @@
 //! 5  several: the only column whose unit can be converted
 //! ```
 
-use gdcm_model::assembly::ChannelRule;
-use gdcm_model::assembly::channel_match::{SignedName, folded_name, same_channel};
-use gdcm_model::assembly::physical_unit::conversion_factor;
 use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::names::channel_alias::{folded_name, same_channel};
+use gdcm_model::names::channel_rule::ChannelRule;
+use gdcm_model::names::signed_name::SignedName;
+use gdcm_model::units::physical_unit::conversion_factor;
 
 use super::record_table::{RecordColumn, RecordTable};
 
@@ -46,7 +47,7 @@ pub(super) fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelS
 
 /// Returns a name without its sign marks: "-az" and "az (down)" become "az".
 pub(super) fn without_sign_mark(name: &str) -> String {
-    SignedName::of(name).name
+    SignedName::parse(name).name
 }
 
 /// Search for the column of a channel.

@@ -1,9 +1,9 @@
 //! A record's column, used as a channel.
 
-use gdcm_model::assembly::ChannelRule;
-use gdcm_model::assembly::channel_match::sign_between;
-use gdcm_model::assembly::physical_unit::conversion_factor;
 use gdcm_model::dataset::condition::ChannelRemedy;
+use gdcm_model::names::channel_rule::ChannelRule;
+use gdcm_model::names::signed_name::sign_between;
+use gdcm_model::units::physical_unit::conversion_factor;
 
 use super::plausible_units::possible_units;
 use super::record_table::{RecordColumn, RecordTable};

@@ -2,8 +2,6 @@
 
 use nalgebra::DMatrix;
 
-use gdcm_model::assembly::ChannelRule;
-use gdcm_model::assembly::found_model::standard_on_axis;
 use gdcm_model::dataset::condition::{ConditionRecord, FlightState};
 use gdcm_model::dataset::dataset::DatasetHeader;
 use gdcm_model::dataset::model::Origin;
@@ -11,6 +9,8 @@ use gdcm_model::dataset::unchecked_dataset::DraftFault;
 use gdcm_model::dataset::{
     Band, Channel, Condition, ConditionId, Dataset, Dynamics, Model, PairTable, StateSpace,
 };
+use gdcm_model::names::channel_rule::ChannelRule;
+use gdcm_model::names::on_axis::is_standard_on_axis;
 
 use super::record_channels::RecordChannels;
 
@@ -81,7 +81,7 @@ fn zero_model(inputs: usize, outputs: usize) -> Result<Model, DraftFault> {
 /// Marks a helicopter's usual on-axis responses, or else the diagonal.
 fn on_axis(inputs: &[Channel], outputs: &[Channel]) -> PairTable<bool> {
     let standard = PairTable::from_fn(outputs.len(), inputs.len(), |pair| {
-        standard_on_axis(&outputs[pair.output].name, &inputs[pair.input].name)
+        is_standard_on_axis(&outputs[pair.output].name, &inputs[pair.input].name)
     });
     if standard.iter().any(|(_, is_on_axis)| *is_on_axis) {
         return standard;

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
-use gdcm_model::assembly::rules::standard_patterns;
 use gdcm_model::dataset::Dataset;
 use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord};
+use gdcm_model::names::name_pattern::standard_patterns;
 use gdcm_model::simulation::FlightRecord;
 
 use super::layout_problem::{LayoutCaution, LayoutProblem};
@@ -263,7 +263,7 @@ fn has_same_bits(a: &DMatrix<f64>, b: &DMatrix<f64>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use gdcm_model::assembly::rules::ChannelRule;
+    use gdcm_model::names::ChannelRule;
 
     use super::*;
     use crate::records::record_table::RecordColumn;

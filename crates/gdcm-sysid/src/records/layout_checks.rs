@@ -1,7 +1,7 @@
 //! Checks on the columns chosen from a record: problems that prevent their use, and cautions.
 
-use gdcm_model::assembly::physical_unit::Dimension;
-use gdcm_model::assembly::{ChannelRule, PhysicalUnit};
+use gdcm_model::names::channel_rule::ChannelRule;
+use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
 
 use super::column_use::ColumnUse;
 use super::layout_problem::{LayoutCaution, LayoutProblem};

@@ -1,10 +1,10 @@
 //! Proposed columns for a record's time and channels.
 
-use gdcm_model::assembly::ChannelRule;
-use gdcm_model::assembly::channel_match::sign_between;
-use gdcm_model::assembly::physical_unit::conversion_factor;
 use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::names::channel_rule::ChannelRule;
+use gdcm_model::names::signed_name::sign_between;
 use gdcm_model::units::number;
+use gdcm_model::units::physical_unit::conversion_factor;
 
 use super::column_candidates::{candidates, without_sign_mark};
 use super::column_use::ColumnUse;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::names::ChannelRule;
 
 use super::column_use::ColumnUse;
 use super::laid_out_record::LaidOutRecord;

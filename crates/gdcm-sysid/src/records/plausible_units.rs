@@ -1,7 +1,6 @@
 //! Units in which a column's samples are plausible for a helicopter.
 
-use gdcm_model::assembly::PhysicalUnit;
-use gdcm_model::assembly::physical_unit::{Dimension, conversion_factor};
+use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_factor};
 
 use super::record_table::RecordColumn;
 

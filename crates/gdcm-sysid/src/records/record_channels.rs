@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::{Channel, Dataset};
+use gdcm_model::names::channel_rule::ChannelRule;
 
 /// User-defined sample conversion; overrides the file.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,10 +1,9 @@
 //! Information in a record's folder and file names: manoeuvre, validation, condition.
 
-use gdcm_model::assembly::channel_match::folded_name;
-use gdcm_model::assembly::found_model::Row;
-use gdcm_model::assembly::rules::NamePattern;
 use gdcm_model::dataset::condition::RecordKind;
 use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::names::channel_alias::folded_name;
+use gdcm_model::names::name_pattern::{NamePattern, read_name};
 
 use super::record_table::RecordTable;
 
@@ -54,15 +53,12 @@ impl RecordGuess {
     pub fn from_name(name: &str, patterns: &[NamePattern]) -> Self {
         // "3-2-1-1" and "hold_out" become "3211" and "holdout".
         let joined = folded_name(name);
-        let mut row = Row::default();
-        for pattern in patterns {
-            pattern.read(name, &mut row);
-        }
+        let facts = read_name(name, patterns);
         Self {
             kind: manoeuvre(&joined),
             held_out: contains_any(&joined, &VALIDATION) || has_validation_word(name),
-            condition: row.condition,
-            airspeed_kt: row.airspeed_kt,
+            condition: facts.condition,
+            airspeed_kt: facts.airspeed_kt,
         }
     }
 
@@ -96,7 +92,7 @@ fn has_validation_word(name: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use gdcm_model::assembly::rules::standard_patterns;
+    use gdcm_model::names::name_pattern::standard_patterns;
 
     use super::*;
 

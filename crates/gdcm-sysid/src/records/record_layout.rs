@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord};
+use gdcm_model::names::channel_rule::ChannelRule;
 
 use super::column_use::ColumnUse;
 use super::record_channels::{RecordChannels, SaidConversion};

@@ -230,7 +230,7 @@ fn is_even(time_s: &[f64]) -> bool {
 mod tests {
     use std::sync::Arc;
 
-    use gdcm_model::assembly::ChannelRule;
+    use gdcm_model::names::channel_rule::ChannelRule;
 
     use super::*;
     use crate::records::layout_problem::LayoutProblem;

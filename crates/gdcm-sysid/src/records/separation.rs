@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use gdcm_model::assembly::channel_match::folded_name;
+use gdcm_model::names::channel_alias::folded_name;
 use gdcm_model::units::number;
 
 use super::record_table::{RecordColumn, RecordSource, RecordTable};

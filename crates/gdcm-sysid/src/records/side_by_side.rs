@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use gdcm_model::assembly::channel_match::time_name_rank;
+use gdcm_model::names::time_name::time_name_rank;
 
 use super::record_table::{RecordColumn, RecordTable, TopicClock, same_samples};
 use super::separation::Separation;

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use nalgebra::DMatrix;
 
 use gdcm_model::executor::Sequential;
-use gdcm_model::response::median;
 use gdcm_model::simulation::Segment;
+use gdcm_model::statistics::median;
 
 use crate::spectra::spectrum::{Spectrum, spectra};
 

@@ -1,8 +1,7 @@
 //! Source of a record's sample times: a stamp column, a sample time, or topics.
 
-use gdcm_model::assembly::PhysicalUnit;
-use gdcm_model::assembly::channel_match::time_name_rank;
-use gdcm_model::assembly::physical_unit::Dimension;
+use gdcm_model::names::time_name::time_name_rank;
+use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
 use gdcm_model::units::telling;
 
 use super::record_table::{RecordColumn, RecordTable};

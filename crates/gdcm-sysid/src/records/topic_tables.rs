@@ -332,7 +332,7 @@ fn is_plain(name: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use gdcm_model::assembly::rules::ChannelRule;
+    use gdcm_model::names::ChannelRule;
 
     use super::*;
 

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-use gdcm_model::response::median;
+use gdcm_model::statistics::median;
 
 /// Steps longer than this many median steps are gaps: 3 missing samples are bridged (M14.1).
 const LONGEST_STEP: f64 = 4.5;

@@ -9,9 +9,8 @@
 //! coarse: the least step between two values is over half the standard deviation
 //! ```
 
-use gdcm_model::response::curve_values::quantile;
-use gdcm_model::response::median;
 use gdcm_model::simulation::{FlightRecord, Signal};
+use gdcm_model::statistics::{median, quantile};
 
 /// Step over the mean step up to which two samples are flat.
 const FLAT: f64 = 1e-3;

@@ -1,7 +1,7 @@
 //! A record's time stamps, and the uniform grid behind them (M14.1).
 
-use gdcm_model::response::curve_values::quantile;
 use gdcm_model::simulation::FlightRecord;
+use gdcm_model::statistics::quantile;
 
 use super::gaps::{Cause, Gap, Treatment};
 use super::preparation_settings::PreparationError;

@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use gdcm_model::dataset::measured_response::MeasuredResponse;
 use gdcm_model::dataset::{Pair, PairTable};
-use gdcm_model::response::median;
+use gdcm_model::statistics::median;
 
 use super::scales::Scales;
 

@@ -121,7 +121,7 @@ fn transform(
     for (channel, column) in samples.column_iter().enumerate() {
         let mean = column.mean();
         let mut centred: Vec<f64> = column.iter().map(|sample| sample - mean).collect();
-        let spectrum = plan.of(&mut centred).unwrap_or_default();
+        let spectrum = plan.transform(&mut centred).unwrap_or_default();
         let mut row = transformed.row_mut(channel);
         for (y, line) in row.iter_mut().zip(spectrum.iter().skip(1)) {
             *y = line * factor;

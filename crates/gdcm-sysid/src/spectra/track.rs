@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use gdcm_model::dataset::channel::ChannelSide;
-use gdcm_model::response::curve_values::quantile;
-use gdcm_model::response::median;
 use gdcm_model::simulation::{FlightRecord, Signal};
+use gdcm_model::statistics::{median, quantile};
 
 use super::channel_quality::{Range, is_coarse};
 use super::clock::Clock;

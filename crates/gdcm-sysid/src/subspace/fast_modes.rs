@@ -14,7 +14,7 @@
 use nalgebra::{Complex, DMatrix, DVector, Dyn, SymmetricEigen};
 
 use gdcm_model::dataset::StateSpace;
-use gdcm_model::response::eigenvalues::SchurForm;
+use gdcm_model::response::schur_form::SchurForm;
 
 /// Removes the modes with `|lambda| > limit` \[rad/s\]; the result equals the model at omega = 0.
 ///
@@ -25,7 +25,7 @@ pub(crate) fn without_fast_modes(model: &StateSpace, limit: f64) -> Option<State
     let b = model.b();
     let c = model.c();
     let order = model.order();
-    let mut schur = SchurForm::of(a)?;
+    let mut schur = SchurForm::new(a)?;
     let slow = schur.order_by(|eigenvalue| eigenvalue.norm() <= limit);
     if slow == order {
         return Some(model.clone());
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn the_form_still_gives_the_matrix_after_its_reordering() {
         let a = sample(9);
-        let mut form = SchurForm::of(&a).unwrap();
+        let mut form = SchurForm::new(&a).unwrap();
         let before: Vec<_> = form.t.diagonal().iter().copied().collect();
         let count = form.order_by(|eigenvalue| eigenvalue.re > 0.0);
         assert_eq!(

@@ -3,7 +3,9 @@
 use egui::{Key, vec2};
 use egui_kittest::kittest::Queryable;
 
-use super::bode::{Model, harness, three_curves, wheel};
+use gdcm_plot::figure::Range;
+
+use super::bode::{Model, harness, three_curves};
 use super::*;
 
 /// Visible frequencies and values.
@@ -83,7 +85,7 @@ fn type_limits(harness: &mut Harness<'_, Model>, axis: &str, limits: [&str; 2]) 
 }
 
 #[test]
-fn limits_can_be_typed_and_are_refused_with_a_word_where_they_are_none() {
+fn limits_can_be_typed_and_invalid_limits_are_refused_with_a_message() {
     let mut harness = harness(three_curves());
     type_limits(&mut harness, FREQUENCIES, ["2", "8"]);
     let (min, max) = ranges(&harness).0;
@@ -98,7 +100,7 @@ fn limits_can_be_typed_and_are_refused_with_a_word_where_they_are_none() {
     );
     harness.run_steps(40);
     type_limits(&mut harness, MAGNITUDES, ["10", "-10"]);
-    harness.get_by_label("the lower limit has to be below the upper one");
+    harness.get_by_label("the lower limit must be below the upper limit");
     assert_ne!(ranges(&harness).1, Range::new(-10.0, 10.0));
 }
 

@@ -3,9 +3,8 @@ use std::collections::BTreeSet;
 use egui::vec2;
 
 use super::*;
-use crate::gui::plot::bode::BodeEvent;
+use crate::gui::plot::bode_event::{BodeEvent, CurveWish};
 use crate::gui::plot::curve_command::CurveCommand;
-use crate::gui::plot::curve_menu::CurveWish;
 use crate::gui::widgets::palette::{self, Palette};
 
 pub(super) struct Model {
@@ -32,7 +31,7 @@ pub(super) fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
             |ui, model: &mut Model| {
                 let scene = BodeScene {
                     hidden_roles: Some(&model.hidden_roles),
-                    ..BodeScene::of("LON → Q", &model.curves, model.band)
+                    ..BodeScene::new("LON → Q", &model.curves, model.band)
                 };
                 let palette = Palette::of(ui.visuals());
                 for event in bode_ui(ui, &scene, &mut model.view, &palette) {
@@ -76,16 +75,6 @@ fn empty_spot_of_one(harness: &Harness<'_, Model>) -> Pos2 {
     point_on(harness, 0, 60) + vec2(0.0, 40.0)
 }
 
-pub(super) fn wheel(delta: egui::Vec2) -> Event {
-    Event::MouseWheel {
-        unit: egui::MouseWheelUnit::Point,
-        delta,
-        phase: egui::TouchPhase::Move,
-        modifiers: Modifiers::NONE,
-        source: egui::MouseWheelSource::Wheel,
-    }
-}
-
 pub(super) fn clicks(harness: &Harness<'_, Model>) -> Vec<BodeEvent> {
     let is_click = |event: &&BodeEvent| {
         matches!(
@@ -118,7 +107,7 @@ fn a_click_names_the_nearest_curve() {
 }
 
 #[test]
-fn a_click_away_from_all_curves_means_none() {
+fn a_click_away_from_all_curves_picks_none() {
     let mut harness = harness(three_curves());
     let at = empty_spot(&harness);
     click(&mut harness, at);
@@ -135,7 +124,7 @@ fn a_click_with_alt_isolates() {
 }
 
 #[test]
-fn hovering_is_told_once_when_it_begins_and_once_when_it_ends() {
+fn hovering_is_reported_once_when_it_begins_and_once_when_it_ends() {
     let mut harness = harness(three_curves());
     let at = point_on(&harness, 0, 60);
     harness.hover_at(at);
@@ -246,7 +235,7 @@ fn the_wheel_zooms_about_the_pointer() {
 }
 
 #[test]
-fn one_notch_of_the_wheel_zooms_by_a_tenth_and_none_goes_far_beyond_what_is_computed() {
+fn a_notch_of_the_wheel_zooms_by_a_tenth_and_stops_a_decade_beyond_the_data() {
     let mut harness = harness(three_curves());
     harness.hover_at(point_on(&harness, 1, 60));
     harness.step();
@@ -360,10 +349,7 @@ fn values_are_fitted_to_other_curves_until_the_engineer_zooms_them() {
     assert_eq!(heights(&harness), panned, "zoomed by hand");
     harness.state_mut().view.request_fit();
     harness.run();
-    assert!(
-        heights(&harness).max < 5.0,
-        "a fit of everything takes no notice of it"
-    );
+    assert!(heights(&harness).max < 5.0, "a full fit overrides the zoom");
 }
 
 #[test]
@@ -479,7 +465,7 @@ fn a_chip_with_alt_shows_its_role_alone_and_with_shift_in_front() {
 }
 
 #[test]
-fn every_role_has_a_chip_that_is_a_switch_and_a_hidden_curve_is_neither_drawn_nor_meant() {
+fn every_role_has_a_switch_and_a_hidden_curve_is_neither_drawn_nor_picked() {
     use egui_kittest::kittest::Queryable;
     let mut harness = harness(three_curves());
     harness.get_by_label("Show perturbed").click();
@@ -523,7 +509,7 @@ fn a_box_drawn_with_shift_names_the_curves_it_touches_and_does_not_pan() {
 }
 
 #[test]
-fn a_secondary_click_on_a_curve_says_what_can_be_done_with_it() {
+fn a_secondary_click_on_a_curve_opens_its_menu() {
     use egui_kittest::kittest::Queryable;
     let mut harness = harness(three_curves());
     let at = point_on(&harness, 1, 60);
@@ -573,7 +559,7 @@ fn long_lines(harness: &Harness<'_, Model>) -> usize {
 }
 
 #[test]
-fn three_hundred_perturbed_curves_at_rest_are_one_image_and_the_one_pointed_at_a_line_on_top() {
+fn many_static_curves_are_an_image_and_the_pointed_curve_is_a_line_on_top() {
     let mut curves = three_curves();
     curves.extend((0..300u32).map(|k| {
         lag(
@@ -590,12 +576,15 @@ fn three_hundred_perturbed_curves_at_rest_are_one_image_and_the_one_pointed_at_a
     harness.hover_at(at);
     harness.run();
     assert_eq!(harness.state().view.hovered.as_ref(), Some(&numbered(2)));
-    assert_eq!(long_lines(&harness), 4, "and the curve meant");
+    assert_eq!(long_lines(&harness), 4, "and the pointed curve");
     click(&mut harness, at);
     assert_eq!(clicks(&harness), [BodeEvent::Clicked(numbered(2))]);
     harness.event(wheel(vec2(0.0, 40.0)));
     harness.step();
-    assert!(long_lines(&harness) > 300, "what moves is drawn as lines");
+    assert!(
+        long_lines(&harness) > 300,
+        "moving curves are drawn as lines"
+    );
     // The zoom is animated.
     harness.run_steps(20);
     assert!(long_lines(&harness) < 5);

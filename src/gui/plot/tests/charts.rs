@@ -3,11 +3,10 @@
 use egui::{Id, Rect, vec2};
 use egui_plot::{PlotBounds, PlotMemory};
 
-use super::bode::wheel;
 use super::*;
-use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine, chart_ui};
-use crate::gui::widgets::palette;
-use crate::gui::widgets::palette::Palette;
+use crate::gui::plot::chart::{Chart, ChartAxis, ChartLine};
+use crate::gui::plot::chart_view::chart_ui;
+use crate::gui::widgets::palette::{self, Palette};
 
 const TITLES: [&str; 2] = ["one", "other"];
 const SIZE: egui::Vec2 = vec2(600.0, 200.0);
@@ -82,17 +81,7 @@ fn the_wheel_zooms_the_time_of_every_chart_and_the_values_in_view_fill_each() {
             "{view:?}"
         );
     }
-    for pressed in [true, false, true, false] {
-        let button = PointerButton::Primary;
-        let modifiers = Modifiers::NONE;
-        harness.event(Event::PointerButton {
-            pos: at,
-            button,
-            pressed,
-            modifiers,
-        });
-        harness.step();
-    }
+    double_click(&mut harness, at);
     harness.run();
     assert_eq!(harness.state(), &whole, "a double click shows all");
 }

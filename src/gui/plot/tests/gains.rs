@@ -115,7 +115,7 @@ fn a_click_on_a_dot_names_its_condition() {
 }
 
 #[test]
-fn of_two_dots_close_together_the_nearer_one_is_meant() {
+fn the_nearer_of_two_close_dots_is_picked() {
     let mut harness = gains(5);
     for condition in [2, 3] {
         let at = harness
@@ -223,24 +223,14 @@ fn the_wheel_zooms_a_plot_and_a_double_click_beside_its_dots_shows_all() {
     let at = harness.state().view.position(0, [90.0, 1.15]).unwrap();
     harness.hover_at(at);
     harness.step();
-    harness.event(super::bode::wheel(vec2(0.0, 400.0)));
+    harness.event(wheel(vec2(0.0, 400.0)));
     harness.run_steps(30);
     let zoomed = ranges(&harness);
     assert!(
         zoomed[0].width() < 0.6 * whole[0].width() && zoomed[1].width() < 0.6 * whole[1].width(),
         "{zoomed:?}"
     );
-    for pressed in [true, false, true, false] {
-        let button = PointerButton::Primary;
-        let modifiers = Modifiers::NONE;
-        harness.event(Event::PointerButton {
-            pos: at,
-            button,
-            pressed,
-            modifiers,
-        });
-        harness.step();
-    }
+    double_click(&mut harness, at);
     harness.run();
     assert_eq!(ranges(&harness), whole);
 }

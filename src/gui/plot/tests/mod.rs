@@ -8,7 +8,7 @@ mod tables;
 
 use std::sync::Arc;
 
-use egui::{Event, Modifiers, PointerButton, Pos2};
+use egui::{Event, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::Harness;
 
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
@@ -30,6 +30,23 @@ pub(super) fn sample_curve(id: u64, values: &[f64]) -> BodeCurve {
     curve.with(&vec![1.0, 2.0, 4.0].into(), &values.into(), &values.into())
 }
 
+/// Sends a press or a release of a button.
+fn send_button<State>(
+    harness: &mut Harness<'_, State>,
+    pos: Pos2,
+    button: PointerButton,
+    pressed: bool,
+    modifiers: Modifiers,
+) {
+    harness.event(Event::PointerButton {
+        pos,
+        button,
+        pressed,
+        modifiers,
+    });
+    harness.step();
+}
+
 /// Presses and releases a button at `at`.
 fn press<State>(
     harness: &mut Harness<'_, State>,
@@ -39,20 +56,36 @@ fn press<State>(
 ) {
     harness.hover_at(at);
     harness.step();
-    for pressed in [true, false] {
-        harness.event(Event::PointerButton {
-            pos: at,
-            button,
-            pressed,
-            modifiers,
-        });
-        harness.step();
-    }
+    send_button(harness, at, button, true, modifiers);
+    send_button(harness, at, button, false, modifiers);
     harness.step();
 }
 
 fn click<State>(harness: &mut Harness<'_, State>, at: Pos2) {
     press(harness, at, PointerButton::Primary, Modifiers::NONE);
+}
+
+fn double_click<State>(harness: &mut Harness<'_, State>, at: Pos2) {
+    for pressed in [true, false, true, false] {
+        send_button(
+            harness,
+            at,
+            PointerButton::Primary,
+            pressed,
+            Modifiers::NONE,
+        );
+    }
+}
+
+/// Returns a turn of the wheel \[pt\].
+fn wheel(delta: Vec2) -> Event {
+    Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta,
+        phase: egui::TouchPhase::Move,
+        modifiers: Modifiers::NONE,
+        source: egui::MouseWheelSource::Wheel,
+    }
 }
 
 /// Drags with a button along `path`.
@@ -62,24 +95,12 @@ fn drag<State>(harness: &mut Harness<'_, State>, path: &[Pos2], button: PointerB
     };
     harness.hover_at(*first);
     harness.step();
-    harness.event(Event::PointerButton {
-        pos: *first,
-        button,
-        pressed: true,
-        modifiers: Modifiers::NONE,
-    });
-    harness.step();
+    send_button(harness, *first, button, true, Modifiers::NONE);
     for at in path {
         harness.hover_at(*at);
         harness.step();
     }
-    harness.event(Event::PointerButton {
-        pos: *last,
-        button,
-        pressed: false,
-        modifiers: Modifiers::NONE,
-    });
-    harness.step();
+    send_button(harness, *last, button, false, Modifiers::NONE);
     harness.step();
 }
 

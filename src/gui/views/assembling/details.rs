@@ -7,11 +7,12 @@ use egui::{Grid, RichText, Role, Ui};
 use nalgebra::Complex;
 
 use gdcm_io::formats::text::UnsaidUnit;
-use gdcm_model::assembly::assembly::Part;
-use gdcm_model::assembly::rules::Signs;
-use gdcm_model::assembly::{ChannelLabel, FoundModel, RowRole, RowRule};
+use gdcm_model::assembly::declarations::Signs;
+use gdcm_model::assembly::part::Part;
+use gdcm_model::assembly::{ChannelLabel, FoundModel, RowRule};
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dynamics, ModelId, Pair, StateSpace};
+use gdcm_model::names::RowRole;
 use gdcm_model::response::frequency_response::ResponseShape;
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
 use gdcm_model::units::number;
@@ -558,7 +559,7 @@ pub(super) fn preview_ui(
         quantity: BodeQuantity::RESPONSE_OF_FOUND_MODEL,
         unit: FrequencyUnit::default(),
         message: Some("This response cannot be computed"),
-        ..BodeScene::of(&names[place], curves, band)
+        ..BodeScene::new(&names[place], curves, band)
     };
     bode_ui(ui, &scene, &mut assembly.preview.view, palette);
 }
@@ -613,7 +614,7 @@ fn curve(found: &FoundModel, place: usize, band: (f64, f64)) -> Option<BodeCurve
             (grid.omega().to_vec(), response.curve(pair).to_vec())
         }
     };
-    let shape = ResponseShape::of(&values);
+    let shape = ResponseShape::new(&values);
     Some(BodeCurve {
         id: CurveId::Model(ModelId::new(
             ConditionId(0),

@@ -10,10 +10,11 @@ use egui::{
     Ui,
 };
 
+use gdcm_model::assembly::declarations::Signs;
 use gdcm_model::assembly::problem::ProblemKind;
-use gdcm_model::assembly::rules::Signs;
-use gdcm_model::assembly::{ChannelRule, FileScope, Rules, UnitRule};
+use gdcm_model::assembly::{FileScope, Rules, UnitRule};
 use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::names::ChannelRule;
 use gdcm_model::units::number;
 
 use crate::gui::commands::assembling::AssemblingCommand;

@@ -4,7 +4,7 @@ use egui::{
     Align, Button, Color32, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, vec2,
 };
 
-use gdcm_model::assembly::assembly::Part;
+use gdcm_model::assembly::part::Part;
 
 use super::details::columns_ui;
 use crate::gui::commands::assembling::AssemblingCommand;
@@ -147,7 +147,7 @@ pub(super) fn problems_ui(
     commands: &mut Vec<Command>,
 ) {
     let assembly = state.assembly();
-    let problems = state.assembly().told();
+    let problems = state.assembly().problem_lines();
     let heading = match problems.len() {
         0 => "Nothing is missing: the dataset can be made".to_owned(),
         1 => "1 item to complete".to_owned(),
@@ -191,10 +191,14 @@ pub(super) fn problems_ui(
                     commands.push(AssemblingCommand::Select(*part).into());
                 }
             }
-            for (part, words) in problems.iter().take(MOST_LINES) {
-                let text = RichText::new(words).size(SMALL_SIZE).color(palette.text);
+            for problem in problems.iter().take(MOST_LINES) {
+                let text = RichText::new(&problem.text)
+                    .size(SMALL_SIZE)
+                    .color(palette.text);
                 let response = ui.add(Label::new(text).sense(Sense::click()).wrap());
-                if let Some(part) = part.filter(|_| response.clicked()) {
+                if response.clicked()
+                    && let Some(part) = problem.part
+                {
                     commands.push(AssemblingCommand::Select(part).into());
                 }
             }

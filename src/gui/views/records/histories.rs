@@ -24,9 +24,9 @@ use super::simulation::{simulated, time_models_ui};
 use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
 use crate::gui::commands::records::RecordsCommand;
-use crate::gui::plot::chart::{
-    Chart, ChartAxis, ChartImage, ChartLine, ChartSpan, chart_ui, chosen_stretch,
-};
+use crate::gui::plot::chart::{Chart, ChartAxis, ChartImage, ChartLine, ChartSpan};
+use crate::gui::plot::chart_view::chart_ui;
+use crate::gui::plot::stretch::chosen_stretch;
 use crate::gui::state::records::ConditionRecords;
 use crate::gui::widgets::choices::{check_ui, choice_ui};
 use crate::gui::widgets::controls::entry_ui;

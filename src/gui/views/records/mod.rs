@@ -18,12 +18,12 @@ use egui::{
 };
 
 use gdcm_model::dataset::ConditionId;
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::{number, six_digits};
-use gdcm_plot::figure::decimals;
-use gdcm_study::Table;
 use gdcm_sysid::identification::SearchSpace;
 use gdcm_sysid::identification_error::{HIGHEST_ORDER, LONGEST_PAST};
 use gdcm_sysid::records::LayoutProblem;
+use gdcm_words::Table;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::form::FormCommand;
@@ -332,7 +332,7 @@ pub fn condition_table(state: &State) -> Table {
             .map(|of| decimals(of.flight_state().airspeed_kt, 0));
         let named = [id.to_string(), airspeed_kt.unwrap_or_default()];
         let told = match (&records.found, state.records.running(*id)) {
-            (_, Some(job)) if job.told().step.is_empty() => vec!["waits".to_owned()],
+            (_, Some(job)) if job.news().step.is_empty() => vec!["waits".to_owned()],
             (_, Some(_)) => vec!["under way".to_owned()],
             (None, None) => Vec::new(),
             (Some((_, Err(_))), None) => vec!["not identified".to_owned()],
@@ -347,7 +347,7 @@ pub fn condition_table(state: &State) -> Table {
                     .map_or(String::new(), |cost| decimals(cost, 2)),
                 (found.bundle.len() + 1).to_string(),
                 found.cautions.len().to_string(),
-                job.told()
+                job.news()
                     .duration_s
                     .map_or(String::new(), |time_s| decimals(time_s, 1)),
             ],

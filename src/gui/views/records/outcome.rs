@@ -9,15 +9,14 @@ use gdcm_model::dataset::condition::ChannelRemedy;
 use gdcm_model::dataset::{BundleKind, Pair};
 use gdcm_model::simulation::Signal;
 use gdcm_model::units::s_to_ms;
-use gdcm_study::decisions::changed_models::OfferedModels;
+use gdcm_study::decisions::adopted_models::OfferedModels;
 use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
 use gdcm_sysid::diagnostics::model_doubts::HELD_OUT;
 use gdcm_sysid::diagnostics::record_fault::{ContradictingRecord, RecordFault};
-use gdcm_sysid::identification::{
-    ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError,
-};
+use gdcm_sysid::identification::{ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError};
 use gdcm_sysid::records::LaidOutRecord;
 use gdcm_sysid::spectra::record_cautions::RecordCaution;
+use gdcm_words::channel_time_skew::time_skew_text;
 
 use super::frame_cache::{Source, kept};
 use super::page::Page;
@@ -52,7 +51,7 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
         );
     }
     if let Some(job) = state.records.running(state.condition().id()) {
-        let told = job.told();
+        let told = job.news();
         let (part, step) = if told.step.is_empty() {
             (
                 0.0,
@@ -202,7 +201,7 @@ fn late_channel_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Some(signal) = late.signal(dataset) else {
         return;
     };
-    let words = late.words(&signal.name, &physics.name);
+    let words = time_skew_text(&late, &signal.name, &physics.name);
     caution_ui(
         ui,
         (&words, vec![taken_out(records, &signal, late.delay_s)]),

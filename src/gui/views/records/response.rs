@@ -21,9 +21,8 @@ use gdcm_sysid::subspace::stabilisation::StabilisationPoint;
 
 use super::frame_cache::kept;
 use super::page::Page;
-use crate::gui::plot::chart::{
-    Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan, chart_ui,
-};
+use crate::gui::plot::chart::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan};
+use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::controls::{named, painted_text, text_width};
 use crate::gui::widgets::palette::{Palette, small};
@@ -69,7 +68,7 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
     } = page;
     let pair = state.display.selection.pair;
     let running = state.records.running(state.condition().id());
-    let first = running.and_then(|job| job.told().first_model);
+    let first = running.and_then(|job| job.news().first_model);
     let drawn = match (records.identification(), first) {
         (_, Some(first)) => {
             let job = running.map_or([0.1, 10.0], |job| job.request.options.band);
@@ -440,7 +439,7 @@ fn shape(values: impl Iterator<Item = (f64, Complex<f64>)>, reference: Option<[f
     let ResponseShape {
         magnitude_db,
         phase_deg,
-    } = ResponseShape::of(&values);
+    } = ResponseShape::new(&values);
     let distance = |at: &usize, to: f64| (omega[*at] / to).ln().abs();
     let shift = reference.map_or(0.0, |[to, _, phase]| {
         let nearest = (0..omega.len()).min_by(|a, b| distance(a, to).total_cmp(&distance(b, to)));

@@ -7,7 +7,7 @@ use egui::{Color32, Grid, Label, RichText, ScrollArea, Ui};
 use gdcm_method::correction::Pade;
 use gdcm_model::dataset::{BundleKind, StateSpace};
 use gdcm_model::simulation::Validation;
-use gdcm_study::jobs::job::SimulationJob;
+use gdcm_study::jobs::identification_jobs::SimulationJob;
 
 use super::frame_cache::kept;
 use super::page::Page;

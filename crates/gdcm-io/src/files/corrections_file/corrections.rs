@@ -19,8 +19,12 @@ use gdcm_model::dataset::model::Provenance;
 use gdcm_model::dataset::{self, BundleKind, Condition, ConditionId, Model, Pair, PairTable};
 use gdcm_study::results::caution::Caution;
 use gdcm_study::results::couplings_assessment::{AxisCost, CouplingCost, CouplingsAssessment};
-use gdcm_study::stages::lead_compensation::lead_cautions;
 use gdcm_study::{Analysis, ConditionAnalysis};
+use gdcm_words::assessment::not_assessed_text;
+use gdcm_words::caution::{caution_text, failure_text};
+use gdcm_words::convention_doubt::doubt_text;
+use gdcm_words::couplings::analysis_coupling_remarks;
+use gdcm_words::leads::lead_cautions;
 
 use super::uncertainty::{bars, net_gain_bar, uncertainty};
 use super::{NAME, VERSION};
@@ -44,14 +48,14 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         match analysis.conditions.get(&id) {
             Some(Ok(result)) => conditions.push(names.condition(condition, result)),
             Some(Err(failure)) => {
-                failed
-                    .push(json!({"id": id.0, "code": failure.code(), "why": failure.to_string()}));
+                let why = failure_text(failure, dataset);
+                failed.push(json!({"id": id.0, "code": failure.code(), "why": why}));
             }
             None => {}
         }
         match analysis.assessment.get(&id) {
             None => {}
-            Some(Err(why)) => left_out.push(without(id, why)),
+            Some(Err(why)) => left_out.push(without(id, &not_assessed_text(why, dataset))),
             Some(Ok(changes)) => assessed.push(json!({
                 "id": id.0,
                 "model": condition.bundle(BundleKind::Physics)[condition.nominal()].name,
@@ -213,7 +217,7 @@ impl<'a> ChannelNames<'a> {
         let study = &self.analysis.study;
         let choice = study.choice(condition.id());
         let correction = &result.correction;
-        let words = |caution: &Caution| caution.words(|pair| study.dataset.pair_name(pair));
+        let words = |caution: &Caution| caution_text(caution, |pair| study.dataset.pair_name(pair));
         let set_aside = result.cautions.iter().filter_map(|caution| match caution {
             Caution::SetAside { model, .. } => {
                 Some(json!({"model": model.name, "why": words(caution)}))
@@ -229,7 +233,7 @@ impl<'a> ChannelNames<'a> {
         let doubts = result
             .doubts
             .iter()
-            .map(|doubt| doubt.words(&study.dataset));
+            .map(|doubt| doubt_text(doubt, &study.dataset));
         let cautions = doubts
             .chain(result.cautions.iter().map(words))
             .chain(lead_cautions(study, result));
@@ -583,7 +587,7 @@ pub(super) fn couplings(analysis: &Analysis) -> Value {
         "own": costs.map(|costs| coupling_cost(costs.own)),
         "scheduled": costs.map(|costs| coupling_cost(costs.scheduled)),
         "left_out": costs.and_then(|costs| costs.left_out).map(coupling_cost),
-        "words": analysis.coupling_remarks().into_iter().map(|remark| remark.text).collect::<Value>(),
+        "words": analysis_coupling_remarks(analysis).into_iter().map(|remark| remark.text).collect::<Value>(),
     });
     without_empty(
         found,

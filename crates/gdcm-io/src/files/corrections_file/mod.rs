@@ -11,9 +11,11 @@ use gdcm_method::correction::{Channel, ChannelCorrection, LeadPrice};
 use gdcm_method::schedule::CostChange;
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
 use gdcm_model::dataset::{Condition, ConditionId, Pair};
+use gdcm_model::number_format::full_precision;
 use gdcm_model::response::LeadFilter;
 use gdcm_plot::figure::all_channels;
 use gdcm_study::{Analysis, ConditionAnalysis};
+use gdcm_words::assessment::not_assessed_text;
 
 use super::export_contents::ExportContents;
 use crate::csv_text::write_records;
@@ -118,35 +120,37 @@ const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
     }),
     ("channel", |row| row.name()),
     ("gain", |row| {
-        cell(row.found.own().map(|own| own.gain(row.channel)))
+        full_precision(row.found.own().map(|own| own.gain(row.channel)))
     }),
     ("delay_s", |row| {
-        cell(row.found.own().map(|own| own.pure_delay_s(row.channel)))
+        full_precision(row.found.own().map(|own| own.pure_delay_s(row.channel)))
     }),
     ("scheduled_gain", |row| {
-        cell(row.found.scheduled.as_ref().map(|of| of.gain(row.channel)))
+        full_precision(row.found.scheduled.as_ref().map(|of| of.gain(row.channel)))
     }),
     ("scheduled_delay_s", |row| {
-        cell(
+        full_precision(
             row.found
                 .scheduled
                 .as_ref()
                 .map(|of| of.pure_delay_s(row.channel)),
         )
     }),
-    ("tau_s", |row| cell(row.tau_s(row.found.own()))),
-    ("lead_s", |row| cell(row.filter().map(LeadFilter::lead_s))),
+    ("tau_s", |row| full_precision(row.tau_s(row.found.own()))),
+    ("lead_s", |row| {
+        full_precision(row.filter().map(LeadFilter::lead_s))
+    }),
     ("zero_rad_s", |row| {
-        cell(row.filter().map(LeadFilter::zero_rad_s))
+        full_precision(row.filter().map(LeadFilter::zero_rad_s))
     }),
     ("lag_rad_s", |row| {
-        cell(row.filter().map(LeadFilter::lag_rad_s))
+        full_precision(row.filter().map(LeadFilter::lag_rad_s))
     }),
     ("gain_at_infinity_db", |row| {
-        cell(row.filter().map(LeadFilter::gain_at_infinity_db))
+        full_precision(row.filter().map(LeadFilter::gain_at_infinity_db))
     }),
     ("scheduled_tau_s", |row| {
-        cell(row.tau_s(row.found.scheduled.as_ref()))
+        full_precision(row.tau_s(row.found.scheduled.as_ref()))
     }),
     ("gain_low", |row| {
         row.found.end(Scalar::ChannelGain(row.channel), 0)
@@ -169,10 +173,10 @@ const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
             .deviation(Scalar::ChannelGain(row.channel), |bar| bar.identification)
     }),
     ("gain_above_band_db", |row| {
-        cell(row.price().map(|price| price.gains_db[row.channel]))
+        full_precision(row.price().map(|price| price.gains_db[row.channel]))
     }),
     ("not_valid_above_rad_s", |row| {
-        cell(row.price().map(|price| price.limit_rad_s))
+        full_precision(row.price().map(|price| price.limit_rad_s))
     }),
     ("contains", |row| row.found.contains.clone()),
 ];
@@ -202,30 +206,30 @@ const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
             .to_string()
     }),
     ("G", |row| {
-        cell(
+        full_precision(
             row.found
                 .result()
                 .and_then(|result| result.wanted_gain(row.pair)),
         )
     }),
     ("D_s", |row| {
-        cell(
+        full_precision(
             row.found
                 .result()
                 .and_then(|result| result.comparison.delta.delay_s[row.pair]),
         )
     }),
     ("net_gain", |row| {
-        cell(row.found.own().map(|own| own.net_gain(row.pair)))
+        full_precision(row.found.own().map(|own| own.net_gain(row.pair)))
     }),
     ("net_delay_s", |row| {
-        cell(row.found.own().map(|own| own.net_delay_s(row.pair)))
+        full_precision(row.found.own().map(|own| own.net_delay_s(row.pair)))
     }),
     ("scheduled_net_gain", |row| {
-        cell(row.found.scheduled.as_ref().map(|of| of.net_gain(row.pair)))
+        full_precision(row.found.scheduled.as_ref().map(|of| of.net_gain(row.pair)))
     }),
     ("scheduled_net_delay_s", |row| {
-        cell(
+        full_precision(
             row.found
                 .scheduled
                 .as_ref()
@@ -233,27 +237,29 @@ const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
         )
     }),
     ("J_mag_uncorrected", |row| {
-        cell(row.change().map(|change| change.uncorrected.magnitude))
+        full_precision(row.change().map(|change| change.uncorrected.magnitude))
     }),
     ("J_phase_uncorrected", |row| {
-        cell(row.change().map(|change| change.uncorrected.phase))
+        full_precision(row.change().map(|change| change.uncorrected.phase))
     }),
     ("J_mag_scheduled", |row| {
-        cell(row.change().map(|change| change.corrected.magnitude))
+        full_precision(row.change().map(|change| change.corrected.magnitude))
     }),
     ("J_phase_scheduled", |row| {
-        cell(row.change().map(|change| change.corrected.phase))
+        full_precision(row.change().map(|change| change.corrected.phase))
     }),
     ("dJ_mag", |row| {
-        cell(row.change().map(|change| change.magnitude()))
+        full_precision(row.change().map(|change| change.magnitude()))
     }),
     ("dJ_phase", |row| {
-        cell(row.change().map(|change| change.phase()))
+        full_precision(row.change().map(|change| change.phase()))
     }),
-    ("dJ", |row| cell(row.change().map(|change| change.total()))),
+    ("dJ", |row| {
+        full_precision(row.change().map(|change| change.total()))
+    }),
     ("left_out", |row| row.left_out()),
     ("D_band_s", |row| {
-        cell(
+        full_precision(
             row.found
                 .result()
                 .and_then(|result| result.comparison.delta.band_delay_s[row.pair]),
@@ -286,7 +292,7 @@ const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
             .deviation(Scalar::NetGain(row.pair), |bar| bar.identification)
     }),
     ("degrees_of_freedom", |row| {
-        cell(
+        full_precision(
             row.found
                 .bar(Scalar::NetGain(row.pair))
                 .and_then(Bar::degrees_of_freedom),
@@ -418,7 +424,7 @@ impl Found<'_> {
             .bar(scalar)
             .zip(level)
             .and_then(|(bar, level)| bar.interval(level));
-        cell(ends.map(|ends| {
+        full_precision(ends.map(|ends| {
             if scalar.is_delay() {
                 ends[end]
             } else {
@@ -433,7 +439,7 @@ impl Found<'_> {
         scalar: Scalar,
         component: fn(&Bar) -> Option<VarianceComponent>,
     ) -> String {
-        cell(
+        full_precision(
             self.bar(scalar)
                 .and_then(component)
                 .map(|component| component.variance.sqrt()),
@@ -465,7 +471,7 @@ impl ChannelRow<'_> {
                 let taken = (0..mixing.ncols()).map(|from| mixing[(to, from)]);
                 taken
                     .chain((0..feedback.ncols()).map(|of| feedback[(to, of)]))
-                    .map(|value| cell(Some(value)))
+                    .map(|value| full_precision(Some(value)))
                     .collect()
             }
             Channel::Output(_) => vec![String::new(); mixing.ncols() + feedback.ncols()],
@@ -498,26 +504,17 @@ impl ResponseRow<'_> {
             .assessment
             .get(&self.found.condition.id())
         {
-            Some(Err(why)) => why.clone(),
+            Some(Err(why)) => not_assessed_text(why, &self.found.analysis.study.dataset),
             _ => String::new(),
         }
     }
 
     fn left_in_band(&self) -> String {
         let uncertainty = self.found.analysis.uncertainty.as_ref();
-        cell(
+        full_precision(
             uncertainty.and_then(|of| {
                 of.conditions.get(&self.found.condition.id())?.left_in_band[self.pair]
             }),
         )
     }
-}
-
-/// Formats a value at full precision; empty if it is missing or not finite.
-fn cell(value: Option<f64>) -> String {
-    // Debug writes an exponent, unlike Display, which would write hundreds of zeros.
-    value
-        .filter(|value| value.is_finite())
-        .map(|value| format!("{value:?}"))
-        .unwrap_or_default()
 }

@@ -6,9 +6,10 @@ use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceDecomposition};
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_study::Analysis;
-use gdcm_study::stages::uncertainty::{
+use gdcm_study::results::uncertainty::{
     AirspeedDifference, PairScatter, SecondVariableTest, Uncertainty,
 };
+use gdcm_words::uncertainty::{difference_text, second_variable_text};
 
 use super::corrections::{ChannelNames, rows_of, says_nothing, without_empty};
 
@@ -122,7 +123,7 @@ fn difference(of: &AirspeedDifference, level: f64) -> Value {
         "ratio": of.difference.ratio(),
         "p": of.difference.p(),
         "p_holm": of.p_holm,
-        "words": of.words(level),
+        "words": difference_text(of, level),
     })
 }
 
@@ -193,6 +194,6 @@ fn second_variable(of: &SecondVariableTest) -> Value {
         "left_out_without": effect.and_then(|effect| effect.left_out_without),
         "left_out_with": effect.and_then(|effect| effect.left_out_with),
         "needed": of.needed,
-        "words": of.to_string(),
+        "words": second_variable_text(of),
     })
 }

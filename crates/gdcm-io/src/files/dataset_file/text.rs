@@ -6,12 +6,13 @@ use nalgebra::DMatrix;
 use serde::de::Deserializer;
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::dataset::channel::{ChannelSide, Location};
+use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord, FlightState, RecordKind};
 use gdcm_model::dataset::limits::{
     MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS,
     MOST_MODELS_IN_ALL, MOST_PAIRS, MOST_PIECES, MOST_RECORDS, MOST_STATES,
 };
+use gdcm_model::dataset::location::Location;
 use gdcm_model::dataset::measured_response::Estimate;
 use gdcm_model::dataset::model::{Origin, Provenance};
 use gdcm_model::dataset::state_space::Timing;
@@ -479,7 +480,7 @@ impl RecordText {
     ) -> Result<ConditionRecord, ContentError> {
         let kind = match self.kind {
             None => RecordKind::Other,
-            Some(word) => RecordKind::of(&word).ok_or_else(|| {
+            Some(word) => RecordKind::from_word(&word).ok_or_else(|| {
                 let words = RecordKind::ALL.map(|kind| format!("\"{}\"", kind.word()));
                 let fault = ContentFault::Word {
                     expected: format!("one of {}", words.join(", ")),
@@ -617,7 +618,7 @@ impl ModelText {
 
     /// Creates the text of a model of a dataset.
     pub(crate) fn of_model(model: &Model) -> Self {
-        Self::of(ModelDraft::of(model))
+        Self::of(ModelDraft::from_model(model))
     }
 
     /// Creates the text of a model.

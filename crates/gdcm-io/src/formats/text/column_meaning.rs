@@ -1,7 +1,7 @@
 //! Meaning of the columns of a frequency response, from names and units.
 
-use gdcm_model::assembly::PhysicalUnit;
-use gdcm_model::assembly::response_name::{KnownChannels, ResponseName};
+use gdcm_model::names::{KnownChannels, ResponseName};
+use gdcm_model::units::physical_unit::PhysicalUnit;
 
 /// Quantity in a column of a frequency response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Names and units of columns from the preceding lines.
 
-use gdcm_model::assembly::channel_match::direction_of;
+use gdcm_model::names::signed_name::parse_direction;
 
 use crate::formats::text::columns::{Layout, comment, is_rule};
 use crate::formats::text::separator::{Separator, cell_number};
@@ -262,7 +262,7 @@ pub(super) fn name_and_unit(heading: &str) -> (String, Option<String>) {
         if let Some((name, unit)) = inner
             && ((always && !is_index(unit)) || is_unit(unit))
             // "az [+down]" gives a sign convention.
-            && direction_of(unit).is_none()
+            && parse_direction(unit).is_none()
         {
             return (
                 clean(name),

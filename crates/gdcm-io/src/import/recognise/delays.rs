@@ -2,8 +2,9 @@
 
 use nalgebra::DMatrix;
 
-use gdcm_model::assembly::channel_match::{SAMPLE_TIME_NAMES, folded_name};
 use gdcm_model::dataset::state_space::{GREATEST_CHANNEL_DELAY_S, Timing};
+use gdcm_model::names::channel_alias::folded_name;
+use gdcm_model::names::time_name::SAMPLE_TIME_NAMES;
 use gdcm_model::units::number;
 
 use super::record::{Field, Record, array_of, list_of, scalar_of, texts_of};

@@ -12,12 +12,12 @@ use std::collections::{BTreeSet, HashMap};
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use gdcm_model::assembly::physical_unit::Dimension;
-use gdcm_model::assembly::{FoundModel, PhysicalUnit};
+use gdcm_model::assembly::FoundModel;
 use gdcm_model::dataset::limits::MOST_PIECES;
 use gdcm_model::dataset::measured_response::Estimate;
 use gdcm_model::dataset::model::{Origin, Provenance};
 use gdcm_model::dataset::unchecked_dataset::{ModelDraft, ResponseArray, ResponseDraft};
+use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
 
 use self::delays::{is_delay, refuse_delays};
 use self::record::{

@@ -6,11 +6,13 @@ use std::rc::Rc;
 
 use nalgebra::{Complex, DMatrix};
 
-use gdcm_model::assembly::channel_match::{direction_of, folded_name};
+use gdcm_model::assembly::ChannelLabel;
 use gdcm_model::assembly::found_model::Facts;
-use gdcm_model::assembly::{ChannelLabel, RowRole};
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::model::Origin;
+use gdcm_model::names::RowRole;
+use gdcm_model::names::channel_alias::folded_name;
+use gdcm_model::names::signed_name::parse_direction;
 use gdcm_model::units::number;
 
 use super::delays::{DelayField, delay_fields};
@@ -455,7 +457,7 @@ pub(crate) fn label_of(text: &str) -> ChannelLabel {
             .and_then(|text| text.split_once(open))
             && !name.trim().is_empty()
             && !unit.trim().is_empty()
-            && direction_of(unit).is_none()
+            && parse_direction(unit).is_none()
         {
             return ChannelLabel {
                 name: Some(name.trim().to_owned()),
@@ -634,7 +636,7 @@ pub(super) fn origin_of(record: &Record<'_>) -> Origin {
         }
         None
     };
-    let role = text(&["role"]).and_then(|word| RowRole::of(&word.to_lowercase()));
+    let role = text(&["role"]).and_then(|word| RowRole::from_word(&word.to_lowercase()));
     // Classes of identified models begin with "id"; other classes imply no origin.
     let is_identified = record.class.is_some_and(|class| class.starts_with("id"));
     let perturbation = Some(offsets_of(record)).filter(|offsets| !offsets.is_empty());

@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use gdcm_model::assembly::rules::standard_patterns;
 use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_model::names::name_pattern::standard_patterns;
 use gdcm_sysid::records::record_guess::RecordGuess;
 use gdcm_sysid::records::separation::Separation;
 use gdcm_sysid::records::{RecordColumn, RecordSource, RecordTable};
@@ -471,8 +471,8 @@ mod example_tests {
 
 #[cfg(test)]
 mod tests {
-    use gdcm_model::assembly::ChannelRule;
     use gdcm_model::dataset::channel::ChannelSide;
+    use gdcm_model::names::ChannelRule;
     use gdcm_sysid::records::{
         ColumnUse, LaidOutRecord, RecordChannels, RecordLayout, TimeWish, with_topics_joined,
     };

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use gdcm_model::assembly::channel_match::{SAMPLE_TIME_NAMES, folded_name, time_name_rank};
 use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::names::channel_alias::folded_name;
+use gdcm_model::names::time_name::{SAMPLE_TIME_NAMES, time_name_rank};
 use gdcm_sysid::records::RecordColumn;
 
 use crate::formats::recorded_columns::Columns;

@@ -3,7 +3,8 @@
 use gdcm_io::embedded_example;
 use gdcm_model::dataset::{Band, BundleKind, ModelId};
 use gdcm_model::progress::Unobserved;
-use gdcm_study::jobs::job::{AcrossJob, Job};
+use gdcm_study::jobs::curve_jobs::AcrossJob;
+use gdcm_study::jobs::job::Job;
 
 #[test]
 fn models_that_are_not_there_are_left_out_and_the_others_keep_their_order() {

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use gdcm_io::embedded_example;
 use gdcm_model::dataset::{BundleKind, ConditionId, Model, ModelId};
-use gdcm_study::decisions::changed_models::AdoptedModels;
-use gdcm_study::decisions::edit::EditRefusal;
+use gdcm_study::decisions::adopted_models::AdoptedModels;
+use gdcm_study::decisions::edit_refusal::EditRefusal;
 use gdcm_study::{Edit, Study};
 
 fn study() -> Study {

@@ -3,10 +3,16 @@
 use std::sync::Arc;
 
 use gdcm_method::fidelity::CostAverage;
-use gdcm_method::schedule::{DelayScheduling, SCHEDULE_KINDS, ScheduleKind};
+use gdcm_method::schedule::form_comparison::SCHEDULE_KINDS;
+use gdcm_method::schedule::DelayScheduling;
+use gdcm_method::schedule::ScheduleKind;
 use gdcm_study::jobs::job::Job;
-use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice, AssessmentJob};
-use gdcm_study::{AssessedCorrection, AssessmentTable};
+use gdcm_study::results::assessment_table::AssessedCorrection;
+use gdcm_study::results::assessment_table::AssessedModel;
+use gdcm_study::results::assessment_table::AssessmentChoice;
+use gdcm_study::jobs::analysis_jobs::AssessmentJob;
+use gdcm_study::results::assessment_table::AssessmentTable;
+use gdcm_words::assessment::summary_text;
 
 use super::*;
 
@@ -22,8 +28,8 @@ fn the_assessment_of_the_paper_is_that_of_the_analysis() {
     let table = AssessmentTable::of(analysis, PAPER);
     assert_eq!(table.left_out.len(), 1);
     assert_eq!(
-        (table.left_out[0].condition, table.left_out[0].why.as_str()),
-        (ConditionId(10), "the nominal model is rejected")
+        (table.left_out[0].condition, table.left_out[0].why.code()),
+        (ConditionId(10), "nominal-rejected")
     );
     assert_eq!(table.conditions.len(), 10);
     for assessed in &table.conditions {
@@ -118,7 +124,7 @@ fn a_sentence_sums_an_assessment_up() {
         changes().filter(|change| *change < 0.0).count(),
         summary.better
     );
-    let words = summary.words(dataset);
+    let words = summary_text(&summary, dataset);
     assert!(
         words.starts_with(&format!(
             "better in {} of 50, worst {}",
@@ -129,7 +135,7 @@ fn a_sentence_sums_an_assessment_up() {
     );
     let nothing = table.summary(&dataset.on_axis().map(|_, _| false));
     assert_eq!(
-        (nothing.compared, nothing.words(dataset).as_str()),
+        (nothing.compared, summary_text(&nothing, dataset).as_str()),
         (0, "nothing to assess")
     );
 }
@@ -148,7 +154,7 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
         (11, 11, SCHEDULE_KINDS.len())
     );
     let schedule = analysis.schedule.as_ref().unwrap();
-    let of_kind = evidence.of(schedule.settings.kind).unwrap();
+    let of_kind = evidence.form(schedule.settings.kind).unwrap();
     for (place, id) in scheduled.iter().enumerate() {
         let own = &analysis.condition(*id).unwrap().correction;
         let at = schedule.at(evidence.airspeeds_kt[place]);

@@ -15,7 +15,7 @@ use gdcm_method::uncertainty::{Bar, Scalar, student_quantile};
 use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
 use gdcm_study::Analysis;
 use gdcm_study::decisions::setting;
-use gdcm_study::stages::uncertainty::Uncertainty;
+use gdcm_study::results::uncertainty::Uncertainty;
 
 use super::uncertainty::{normal, set, study_of, uncertainty_of};
 

@@ -12,7 +12,9 @@ use gdcm_model::dataset::{Band, Channel, Condition, Dataset, Model};
 use gdcm_study::ConditionAnalysis;
 use gdcm_study::decisions::settings::{DEFAULT_COHERENCE, Settings};
 use gdcm_study::results::caution::{Caution, Undefined};
-use gdcm_study::results::remark::{RemarkKind, remarks};
+use gdcm_words::caution::caution_text;
+use gdcm_words::condition_remarks::remarks;
+use gdcm_words::remark::RemarkKind;
 
 use super::responses::model_of;
 use super::*;
@@ -130,7 +132,7 @@ fn words(analysis: &Analysis) -> Vec<String> {
     only(analysis)
         .cautions
         .iter()
-        .map(|caution| caution.words(name))
+        .map(|caution| caution_text(caution, name))
         .collect()
 }
 

@@ -4,8 +4,9 @@ use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::CostAverage;
 use gdcm_model::dataset::ModelId;
 use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
-use gdcm_study::results::derivation::{Derivation, derivation};
-use gdcm_study::{AssessedCorrection, AssessmentTable, ExplainTarget};
+use gdcm_study::{AssessedCorrection, AssessmentTable};
+use gdcm_words::ExplainTarget;
+use gdcm_words::derivation::{Derivation, derivation};
 
 use super::*;
 
@@ -216,7 +217,7 @@ fn the_distances_behind_a_discontinuity_ratio_are_explained_by_the_weights_told(
                 .then(|| result.figures.physics.between(place, other).unwrap() / fitted)
         };
         let mut ratios: Vec<f64> = (0..models.len()).filter_map(ratio).collect();
-        let median = gdcm_model::response::median(&mut ratios);
+        let median = gdcm_model::statistics::median(&mut ratios);
         // Squares and roots in another order.
         assert!((median / fit.ratios[place].unwrap() - 1.0).abs() < 1e-12);
     }

@@ -12,8 +12,9 @@ use gdcm_method::schedule::{DelayScheduling, ScheduleCaution, ScheduleKind};
 use gdcm_model::dataset::{BundleKind, Dataset, ModelId};
 use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_study::results::caution::{BundleModel, Caution, GainOutOfRange, Undefined};
-use gdcm_study::stages::comparison::cautions_of_models;
+use gdcm_study::stages::model_cautions::cautions_of_models;
 use gdcm_study::{ConditionAnalysis, Execution};
+use gdcm_words::caution::caution_text;
 
 use super::*;
 use crate::made_up::two_lags;
@@ -46,7 +47,7 @@ fn words(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<String> {
     result
         .cautions
         .iter()
-        .map(|caution| caution.words(name))
+        .map(|caution| caution_text(caution, name))
         .collect()
 }
 

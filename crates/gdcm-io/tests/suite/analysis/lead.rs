@@ -14,9 +14,9 @@ use gdcm_model::dataset::{Band, Channel, Condition, Dataset, Model, ModelId};
 use gdcm_model::response::LeadOrder;
 use gdcm_study::decisions::settings::DelayFrom;
 use gdcm_study::results::assessment_table::{AssessedModel, AssessmentChoice};
-use gdcm_study::results::remark::remarks;
-use gdcm_study::stages::lead_compensation::lead_words;
 use gdcm_study::{AssessedCorrection, AssessmentTable, PhaseCorrection};
+use gdcm_words::condition_remarks::remarks;
+use gdcm_words::leads::lead_words;
 
 use super::*;
 

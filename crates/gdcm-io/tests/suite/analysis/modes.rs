@@ -3,7 +3,7 @@
 use gdcm_method::fidelity::Muad;
 use gdcm_model::response::zeros::{finite_zeros, transmission_zeros};
 use gdcm_model::response::{evaluate, modes};
-use gdcm_study::jobs::job::ConditionModes;
+use gdcm_study::jobs::curve_jobs::ConditionModes;
 
 use super::responses::model_of;
 use super::*;

@@ -1,6 +1,7 @@
 //! What the result of a condition says.
 
-use gdcm_study::results::remark::{Remark, RemarkKind, remarks};
+use gdcm_words::condition_remarks::remarks;
+use gdcm_words::remark::{Remark, RemarkKind};
 
 use super::*;
 

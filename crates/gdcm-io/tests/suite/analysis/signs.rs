@@ -7,10 +7,13 @@ use gdcm_method::correction::Channel;
 use gdcm_model::dataset::measured_response::MeasuredResponse;
 use gdcm_model::dataset::{Condition, Dataset, Model};
 use gdcm_study::Execution;
-use gdcm_study::decisions::changed_models::SignRole;
-use gdcm_study::decisions::differences::Decisions;
-use gdcm_study::results::convention_doubt::{Convention, doubts_of_models};
-use gdcm_study::results::remark::remarks;
+use gdcm_study::decisions::named_decisions::Decisions;
+use gdcm_study::decisions::signs::SignRole;
+use gdcm_study::results::convention_doubt::Convention;
+use gdcm_study::stages::convention_check::doubts_of_models;
+use gdcm_words::condition_remarks::remarks;
+use gdcm_words::convention_doubt::doubt_text;
+use gdcm_words::decisions::dataset_difference_text;
 
 use super::*;
 
@@ -93,7 +96,7 @@ fn an_output_of_the_other_sign_is_found_and_turned_to_the_last_digit() {
         doubt.all_responses && doubt.conditions.len() >= 10,
         "{doubt:?}"
     );
-    let words = doubt.words(&study.dataset);
+    let words = doubt_text(doubt, &study.dataset);
     assert!(
         words.starts_with("COL → NZ differs by half a turn"),
         "{words}"
@@ -186,7 +189,7 @@ fn a_unit_that_one_side_has_otherwise_is_named_with_its_factor() {
         let [doubt] = &doubts[..] else {
             panic!("{factor}: {doubts:?}")
         };
-        let words = doubt.words(&study.dataset);
+        let words = doubt_text(doubt, &study.dataset);
         assert!(doubt.channel == channel && words.contains(units), "{words}");
         assert_eq!(doubt.turns(), None, "no sign");
     }
@@ -253,7 +256,7 @@ fn signs_go_with_the_decisions_by_the_names_of_channels() {
     unknown.signs[0].channel = "AZ".to_owned();
     let (_, not_applied) = unknown.applied_to(study_of_example().dataset);
     assert_eq!(
-        not_applied[0].to_string(),
+        dataset_difference_text(&not_applied[0]),
         "a decision no longer applies: turn AZ: the dataset has no such channel"
     );
 }

@@ -8,7 +8,8 @@ use gdcm_model::dataset::{Condition, Dataset, Model, ModelId};
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_study::ConditionAnalysis;
 use gdcm_study::results::analysis::ConditionFailure;
-use gdcm_study::stages::condition_responses::{ConditionCurves, KnownModels};
+use gdcm_study::stages::condition_curves::ConditionCurves;
+use gdcm_study::stages::condition_responses::KnownModels;
 use gdcm_study::stages::engine::WantedFirst;
 
 use super::*;

@@ -9,8 +9,9 @@ use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 use gdcm_model::dataset::Dataset;
 use gdcm_model::dataset::state_space::Timing;
 use gdcm_model::executor::Sequential;
-use gdcm_study::stages::comparison::cautions_of_models;
+use gdcm_study::stages::model_cautions::cautions_of_models;
 use gdcm_study::{ConditionAnalysis, Execution};
+use gdcm_words::caution::caution_text;
 
 use super::*;
 
@@ -86,7 +87,7 @@ fn a_model_sampled_too_slowly_for_the_band_is_set_aside_and_the_reason_said() {
     let said: Vec<String> = result
         .cautions
         .iter()
-        .map(|caution| caution.words(name))
+        .map(|caution| caution_text(caution, name))
         .collect();
     let words = "it is of discrete time, T = 0.5 s, and has no response from π/T = 6.2832 rad/s on";
     assert!(
@@ -100,7 +101,7 @@ fn a_model_sampled_too_slowly_for_the_band_is_set_aside_and_the_reason_said() {
     assert!(
         cautions
             .iter()
-            .any(|(id, caution)| *id == FIRST && caution.words(name).contains(words))
+            .any(|(id, caution)| *id == FIRST && caution_text(caution, name).contains(words))
     );
 }
 

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 use gdcm_method::correction::Channel;
+use gdcm_method::schedule::airspeeds::airspeed_indicators;
 use gdcm_method::schedule::{ScheduleKind, SecondVariable};
 use gdcm_method::uncertainty::{
     Bar, Design, Difference, IdentificationSource, Scalar, ScheduleBand, SecondVariableDesign,
@@ -12,9 +13,11 @@ use gdcm_method::uncertainty::{
 };
 use gdcm_model::dataset::{Dataset, ModelId};
 use gdcm_model::progress::{Cancelled, Progress};
-use gdcm_study::results::derivation::derivation;
-use gdcm_study::stages::uncertainty::{AirspeedDifference, PairScatter, Uncertainty};
-use gdcm_study::{ExplainTarget, PhaseCorrection};
+use gdcm_study::PhaseCorrection;
+use gdcm_study::results::uncertainty::{AirspeedDifference, PairScatter, Uncertainty};
+use gdcm_words::ExplainTarget;
+use gdcm_words::decisions::dataset_difference_text;
+use gdcm_words::derivation::derivation;
 
 use super::*;
 
@@ -383,8 +386,7 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
     };
     let rows: Vec<Vec<f64>> = airspeeds.iter().map(|&airspeed| row(airspeed)).collect();
     let design = Design::new(&rows).unwrap();
-    let by_airspeed =
-        Design::new(&gdcm_method::schedule::airspeed_indicators(airspeeds, 1.0)).unwrap();
+    let by_airspeed = Design::new(&airspeed_indicators(airspeeds, 1.0)).unwrap();
     for table in list(&case["tables"]) {
         let figures = numbers(&table["y"]);
         let of = |name: &str, place: usize, degrees| {
@@ -534,7 +536,7 @@ fn the_example_has_the_bars_of_the_reference() {
 fn all_bars(found: &Uncertainty) -> Vec<(ConditionId, Scalar, Option<Bar>)> {
     let of_condition = |(id, of): (
         &ConditionId,
-        &gdcm_study::stages::uncertainty::ConditionUncertainty,
+        &gdcm_study::results::uncertainty::ConditionUncertainty,
     )| {
         of.bars
             .iter()
@@ -712,7 +714,7 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
     let mut study = study_of(&dataset);
     set(&mut study, setting::POINTS.to(5));
     let (_, found) = uncertainty_of(&study);
-    let covers = |of: &gdcm_study::stages::uncertainty::ConditionUncertainty| {
+    let covers = |of: &gdcm_study::results::uncertainty::ConditionUncertainty| {
         let [low, high] = of.bars[Scalar::NetGain(Pair::new(0, 0))]
             .unwrap()
             .interval(0.9)
@@ -856,7 +858,7 @@ fn a_model_with_another_band_is_another_model() {
         let (_, differences) = wide.reconciled(Arc::clone(&dataset.dataset));
         differences
             .iter()
-            .map(ToString::to_string)
+            .map(dataset_difference_text)
             .collect::<Vec<_>>()
     };
     assert_eq!(changed(&again), Vec::<String>::new());

@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use gdcm_model::dataset::{Dataset, ModelId};
-use gdcm_study::decisions::differences::{Difference, decision_differences};
+use gdcm_study::decisions::differences::Difference;
 use gdcm_study::decisions::edit::LONGEST_REASON;
-use gdcm_study::decisions::study::History;
-use gdcm_study::jobs::job::{Job, VariantJob};
+use gdcm_study::decisions::history::History;
+use gdcm_study::jobs::analysis_jobs::VariantJob;
+use gdcm_study::jobs::job::Job;
+use gdcm_words::decisions::{dataset_difference_text, decision_differences};
 
 use super::*;
 
@@ -334,7 +336,7 @@ fn reasons_and_variants_are_reconciled_to_a_changed_dataset() {
     let lost: Vec<String> = differences
         .iter()
         .filter(|difference| matches!(difference, Difference::NotApplied { .. }))
-        .map(ToString::to_string)
+        .map(dataset_difference_text)
         .collect();
     assert!(
         lost.iter()

@@ -118,7 +118,7 @@ fn records_that_cannot_be_are_named_with_their_place() {
     );
     refused(
         |of| of[1]["name"] = json!("LON 1"),
-        &[place, "the name \"LON 1\" stands twice (records 1 and 2)"],
+        &[place, "duplicate name \"LON 1\" (records 1 and 2)"],
     );
     refused(
         |of| of[1]["sample_time_s"] = json!(0),

@@ -13,11 +13,12 @@ use gdcm_io::{
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::DelayScheduling;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
-use gdcm_study::decisions::changed_models::SignRole;
 use gdcm_study::decisions::setting;
 use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::{Kind, Setting, Value};
+use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::{Edit, Study};
+use gdcm_words::decisions::dataset_difference_text;
 
 use super::SMALL;
 
@@ -324,7 +325,7 @@ fn differences(desk: &Desk) -> Vec<String> {
         .unwrap()
         .differences
         .iter()
-        .map(ToString::to_string)
+        .map(dataset_difference_text)
         .collect()
 }
 

@@ -222,18 +222,18 @@ fn a_condition_without_identified_models_is_no_fault() {
 fn ids_and_names_that_stand_twice_are_refused() {
     assert_refused(
         |file| file["conditions"][1]["id"] = json!(7),
-        &["the id 7 stands twice (conditions number 1 and 2)"],
+        &["duplicate id 7 (conditions number 1 and 2)"],
     );
     let two_of_a_name = |file: &mut Value| {
         file["inputs"][1]["name"] = json!("LON");
         file["on_axis"] = json!([]);
     };
-    assert_refused(two_of_a_name, &["inputs: the name \"LON\" stands twice"]);
+    assert_refused(two_of_a_name, &["inputs: duplicate name \"LON\""]);
     assert_refused(
         |file| file["conditions"][0]["identified_models"][1]["name"] = json!("sweeps"),
         &[
             "condition 7",
-            "the identified bundle: the name \"sweeps\" stands twice (models 1 and 2)",
+            "the identified bundle: duplicate name \"sweeps\" (models 1 and 2)",
         ],
     );
     assert_text_refused(
@@ -256,7 +256,7 @@ fn on_axis_pairs_are_known_channels_once_and_output_first() {
         ),
         (
             json!([["P", "LAT"], ["P", "LAT"]]),
-            "on-axis pair 2: the pair [\"P\", \"LAT\"] stands twice",
+            "on-axis pair 2: duplicate pair [\"P\", \"LAT\"]",
         ),
         (json!([["P", "LAT", "Q"]]), "on_axis, entry 1"),
         (
@@ -396,7 +396,7 @@ fn a_message_stays_on_one_line_whatever_the_names_in_the_file() {
             model["name"] = json!(nasty);
         }
     };
-    assert_refused(duplicate, &["stands twice", "a\\nb"]);
+    assert_refused(duplicate, &["duplicate name", "a\\nb"]);
     let wrong = |file: &mut Value| {
         file["conditions"][0]["physics_models"][0]["name"] = json!(nasty);
         file["conditions"][0]["physics_models"][0]["A"][0][0] = json!(nasty);
@@ -459,7 +459,7 @@ fn a_sample_time_and_delays_that_cannot_be_are_named() {
         |file| file["conditions"][0]["identified_models"][1]["input_delays_s"] = json!([0.1, 0]),
         &[
             "identified model \"measured\" (number 2)",
-            "a measured response has its delays in it",
+            "a measured response includes its delays",
         ],
     );
 }

@@ -16,7 +16,7 @@ use gdcm_plot::figure::{
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
 use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::results::requirements::Requirements;
-use gdcm_study::stages::condition_responses::{CURVE_POINTS, ConditionCurves, curves_band};
+use gdcm_study::stages::condition_curves::{CURVE_POINTS, ConditionCurves, curves_band};
 use gdcm_study::{Analysis, CouplingCorrection, Edit, Engine, Study};
 
 mod leads;

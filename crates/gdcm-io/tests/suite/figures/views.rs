@@ -8,6 +8,7 @@ use gdcm_plot::figure::bode::BodeOptions;
 use gdcm_plot::figure::drawing::{Area, Shape};
 use gdcm_plot::figure::gains::{Across, Measure};
 use gdcm_plot::figure::{Mark, Role};
+use gdcm_words::uncertainty::differences_summary;
 
 use super::*;
 
@@ -199,7 +200,7 @@ fn the_error_of_the_reference_is_nothing_and_a_correction_moves_the_median_of_a_
         .representative_name(gdcm_model::dataset::BundleKind::Physics);
     let mut errors = column(&format!("{physics}, corrected"));
     // The curves have their own frequencies: a fifth as far apart as those that the median was taken of, and as many at the ends.
-    assert!(gdcm_model::response::median(&mut errors).abs() < 0.02);
+    assert!(gdcm_model::statistics::median(&mut errors).abs() < 0.02);
 }
 
 #[test]
@@ -214,7 +215,7 @@ fn evidence_stacks_the_shares_of_each_split_and_shows_the_rest_with_its_interval
     assert!(
         figure
             .caption
-            .starts_with(&uncertainty.differences_in_words()),
+            .starts_with(&differences_summary(uncertainty)),
         "{}",
         figure.caption
     );

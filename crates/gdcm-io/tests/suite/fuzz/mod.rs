@@ -38,7 +38,7 @@ use gdcm_method::correction::Channel;
 use gdcm_method::requirements::ToleranceTable;
 use gdcm_model::assembly::{FoundModel, RowRule, Rules};
 use gdcm_model::dataset::{BundleKind, ModelId};
-use gdcm_study::decisions::changed_models::SignRole;
+use gdcm_study::decisions::signs::SignRole;
 use gdcm_study::{Edit, Study};
 
 use crate::made_up::tries;

@@ -7,7 +7,7 @@ use gdcm_io::reading_budget::ReadingBudget;
 use gdcm_model::dataset::{BundleKind, ConditionId, Model, Pair};
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::Unobserved;
-use gdcm_study::jobs::job::IdentificationRequest;
+use gdcm_study::jobs::identification_jobs::IdentificationRequest;
 use gdcm_sysid::identification::{Identification, Preparation};
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, RecordTable, TimeWish};
 

@@ -8,10 +8,12 @@ use gdcm_model::executor::Sequential;
 use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::simulation::FlightRecord;
 use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
-use gdcm_sysid::identification::{Preparation, ResponseEstimate};
+use gdcm_sysid::identification::Preparation;
+use gdcm_sysid::identification::ResponseEstimate;
 use gdcm_sysid::spectra::local_polynomial::local_polynomial;
 use gdcm_sysid::spectra::preparation::prepare;
 use gdcm_sysid::spectra::spectrum::spectra;
+use gdcm_words::channel_time_skew::time_skew_text;
 
 use crate::made_up::{Flight, Gusts, stable_aircraft};
 
@@ -42,7 +44,7 @@ fn late(mut channel: DVectorViewMut<'_, f64>) {
 }
 
 fn found(measured: &ResponseEstimate) -> Option<(ChannelSide, usize, f64)> {
-    let late = ChannelTimeSkew::of(measured, BAND, &Dynamics::StateSpace(stable_aircraft()))?;
+    let late = ChannelTimeSkew::find(measured, BAND, &Dynamics::StateSpace(stable_aircraft()))?;
     Some((late.role, late.index, late.delay_s))
 }
 
@@ -80,11 +82,11 @@ fn a_physics_model_that_is_wrong_otherwise_is_no_delay() {
     // The sign of an output.
     turned.row_mut(1).neg_mut();
     assert_eq!(
-        ChannelTimeSkew::of(&clean, BAND, &with(of.a().clone(), turned)),
+        ChannelTimeSkew::find(&clean, BAND, &with(of.a().clone(), turned)),
         None
     );
     assert_eq!(
-        ChannelTimeSkew::of(&clean, BAND, &with(of.a() * 1.6, of.c().clone())),
+        ChannelTimeSkew::find(&clean, BAND, &with(of.a() * 1.6, of.c().clone())),
         None
     );
 }
@@ -96,7 +98,7 @@ fn words_say_what_is_seen_and_what_else_it_may_be() {
         index: 1,
         delay_s: -0.0401,
     };
-    let words = late.words("Q", "nominal");
+    let words = time_skew_text(&late, "Q", "nominal");
     assert!(
         words.starts_with(
             "Q seems to be logged 40 ms early in all records: against the physics model \"nominal\""

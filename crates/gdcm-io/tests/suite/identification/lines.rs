@@ -83,7 +83,7 @@ fn the_measured_response_is_that_of_the_known_answer() {
 /// Records of a made-up system `dx/dt = A x + B u`, `y = C x + D u` with 2 inputs and 2 outputs, with neither noise nor feedback.
 fn exact(records: usize, samples: usize) -> (StateSpace, Vec<Segment>) {
     let model = slow_system();
-    let held = FirstOrderHold::of(&model, 0.04).unwrap();
+    let held = FirstOrderHold::new(&model, 0.04).unwrap();
     let segment = |record: usize| {
         let mut inputs = DMatrix::zeros(samples, 2);
         for (i, mut column) in inputs.column_iter_mut().enumerate() {

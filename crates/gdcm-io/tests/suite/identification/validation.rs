@@ -30,7 +30,7 @@ fn record(model: &StateSpace, initial: &[f64], samples: usize, dt: f64) -> Segme
             *x = value;
         }
     }
-    let held = FirstOrderHold::of(model, dt).unwrap();
+    let held = FirstOrderHold::new(model, dt).unwrap();
     let mut outputs = held.simulate(&DVector::from_column_slice(initial), &inputs);
     inputs.add_scalar_mut(40.0);
     outputs.column_mut(0).add_scalar_mut(3.0);
@@ -49,7 +49,7 @@ fn a_ramp_and_a_step_are_answered_as_in_the_textbook() {
     // dx/dt = -2 x + 3 u, y = x. For u = t: x = 3/4 (2 t - 1 + e^-2t); inputs linear between samples are exact.
     let [a, b, c, d] = [-2.0, 3.0, 1.0, 0.0].map(|entry| DMatrix::from_element(1, 1, entry));
     let model = StateSpace::new(a, b, c, d).unwrap();
-    let held = FirstOrderHold::of(&model, 0.5).unwrap();
+    let held = FirstOrderHold::new(&model, 0.5).unwrap();
     let ramp = held.simulate(
         &DVector::zeros(1),
         &DMatrix::from_fn(20, 1, |n, _| 0.5 * n as f64),

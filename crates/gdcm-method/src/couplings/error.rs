@@ -1,0 +1,107 @@
+//! Reasons for a missing coupling fit.
+
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::progress::Cancelled;
+use gdcm_model::units::{number, telling};
+
+/// Reasons why no couplings can be fitted (M16.2).
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CouplingError {
+    /// There is no condition, or no response is available in both representatives.
+    #[error(
+        "no response of the {conditions} conditions is known for both the physics model and flight"
+    )]
+    NothingToFit { conditions: usize },
+    /// Too few conditions for the request.
+    #[error("error bars need at least {needed} conditions, found {found}")]
+    TooFewConditions {
+        /// Fewest sufficient conditions.
+        needed: usize,
+        found: usize,
+    },
+    /// A condition's table has another shape than expected.
+    #[error(
+        "condition {condition}: expected {} x {} responses at {} frequencies in every table, found {} x {} at {}",
+        expected[0],
+        expected[1],
+        expected[2],
+        found[0],
+        found[1],
+        found[2]
+    )]
+    Shape {
+        condition: ConditionId,
+        /// Outputs, inputs and frequencies expected.
+        expected: [usize; 3],
+        /// Outputs, inputs and frequencies found.
+        found: [usize; 3],
+    },
+    /// The loop cannot be closed: `I - K H` is singular.
+    #[error(
+        "the feedback makes the loop of condition {condition} singular at {} rad/s",
+        number(*omega_rad_s)
+    )]
+    SingularLoop {
+        condition: ConditionId,
+        omega_rad_s: f64,
+    },
+    /// The normal matrix has no Cholesky factors.
+    #[error("the responses do not determine the {unknowns} entries of the mixing and the feedback")]
+    SingularNormalMatrix { unknowns: usize },
+    /// The mixing removes an input or reverses its sign.
+    #[error("{}", reversed_input(&input.to_string(), *factor, *airspeed_kt))]
+    ReversedInput {
+        /// The input, counted from 1.
+        input: usize,
+        airspeed_kt: f64,
+        /// `M_ii` at that airspeed.
+        factor: f64,
+    },
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl CouplingError {
+    /// Returns the reason, with the input's name.
+    pub fn words(&self, inputs: &[String]) -> String {
+        match self {
+            Self::ReversedInput {
+                input,
+                airspeed_kt,
+                factor,
+            } => {
+                let name = inputs.get(input - 1).map_or("", String::as_str);
+                reversed_input(name, *factor, *airspeed_kt)
+            }
+            other => other.to_string(),
+        }
+    }
+}
+
+/// Describes a reversed input, given by its name or number.
+fn reversed_input(input: &str, factor: f64, airspeed_kt: f64) -> String {
+    format!(
+        "the mixing multiplies input {input} by {} at {} kt; expected a positive factor",
+        telling(factor, 3),
+        number(airspeed_kt)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reversed_input_is_named() {
+        let error = CouplingError::ReversedInput {
+            input: 2,
+            airspeed_kt: 40.0,
+            factor: -0.598_742_4,
+        };
+        let words = error.words(&["LON".to_owned(), "LAT".to_owned()]);
+        assert!(
+            words.starts_with("the mixing multiplies input LAT by -0.599 at 40 kt"),
+            "{words}"
+        );
+    }
+}

@@ -1,0 +1,237 @@
+//! Known answers from independent numpy code, the optimality of a pass, and error bars.
+
+use nalgebra::{Complex, DMatrix};
+use serde_json::Value;
+
+use gdcm_model::dataset::{ConditionId, StateSpace};
+use gdcm_model::executor::Sequential;
+use gdcm_model::progress::Unobserved;
+
+use super::{REFERENCE, constant, disturbed, fit, matrix, matrix_at, numbers, synthetic_aircraft};
+use crate::correction::Pade;
+use crate::couplings::fit::left_out_fits;
+use crate::couplings::problem::{CouplingError, CouplingOptions};
+use crate::couplings::{CouplingBars, CouplingMatrices, CouplingProblem, Unknown};
+
+/// Reads the names of unknowns: `["M", to, from, power]` or `["K", input, output]`.
+fn unknowns(value: &Value) -> Vec<Unknown> {
+    value
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|name| match name[0].as_str().unwrap() {
+            "M" => Unknown::Mixing {
+                to: index(&name[1]),
+                from: index(&name[2]),
+                power: index(&name[3]),
+            },
+            _ => Unknown::Feedback {
+                input: index(&name[1]),
+                output: index(&name[2]),
+            },
+        })
+        .collect()
+}
+
+fn index(value: &Value) -> usize {
+    value.as_u64().unwrap() as usize
+}
+
+#[test]
+fn the_synthetic_aircraft_is_recovered() {
+    let toy = &REFERENCE["toy"];
+    let tolerance = toy["recovered"]["tolerance"].as_f64().unwrap();
+    let solves = toy["recovered"]["solves"].as_u64().unwrap() as usize;
+    let problem = synthetic_aircraft(
+        "R",
+        CouplingOptions {
+            ridge: 1e-9,
+            solves,
+            ..CouplingOptions::default()
+        },
+    );
+    let found = fit(&problem);
+    assert!((found.matrices.feedback() - matrix(&toy["true_K"])).amax() < tolerance);
+    for (condition, expected) in problem
+        .conditions
+        .iter()
+        .zip(toy["true_M"].as_array().unwrap())
+    {
+        let error = (found.matrices.mixing(condition.airspeed_kt) - matrix(expected)).amax();
+        assert!(error < tolerance, "{} kt: {error:e}", condition.airspeed_kt);
+    }
+    assert!(found.residual < 1e-13, "{:e}", found.residual);
+    assert!(found.not_fed_back.is_empty() && found.undetermined.is_empty());
+}
+
+#[test]
+fn every_solve_of_the_disturbed_aircraft_agrees() {
+    let known = &REFERENCE["toy"]["disturbed"];
+    let found = fit(&disturbed());
+    assert_eq!(found.unknowns, unknowns(&REFERENCE["toy"]["names"]));
+    let solves = known["coefficients_of_each_solve"].as_array().unwrap();
+    assert_eq!(found.coefficients.len(), solves.len());
+    for (solve, (coefficients, expected)) in found.coefficients.iter().zip(solves).enumerate() {
+        for (unknown, expected) in numbers(expected).into_iter().enumerate() {
+            let error = (coefficients[unknown] - expected).abs();
+            assert!(
+                error < known["tolerance"].as_f64().unwrap(),
+                "solve {solve}, {unknown}: {error:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_state_space_with_feed_through_is_coupled_exactly() {
+    let known = &REFERENCE["state_space"];
+    let [a, b, c, d, m, k] = ["A", "B", "C", "D", "M", "K"].map(|name| matrix(&known[name]));
+    let physics = StateSpace::new(a, b, c, d).unwrap();
+    let coupled = constant(&m, &k)
+        .model(&physics, 60.0, Pade::new(4).unwrap())
+        .unwrap();
+    let found = [coupled.a(), coupled.b(), coupled.c(), coupled.d()];
+    for (found, expected) in found
+        .into_iter()
+        .zip(known["renovated"].as_array().unwrap())
+    {
+        assert!((found - matrix(expected)).amax() < known["tolerance"].as_f64().unwrap());
+    }
+}
+
+/// Columns and weights of the last pass with a complex row by response and frequency, without using
+/// structure.
+struct DenseProblem {
+    columns: Vec<Vec<Complex<f64>>>,
+    target: Vec<Complex<f64>>,
+    squared: Vec<f64>,
+}
+
+impl DenseProblem {
+    fn new(problem: &CouplingProblem, unknowns: &[Unknown], last: &CouplingMatrices) -> Self {
+        let mut dense = Self {
+            columns: vec![Vec::new(); unknowns.len()],
+            target: Vec::new(),
+            squared: Vec::new(),
+        };
+        for condition in &problem.conditions {
+            let v: f64 = last.airspeeds().scaled(condition.airspeed_kt);
+            for k in 0..problem.omega.len() {
+                let h = matrix_at(&condition.physics, k);
+                let r = matrix_at(&condition.flight, k);
+                let s = (DMatrix::identity(3, 3) - &h * last.feedback().map(Complex::from))
+                    .try_inverse()
+                    .unwrap();
+                let f = &s * &h;
+                let target = &s * &r;
+                let coupled = &f * last.mixing(condition.airspeed_kt).map(Complex::from);
+                for pair in problem.on_axis.pairs() {
+                    let entry = (pair.output, pair.input);
+                    let deviation = condition.deviation.as_ref().unwrap()[pair][k];
+                    let axis = if problem.on_axis[pair] { 2.0 } else { 1.0 };
+                    let s = axis / (1.0 + (deviation / 0.06_f64).powi(2)).sqrt();
+                    let q = weight(s, coupled[entry], r[entry]);
+                    dense.squared.push(q * q);
+                    dense.target.push(target[entry]);
+                    for (column, unknown) in dense.columns.iter_mut().zip(unknowns) {
+                        column.push(match *unknown {
+                            Unknown::Mixing { from, .. } if from != pair.input => {
+                                Complex::new(0.0, 0.0)
+                            }
+                            Unknown::Mixing { to, power, .. } => {
+                                f[(pair.output, to)] * v.powi(power as i32)
+                            }
+                            Unknown::Feedback { input, output } => {
+                                f[(pair.output, input)] * r[(output, pair.input)]
+                            }
+                        });
+                    }
+                }
+            }
+        }
+        dense
+    }
+
+    /// `sum q^2 Re conj(a) b`.
+    fn weighted_product(&self, a: &[Complex<f64>], b: &[Complex<f64>]) -> f64 {
+        (0..self.target.len())
+            .map(|row| self.squared[row] * (a[row].conj() * b[row]).re)
+            .sum()
+    }
+}
+
+/// `q` by its formula (M16.2).
+fn weight(s: f64, coupled: Complex<f64>, flight: Complex<f64>) -> f64 {
+    let ratio = coupled / flight;
+    let db = 20.0 * ratio.norm().log10();
+    let deg = ratio.arg().to_degrees();
+    let e = (20.0 * db * db + 20.0 * 0.0175 * deg * deg).sqrt();
+    let floor = flight.norm().max(0.5 * coupled.norm());
+    s / floor / (1.0 + (e * s / 10.0).powi(2)).powf(0.25)
+}
+
+#[test]
+fn the_gradient_of_the_weighted_problem_vanishes() {
+    let problem = disturbed();
+    let found = fit(&problem);
+    let [.., before, optimum] = &found.coefficients[..] else {
+        panic!("expected five solves")
+    };
+    let last = found.matrices.with(&found.unknowns, before);
+    let dense = DenseProblem::new(&problem, &found.unknowns, &last);
+    let residuals: Vec<Complex<f64>> = (0..dense.target.len())
+        .map(|row| {
+            let fitted: Complex<f64> = dense
+                .columns
+                .iter()
+                .zip(optimum)
+                .map(|(column, theta)| column[row] * theta)
+                .sum();
+            dense.target[row] - fitted
+        })
+        .collect();
+    for ((column, theta), unknown) in dense.columns.iter().zip(optimum).zip(&found.unknowns) {
+        let diagonal = dense.weighted_product(column, column);
+        let regularisation = 1e-3 * diagonal * (theta - unknown.uncoupled());
+        let gradient = regularisation - dense.weighted_product(column, &residuals);
+        let size = dense
+            .weighted_product(column, &dense.target)
+            .abs()
+            .max(diagonal);
+        assert!(
+            gradient.abs() < 1e-12 * size,
+            "{unknown:?}: {gradient:e}, scale {size:e}"
+        );
+    }
+    assert!(found.residual < 1e-14);
+}
+
+#[test]
+fn bars_need_three_conditions_and_agree_with_the_jackknife() {
+    let fits = left_out_fits(&disturbed(), &Sequential, &Unobserved).unwrap();
+    let left_out: Vec<_> = fits.iter().map(|fit| fit.condition).collect();
+    assert_eq!(left_out, [1, 2, 3, 4].map(ConditionId));
+    assert_eq!(fits[1].fit, fit(&disturbed().without(1)));
+    let bars = CouplingBars::of(&fits, 80.0, 0.9).unwrap();
+    let entries: Vec<f64> = fits
+        .iter()
+        .map(|left_out| left_out.fit.matrices.feedback()[(1, 2)])
+        .collect();
+    let mean = entries.iter().sum::<f64>() / 4.0;
+    let square: f64 = entries.iter().map(|entry| (entry - mean).powi(2)).sum();
+    // Student's quantile with 3 degrees of freedom at 0.95, from tables.
+    assert!((bars.feedback[(1, 2)] / (2.353_363 * (0.75 * square).sqrt()) - 1.0).abs() < 1e-6);
+    assert_eq!((bars.mixing[(0, 0)], bars.mixing[(1, 1)]), (0.0, 0.0));
+    let mut two = disturbed();
+    two.conditions.truncate(2);
+    let error = left_out_fits(&two, &Sequential, &Unobserved).unwrap_err();
+    assert_eq!(
+        error,
+        CouplingError::TooFewConditions {
+            needed: 3,
+            found: 2
+        }
+    );
+    // Two airspeeds allow a straight line.
+    assert_eq!(fit(&two).unknowns.len(), 12);
+}

@@ -1,0 +1,60 @@
+//! Order of the unknowns in the normal equations (M16.2).
+
+use super::unknown::Unknown;
+
+/// The unknowns in the order of the equations: those in `M` by input column, then those in `K`.
+pub(super) struct UnknownLayout {
+    /// The unknowns `M_ji` by input column i.
+    pub(super) mixing: Vec<Vec<MixingUnknown>>,
+    pub(super) feedback: Vec<FeedbackUnknown>,
+}
+
+/// A coefficient in `M_ji`.
+pub(super) struct MixingUnknown {
+    /// Index among the unknowns.
+    pub(super) index: usize,
+    /// The input j.
+    pub(super) to: usize,
+    /// Power of the scaled airspeed.
+    pub(super) power: i32,
+}
+
+/// An entry `K_jo`.
+pub(super) struct FeedbackUnknown {
+    /// Index among the unknowns.
+    pub(super) index: usize,
+    /// The input j.
+    pub(super) input: usize,
+    /// Index of the output o among the fed-back outputs.
+    pub(super) fed_back: usize,
+}
+
+impl UnknownLayout {
+    /// Sorts the unknowns for `inputs` inputs; `fed_back` are the outputs with a column in `K`.
+    pub(super) fn new(unknowns: &[Unknown], inputs: usize, fed_back: &[usize]) -> Self {
+        let mut layout = Self {
+            mixing: (0..inputs).map(|_| Vec::new()).collect(),
+            feedback: Vec::new(),
+        };
+        for (index, unknown) in unknowns.iter().enumerate() {
+            match *unknown {
+                Unknown::Mixing { to, from, power } => layout.mixing[from].push(MixingUnknown {
+                    index,
+                    to,
+                    power: power as i32,
+                }),
+                Unknown::Feedback { input, output } => {
+                    let place = fed_back.iter().position(|&known| known == output);
+                    if let Some(fed_back) = place {
+                        layout.feedback.push(FeedbackUnknown {
+                            index,
+                            input,
+                            fed_back,
+                        });
+                    }
+                }
+            }
+        }
+        layout
+    }
+}

@@ -1,0 +1,73 @@
+//! A frequency or delay read from a response, and the reasons for its absence (M17.1).
+
+use gdcm_model::units::number;
+
+/// Treatment of values read above the identified band.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum AboveBand {
+    /// Returned, and marked as resting on the model.
+    #[default]
+    Marked,
+    /// Refused: lead filters do not represent the aircraft there (M15).
+    Refused,
+}
+
+/// A value read from a response, with its uncertainty and the frequencies that it rests on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Metric {
+    /// The value: \[rad/s\] or \[s\].
+    pub value: f64,
+    /// Standard deviation to first order, from the response's uncertainty band (M14); `None` where
+    /// the response has none.
+    pub deviation: Option<f64>,
+    /// Lowest and highest frequency \[rad/s\] that the value was read from.
+    pub read_at: [f64; 2],
+    /// Whether the value rests on the model above the band.
+    pub rests_above_band: bool,
+    /// Whether the value rests on the model below the band.
+    pub rests_below_band: bool,
+}
+
+/// Reasons for a missing value.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum NoMetric {
+    /// The phase never falls through the level.
+    #[error("no crossing of {} deg up to {} rad/s", number(*level_deg), number(*up_to))]
+    NoCrossing {
+        /// The requested phase \[deg\].
+        level_deg: f64,
+        /// Highest frequency searched \[rad/s\].
+        up_to: f64,
+    },
+    /// The phase is below the level at the lowest band frequency, and never falls through it below
+    /// the band.
+    #[error("no crossing of {} deg: the phase is below it from {from:.3} rad/s on", number(*level_deg))]
+    BelowFromStart {
+        /// The requested phase \[deg\].
+        level_deg: f64,
+        /// Lowest band frequency \[rad/s\].
+        from: f64,
+    },
+    /// The magnitude nowhere below `omega_180` exceeds that at `omega_180` by 6 dB.
+    #[error("no crossing of 6 dB above the magnitude at {omega_180:.3} rad/s down to {} rad/s", number(*down_to))]
+    NoGainCrossing {
+        /// Frequency at -180 deg \[rad/s\].
+        omega_180: f64,
+        /// Lowest frequency searched \[rad/s\].
+        down_to: f64,
+    },
+    /// The response ends before a frequency that the value needs.
+    #[error("the response has no value at {needed:.3} rad/s, twice the frequency of -180 deg")]
+    ResponseEnds {
+        /// `2 omega_180` \[rad/s\].
+        needed: f64,
+    },
+    /// The value rests on lead filters above the band.
+    #[error("rests on the leads above the band: {needed:.3} rad/s, beyond {} rad/s", number(*top))]
+    AboveBand {
+        /// Highest frequency that the value needs \[rad/s\].
+        needed: f64,
+        /// Upper band end, `omega_B` \[rad/s\].
+        top: f64,
+    },
+}

@@ -1,0 +1,181 @@
+//! User-defined tolerances of modes (M17.3).
+//!
+//! The default table follows 14 CFR part 60, appendix C, table C2A, 2.c.3.a and 2.d.3.a.
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::message_text::quoted;
+use gdcm_model::units::number;
+
+use super::mode_name::ModeName;
+use super::mode_values::ModeValues;
+use super::positive_number::{NamedNumber, first_not_positive};
+
+/// A row: a tolerance for the period, and alternative tolerances for amplitude and damping.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModeTolerance {
+    /// Name in the source ("long term").
+    pub response: String,
+    /// The modes that the row applies to.
+    pub modes: Vec<ModeName>,
+    /// Relative to the flown period.
+    pub period: f64,
+    /// Absolute tolerance for the period \[s\], used if wider than the relative tolerance; `None`
+    /// if only the latter applies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period_s: Option<f64>,
+    /// Relative to the flown time to half or double amplitude.
+    pub amplitude_time: f64,
+    /// Absolute difference.
+    pub damping_ratio: f64,
+    /// Entry in the source ("2.c.3.a").
+    #[serde(default)]
+    pub entry: String,
+}
+
+/// The mode tolerances; each row is checked on reading.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<ModeTolerance>")]
+pub struct ModeToleranceTable(Vec<ModeTolerance>);
+
+/// A tolerance that is not above zero.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("tolerance of modes {row}, {}: expected {name} above zero, found {}", quoted(response), number(*found))]
+pub struct ModeToleranceError {
+    /// Counted from 1.
+    pub row: usize,
+    pub response: String,
+    /// `period`, `period_s`, `amplitude_time` or `damping_ratio`.
+    pub name: &'static str,
+    pub found: f64,
+}
+
+impl ModeTolerance {
+    /// Returns the tolerance \[s\] around a flown period.
+    pub fn period_tolerance_s(&self, period_s: f64) -> f64 {
+        (self.period * period_s).max(self.period_s.unwrap_or(0.0))
+    }
+
+    /// Whether `model` is within the tolerance around `flown`: the period, and either the time to
+    /// half or double amplitude or the damping ratio.
+    pub fn holds(&self, flown: &ModeValues, model: &ModeValues) -> bool {
+        self.holds_period(flown.period_s, model.period_s)
+            && (self.holds_amplitude(flown.time_to_half_s, model.time_to_half_s)
+                || self.holds_damping(flown.damping_ratio, model.damping_ratio))
+    }
+
+    fn holds_period(&self, flown_s: Option<f64>, model_s: Option<f64>) -> bool {
+        match (flown_s, model_s) {
+            (Some(flown_s), Some(model_s)) => {
+                (model_s - flown_s).abs() <= self.period_tolerance_s(flown_s.abs())
+            }
+            _ => false,
+        }
+    }
+
+    fn holds_amplitude(&self, flown_s: Option<f64>, model_s: Option<f64>) -> bool {
+        match (flown_s, model_s) {
+            (Some(flown_s), Some(model_s)) => {
+                (model_s - flown_s).abs() <= self.amplitude_time * flown_s.abs()
+            }
+            _ => false,
+        }
+    }
+
+    fn holds_damping(&self, flown: Option<f64>, model: Option<f64>) -> bool {
+        match (flown, model) {
+            (Some(flown), Some(model)) => (model - flown).abs() <= self.damping_ratio,
+            _ => false,
+        }
+    }
+
+    /// Whether the flown mode itself is known to within the tolerance: the standard deviation of
+    /// its period, and that of its time to half amplitude or damping ratio. A value that the flown
+    /// mode lacks has no tolerance.
+    pub fn is_known(&self, flown: &ModeValues, deviation: &ModeValues) -> bool {
+        let period_s = match flown.period_s {
+            Some(period_s) => self.period_tolerance_s(period_s),
+            None => 0.0,
+        };
+        let amplitude_s = match flown.time_to_half_s {
+            Some(time_s) => self.amplitude_time * time_s.abs(),
+            None => 0.0,
+        };
+        is_at_most(deviation.period_s, period_s)
+            && (is_at_most(deviation.time_to_half_s, amplitude_s)
+                || is_at_most(deviation.damping_ratio, self.damping_ratio))
+    }
+
+    /// Checks the tolerances; `row` counts from 1.
+    fn check(&self, row: usize) -> Result<(), ModeToleranceError> {
+        let values = [
+            ("period", Some(self.period)),
+            ("period_s", self.period_s),
+            ("amplitude_time", Some(self.amplitude_time)),
+            ("damping_ratio", Some(self.damping_ratio)),
+        ];
+        match first_not_positive(values) {
+            Some(NamedNumber { name, value: found }) => Err(ModeToleranceError {
+                row,
+                response: self.response.clone(),
+                name,
+                found,
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+fn is_at_most(deviation: Option<f64>, limit: f64) -> bool {
+    deviation.is_some_and(|deviation| deviation <= limit)
+}
+
+impl ModeToleranceTable {
+    /// Returns the rows in file order.
+    pub fn rows(&self) -> &[ModeTolerance] {
+        &self.0
+    }
+
+    /// Returns the row for a mode, if any.
+    pub fn row_for(&self, mode: ModeName) -> Option<&ModeTolerance> {
+        self.0.iter().find(|row| row.modes.contains(&mode))
+    }
+}
+
+impl TryFrom<Vec<ModeTolerance>> for ModeToleranceTable {
+    type Error = ModeToleranceError;
+
+    fn try_from(rows: Vec<ModeTolerance>) -> Result<Self, ModeToleranceError> {
+        for (index, row) in rows.iter().enumerate() {
+            row.check(index + 1)?;
+        }
+        Ok(Self(rows))
+    }
+}
+
+impl Default for ModeToleranceTable {
+    /// Returns the tolerances of 14 CFR part 60, appendix C, table C2A, 2.c.3.a (long-term
+    /// response) and 2.d.3.a (lateral-directional oscillations).
+    fn default() -> Self {
+        Self(vec![
+            ModeTolerance {
+                response: "long term".to_owned(),
+                modes: vec![ModeName::Phugoid],
+                period: 0.1,
+                period_s: None,
+                amplitude_time: 0.1,
+                damping_ratio: 0.02,
+                entry: "2.c.3.a".to_owned(),
+            },
+            ModeTolerance {
+                response: "lateral-directional oscillation".to_owned(),
+                modes: vec![ModeName::DutchRoll],
+                period: 0.1,
+                period_s: Some(0.5),
+                amplitude_time: 0.1,
+                damping_ratio: 0.02,
+                entry: "2.d.3.a".to_owned(),
+            },
+        ])
+    }
+}

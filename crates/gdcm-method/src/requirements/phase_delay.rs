@@ -1,0 +1,80 @@
+//! Phase delay from the phase between `omega_180` and `2 omega_180` (M17.1, steps 5 to 7).
+
+use std::f64::consts::PI;
+
+use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::statistics::mean;
+
+use super::attitude_response::AttitudeResponse;
+
+/// Points used to judge the phase between `omega_180` and `2 omega_180`.
+const LINE_POINTS: usize = 400;
+/// Departure \[deg\] from its chord up to which the phase counts as straight.
+const STRAIGHT_DEG: f64 = 10.0;
+
+/// The phase from `omega_180` to `2 omega_180`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhaseLine {
+    /// Largest departure from the line between its ends \[deg\].
+    pub departure_deg: f64,
+    /// `-(Phi(2 omega_180) + pi) / (2 omega_180)` \[s\].
+    pub two_points_s: f64,
+    /// Half the negative slope of the least-squares line \[s\].
+    pub least_squares_s: f64,
+}
+
+impl PhaseLine {
+    /// Reads the phase from `omega_180` \[rad/s\] to twice that frequency; `None` if the response
+    /// ends before.
+    pub(super) fn read(attitude: &AttitudeResponse<'_>, omega_180: f64) -> Option<Self> {
+        let from = omega_180;
+        let to = 2.0 * omega_180;
+        let omega = log_spaced(from, to, LINE_POINTS);
+        let phase = attitude.phases_from(-PI, &omega)?;
+        Some(Self {
+            departure_deg: chord_departure(&omega, &phase).to_degrees(),
+            two_points_s: -(phase[LINE_POINTS - 1] + PI) / to,
+            least_squares_s: -0.5 * slope(&omega, &phase),
+        })
+    }
+
+    /// Whether the two points suffice: the departure is at most 10 deg.
+    pub fn is_straight(&self) -> bool {
+        self.departure_deg <= STRAIGHT_DEG
+    }
+
+    /// Returns the phase delay \[s\]: from the two points if the phase is straight, otherwise from
+    /// the least-squares line.
+    pub fn phase_delay_s(&self) -> f64 {
+        if self.is_straight() {
+            self.two_points_s
+        } else {
+            self.least_squares_s
+        }
+    }
+}
+
+/// Returns the largest distance \[rad\] between a phase and the line through its ends.
+fn chord_departure(omega: &[f64], phase: &[f64]) -> f64 {
+    let last = omega.len() - 1;
+    let slope = (phase[last] - phase[0]) / (omega[last] - omega[0]);
+    let mut largest = 0.0;
+    for (omega_k, phase_k) in omega.iter().zip(phase) {
+        let departure = (phase_k - phase[0] - slope * (omega_k - omega[0])).abs();
+        largest = f64::max(largest, departure);
+    }
+    largest
+}
+
+/// Returns the slope \[s\] of the least-squares line of `phase` over `omega`.
+fn slope(omega: &[f64], phase: &[f64]) -> f64 {
+    let mean_omega = mean(omega);
+    let mean_phase = mean(phase);
+    let product: f64 = omega
+        .iter()
+        .zip(phase)
+        .map(|(omega, phase)| (omega - mean_omega) * (phase - mean_phase))
+        .sum();
+    let square: f64 = omega.iter().map(|omega| (omega - mean_omega).powi(2)).sum();
+    product / square
+}

@@ -1,0 +1,131 @@
+//! Uncertainty of bandwidth and phase delay (M17.1): to first order from a response's standard
+//! deviations (M14), or from the other models in the bundles (M13).
+//!
+//! ```text
+//! phase crossing:  sd = sd_phase / |d phase / d omega|
+//! gain crossing:   sd^2 = (sd_dB(omega_gain)^2 + sd_dB(omega_180)^2 + (m'(omega_180) sd(omega_180))^2) / m'(omega_gain)^2,  m in dB
+//! phase delay:     sd = sqrt(sd_phase(omega_180)^2 + sd_phase(2 omega_180)^2) / (2 omega_180)
+//! ```
+//!
+//! Errors at distant frequencies are taken as independent, errors at neighbouring frequencies are
+//! not: a phase delay read from the least-squares line also has its two ends' deviation, because
+//! independent errors along the line would make it arbitrarily small with more points.
+
+use gdcm_model::dataset::Pair;
+use gdcm_model::dataset::model::ModelBands;
+use gdcm_model::response::curve_values::between;
+
+use super::attitude_response::AttitudeResponse;
+use crate::uncertainty::{Bar, IdentificationSource, VarianceComponent};
+
+/// Half the step of a difference quotient, relative to the frequency.
+const HALF_STEP: f64 = 1e-4;
+
+/// The uncertainty band of an identified response, linear in log omega and undefined outside its
+/// frequencies (M14).
+#[derive(Clone, Copy, Debug)]
+pub struct PairBand<'a> {
+    pub bands: &'a ModelBands,
+    pub pair: Pair,
+}
+
+impl PairBand<'_> {
+    /// Returns the magnitude's standard deviation \[dB\] at `omega` \[rad/s\].
+    fn magnitude_db(&self, omega: f64) -> Option<f64> {
+        between(
+            self.bands.omega(),
+            self.bands.sd_db().get(self.pair)?,
+            omega,
+        )
+    }
+
+    /// Returns the phase's standard deviation \[rad\] at `omega` \[rad/s\].
+    fn phase(&self, omega: f64) -> Option<f64> {
+        between(
+            self.bands.omega(),
+            self.bands.sd_deg().get(self.pair)?,
+            omega,
+        )
+        .map(f64::to_radians)
+    }
+
+    /// Returns the standard deviation \[rad/s\] of the frequency at which the phase crosses a
+    /// level.
+    pub(super) fn phase_crossing(
+        &self,
+        attitude: &AttitudeResponse<'_>,
+        omega: f64,
+    ) -> Option<f64> {
+        let slope = phase_slope(attitude, omega)?;
+        Some(self.phase(omega)? / slope.abs())
+    }
+
+    /// Returns the standard deviation \[rad/s\] of the frequency at which the magnitude exceeds
+    /// that at `omega_180` by 6 dB.
+    pub(super) fn gain_crossing(
+        &self,
+        attitude: &AttitudeResponse<'_>,
+        omega: f64,
+        omega_180: f64,
+    ) -> Option<f64> {
+        let from_omega_180 =
+            magnitude_slope(attitude, omega_180)? * self.phase_crossing(attitude, omega_180)?;
+        let level = self
+            .magnitude_db(omega)?
+            .hypot(self.magnitude_db(omega_180)?)
+            .hypot(from_omega_180);
+        Some(level / magnitude_slope(attitude, omega)?.abs())
+    }
+
+    /// Returns the standard deviation of the phase delay \[s\].
+    pub(super) fn phase_delay(&self, omega_180: f64) -> Option<f64> {
+        let twice = 2.0 * omega_180;
+        Some(self.phase(omega_180)?.hypot(self.phase(twice)?) / twice)
+    }
+}
+
+/// Returns `d phase / d omega` \[s\].
+fn phase_slope(attitude: &AttitudeResponse<'_>, omega: f64) -> Option<f64> {
+    difference_quotient(omega, |omega| attitude.phase_at(omega))
+}
+
+/// Returns `d magnitude / d omega` \[dB s\].
+fn magnitude_slope(attitude: &AttitudeResponse<'_>, omega: f64) -> Option<f64> {
+    difference_quotient(omega, |omega| attitude.magnitude_db_at(omega))
+}
+
+/// Returns the central difference quotient; `None` if a value is missing or the slope is zero.
+fn difference_quotient(omega: f64, value: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+    let low = omega * (1.0 - HALF_STEP);
+    let high = omega * (1.0 + HALF_STEP);
+    let slope = (value(high)? - value(low)?) / (high - low);
+    if slope == 0.0 {
+        return None;
+    }
+    Some(slope)
+}
+
+/// Computes the representatives' error bar for `value` from the values with each other physics or
+/// identified model substituted (M13.1, M13.3). `None` entries are swapped pairs without the value;
+/// they are counted as left out. The value is never negative.
+pub fn substitution_bar(value: f64, physics: &[Option<f64>], identified: &[Option<f64>]) -> Bar {
+    let left_out = physics
+        .iter()
+        .chain(identified)
+        .filter(|other| other.is_none())
+        .count();
+    Bar {
+        value,
+        trim: substitution_variance(value, physics),
+        identification: substitution_variance(value, identified),
+        source: IdentificationSource::Spread,
+        left_out,
+        range: [0.0, f64::INFINITY],
+    }
+}
+
+/// Returns the variance of the changes from `value` to each of `others`.
+fn substitution_variance(value: f64, others: &[Option<f64>]) -> Option<VarianceComponent> {
+    let changes: Vec<f64> = others.iter().flatten().map(|other| other - value).collect();
+    VarianceComponent::from_changes(&changes)
+}

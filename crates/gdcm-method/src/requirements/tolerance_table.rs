@@ -1,0 +1,368 @@
+//! User-defined tolerances for time histories, converted to a dataset's units (M17.2).
+//!
+//! The default table follows 14 CFR part 60, appendix C, table C2A, "Full flight simulator (FFS)
+//! objective tests", whose entries also appear in CS-FSTD(H).
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::dataset::Channel;
+use gdcm_model::message_text::quoted;
+use gdcm_model::units::number;
+use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_factor};
+
+use super::positive_number::{NamedNumber, first_not_positive};
+
+const DEFAULT_SOURCE: &str = "14 CFR part 60, appendix C, table C2A; CS-FSTD(H)";
+const TEN_PERCENT: Option<f64> = Some(0.1);
+
+/// A row: `|simulated - flown| <= max(absolute, relative |flown - flown at the start|)`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tolerance {
+    /// Quantity, as displayed ("bank angle").
+    pub quantity: String,
+    /// The output that it is read from, as named in the dataset ("P").
+    pub channel: String,
+    /// Whether the output is integrated: an attitude, from its rate.
+    #[serde(default)]
+    pub integrated: bool,
+    /// The absolute tolerance, in `unit`.
+    pub absolute: f64,
+    /// Unit for `absolute` ("deg").
+    pub unit: String,
+    /// The tolerance relative to the change from the start of the manoeuvre; `None` if only
+    /// `absolute` applies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relative: Option<f64>,
+    /// Entries in the source ("2.b.3.b, 2.d.1").
+    #[serde(default)]
+    pub entry: String,
+}
+
+/// The tolerances with their source; each row is checked on reading.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "ToleranceRows")]
+pub struct ToleranceTable {
+    source: String,
+    #[serde(rename = "tolerances")]
+    rows: Vec<Tolerance>,
+}
+
+/// The table in its file format.
+#[derive(Deserialize)]
+struct ToleranceRows {
+    #[serde(default)]
+    source: String,
+    tolerances: Vec<Tolerance>,
+}
+
+/// Reasons why a tolerance cannot be applied.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ToleranceError {
+    #[error(
+        "tolerance {row}, {}: expected the name of an output as its channel, found none",
+        quoted(quantity)
+    )]
+    NoChannelName {
+        /// Counted from 1.
+        row: usize,
+        quantity: String,
+    },
+    /// A tolerance is not finite, or not above zero.
+    #[error("tolerance {row}, {}: expected {name} above zero, found {}", quoted(quantity), number(*found))]
+    NotPositive {
+        /// Counted from 1.
+        row: usize,
+        quantity: String,
+        /// `absolute` or `relative`.
+        name: &'static str,
+        found: f64,
+    },
+    #[error(
+        "{} is not compared: there is no output {}",
+        quoted(quantity),
+        quoted(channel)
+    )]
+    NoChannel {
+        /// The quantity to compare.
+        quantity: String,
+        /// The output that it needs.
+        channel: String,
+    },
+    /// The integral of an output that is not a rate.
+    #[error(
+        "{} is not compared: it integrates a rate (deg/s, rad/s), and the unit of {} is {}",
+        quoted(quantity),
+        quoted(channel),
+        quoted(unit)
+    )]
+    NotARate {
+        /// The quantity to compare.
+        quantity: String,
+        channel: String,
+        unit: String,
+    },
+    /// The tolerance's unit does not fit the output.
+    #[error(
+        "{} is not compared: the tolerance is in {}, and {} is in {}",
+        quoted(quantity),
+        quoted(unit),
+        quoted(channel),
+        quoted(compared_unit)
+    )]
+    Unit {
+        /// The quantity to compare.
+        quantity: String,
+        channel: String,
+        unit: String,
+        /// Unit of the output or its integral.
+        compared_unit: String,
+    },
+}
+
+/// A tolerance in its output's units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelTolerance {
+    /// Output index.
+    pub output: usize,
+    /// Whether the integral of the output is compared.
+    pub integrated: bool,
+    /// The absolute tolerance, in `unit`.
+    pub absolute: f64,
+    /// The relative tolerance; zero if only `absolute` applies.
+    pub relative: f64,
+    /// Unit in which the output or its integral is compared.
+    pub unit: String,
+}
+
+impl Tolerance {
+    /// Checks the tolerance; `row` counts from 1.
+    fn check(&self, row: usize) -> Result<(), ToleranceError> {
+        let quantity = self.quantity.clone();
+        if self.channel.trim().is_empty() {
+            return Err(ToleranceError::NoChannelName { row, quantity });
+        }
+        let wrong = first_not_positive([
+            ("absolute", Some(self.absolute)),
+            ("relative", self.relative),
+        ]);
+        match wrong {
+            Some(NamedNumber { name, value: found }) => Err(ToleranceError::NotPositive {
+                row,
+                quantity,
+                name,
+                found,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Returns text such as "±10 % or ±3 deg/s".
+    pub fn words(&self) -> String {
+        let absolute = format!("±{} {}", number(self.absolute), self.unit);
+        match self.relative {
+            Some(relative) => format!("±{} % or {absolute}", number(100.0 * relative)),
+            None => absolute,
+        }
+    }
+
+    /// Converts the tolerance to its output's units.
+    ///
+    /// # Errors
+    /// [`ToleranceError`] if there is no such output, an integrated output is not a rate, or units
+    /// do not fit.
+    pub fn of_outputs(&self, outputs: &[Channel]) -> Result<ChannelTolerance, ToleranceError> {
+        let quantity = self.quantity.clone();
+        let channel = self.channel.clone();
+        let Some(output) = outputs
+            .iter()
+            .position(|output| output.name == self.channel)
+        else {
+            return Err(ToleranceError::NoChannel { quantity, channel });
+        };
+        let unit = &outputs[output].unit;
+        let compared_unit = if self.integrated {
+            let Some(angle) = integral_unit(unit) else {
+                return Err(ToleranceError::NotARate {
+                    quantity,
+                    channel,
+                    unit: unit.clone(),
+                });
+            };
+            angle
+        } else {
+            unit.as_str()
+        };
+        let Some(factor) = conversion_factor(&self.unit, compared_unit) else {
+            return Err(ToleranceError::Unit {
+                quantity,
+                channel,
+                unit: self.unit.clone(),
+                compared_unit: compared_unit.to_owned(),
+            });
+        };
+        Ok(ChannelTolerance {
+            output,
+            integrated: self.integrated,
+            absolute: self.absolute * factor,
+            relative: self.relative.unwrap_or(0.0),
+            unit: compared_unit.to_owned(),
+        })
+    }
+}
+
+/// Returns the unit of an angular rate's time integral; `None` for any other unit.
+fn integral_unit(rate: &str) -> Option<&'static str> {
+    let rate = PhysicalUnit::of(rate)?;
+    if rate.dimension != Dimension::AngularRate {
+        return None;
+    }
+    ["deg", "rad"]
+        .into_iter()
+        .find(|angle| PhysicalUnit::of(angle).is_some_and(|angle| angle.size == rate.size))
+}
+
+impl ToleranceTable {
+    /// Creates a table with its source.
+    ///
+    /// # Errors
+    /// [`ToleranceError`] with the row number if a row names no channel, or a tolerance is not
+    /// above zero.
+    pub fn new(source: impl Into<String>, rows: Vec<Tolerance>) -> Result<Self, ToleranceError> {
+        for (index, tolerance) in rows.iter().enumerate() {
+            tolerance.check(index + 1)?;
+        }
+        Ok(Self {
+            source: source.into(),
+            rows,
+        })
+    }
+
+    /// Returns the document that the tolerances come from.
+    pub fn source(&self) -> &str {
+        &self.source
+    }
+
+    /// Returns the rows in file order.
+    pub fn rows(&self) -> &[Tolerance] {
+        &self.rows
+    }
+}
+
+impl TryFrom<ToleranceRows> for ToleranceTable {
+    type Error = ToleranceError;
+
+    fn try_from(file: ToleranceRows) -> Result<Self, ToleranceError> {
+        Self::new(file.source, file.tolerances)
+    }
+}
+
+impl Default for ToleranceTable {
+    /// Returns the tolerances of 14 CFR part 60, appendix C, table C2A: hover and low speed (2.b),
+    /// longitudinal (2.c), lateral and directional (2.d).
+    fn default() -> Self {
+        let rows = DEFAULT_ROWS.iter().map(DefaultRow::tolerance).collect();
+        Self {
+            source: DEFAULT_SOURCE.to_owned(),
+            rows,
+        }
+    }
+}
+
+/// A default row; an absolute tolerance in deg applies to the integral of a rate.
+struct DefaultRow {
+    quantity: &'static str,
+    channel: &'static str,
+    absolute: f64,
+    unit: &'static str,
+    relative: Option<f64>,
+    entry: &'static str,
+}
+
+impl DefaultRow {
+    fn tolerance(&self) -> Tolerance {
+        Tolerance {
+            quantity: self.quantity.to_owned(),
+            channel: self.channel.to_owned(),
+            integrated: self.unit == "deg",
+            absolute: self.absolute,
+            unit: self.unit.to_owned(),
+            relative: self.relative,
+            entry: self.entry.to_owned(),
+        }
+    }
+}
+
+const DEFAULT_ROWS: [DefaultRow; 9] = [
+    DefaultRow {
+        quantity: "roll rate",
+        channel: "P",
+        absolute: 3.0,
+        unit: "deg/s",
+        relative: TEN_PERCENT,
+        entry: "2.b.3.b, 2.d.1",
+    },
+    DefaultRow {
+        quantity: "bank angle",
+        channel: "P",
+        absolute: 3.0,
+        unit: "deg",
+        relative: TEN_PERCENT,
+        entry: "2.b.3.b, 2.d.1",
+    },
+    DefaultRow {
+        quantity: "pitch rate",
+        channel: "Q",
+        absolute: 2.0,
+        unit: "deg/s",
+        relative: TEN_PERCENT,
+        entry: "2.b.3.a, 2.c.1",
+    },
+    DefaultRow {
+        quantity: "pitch attitude",
+        channel: "Q",
+        absolute: 1.5,
+        unit: "deg",
+        relative: TEN_PERCENT,
+        entry: "2.b.3.a, 2.c.1",
+    },
+    DefaultRow {
+        quantity: "yaw rate",
+        channel: "R",
+        absolute: 2.0,
+        unit: "deg/s",
+        relative: TEN_PERCENT,
+        entry: "2.b.3.c, 2.d.1",
+    },
+    DefaultRow {
+        quantity: "heading",
+        channel: "R",
+        absolute: 2.0,
+        unit: "deg",
+        relative: TEN_PERCENT,
+        entry: "2.b.3.c, 2.d.1",
+    },
+    DefaultRow {
+        quantity: "normal acceleration",
+        channel: "NZ",
+        absolute: 0.1,
+        unit: "g",
+        relative: None,
+        entry: "2.b.3.d, 2.c.3.b",
+    },
+    DefaultRow {
+        quantity: "short term: pitch attitude",
+        channel: "Q",
+        absolute: 1.5,
+        unit: "deg",
+        relative: None,
+        entry: "2.c.3.b",
+    },
+    DefaultRow {
+        quantity: "short term: pitch rate",
+        channel: "Q",
+        absolute: 2.0,
+        unit: "deg/s",
+        relative: None,
+        entry: "2.c.3.b",
+    },
+];

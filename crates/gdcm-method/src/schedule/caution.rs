@@ -1,0 +1,135 @@
+//! Cautions about a schedule (M11b, M12, M15.6).
+
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::units::{s_to_ms, signed, told_apart};
+
+use crate::correction::Channel;
+
+/// Cautions about a schedule.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ScheduleCaution {
+    /// The requested degree needs more distinct airspeeds (M11b).
+    DegreeLowered {
+        /// Requested degree.
+        asked: usize,
+        /// Cluster count.
+        clusters: usize,
+    },
+    /// A gain leaves the conditions' range by more than half its width, between two clusters
+    /// (M11b).
+    Overshoot {
+        channel: Channel,
+        /// Mean airspeeds \[kt\] in the neighbouring clusters.
+        between_kt: [f64; 2],
+        /// Airspeed at the largest excursion \[kt\].
+        airspeed_kt: f64,
+        gain: f64,
+        /// Least and greatest gain in the conditions.
+        range: [f64; 2],
+    },
+    /// A channel's signed delay in a condition is far from the others, or has another sign (M15.6).
+    SignedDelayApart {
+        channel: Channel,
+        condition: ConditionId,
+        /// Signed delay in this condition \[s\].
+        tau_s: f64,
+        /// Mean signed delay in the other conditions \[s\].
+        elsewhere_s: f64,
+    },
+    /// A gain is not positive at an intermediate airspeed, possible only if `k` itself is
+    /// regressed.
+    NotPositive,
+    /// The schedule gives a condition much more J than its own correction does (M12).
+    CostsMore(ScheduledCost),
+}
+
+/// Mean on-axis J for a physics model in a condition (M12).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScheduledCost {
+    pub condition: ConditionId,
+    /// Name: nominal, or representative if the nominal model is rejected.
+    pub model: String,
+    /// J under the schedule.
+    pub scheduled: f64,
+    /// J under the condition's own correction.
+    pub own: f64,
+}
+
+impl ScheduledCost {
+    /// Ratio between scheduled and own J above which a caution is raised.
+    const NOTABLE_RATIO: f64 = 2.0;
+    /// Scheduled J below which no caution is raised: 1 is 0.2 dB.
+    const LEAST_NOTABLE: f64 = 1.0;
+
+    /// Whether the scheduled J is more than twice the condition's own.
+    pub fn is_notable(&self) -> bool {
+        self.scheduled > Self::LEAST_NOTABLE && self.scheduled > Self::NOTABLE_RATIO * self.own
+    }
+}
+
+impl ScheduleCaution {
+    /// Whether the caution applies to a condition: a scheduled cost concerns its own condition only.
+    pub fn concerns(&self, condition: ConditionId) -> bool {
+        match self {
+            ScheduleCaution::CostsMore(cost) => cost.condition == condition,
+            _ => true,
+        }
+    }
+
+    /// Returns the code for files.
+    pub fn code(&self) -> &'static str {
+        match self {
+            ScheduleCaution::DegreeLowered { .. } => "degree-lowered",
+            ScheduleCaution::Overshoot { .. } => "schedule-overshoots",
+            ScheduleCaution::SignedDelayApart { .. } => "signed-delay-apart",
+            ScheduleCaution::NotPositive => "scheduled-gain-not-positive",
+            ScheduleCaution::CostsMore(_) => "scheduled-cost-doubled",
+        }
+    }
+
+    /// Describes the caution, with these channel names.
+    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
+        match self {
+            ScheduleCaution::DegreeLowered { asked, clusters } => format!(
+                "degree {asked} takes {} distinct airspeeds, the conditions have {clusters}: the degree is lowered to {}",
+                asked + 1,
+                clusters - 1
+            ),
+            ScheduleCaution::Overshoot {
+                channel,
+                between_kt: [low, high],
+                airspeed_kt,
+                gain,
+                range: [least, most],
+            } => {
+                let name = channel.name(inputs, outputs);
+                format!(
+                    "between {low:.1} and {high:.1} kt the gain of {name} overshoots: {gain:.3} at {airspeed_kt:.1} kt, \
+                     where the conditions' gains range from {least:.3} to {most:.3}; lower the degree or use a table"
+                )
+            }
+            ScheduleCaution::SignedDelayApart {
+                channel,
+                condition,
+                tau_s,
+                elsewhere_s,
+            } => format!(
+                "{}: {} ms in condition {condition} against {} ms elsewhere: not schedulable over airspeed",
+                channel.name(inputs, outputs),
+                signed(s_to_ms(*tau_s), 0),
+                signed(s_to_ms(*elsewhere_s), 0)
+            ),
+            ScheduleCaution::NotPositive => {
+                "a scheduled gain is not positive at an airspeed between the conditions".to_owned()
+            }
+            ScheduleCaution::CostsMore(cost) => {
+                // Rounded so that both numbers differ.
+                let (scheduled, own) = told_apart(cost.scheduled, cost.own, 0);
+                format!(
+                    "condition {}, model {}: mean on-axis J {scheduled} with the schedule, {own} with the condition's own correction",
+                    cost.condition, cost.model
+                )
+            }
+        }
+    }
+}

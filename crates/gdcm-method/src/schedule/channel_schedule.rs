@@ -1,0 +1,371 @@
+//! Every channel's gain (and delay, where requested) as a function of airspeed (M11, M13.7, M15.5).
+//!
+//! ```text
+//! 1  cluster the conditions' airspeeds; v = (V - mean V) / (half the range of V)
+//! 2  ln k (or k) by channel and condition
+//! 3  contribution gamma z from the second variable, if any, subtracted from these values
+//! 4  the remainder regressed on v: polynomial by least squares, or means by cluster
+//! 5  the delays, or the signed delays, regressed where these are scheduled
+//! ```
+
+use gdcm_model::dataset::condition::FlightState;
+
+use super::airspeeds::Airspeeds;
+use super::caution::ScheduleCaution;
+use super::error::ScheduleError;
+use super::lead_schedule::LeadSchedule;
+use super::regression::{Regression, design, interpolation_weights, powers};
+use super::scheduled_point::ScheduledPoint;
+use super::second_term::SecondTerm;
+use super::settings::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
+use crate::correction::{ChannelCorrection, Channels, LeadPrice};
+
+/// Steps over the airspeed range at which a schedule is inspected.
+pub(super) const STEPS: u32 = 100;
+
+/// Every channel's gain (and delay, where requested) as a function of airspeed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Schedule {
+    pub settings: ScheduleSettings,
+    /// The conditions' airspeeds.
+    pub airspeeds: Airspeeds,
+    /// Each channel's gain, or its logarithm.
+    pub gains: Channels<Regression>,
+    /// The second variable's contribution to each regression, if any.
+    pub second: Option<SecondTerm>,
+    /// Delays as functions of airspeed, where these are scheduled.
+    pub delays: Option<DelaySchedule>,
+    /// Signed delays as functions of airspeed, where the conditions' corrections have leads (M15).
+    pub leads: Option<LeadSchedule>,
+    pub cautions: Vec<ScheduleCaution>,
+}
+
+/// Every channel's delay as a function of airspeed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DelaySchedule {
+    /// Delays by channel \[s\].
+    pub taus_s: Channels<Regression>,
+    /// The conditions' upper bounds \[s\], interpolated linearly: no scheduled delay exceeds them.
+    pub upper_s: Regression,
+}
+
+impl Schedule {
+    /// Fits the schedule, without cautions (steps 1 to 5).
+    ///
+    /// # Errors
+    /// [`ScheduleError`] without conditions, if a condition lacks the second variable, or if its
+    /// effect cannot be separated from that of airspeed.
+    pub(super) fn fit(
+        points: &[ScheduledPoint<'_>],
+        settings: ScheduleSettings,
+    ) -> Result<Self, ScheduleError> {
+        let Some(airspeeds) = Airspeeds::new(
+            points.iter().map(|point| point.airspeed_kt).collect(),
+            settings.airspeed_tolerance_kt,
+        ) else {
+            return Err(ScheduleError::NoCondition);
+        };
+        let values = regressed_values(points, settings.quantity);
+        let second = fit_second_term(points, &airspeeds, settings, &values)?;
+        let gains = values.map(|channel, values| match &second {
+            Some(SecondTerm { scaled, slopes, .. }) => {
+                let remainder: Vec<f64> = values
+                    .iter()
+                    .zip(scaled)
+                    .map(|(value, scaled)| value - slopes[channel] * scaled)
+                    .collect();
+                fit_regression(&airspeeds, &remainder, settings.kind)
+            }
+            None => fit_regression(&airspeeds, values, settings.kind),
+        });
+        let leads = LeadSchedule::fit(points, &airspeeds, settings.tau_degree);
+        let delays = if settings.delays && leads.is_none() {
+            Some(DelaySchedule::fit(points, &airspeeds, settings.kind))
+        } else {
+            None
+        };
+        Ok(Self {
+            settings,
+            airspeeds,
+            gains,
+            second,
+            delays,
+            leads,
+            cautions: Vec::new(),
+        })
+    }
+
+    /// Whether delays, or delays and leads, are scheduled.
+    pub fn has_delays(&self) -> bool {
+        self.delays.is_some() || self.leads.is_some()
+    }
+
+    /// Returns the price for the scheduled leads: by channel the maximum over the airspeeds. `None`
+    /// for a schedule without lead filters.
+    pub fn lead_price(&self) -> Option<LeadPrice> {
+        let leads = self.leads.as_ref()?;
+        let steps = if leads.degree() == 0 { 0 } else { STEPS };
+        let mut highest: Option<LeadPrice> = None;
+        for step in 0..=steps {
+            let leads = leads.at(&self.airspeeds, self.step_kt(step));
+            let Some(price) = LeadPrice::of(&leads) else {
+                continue;
+            };
+            highest = Some(match highest {
+                Some(highest) => highest.or_more(&price),
+                None => price,
+            });
+        }
+        highest
+    }
+
+    /// Returns the airspeed \[kt\] at an inspection step between the least and the greatest.
+    pub(super) fn step_kt(&self, step: u32) -> f64 {
+        let fraction = f64::from(step) / f64::from(STEPS);
+        self.airspeeds.min_kt + fraction * (self.airspeeds.max_kt - self.airspeeds.min_kt)
+    }
+
+    /// Returns the polynomial degree, possibly less than requested; `None` for a table.
+    pub fn degree(&self) -> Option<usize> {
+        match self.settings.kind {
+            ScheduleKind::Polynomial { degree } => Some(self.airspeeds.attainable_degree(degree)),
+            ScheduleKind::Table => None,
+        }
+    }
+
+    /// Evaluates the scheduled correction at an airspeed \[kt\]; outside the conditions' range the
+    /// end value applies.
+    ///
+    /// Scheduled delays are limited to their bounds: from zero to the conditions' upper bounds,
+    /// interpolated linearly. A second variable takes its middle value.
+    pub fn at(&self, airspeed_kt: f64) -> ChannelCorrection {
+        self.evaluate(airspeed_kt, None)
+    }
+
+    /// Evaluates the scheduled correction at a condition's airspeed and second variable.
+    pub fn at_state(&self, state: &FlightState) -> ChannelCorrection {
+        let second = self
+            .settings
+            .second
+            .and_then(|variable| variable.value(state));
+        self.evaluate(state.airspeed_kt, second)
+    }
+
+    /// Evaluates the scheduled correction like [`Schedule::at`], with this second variable; beyond
+    /// the conditions' range the end value applies.
+    pub fn evaluate(&self, airspeed_kt: f64, second: Option<f64>) -> ChannelCorrection {
+        let gains = self.gains.map(|channel, regression| {
+            let contribution = match (&self.second, second) {
+                (Some(term), Some(value)) => term.slopes[channel] * term.scale(value),
+                _ => 0.0,
+            };
+            let value = regression.at(&self.airspeeds, airspeed_kt) + contribution;
+            match self.settings.quantity {
+                ScheduledQuantity::LnGain => value.exp(),
+                ScheduledQuantity::Gain => value,
+            }
+        });
+        if let Some(leads) = &self.leads {
+            return ChannelCorrection::of_leads(gains, leads.at(&self.airspeeds, airspeed_kt));
+        }
+        let delays_s = match &self.delays {
+            Some(delays) => delays.at(&self.airspeeds, airspeed_kt),
+            None => gains.map(|_, _| 0.0),
+        };
+        ChannelCorrection::of_delays(gains, delays_s)
+    }
+
+    /// Returns the regression's design matrix `X`: a row by condition, with the second variable in
+    /// the last column.
+    pub fn design(&self) -> Vec<Vec<f64>> {
+        let mut rows = self.airspeed_design();
+        if let Some(term) = &self.second {
+            for (row, scaled) in rows.iter_mut().zip(&term.scaled) {
+                row.push(*scaled);
+            }
+        }
+        rows
+    }
+
+    /// Returns the design columns that depend on airspeed: powers of `v`, or cluster indicators.
+    pub fn airspeed_design(&self) -> Vec<Vec<f64>> {
+        design(&self.airspeeds, self.settings.kind)
+    }
+
+    /// Returns the design row for an airspeed \[kt\], limited to the conditions' range. A second
+    /// variable takes its middle value.
+    pub fn design_row(&self, airspeed_kt: f64) -> Vec<f64> {
+        let mut row = match self.degree() {
+            Some(degree) => powers(self.airspeeds.scaled(airspeed_kt), degree),
+            None => interpolation_weights(&self.airspeeds.clusters_kt(), airspeed_kt),
+        };
+        if self.second.is_some() {
+            row.push(0.0);
+        }
+        row
+    }
+}
+
+impl DelaySchedule {
+    /// Fits the conditions' delays and their upper bounds; needs at least one condition.
+    fn fit(points: &[ScheduledPoint<'_>], airspeeds: &Airspeeds, kind: ScheduleKind) -> Self {
+        let taus_s = points[0].correction.channels(|channel| {
+            let taus_s: Vec<f64> = points
+                .iter()
+                .map(|point| point.correction.pure_delay_s(channel))
+                .collect();
+            fit_regression(airspeeds, &taus_s, kind)
+        });
+        let bounds_s: Vec<f64> = points.iter().map(|point| point.delay_upper_s).collect();
+        Self {
+            taus_s,
+            upper_s: Regression::table(airspeeds, &bounds_s),
+        }
+    }
+
+    /// Returns the delays \[s\] at an airspeed \[kt\], limited to zero and the upper bound.
+    fn at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> Channels<f64> {
+        let upper_s = self.upper_s.at(airspeeds, airspeed_kt);
+        self.taus_s
+            .map(|_, tau_s| tau_s.at(airspeeds, airspeed_kt).min(upper_s).max(0.0))
+    }
+}
+
+/// Returns the values to regress, by channel and condition (step 2); needs at least one condition.
+fn regressed_values(
+    points: &[ScheduledPoint<'_>],
+    quantity: ScheduledQuantity,
+) -> Channels<Vec<f64>> {
+    points[0].correction.channels(|channel| {
+        points
+            .iter()
+            .map(|point| {
+                let gain = point.correction.gain(channel);
+                match quantity {
+                    ScheduledQuantity::LnGain => gain.ln(),
+                    ScheduledQuantity::Gain => gain,
+                }
+            })
+            .collect()
+    })
+}
+
+/// Fits the second variable's contribution, if requested (step 3).
+fn fit_second_term(
+    points: &[ScheduledPoint<'_>],
+    airspeeds: &Airspeeds,
+    settings: ScheduleSettings,
+    values: &Channels<Vec<f64>>,
+) -> Result<Option<SecondTerm>, ScheduleError> {
+    let Some(variable) = settings.second else {
+        return Ok(None);
+    };
+    let mut second = Vec::new();
+    for point in points {
+        second.push(point.second.ok_or(ScheduleError::NoSecondValue(variable))?);
+    }
+    let columns = design(airspeeds, settings.kind);
+    SecondTerm::fit(variable, second, &columns, values).map(Some)
+}
+
+/// Fits a function of airspeed to a value by condition (step 4).
+fn fit_regression(airspeeds: &Airspeeds, values: &[f64], kind: ScheduleKind) -> Regression {
+    match kind {
+        ScheduleKind::Polynomial { degree } => Regression::polynomial(airspeeds, values, degree),
+        ScheduleKind::Table => Regression::table(airspeeds, values),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_model::dataset::Pair;
+
+    use super::*;
+    use crate::schedule::test_points::{correction, points};
+
+    #[test]
+    fn regressing_the_logarithm_makes_the_product_the_regression_of_the_product() {
+        let corrections = [0.8, 1.1, 0.9, 1.3].map(|gain| correction(gain, gain * gain));
+        let airspeeds_kt = [40.0, 70.0, 100.0, 140.0];
+        let points = points(&airspeeds_kt, &corrections, 1.0);
+        let schedule = Schedule::of(&points, ScheduleSettings::default()).unwrap();
+        let products: Vec<f64> = corrections
+            .iter()
+            .map(|c| c.net_gain(Pair::new(0, 0)).ln())
+            .collect();
+        let direct = Regression::polynomial(&schedule.airspeeds, &products, 2);
+        for airspeed in [40.0, 88.0, 140.0] {
+            let product = schedule.at(airspeed).net_gain(Pair::new(0, 0));
+            // The same least squares, rounded in another order.
+            assert!((product / direct.at(&schedule.airspeeds, airspeed).exp() - 1.0).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn without_conditions_there_is_no_schedule() {
+        assert_eq!(
+            Schedule::of(&[], ScheduleSettings::default()),
+            Err(ScheduleError::NoCondition)
+        );
+    }
+
+    #[test]
+    fn delays_are_scheduled_only_if_requested() {
+        let own = correction(1.0, 1.0);
+        let points = [ScheduledPoint {
+            airspeed_kt: 60.0,
+            correction: &own,
+            delay_upper_s: 1.0,
+            second: None,
+        }];
+        assert_eq!(
+            Schedule::of(&points, ScheduleSettings::default())
+                .unwrap()
+                .at(60.0)
+                .input_delays_s,
+            [0.0]
+        );
+        let settings = ScheduleSettings {
+            delays: true,
+            ..ScheduleSettings::default()
+        };
+        assert_eq!(
+            Schedule::of(&points, settings)
+                .unwrap()
+                .at(60.0)
+                .input_delays_s,
+            [0.01]
+        );
+    }
+
+    #[test]
+    fn a_scheduled_delay_stays_within_the_bounds_of_the_conditions() {
+        // A cubic through 0, 0, 30 and 30 ms leaves that range on both sides. Bounds: 10, 20, 30
+        // and 30 ms.
+        let delays_s = [0.0, 0.0, 0.03, 0.03];
+        let corrections = delays_s.map(|delay| ChannelCorrection {
+            input_delays_s: vec![delay],
+            ..correction(1.0, 1.0)
+        });
+        let mut points = points(&[60.0, 80.0, 100.0, 120.0], &corrections, 0.03);
+        points[0].delay_upper_s = 0.01;
+        points[1].delay_upper_s = 0.02;
+        let settings = ScheduleSettings {
+            kind: ScheduleKind::Polynomial { degree: 3 },
+            delays: true,
+            ..ScheduleSettings::default()
+        };
+        let schedule = Schedule::of(&points, settings).unwrap();
+        let [at_70, at_90, at_110] =
+            [70.0, 90.0, 110.0].map(|kt| schedule.at(kt).input_delays_s[0]);
+        assert_eq!(
+            [at_70, at_110],
+            [0.0, 0.03],
+            "limited to 0 and to the bound"
+        );
+        assert!((at_90 - 0.015).abs() < 1e-15, "half way, by symmetry");
+        let uncut =
+            schedule.delays.as_ref().unwrap().taus_s.inputs[0].at(&schedule.airspeeds, 70.0);
+        assert!(uncut < -0.001, "{uncut}");
+    }
+}

@@ -1,0 +1,18 @@
+//! Reasons for a missing schedule.
+
+use super::second_variable::SecondVariable;
+
+/// Reason why there is no schedule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ScheduleError {
+    /// No condition was chosen, or none could be solved.
+    #[error("no schedule: no condition that could be solved is chosen for it")]
+    NoCondition,
+    #[error("no schedule with {0}: a condition chosen for it has no {0}")]
+    NoSecondValue(SecondVariable),
+    /// In these conditions the second variable is constant, or a function of airspeed.
+    #[error(
+        "no schedule with {0}: its effect cannot be separated from that of airspeed in these conditions"
+    )]
+    NotToldApart(SecondVariable),
+}

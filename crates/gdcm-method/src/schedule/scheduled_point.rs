@@ -1,0 +1,16 @@
+//! Input to a schedule.
+
+use crate::correction::ChannelCorrection;
+
+/// A condition's optimum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScheduledPoint<'a> {
+    /// True airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// The condition's own correction.
+    pub correction: &'a ChannelCorrection,
+    /// The condition's upper delay bound \[s\].
+    pub delay_upper_s: f64,
+    /// The condition's second variable, if known.
+    pub second: Option<f64>,
+}

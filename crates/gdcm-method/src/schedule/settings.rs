@@ -1,0 +1,206 @@
+//! Schedule settings: form, degree, regressed quantity, delays (M11).
+
+use std::fmt;
+
+use serde::de::{Error, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+
+use gdcm_model::whole_number::{whole, whole_or_none};
+
+use super::second_variable::SecondVariable;
+
+/// Highest polynomial degree (M11).
+pub const HIGHEST_DEGREE: usize = 3;
+
+/// Default cluster tolerance \[kt\] (M11b).
+pub const DEFAULT_TOLERANCE_KT: f64 = 2.0;
+
+/// Form of a schedule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ScheduleKind {
+    /// Polynomial by least squares.
+    Polynomial {
+        /// 0 to [`HIGHEST_DEGREE`].
+        degree: usize,
+    },
+    /// Lookup table: the mean in each airspeed cluster, with linear interpolation.
+    Table,
+}
+
+/// Quantity regressed on airspeed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum ScheduledQuantity {
+    /// `ln k`, for which the product of two channels' regressions is the regression of the product.
+    #[serde(rename = "ln k")]
+    LnGain,
+    #[serde(rename = "k")]
+    Gain,
+}
+
+/// Net delay \[s\] in a constrained response above which delays are scheduled automatically (M11).
+pub const NOTABLE_DELAY_S: f64 = 5e-4;
+
+/// Whether the schedule has delays besides gains (M11).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DelayScheduling {
+    /// Where a constrained response has a net delay above [`NOTABLE_DELAY_S`] in a scheduled
+    /// condition.
+    #[default]
+    Automatic,
+    /// In every study.
+    Always,
+    /// In no study.
+    Never,
+}
+
+impl From<bool> for DelayScheduling {
+    /// Converts the flag from older program versions.
+    fn from(flag: bool) -> Self {
+        if flag { Self::Always } else { Self::Never }
+    }
+}
+
+impl<'de> Deserialize<'de> for DelayScheduling {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(DelaySchedulingVisitor)
+    }
+}
+
+/// Reads a word, or the flag from older program versions.
+struct DelaySchedulingVisitor;
+
+impl Visitor<'_> for DelaySchedulingVisitor {
+    type Value = DelayScheduling;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("\"automatic\", \"always\" or \"never\"")
+    }
+
+    fn visit_bool<E: Error>(self, flag: bool) -> Result<DelayScheduling, E> {
+        Ok(flag.into())
+    }
+
+    fn visit_str<E: Error>(self, word: &str) -> Result<DelayScheduling, E> {
+        match word {
+            "automatic" => Ok(DelayScheduling::Automatic),
+            "always" => Ok(DelayScheduling::Always),
+            "never" => Ok(DelayScheduling::Never),
+            _ => Err(E::unknown_variant(word, &["automatic", "always", "never"])),
+        }
+    }
+}
+
+/// Settings of a schedule.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "ScheduleEntry", into = "ScheduleEntry")]
+pub struct ScheduleSettings {
+    pub kind: ScheduleKind,
+    pub quantity: ScheduledQuantity,
+    /// Whether this schedule has delays too: the outcome from [`DelayScheduling`] for its
+    /// conditions. Older program versions read this field from study settings; it is `true` there
+    /// if delays are always scheduled.
+    pub delays: bool,
+    /// Polynomial degree for signed delays, 0 to [`HIGHEST_DEGREE`]; 0 by default, because servo,
+    /// sensor and computing lags do not depend on airspeed (M15.5).
+    pub tau_degree: usize,
+    /// Largest distance between neighbours in a cluster of airspeeds \[kt\] (M11b).
+    pub airspeed_tolerance_kt: f64,
+    /// Variable scheduled besides airspeed (M13.7).
+    pub second: Option<SecondVariable>,
+}
+
+/// [`ScheduleSettings`] in files, where the degree is a field beside the form.
+#[derive(Serialize, Deserialize)]
+struct ScheduleEntry {
+    kind: FormEntry,
+    #[serde(default, deserialize_with = "whole_or_none")]
+    degree: Option<usize>,
+    #[serde(rename = "of")]
+    quantity: ScheduledQuantity,
+    delays: bool,
+    #[serde(default = "default_tolerance_kt")]
+    airspeed_tolerance_kt: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    second_variable: Option<SecondVariable>,
+    #[serde(default, skip_serializing_if = "is_zero", deserialize_with = "whole")]
+    tau_degree: usize,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum FormEntry {
+    Polynomial,
+    Table,
+}
+
+fn default_tolerance_kt() -> f64 {
+    DEFAULT_TOLERANCE_KT
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
+impl TryFrom<ScheduleEntry> for ScheduleSettings {
+    type Error = String;
+
+    fn try_from(entry: ScheduleEntry) -> Result<Self, String> {
+        Ok(Self {
+            kind: entry.schedule_kind()?,
+            quantity: entry.quantity,
+            delays: entry.delays,
+            tau_degree: entry.tau_degree,
+            airspeed_tolerance_kt: entry.airspeed_tolerance_kt,
+            second: entry.second_variable,
+        })
+    }
+}
+
+impl ScheduleEntry {
+    /// Joins form and degree.
+    fn schedule_kind(&self) -> Result<ScheduleKind, String> {
+        match (&self.kind, self.degree) {
+            (FormEntry::Table, _) => Ok(ScheduleKind::Table),
+            (FormEntry::Polynomial, Some(degree)) if degree <= HIGHEST_DEGREE => {
+                Ok(ScheduleKind::Polynomial { degree })
+            }
+            (FormEntry::Polynomial, Some(degree)) => Err(format!(
+                "degree: expected a whole number from 0 to {HIGHEST_DEGREE}, found {degree}"
+            )),
+            // Worded like serde's own error, so that readers treat it alike.
+            (FormEntry::Polynomial, None) => Err("missing field `degree`".to_owned()),
+        }
+    }
+}
+
+impl From<ScheduleSettings> for ScheduleEntry {
+    fn from(settings: ScheduleSettings) -> Self {
+        let (kind, degree) = match settings.kind {
+            ScheduleKind::Polynomial { degree } => (FormEntry::Polynomial, Some(degree)),
+            ScheduleKind::Table => (FormEntry::Table, None),
+        };
+        Self {
+            kind,
+            degree,
+            quantity: settings.quantity,
+            delays: settings.delays,
+            airspeed_tolerance_kt: settings.airspeed_tolerance_kt,
+            second_variable: settings.second,
+            tau_degree: settings.tau_degree,
+        }
+    }
+}
+
+impl Default for ScheduleSettings {
+    fn default() -> Self {
+        Self {
+            kind: ScheduleKind::Polynomial { degree: 2 },
+            quantity: ScheduledQuantity::LnGain,
+            delays: false,
+            tau_degree: 0,
+            airspeed_tolerance_kt: DEFAULT_TOLERANCE_KT,
+            second: None,
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! Settings for the error bars (M13).
+
+use serde::{Deserialize, Serialize};
+
+use super::coherence_error::Measurement;
+
+/// Settings for the error bars; no gain and no delay depends on them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct UncertaintySettings {
+    /// Confidence level `L` for every bar, interval and test.
+    pub level: f64,
+    /// Most degrees of freedom that a condition's identification part borrows from the other
+    /// conditions; 0 uses the condition alone.
+    pub prior_degrees: f64,
+    /// Independent averages in measured responses whose files do not state the count; without it
+    /// their coherence is not used.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub averages: Option<f64>,
+    /// Window length \[s\] in measured responses whose files do not state it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub window_s: Option<f64>,
+    /// Whether those windows overlap by half: `C_epsilon` is then `sqrt(0.55)` instead of 1.
+    #[serde(default)]
+    pub half_overlap: bool,
+}
+
+impl Default for UncertaintySettings {
+    fn default() -> Self {
+        Self {
+            level: 0.9,
+            prior_degrees: 4.0,
+            averages: None,
+            window_s: None,
+            half_overlap: false,
+        }
+    }
+}
+
+impl UncertaintySettings {
+    /// Combines a measured response's own data with these defaults; `None` without an average
+    /// count.
+    pub fn measurement(&self, averages: Option<f64>, window_s: Option<f64>) -> Option<Measurement> {
+        let averages = averages
+            .or(self.averages)
+            .filter(|averages| *averages > 0.0)?;
+        let window_s = window_s
+            .or(self.window_s)
+            .filter(|window_s| *window_s > 0.0);
+        let factor = if self.half_overlap {
+            0.55_f64.sqrt()
+        } else {
+            1.0
+        };
+        Some(Measurement {
+            averages,
+            window_s,
+            factor,
+        })
+    }
+}

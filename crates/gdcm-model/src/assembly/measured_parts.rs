@@ -1,0 +1,153 @@
+//! Measured responses from several files joined into one model.
+
+use std::ops::Range;
+
+use super::channel_conversion::bands_or_full_range;
+use super::part::Part;
+use super::rules::Rules;
+use crate::dataset::model::Provenance;
+use crate::dataset::unchecked_dataset::{ModelDraft, ResponseArray, ResponseDraft};
+
+/// Valid band of an unmeasured response \[rad/s\]: contains no frequency.
+const NOT_MEASURED: [f64; 2] = [0.0, 0.0];
+
+/// Adds the responses of a part to a measured model that lacks them.
+pub(super) fn join_part(model: &mut ModelDraft, response: &ResponseDraft, part: &Part) {
+    let Some(joined) = &mut model.response else {
+        return;
+    };
+    join_response(joined, response);
+    let Some(source) = &mut model.source else {
+        return;
+    };
+    append_note(source, &format!("with {}", part.found.key()));
+    if let Some(part_source) = &part.found.draft.source {
+        source.unused.extend_from_slice(&part_source.unused);
+    }
+    source.by_position.extend(part.sides_by_position());
+    source.by_position.dedup();
+}
+
+/// Copies the responses that `joined` lacks, with their valid bands and coherence.
+fn join_response(joined: &mut ResponseDraft, response: &ResponseDraft) {
+    let count = joined.omega.len();
+    let new_bands = bands_or_full_range(response);
+    let mut bands = bands_or_full_range(joined);
+    for place in 0..joined.re.shape[0] * joined.re.shape[1] {
+        let band = 2 * place..2 * place + 2;
+        let is_new = new_bands.values[band.clone()] != NOT_MEASURED;
+        let is_known = bands.values[band.clone()] != NOT_MEASURED;
+        if !is_new || is_known {
+            continue;
+        }
+        let values = place * count..(place + 1) * count;
+        joined.re.values[values.clone()].copy_from_slice(&response.re.values[values.clone()]);
+        joined.im.values[values.clone()].copy_from_slice(&response.im.values[values.clone()]);
+        bands.values[band.clone()].copy_from_slice(&new_bands.values[band]);
+        join_coherence(joined, response, values);
+    }
+    joined.valid_bands = Some(bands);
+}
+
+/// Copies the coherence over a range of values; a part without coherence has coherence 1 where
+/// others have values.
+fn join_coherence(joined: &mut ResponseDraft, response: &ResponseDraft, range: Range<usize>) {
+    if joined.coherence.is_none() && response.coherence.is_none() {
+        return;
+    }
+    let shape = joined.re.shape;
+    let coherence = joined.coherence.get_or_insert_with(|| ResponseArray {
+        shape,
+        values: vec![1.0; shape.iter().product()],
+    });
+    match &response.coherence {
+        Some(new) => coherence.values[range.clone()].copy_from_slice(&new.values[range]),
+        None => coherence.values[range].fill(1.0),
+    }
+}
+
+/// Notes the responses of a measured model that no file gives; drops its valid bands where every
+/// response is valid at all frequencies.
+pub(super) fn note_unmeasured(model: &mut ModelDraft, rules: &Rules) {
+    let Some(response) = &mut model.response else {
+        return;
+    };
+    let Some(bands) = &response.valid_bands else {
+        return;
+    };
+    let last = response.omega.last().copied().unwrap_or(0.0);
+    if bands.values.chunks(2).all(|band| band == [0.0, last]) {
+        response.valid_bands = None;
+        return;
+    }
+    let input_count = rules.inputs.len().max(1);
+    let mut unmeasured = Vec::new();
+    for (place, band) in bands.values.chunks(2).enumerate() {
+        if band == NOT_MEASURED
+            && let Some(output) = rules.outputs.get(place / input_count)
+            && let Some(input) = rules.inputs.get(place % input_count)
+        {
+            unmeasured.push(format!("{}/{}", output.name, input.name));
+        }
+    }
+    if !unmeasured.is_empty() {
+        let source = model.source.get_or_insert_with(Provenance::default);
+        append_note(source, &format!("not measured: {}", unmeasured.join(", ")));
+    }
+}
+
+/// Appends to the note of a source, after a semicolon.
+fn append_note(source: &mut Provenance, text: &str) {
+    source.note = Some(match source.note.take() {
+        Some(note) => format!("{note}; {text}"),
+        None => text.to_owned(),
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assembly::channel_conversion::{ChannelUses, convert_model};
+    use crate::assembly::channel_match::ChannelUse;
+    use crate::assembly::test_models::measured_model;
+    use crate::names::ChannelRule;
+
+    fn used(index: usize) -> Option<ChannelUse> {
+        Some(ChannelUse {
+            index,
+            factor: 1.0,
+            words: None,
+        })
+    }
+
+    #[test]
+    fn unmeasured_responses_have_an_empty_band_and_a_note() {
+        let rules = Rules {
+            inputs: vec![ChannelRule::named("LON")],
+            outputs: vec![ChannelRule::named("Q"), ChannelRule::named("P")],
+            ..Rules::default()
+        };
+        let uses = ChannelUses {
+            inputs: &[used(0)],
+            outputs: &[None, used(0)],
+        };
+        let mut partial = convert_model(&measured_model(&[3.0, 4.0]), uses);
+        note_unmeasured(&mut partial, &rules);
+        assert_eq!(
+            partial.response.unwrap().valid_bands.unwrap().values,
+            [0.0, 0.0, 0.0, 5.0]
+        );
+        assert_eq!(
+            partial.source.unwrap().note.as_deref(),
+            Some("not measured: Q/LON")
+        );
+        let uses = ChannelUses {
+            inputs: &[used(0)],
+            outputs: &[used(0), used(1)],
+        };
+        let mut complete = convert_model(&measured_model(&[1.0, 2.0, 3.0, 4.0]), uses);
+        note_unmeasured(&mut complete, &rules);
+        assert_eq!(complete.response.unwrap().valid_bands, None);
+        assert_eq!(complete.source, None);
+    }
+}

@@ -1,0 +1,279 @@
+//! Search for problems in models and conditions.
+
+use std::collections::BTreeMap;
+
+use super::part::Part;
+use super::problem::{GridSpan, Problem, ProblemKind};
+use super::row::Row;
+use super::rules::Rules;
+use crate::names::RowRole;
+use crate::units::number;
+
+/// A model in use and its index among all models.
+#[derive(Clone, Copy)]
+pub(super) struct IndexedPart<'p> {
+    pub index: usize,
+    pub part: &'p Part,
+}
+
+/// Returns the models that are not left out.
+pub(super) fn parts_in_use(parts: &[Part]) -> Vec<IndexedPart<'_>> {
+    let mut in_use = Vec::new();
+    for (index, part) in parts.iter().enumerate() {
+        if !part.row.left_out {
+            in_use.push(IndexedPart { index, part });
+        }
+    }
+    in_use
+}
+
+/// Groups the models in use by condition; models without a condition are skipped.
+pub(super) fn parts_by_condition(parts: &[Part]) -> BTreeMap<i64, Vec<IndexedPart<'_>>> {
+    let mut conditions: BTreeMap<i64, Vec<IndexedPart<'_>>> = BTreeMap::new();
+    for part in parts_in_use(parts) {
+        if let Some(condition) = part.part.row.condition {
+            conditions.entry(condition).or_default().push(part);
+        }
+    }
+    conditions
+}
+
+/// Finds problems in the dataset's channels.
+pub(super) fn channel_problems(rules: &Rules) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    for (side, channels) in [("inputs", &rules.inputs), ("outputs", &rules.outputs)] {
+        if channels.is_empty() {
+            problems.push(Problem::in_dataset(ProblemKind::NoChannels(side)));
+        }
+        for channel in channels {
+            if channel.unit.trim().is_empty() {
+                let kind = ProblemKind::NoUnit(channel.name.clone());
+                problems.push(Problem::in_dataset(kind));
+            }
+        }
+    }
+    problems
+}
+
+/// Finds problems in a model: its trim, contradictions with its name, its row, its channels.
+pub(super) fn part_problems(part: &Part, rules: &Rules) -> Vec<ProblemKind> {
+    let rule = rules.rows.get(&part.found.key());
+    let mut problems = Vec::new();
+    let has_trim_rule = rule.is_some_and(|rule| rule.perturbation.is_some());
+    if part.row.role != Some(RowRole::Identified) && !has_trim_rule {
+        for text in &part.row.unread {
+            problems.push(ProblemKind::TrimPart(text.clone()));
+        }
+    }
+    for contradiction in &part.row.contradictions {
+        if rule.is_none_or(|rule| !rule.settles(&contradiction.field)) {
+            problems.push(ProblemKind::NameContradiction {
+                field: contradiction.field.clone(),
+                of_file: contradiction.of_file,
+                of_name: contradiction.of_name,
+            });
+        }
+    }
+    problems.extend(row_problems(part));
+    problems.extend_from_slice(&part.inputs.problems);
+    problems.extend_from_slice(&part.outputs.problems);
+    problems
+}
+
+fn row_problems(part: &Part) -> Vec<ProblemKind> {
+    let mut problems = Vec::new();
+    if part.row.condition.is_none() {
+        problems.push(ProblemKind::NoCondition);
+    }
+    match part.row.role {
+        None => problems.push(ProblemKind::NoRole),
+        Some(role @ (RowRole::Nominal | RowRole::Perturbed)) if part.found.response().is_some() => {
+            problems.push(ProblemKind::MeasuredPhysics(role));
+        }
+        Some(_) => {}
+    }
+    if part.sample_time_s.is_none() {
+        problems.extend(missing_sample_time(part));
+    }
+    problems
+}
+
+/// Reports a missing sample time for a model whose poles look discrete-time.
+///
+/// All lie inside the unit circle, or as little outside as an unstable helicopter mode would, and
+/// at least half (two or more) lie near 1. In continuous time, poles near 1
+/// would grow within a second.
+fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
+    /// Real part above which a pole counts as near 1.
+    const NEAR: f64 = 0.5;
+    /// Largest magnitude of a pole slightly outside the unit circle.
+    const OUTSIDE: f64 = 1.05;
+    let a = part.found.draft.matrices[0].as_ref()?;
+    if !a.is_square() || a.iter().any(|entry| !entry.is_finite()) {
+        return None;
+    }
+    // Cheap test first: the trace, which is the sum of the poles, is positive for such poles and
+    // negative for a damped continuous-time model.
+    if part.found.draft.timing.sample_time_s.is_some() || a.nrows() < 2 || a.trace() <= 0.0 {
+        return None;
+    }
+    let poles = a.complex_eigenvalues();
+    let near = poles.iter().filter(|pole| pole.re > NEAR).count();
+    let are_inside = poles.iter().all(|pole| pole.norm() <= OUTSIDE);
+    if are_inside && near >= 2 && 2 * near >= poles.len() {
+        Some(ProblemKind::NoSampleTime {
+            near,
+            poles: poles.len(),
+        })
+    } else {
+        None
+    }
+}
+
+/// Finds problems in a condition, given its models, at least one.
+pub(super) fn condition_problems(
+    condition: i64,
+    parts: &[IndexedPart<'_>],
+    rules: &Rules,
+) -> Vec<Problem> {
+    let mut kinds = contradictions(condition, parts);
+    if parts.iter().all(|part| part.part.row.airspeed_kt.is_none()) {
+        kinds.push(ProblemKind::NoAirspeed);
+    }
+    let nominal_count = parts
+        .iter()
+        .filter(|part| part.part.row.role == Some(RowRole::Nominal))
+        .count();
+    if nominal_count != 1 {
+        kinds.push(ProblemKind::Nominal {
+            condition,
+            found: nominal_count,
+        });
+    }
+    let first = parts[0].index;
+    let mut problems: Vec<Problem> = kinds
+        .into_iter()
+        .map(|kind| Problem::in_part(first, kind))
+        .collect();
+    problems.extend(name_problems(condition, parts, rules));
+    problems
+}
+
+/// A field of a flight condition.
+struct ConditionField {
+    name: &'static str,
+    /// Formats its value in a row; `None` where the row has none.
+    text: fn(&Row) -> Option<String>,
+}
+
+const CONDITION_FIELDS: [ConditionField; 5] = [
+    ConditionField {
+        name: "airspeed [kt]",
+        text: |row| row.airspeed_kt.map(number),
+    },
+    ConditionField {
+        name: "altitude [ft]",
+        text: |row| row.altitude_ft.map(number),
+    },
+    ConditionField {
+        name: "mass [kg]",
+        text: |row| row.mass_kg.map(number),
+    },
+    ConditionField {
+        name: "altitude",
+        text: |row| row.altitude.clone(),
+    },
+    ConditionField {
+        name: "weight",
+        text: |row| row.weight.clone(),
+    },
+];
+
+/// Finds fields with different values within a condition.
+fn contradictions(condition: i64, parts: &[IndexedPart<'_>]) -> Vec<ProblemKind> {
+    let mut contradictions = Vec::new();
+    for field in CONDITION_FIELDS {
+        let mut values = parts.iter().filter_map(|part| (field.text)(&part.part.row));
+        if let Some(first) = values.next()
+            && let Some(second) = values.find(|value| *value != first)
+        {
+            contradictions.push(ProblemKind::Contradiction {
+                condition,
+                field: field.name,
+                first,
+                second,
+            });
+        }
+    }
+    contradictions
+}
+
+/// Finds models with the same name in a bundle. Measured responses may share a name: they are parts
+/// of a single model.
+fn name_problems(condition: i64, parts: &[IndexedPart<'_>], rules: &Rules) -> Vec<Problem> {
+    let mut physics: BTreeMap<&str, Vec<&Part>> = BTreeMap::new();
+    let mut identified: BTreeMap<&str, Vec<&Part>> = BTreeMap::new();
+    let mut problems = Vec::new();
+    for IndexedPart { index, part } in parts {
+        let is_identified = part.row.role == Some(RowRole::Identified);
+        let bundle = if is_identified {
+            &mut identified
+        } else {
+            &mut physics
+        };
+        let earlier = bundle.entry(&part.row.name).or_default();
+        if let Some(last) = earlier.last() {
+            let kind = match (last.found.response(), part.found.response()) {
+                (Some(a), Some(b)) if a.omega == b.omega => {
+                    duplicate_response(part, earlier, rules)
+                }
+                (Some(a), Some(b)) => Some(ProblemKind::Grids {
+                    first: last.found.key(),
+                    first_grid: GridSpan::new(a),
+                    second: part.found.key(),
+                    second_grid: GridSpan::new(b),
+                }),
+                _ => Some(ProblemKind::Name {
+                    condition,
+                    bundle: if is_identified {
+                        "identified"
+                    } else {
+                        "physics"
+                    },
+                    name: part.row.name.clone(),
+                }),
+            };
+            problems.extend(kind.map(|kind| Problem::in_part(*index, kind)));
+        }
+        earlier.push(part);
+    }
+    problems
+}
+
+/// Returns the first response that a part of a measured model shares with an earlier part.
+fn duplicate_response(part: &Part, earlier: &[&Part], rules: &Rules) -> Option<ProblemKind> {
+    for (output, output_rule) in rules.outputs.iter().enumerate() {
+        for (input, input_rule) in rules.inputs.iter().enumerate() {
+            if !measures(part, output, input) {
+                continue;
+            }
+            let first = earlier.iter().find(|part| measures(part, output, input));
+            if let Some(first) = first {
+                return Some(ProblemKind::ResponseTwice {
+                    output: output_rule.name.clone(),
+                    input: input_rule.name.clone(),
+                    name: part.row.name.clone(),
+                    first: first.found.key(),
+                });
+            }
+        }
+    }
+    None
+}
+
+/// Returns whether a part has a response, by the indices of its dataset channels.
+fn measures(part: &Part, output: usize, input: usize) -> bool {
+    let has_output = part.outputs.uses.get(output).is_some_and(Option::is_some);
+    let has_input = part.inputs.uses.get(input).is_some_and(Option::is_some);
+    has_output && has_input
+}

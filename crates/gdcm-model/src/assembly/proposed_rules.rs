@@ -1,0 +1,175 @@
+//! Rules proposed from the models that were found, where the engineer has given none.
+
+use std::cmp::Reverse;
+use std::collections::BTreeSet;
+
+use super::found_model::{ChannelLabel, FoundModel};
+use super::rules::Rules;
+use crate::dataset::channel::ChannelSide;
+use crate::names::channel_alias::same_channel;
+use crate::names::on_axis::STANDARD_ON_AXIS;
+use crate::names::{ChannelRule, KnownChannels, SignedName};
+use crate::units::physical_unit::conversion_factor;
+
+/// Proposes rules: the models' channels with names and units, the standard patterns, and the
+/// standard on-axis responses among these channels. The rest stays open.
+pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
+    let models: Vec<LabelledModel<'_>> = models.iter().map(LabelledModel::new).collect();
+    let inputs = proposed_channels(&models, ChannelSide::Input);
+    let outputs = proposed_channels(&models, ChannelSide::Output);
+    let mut on_axis = Vec::new();
+    for (output, input) in STANDARD_ON_AXIS {
+        if let Some(output) = find_channel(&outputs, output)
+            && let Some(input) = find_channel(&inputs, input)
+        {
+            on_axis.push((output, input));
+        }
+    }
+    Rules {
+        name: name.to_owned(),
+        inputs,
+        outputs,
+        on_axis,
+        ..Rules::default()
+    }
+}
+
+/// Returns the dataset's name for a channel.
+fn find_channel(channels: &[ChannelRule], name: &str) -> Option<String> {
+    let channel = channels
+        .iter()
+        .find(|channel| same_channel(&channel.name, name))?;
+    Some(channel.name.clone())
+}
+
+/// A model with its channel names, from the file or from the file's name.
+struct LabelledModel<'m> {
+    found: &'m FoundModel,
+    /// Inputs and outputs.
+    labels: [Vec<ChannelLabel>; 2],
+}
+
+impl<'m> LabelledModel<'m> {
+    fn new(found: &'m FoundModel) -> Self {
+        Self {
+            found,
+            labels: found.labels_with_name(KnownChannels::Field).labels,
+        }
+    }
+
+    fn labels(&self, side: ChannelSide) -> &[ChannelLabel] {
+        let [inputs, outputs] = &self.labels;
+        side.of(inputs, outputs)
+    }
+
+    fn named_count(&self, side: ChannelSide) -> usize {
+        self.labels(side)
+            .iter()
+            .filter(|label| label.name.is_some())
+            .count()
+    }
+
+    /// Returns whether the file itself names a channel.
+    fn names_itself(&self, side: ChannelSide) -> bool {
+        side.of(&self.found.inputs, &self.found.outputs)
+            .iter()
+            .any(|label| label.name.is_some())
+    }
+
+    fn is_measured(&self) -> bool {
+        self.found.response().is_some()
+    }
+}
+
+/// Proposes the dataset channels on a side.
+///
+/// 1. Take the model with the most named channels first; names in files before names of files.
+/// 2. Take its channels. If it is a measured response, which may have a single channel, add the
+///    channels of other measured responses; models with matrices have all channels.
+/// 3. Give each channel the unit that most files use.
+/// 4. If no model with matrices names its channels, number the missing channels.
+fn proposed_channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<ChannelRule> {
+    let mut order: Vec<&LabelledModel<'_>> = models.iter().collect();
+    order.sort_by_key(|model| (Reverse(model.named_count(side)), !model.names_itself(side)));
+    let first_is_measured = order.first().is_some_and(|model| model.is_measured());
+    let mut channels: Vec<ChannelRule> = Vec::new();
+    let mut units: Vec<UnitCounts> = Vec::new();
+    for model in order {
+        let may_add = channels.is_empty() || (model.is_measured() && first_is_measured);
+        for label in model.labels(side) {
+            let Some(name) = &label.name else {
+                continue;
+            };
+            let name = SignedName::parse(name).name;
+            let known = channels
+                .iter()
+                .position(|channel| same_channel(&channel.name, &name));
+            let index = match known {
+                Some(index) => index,
+                None if may_add => {
+                    channels.push(ChannelRule::named(name));
+                    units.push(UnitCounts::default());
+                    channels.len() - 1
+                }
+                None => continue,
+            };
+            if let Some(unit) = label.unit.as_deref()
+                && !unit.trim().is_empty()
+            {
+                units[index].add(unit, model.found.file());
+            }
+        }
+    }
+    for (channel, units) in channels.iter_mut().zip(units) {
+        channel.unit = units.most_used();
+    }
+    let all_unnamed = models
+        .iter()
+        .all(|model| model.is_measured() || model.named_count(side) == 0);
+    if channels.is_empty() || all_unnamed {
+        let count = models.iter().map(|model| model.labels(side).len()).max();
+        for number in channels.len() + 1..=count.unwrap_or(0) {
+            channels.push(ChannelRule::named(format!("{side} {number}")));
+        }
+    }
+    channels
+}
+
+/// The units of a channel, each with the files that use it.
+#[derive(Default)]
+struct UnitCounts<'m> {
+    units: Vec<UnitFiles<'m>>,
+}
+
+struct UnitFiles<'m> {
+    unit: &'m str,
+    files: BTreeSet<&'m str>,
+}
+
+impl<'m> UnitCounts<'m> {
+    /// Adds a unit; spellings such as "deg/s" and "°/s" count as the same unit.
+    fn add(&mut self, unit: &'m str, file: &'m str) {
+        for known in &mut self.units {
+            if conversion_factor(known.unit, unit) == Some(1.0) {
+                known.files.insert(file);
+                return;
+            }
+        }
+        self.units.push(UnitFiles {
+            unit,
+            files: BTreeSet::from([file]),
+        });
+    }
+
+    /// Returns the unit in most files, the first for equal counts; empty where no file gives a
+    /// unit.
+    fn most_used(&self) -> String {
+        let most = self.units.iter().map(|unit| unit.files.len()).max();
+        for unit in &self.units {
+            if Some(unit.files.len()) == most {
+                return unit.unit.to_owned();
+            }
+        }
+        String::new()
+    }
+}

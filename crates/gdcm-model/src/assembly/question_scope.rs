@@ -1,0 +1,90 @@
+//! Scope of each question about a channel: all models, those of a role, or a single file.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::channel_match::ChannelUse;
+use super::file_scope::FileScope;
+use super::part::Part;
+use super::problem::{Problem, Question};
+use super::rules::Rules;
+use crate::names::ChannelRule;
+
+/// Sets the scope of each problem that is a question about a channel.
+///
+/// The scope is as wide as possible while every model in it that has the channel raises the
+/// question; where no role qualifies, it is the model's file.
+pub(super) fn set_scopes(problems: &mut [Problem], parts: &[Part], rules: &Rules) {
+    let mut asking: BTreeMap<Question, BTreeSet<usize>> = BTreeMap::new();
+    for problem in problems.iter() {
+        if let (Some(part), Some(question)) = (problem.part, problem.kind.question()) {
+            asking.entry(question).or_default().insert(part);
+        }
+    }
+    let mut wide_scopes: BTreeMap<&Question, Vec<FileScope>> = BTreeMap::new();
+    for (question, asking) in &asking {
+        wide_scopes.insert(question, scopes_asking(question, asking, parts, rules));
+    }
+    for problem in problems {
+        let (Some(part), Some(question)) = (problem.part, problem.kind.question()) else {
+            continue;
+        };
+        let own = role_scope(&parts[part]);
+        let wide = wide_scopes.get(&question).and_then(|scopes| {
+            scopes
+                .iter()
+                .find(|scope| **scope == FileScope::All || Some(*scope) == own.as_ref())
+        });
+        problem.scope = Some(match wide {
+            Some(scope) => scope.clone(),
+            None => FileScope::Files(parts[part].found.key()),
+        });
+    }
+}
+
+/// Returns the scopes in which every model with the channel raises the question: all models, or
+/// one or both of the role scopes.
+fn scopes_asking(
+    question: &Question,
+    asking: &BTreeSet<usize>,
+    parts: &[Part],
+    rules: &Rules,
+) -> Vec<FileScope> {
+    let mut with_channel = Vec::new();
+    for (index, part) in parts.iter().enumerate() {
+        if !part.row.left_out && has_channel(part, &question.channel, rules) {
+            with_channel.push(index);
+        }
+    }
+    let mut scopes = Vec::new();
+    for scope in [FileScope::Physics, FileScope::Identified] {
+        let mut in_scope = with_channel
+            .iter()
+            .filter(|index| role_scope(&parts[**index]).as_ref() == Some(&scope))
+            .peekable();
+        if in_scope.peek().is_some() && in_scope.all(|index| asking.contains(index)) {
+            scopes.push(scope);
+        }
+    }
+    // Models without a role are in neither role scope.
+    if scopes.len() == 2 && with_channel.iter().all(|index| asking.contains(index)) {
+        return vec![FileScope::All];
+    }
+    scopes
+}
+
+fn role_scope(part: &Part) -> Option<FileScope> {
+    part.row.role.map(FileScope::of_role)
+}
+
+/// Returns whether a model has a dataset channel.
+fn has_channel(part: &Part, channel: &str, rules: &Rules) -> bool {
+    is_used(&rules.inputs, &part.inputs.uses, channel)
+        || is_used(&rules.outputs, &part.outputs.uses, channel)
+}
+
+fn is_used(rules: &[ChannelRule], uses: &[Option<ChannelUse>], channel: &str) -> bool {
+    rules
+        .iter()
+        .zip(uses)
+        .any(|(rule, used)| rule.name == channel && used.is_some())
+}

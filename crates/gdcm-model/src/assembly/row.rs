@@ -1,0 +1,66 @@
+//! The place of a model in the dataset.
+
+use std::collections::BTreeMap;
+
+use crate::names::RowRole;
+use crate::units::number;
+
+/// The place of a model in the dataset, as far as known.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Row {
+    pub left_out: bool,
+    pub condition: Option<i64>,
+    pub role: Option<RowRole>,
+    /// Model name, unique in its bundle.
+    pub name: String,
+    /// True airspeed \[kt\].
+    pub airspeed_kt: Option<f64>,
+    pub altitude: Option<String>,
+    /// Altitude \[ft\].
+    pub altitude_ft: Option<f64>,
+    pub weight: Option<String>,
+    /// Mass \[kg\].
+    pub mass_kg: Option<f64>,
+    pub method: Option<String>,
+    /// Trim offsets by coordinate ("roll_deg").
+    pub perturbation: BTreeMap<String, f64>,
+    /// Parts of its name that look like a trim offset but match no pattern.
+    pub unread: Vec<String>,
+    /// Values in the file that contradict the names of file and folders.
+    pub contradictions: Vec<NameContradiction>,
+}
+
+/// A number in a file that contradicts the names of file and folders.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NameContradiction {
+    /// The quantity, by its name in the rules: "airspeed_kt".
+    pub field: String,
+    pub of_file: f64,
+    pub of_name: f64,
+}
+
+impl Row {
+    /// Formats the airspeed: "45 kt"; `None` where unknown.
+    pub fn airspeed_words(&self) -> Option<String> {
+        let airspeed_kt = self.airspeed_kt?;
+        Some(format!("{} kt", number(airspeed_kt)))
+    }
+
+    /// Formats the altitude: "high", or else "2000 ft"; empty where unknown.
+    pub fn altitude_words(&self) -> String {
+        class_or_number(self.altitude.as_deref(), self.altitude_ft, "ft")
+    }
+
+    /// Formats the weight: "low", or else "6600 kg"; empty where unknown.
+    pub fn weight_words(&self) -> String {
+        class_or_number(self.weight.as_deref(), self.mass_kg, "kg")
+    }
+}
+
+fn class_or_number(class: Option<&str>, value: Option<f64>, unit: &str) -> String {
+    match (class, value) {
+        (Some(class), _) => class.to_owned(),
+        (None, Some(value)) => format!("{} {unit}", number(value)),
+        (None, None) => String::new(),
+    }
+}

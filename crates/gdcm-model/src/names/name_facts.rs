@@ -1,0 +1,59 @@
+//! Facts about a model or a record that its file name gives.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+/// Role of a model in its condition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RowRole {
+    /// The physics model at the condition's trim.
+    Nominal,
+    /// A physics model at a perturbed trim.
+    Perturbed,
+    /// Identified from flight, or measured.
+    Identified,
+}
+
+impl RowRole {
+    /// All roles.
+    pub const ALL: [Self; 3] = [Self::Nominal, Self::Perturbed, Self::Identified];
+
+    /// Returns its keyword in files and tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Nominal => "nominal",
+            Self::Perturbed => "perturbed",
+            Self::Identified => "identified",
+        }
+    }
+
+    /// Parses a role keyword.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|role| role.word() == word)
+    }
+}
+
+/// Values that the names of folders, a file and a variable give; `None` or empty where they give
+/// none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NameFacts {
+    pub condition: Option<i64>,
+    pub role: Option<RowRole>,
+    pub name: String,
+    /// True airspeed \[kt\].
+    pub airspeed_kt: Option<f64>,
+    /// Altitude class: "low", "high".
+    pub altitude: Option<String>,
+    /// Altitude \[ft\].
+    pub altitude_ft: Option<f64>,
+    /// Weight class: "light", "high".
+    pub weight: Option<String>,
+    /// Mass \[kg\].
+    pub mass_kg: Option<f64>,
+    /// Identification method.
+    pub method: Option<String>,
+    /// Trim offsets by coordinate ("roll_deg").
+    pub perturbation: BTreeMap<String, f64>,
+}

@@ -1,0 +1,501 @@
+//! Output and input of a response from the name of its file or variable: `frf_q_delta_lon`,
+//! `roll_rate per lat_cyclic run 2`.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use super::channel_alias::{canonical_name, is_known_input, is_known_output, same_channel};
+use super::channel_rule::ChannelRule;
+use super::signed_name::SignedName;
+use crate::dataset::channel::ChannelSide;
+use crate::units::physical_unit::{Dimension, PhysicalUnit};
+
+/// Most words combined into a channel name.
+const LONGEST_NAME: usize = 4;
+/// Most words considered in a text.
+const MOST_WORDS: usize = 64;
+
+/// Words in file names that do not belong to a channel. Numbers and units are ignored too.
+const FILLERS: [&str; 44] = [
+    "frf",
+    "fr",
+    "tf",
+    "frd",
+    "resp",
+    "response",
+    "bode",
+    "h",
+    "g",
+    "per",
+    "to",
+    "from",
+    "over",
+    "by",
+    "due",
+    "of",
+    "vs",
+    "in",
+    "out",
+    "input",
+    "output",
+    "axis",
+    "run",
+    "rec",
+    "record",
+    "test",
+    "flight",
+    "flt",
+    "sweep",
+    "doublet",
+    "hover",
+    "cruise",
+    "meas",
+    "measured",
+    "id",
+    "ident",
+    "identified",
+    "cond",
+    "case",
+    "and",
+    "at",
+    "data",
+    "stick",
+    "file",
+];
+
+/// Words that turn an adjacent channel into another: "q dot" is not q.
+const MODIFIERS: [&str; 23] = [
+    "dot",
+    "ddot",
+    "deriv",
+    "derivative",
+    "diff",
+    "rate",
+    "accel",
+    "acceleration",
+    "int",
+    "integral",
+    "cmd",
+    "command",
+    "commanded",
+    "ref",
+    "reference",
+    "des",
+    "desired",
+    "demand",
+    "err",
+    "error",
+    "bias",
+    "sum",
+    "delta",
+];
+
+/// An output and an input as spelt in a text, as far as the text names them.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ResponseName {
+    /// The output: "q", "roll_rate".
+    pub output: Option<String>,
+    /// The input: "delta_lon".
+    pub input: Option<String>,
+}
+
+/// Error for a text with an ambiguous output or input.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ResponseNameError {
+    #[error("it names several {side}s: {found}")]
+    Several {
+        /// "output" or "input".
+        side: &'static str,
+        /// The channels as spelt in the text, separated by commas.
+        found: String,
+    },
+    #[error("\"{word}\" beside {channel} may change the channel")]
+    OtherChannel {
+        word: String,
+        /// The channel as spelt in the text.
+        channel: String,
+    },
+}
+
+/// Channels that a text may name.
+#[derive(Clone, Copy, Debug)]
+pub enum KnownChannels<'r> {
+    /// Dataset channels, by name and alias.
+    Dataset {
+        inputs: &'r [ChannelRule],
+        outputs: &'r [ChannelRule],
+    },
+    /// All channels in the alias table, whether or not the dataset has them.
+    Field,
+}
+
+/// Canonical names of the known channels.
+enum KnownNames {
+    Dataset {
+        inputs: BTreeSet<String>,
+        outputs: BTreeSet<String>,
+    },
+    Field,
+}
+
+impl KnownNames {
+    fn new(known: KnownChannels<'_>) -> Self {
+        match known {
+            KnownChannels::Dataset { inputs, outputs } => Self::Dataset {
+                inputs: canonical_names(inputs),
+                outputs: canonical_names(outputs),
+            },
+            KnownChannels::Field => Self::Field,
+        }
+    }
+
+    /// Returns the sides that have a channel called `name`.
+    fn sides(&self, name: &str) -> Sides {
+        match self {
+            Self::Dataset { inputs, outputs } => {
+                let name = canonical_name(name);
+                Sides {
+                    output: outputs.contains(&name),
+                    input: inputs.contains(&name),
+                }
+            }
+            Self::Field => Sides {
+                output: is_known_output(name),
+                input: is_known_input(name),
+            },
+        }
+    }
+}
+
+/// Returns the canonical names of channels and of their aliases, without sign marks.
+fn canonical_names(rules: &[ChannelRule]) -> BTreeSet<String> {
+    let mut names = BTreeSet::new();
+    for rule in rules {
+        for name in std::iter::once(&rule.name).chain(&rule.aliases) {
+            names.insert(canonical_name(&SignedName::parse(name).name));
+        }
+    }
+    names
+}
+
+/// The sides that have a channel with a given name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Sides {
+    output: bool,
+    input: bool,
+}
+
+impl Sides {
+    fn are_both(self) -> bool {
+        self.output && self.input
+    }
+
+    fn has(self, side: ChannelSide) -> bool {
+        side.of(self.input, self.output)
+    }
+}
+
+/// A channel named by a run of words.
+struct NamedChannel<'t> {
+    /// Indices of its words.
+    words: Range<usize>,
+    /// Its name as spelt in the text.
+    text: &'t str,
+    sides: Sides,
+}
+
+/// A word and its first byte in the text.
+struct Word<'t> {
+    start: usize,
+    text: &'t str,
+}
+
+impl ResponseName {
+    /// Finds the channels that a text names.
+    ///
+    /// 1. Split the text into words.
+    /// 2. From the left, take the longest run of words that names a known channel.
+    /// 3. Reject a word that may change a channel beside it.
+    /// 4. Two names that fit both sides are "output input", or "input to output".
+    /// 5. Otherwise each side takes the name that fits it alone, or else the name that fits both.
+    ///
+    /// # Errors
+    /// The text names several outputs or inputs, or a word may change the channel beside it.
+    pub fn find(text: &str, known: KnownChannels<'_>) -> Result<Self, ResponseNameError> {
+        let words = words_of(text);
+        let named = named_channels(text, &words, &KnownNames::new(known));
+        reject_modifiers(&words, &named)?;
+        if let [first, second] = named.as_slice()
+            && first.sides.are_both()
+            && second.sides.are_both()
+        {
+            return Ok(Self::from_order(&words, first, second));
+        }
+        Ok(Self {
+            output: only_channel(ChannelSide::Output, &named)?,
+            input: only_channel(ChannelSide::Input, &named)?,
+        })
+    }
+
+    /// Reads two channels by their order: "output input", or "input to output".
+    fn from_order(words: &[Word<'_>], first: &NamedChannel<'_>, second: &NamedChannel<'_>) -> Self {
+        let input_first = words[first.words.end..second.words.start]
+            .iter()
+            .any(|word| word.text.eq_ignore_ascii_case("to"));
+        let [output, input] = if input_first {
+            [second, first]
+        } else {
+            [first, second]
+        };
+        Self {
+            output: Some(output.text.to_owned()),
+            input: Some(input.text.to_owned()),
+        }
+    }
+}
+
+/// Returns an error where a word may change the channel beside it: a modifier, or any unknown word
+/// between the channels.
+fn reject_modifiers(
+    words: &[Word<'_>],
+    named: &[NamedChannel<'_>],
+) -> Result<(), ResponseNameError> {
+    let [first, ..] = named else {
+        return Ok(());
+    };
+    let begin = first.words.start;
+    let end = named[named.len() - 1].words.end;
+    for (index, word) in words.iter().enumerate() {
+        let is_named = named.iter().any(|channel| channel.words.contains(&index));
+        if is_named || is_filler(word.text) {
+            continue;
+        }
+        let is_between = begin < index && index < end;
+        if is_between || MODIFIERS.contains(&word.text.to_lowercase().as_str()) {
+            let before = named
+                .iter()
+                .rev()
+                .find(|channel| channel.words.start < index);
+            return Err(ResponseNameError::OtherChannel {
+                word: word.text.to_owned(),
+                channel: before.unwrap_or(first).text.to_owned(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Returns the channel on a side, or `None` where the text names none. Names that fit this side
+/// only come before names that fit both.
+fn only_channel(
+    side: ChannelSide,
+    named: &[NamedChannel<'_>],
+) -> Result<Option<String>, ResponseNameError> {
+    let mut fitting = Vec::new();
+    let mut certain = Vec::new();
+    for channel in named {
+        if channel.sides.has(side) {
+            fitting.push(channel.text);
+            if !channel.sides.are_both() {
+                certain.push(channel.text);
+            }
+        }
+    }
+    let names = if certain.is_empty() { fitting } else { certain };
+    let Some((first, others)) = names.split_first() else {
+        return Ok(None);
+    };
+    if others.iter().all(|other| same_channel(first, other)) {
+        return Ok(Some((*first).to_owned()));
+    }
+    Err(ResponseNameError::Several {
+        side: side.of("input", "output"),
+        found: names.join(", "),
+    })
+}
+
+/// Splits a text into runs of letters and digits.
+fn words_of(text: &str) -> Vec<Word<'_>> {
+    let mut words = Vec::new();
+    let mut start = None;
+    for (place, letter) in text.char_indices().chain([(text.len(), ' ')]) {
+        let is_inside = place < text.len() && letter.is_alphanumeric();
+        match (start, is_inside) {
+            (None, true) => start = Some(place),
+            (Some(from), false) => {
+                words.push(Word {
+                    start: from,
+                    text: &text[from..place],
+                });
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    words.truncate(MOST_WORDS);
+    words
+}
+
+/// Finds the known channels in a text, the longest run of words first.
+fn named_channels<'t>(
+    text: &'t str,
+    words: &[Word<'t>],
+    known: &KnownNames,
+) -> Vec<NamedChannel<'t>> {
+    let mut named = Vec::new();
+    let mut first = 0;
+    while first < words.len() {
+        match longest_channel(text, words, first, known) {
+            Some(channel) => {
+                first = channel.words.end;
+                named.push(channel);
+            }
+            None => first += 1,
+        }
+    }
+    named
+}
+
+/// Returns the longest known channel name that begins at word `first`.
+fn longest_channel<'t>(
+    text: &'t str,
+    words: &[Word<'t>],
+    first: usize,
+    known: &KnownNames,
+) -> Option<NamedChannel<'t>> {
+    let longest = (words.len() - first).min(LONGEST_NAME);
+    for count in (1..=longest).rev() {
+        let last = &words[first + count - 1];
+        let name = &text[words[first].start..last.start + last.text.len()];
+        let sides = known.sides(name);
+        if sides.output || sides.input {
+            return Some(NamedChannel {
+                words: first..first + count,
+                text: name,
+                sides,
+            });
+        }
+    }
+    None
+}
+
+/// Returns whether a word is a number, a unit with or without a number, or a filler: "run2",
+/// "60kt", "v2".
+fn is_filler(word: &str) -> bool {
+    let word = word.to_lowercase();
+    let plain = word.trim_matches(|letter: char| letter.is_ascii_digit());
+    let is_unit = PhysicalUnit::of(plain).is_some_and(|unit| {
+        matches!(
+            unit.dimension,
+            Dimension::Speed | Dimension::Length | Dimension::Level | Dimension::Frequency
+        )
+    });
+    let is_number = plain.len() < word.len() && plain.len() <= 1;
+    plain.is_empty() || is_number || is_unit || FILLERS.contains(&plain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rules(names: &[&str]) -> Vec<ChannelRule> {
+        names.iter().map(|name| ChannelRule::named(*name)).collect()
+    }
+
+    fn read(text: &str) -> Result<(String, String), ResponseNameError> {
+        let inputs = rules(&["LON", "LAT", "PED", "COL"]);
+        let outputs = rules(&["P", "Q", "R", "NZ"]);
+        let name = ResponseName::find(
+            text,
+            KnownChannels::Dataset {
+                inputs: &inputs,
+                outputs: &outputs,
+            },
+        )?;
+        Ok((
+            name.output.unwrap_or_default(),
+            name.input.unwrap_or_default(),
+        ))
+    }
+
+    #[test]
+    fn file_names_give_output_and_input() {
+        for (text, output, input) in [
+            ("frf_q_delta_lon", "q", "delta_lon"),
+            ("q_per_lon", "q", "lon"),
+            ("frf_q_lon_run2", "q", "lon"),
+            ("frf_roll_rate_lat_cyclic", "roll_rate", "lat_cyclic"),
+            ("frf LAT to P", "P", "LAT"),
+            ("Q_LON", "Q", "LON"),
+            ("c03-60kt-nz-col-v2", "nz", "col"),
+            ("sweepA_q_lon", "q", "lon"),
+            ("p_60kt_theta0", "p", "theta0"),
+            ("q_over_xb_lon", "q", "xb"),
+            ("frf_yaw_rate", "yaw_rate", ""),
+            ("delta_lon", "", "delta_lon"),
+            ("broken", "", ""),
+            ("", "", ""),
+        ] {
+            assert_eq!(
+                read(text),
+                Ok((output.to_owned(), input.to_owned())),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn ambiguous_names_are_errors() {
+        for text in ["frf_q_dot_lon", "q_lon_cmd", "q_imu_lon"] {
+            assert!(
+                matches!(read(text), Err(ResponseNameError::OtherChannel { .. })),
+                "{text}: {:?}",
+                read(text)
+            );
+        }
+        for (text, side) in [("p_q_lon", "output"), ("q_lon_lat", "input")] {
+            assert!(
+                matches!(read(text), Err(ResponseNameError::Several { side: found, .. }) if found == side),
+                "{text}"
+            );
+        }
+        assert_eq!(
+            read("q_Q_lon"),
+            Ok(("q".to_owned(), "lon".to_owned())),
+            "one channel named twice"
+        );
+    }
+
+    #[test]
+    fn aliases_are_known_and_order_decides_between_sides() {
+        let inputs = [ChannelRule {
+            aliases: vec!["boost lon".into()],
+            ..ChannelRule::named("u1")
+        }];
+        let outputs = [ChannelRule::named("y_2")];
+        let find = |text, inputs, outputs| {
+            ResponseName::find(text, KnownChannels::Dataset { inputs, outputs }).unwrap()
+        };
+        let name = find("frf_y_2_boost_lon", &inputs[..], &outputs[..]);
+        assert_eq!(
+            (name.output.as_deref(), name.input.as_deref()),
+            (Some("y_2"), Some("boost_lon"))
+        );
+        let both = rules(&["roll", "pitch"]);
+        let name = find("roll_pitch", &both[..], &both[..]);
+        assert_eq!(
+            (name.output.as_deref(), name.input.as_deref()),
+            (Some("roll"), Some("pitch"))
+        );
+        let name = find("roll to pitch", &both[..], &both[..]);
+        assert_eq!(
+            (name.output.as_deref(), name.input.as_deref()),
+            (Some("pitch"), Some("roll"))
+        );
+        let name = ResponseName::find("mag roll_rate xb", KnownChannels::Field).unwrap();
+        assert_eq!(
+            (name.output.as_deref(), name.input.as_deref()),
+            (Some("roll_rate"), Some("xb"))
+        );
+    }
+}

@@ -1,0 +1,183 @@
+//! Sign marks in channel names: `-az`, `az (down)`, `az[+down]`.
+
+use super::channel_alias::folded_name;
+
+/// Names for the acceleration along the z axis, which points down in some programs and up in
+/// others.
+const Z_ACCELERATION: [&str; 5] = ["az", "azb", "accz", "verticalacceleration", "vertaccel"];
+
+/// Names for the load factor, which is positive up.
+const LOAD_FACTOR: [&str; 4] = ["nz", "loadfactor", "normalacceleration", "gloadnorml"];
+
+/// A channel name and its sign marks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SignedName {
+    /// The name without its marks.
+    pub name: String,
+    /// Whether a minus precedes the name.
+    pub minus: bool,
+    /// 1 where marked positive up, right or forward, -1 for the opposite direction.
+    pub direction: Option<f64>,
+}
+
+/// A name without the direction mark in brackets behind it.
+struct MarkedName<'t> {
+    name: &'t str,
+    direction: Option<f64>,
+}
+
+impl SignedName {
+    /// Parses the sign marks in a name.
+    pub fn parse(text: &str) -> Self {
+        let text = text.trim();
+        let mut minus = false;
+        let mut rest = text;
+        if let Some(unsigned) = text.strip_prefix(['-', '\u{2212}']) {
+            if begins_name(unsigned) {
+                minus = true;
+                rest = unsigned.trim_start();
+            }
+        } else if let Some(unsigned) = text.strip_prefix('+')
+            && begins_name(unsigned)
+        {
+            rest = unsigned;
+        }
+        let marked = split_direction(rest);
+        Self {
+            name: marked.name.to_owned(),
+            minus,
+            direction: marked.direction,
+        }
+    }
+
+    /// Returns the marked direction, or 1 for a load factor without a mark.
+    fn known_direction(&self) -> Option<f64> {
+        match self.direction {
+            Some(direction) => Some(direction),
+            None if self.is_load_factor() => Some(1.0),
+            None => None,
+        }
+    }
+
+    fn is_load_factor(&self) -> bool {
+        LOAD_FACTOR.contains(&folded_name(&self.name).as_str())
+    }
+
+    fn is_z_acceleration(&self) -> bool {
+        Z_ACCELERATION.contains(&folded_name(&self.name).as_str())
+    }
+}
+
+/// Returns whether a name follows a sign: a letter, or "#", after optional blanks.
+fn begins_name(rest: &str) -> bool {
+    rest.trim_start()
+        .starts_with(|letter: char| letter.is_alphabetic() || letter == '#')
+}
+
+/// Splits a direction mark in brackets from the end of a name: "az (down)". The brackets of a unit
+/// stay part of the name.
+fn split_direction(text: &str) -> MarkedName<'_> {
+    for (open, close) in [('(', ')'), ('[', ']'), ('{', '}')] {
+        let inside = text.strip_suffix(close);
+        let Some((name, mark)) = inside.and_then(|inside| inside.rsplit_once(open)) else {
+            continue;
+        };
+        let direction = parse_direction(mark);
+        if direction.is_some() && !name.trim().is_empty() {
+            return MarkedName {
+                name: name.trim(),
+                direction,
+            };
+        }
+    }
+    MarkedName {
+        name: text,
+        direction: None,
+    }
+}
+
+/// Parses a direction mark such as "down", "+down", "positive down", "-up": 1 for positive up,
+/// right or forward, -1 for the opposite direction.
+pub fn parse_direction(mark: &str) -> Option<f64> {
+    let mark = mark.trim().to_lowercase();
+    let (sign, word) = match mark.strip_prefix(['-', '\u{2212}']) {
+        Some(word) => (-1.0, word),
+        None => (1.0, mark.trim_start_matches('+')),
+    };
+    let word = word
+        .trim()
+        .trim_start_matches("positive")
+        .trim_start_matches("pos")
+        .trim_start_matches(['.', ' ']);
+    let word = word
+        .trim_end_matches("positive")
+        .trim_end_matches('+')
+        .trim();
+    match word {
+        "up" | "right" | "forward" | "fwd" => Some(sign),
+        "down" | "dn" | "left" | "aft" | "rearward" => Some(-sign),
+        _ => None,
+    }
+}
+
+/// Returns the factor, 1 or -1, from a file channel `label` to a dataset channel `channel`; `None`
+/// where the names leave it open.
+///
+/// 1. The same text has the same sign.
+/// 2. Where a direction is marked, the other must be known too; a load factor is positive up.
+/// 3. Without directions a leading minus is the sign. A z acceleration and a load factor without a
+///    minus may differ in sign, so the factor is open.
+pub fn sign_between(label: &str, channel: &str) -> Option<f64> {
+    if label.trim() == channel.trim() {
+        return Some(1.0);
+    }
+    let label = SignedName::parse(label);
+    let channel = SignedName::parse(channel);
+    let sign = if label.minus == channel.minus {
+        1.0
+    } else {
+        -1.0
+    };
+    if label.direction.is_some() || channel.direction.is_some() {
+        return Some(sign * label.known_direction()? * channel.known_direction()?);
+    }
+    let has_minus = label.minus || channel.minus;
+    let may_differ = label.is_z_acceleration() && channel.is_load_factor()
+        || label.is_load_factor() && channel.is_z_acceleration();
+    if may_differ && !has_minus {
+        None
+    } else {
+        Some(sign)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_in_names_give_the_sign() {
+        for (label, channel, sign) in [
+            ("R", "R", Some(1.0)),
+            ("-R", "R", Some(-1.0)),
+            ("\u{2212}yaw rate", "R", Some(-1.0)),
+            ("-az", "NZ", Some(-1.0)),
+            ("az (down)", "NZ", Some(-1.0)),
+            ("az[+down]", "NZ", Some(-1.0)),
+            ("az (positive up)", "NZ", Some(1.0)),
+            ("az [-up]", "NZ", Some(-1.0)),
+            ("NZ", "nz", Some(1.0)),
+            ("az", "NZ", None),
+            ("w (down)", "W", None),
+            ("w (down)", "W (up)", Some(-1.0)),
+        ] {
+            assert_eq!(sign_between(label, channel), sign, "{label} as {channel}");
+        }
+        assert_eq!(SignedName::parse("-az").name, "az");
+        assert_eq!(
+            SignedName::parse("az (g)").name,
+            "az (g)",
+            "a unit is no direction"
+        );
+    }
+}

@@ -1,0 +1,61 @@
+//! Names of time and sample time in files.
+
+use crate::units::physical_unit::{Dimension, PhysicalUnit};
+
+/// Usual names of the sample time \[s\].
+pub const SAMPLE_TIME_NAMES: [&str; 7] = [
+    "Ts",
+    "dt",
+    "tsam",
+    "sample_time_s",
+    "sample_time",
+    "sampling_time",
+    "Tsample",
+];
+
+/// Ranks a name by its likelihood to denote the time of samples: 0 for the most likely, `None` where
+/// it does not. A trailing time unit does not change the rank: `time_s`, `t [ms]`.
+pub fn time_name_rank(name: &str) -> Option<u8> {
+    let lower: Vec<String> = name
+        .split(|letter: char| !letter.is_alphanumeric())
+        .filter(|word| !word.is_empty())
+        .map(str::to_lowercase)
+        .collect();
+    let mut words: Vec<&str> = lower.iter().map(String::as_str).collect();
+    if words.len() > 1 && words.last().is_some_and(|word| is_time_unit(word)) {
+        words.pop();
+    }
+    match words.concat().as_str() {
+        "time" | "t" | "times" => Some(0),
+        "tout" | "timestamp" | "timestamps" | "elapsed" | "seconds" | "tsec" | "timesec"
+        | "zeit" | "temps" | "tempo" => Some(1),
+        _ if words.contains(&"time") || words.contains(&"timestamp") => Some(2),
+        _ => None,
+    }
+}
+
+fn is_time_unit(word: &str) -> bool {
+    PhysicalUnit::of(word).is_some_and(|unit| unit.dimension == Dimension::Time)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_names_are_ranked_without_marks_and_unit() {
+        let ranks = [
+            ("t [ms]", 0),
+            ("Time_s", 0),
+            ("time_stamps", 1),
+            ("t_out", 1),
+            ("real,_time", 2),
+        ];
+        for (name, rank) in ranks {
+            assert_eq!(time_name_rank(name), Some(rank), "{name}");
+        }
+        for name in ["theta", "Ts", "tail rotor"] {
+            assert_eq!(time_name_rank(name), None, "{name}");
+        }
+    }
+}

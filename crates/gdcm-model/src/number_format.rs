@@ -1,0 +1,309 @@
+//! Numbers as text: the only place where digits, signs and exponents are chosen.
+//!
+//! Text for messages and tables of a terminal has a hyphen as minus sign ([`number`], [`telling`]);
+//! text of figures, windows and sentences has a true minus sign ([`decimals`], [`compact`],
+//! [`signed`], [`five_digits`]).
+
+/// The minus sign, as wide as a plus.
+const MINUS: char = '\u{2212}';
+
+/// Formats a number for a message: the shortest text that parses to the same number, with an
+/// exponent where the digits before or after the point would hide it (1e300, 2.5e-12).
+pub fn number(value: f64) -> String {
+    /// Longest text without an exponent, where the exponent form would be shorter.
+    const LONGEST: usize = 10;
+    let plain = value.to_string();
+    let exponent = format!("{value:e}");
+    if plain.len() > LONGEST && exponent.len() < plain.len() {
+        exponent
+    } else {
+        plain
+    }
+}
+
+/// Formats a value for display with at most six significant digits: "0.530279", "12", "1e300".
+pub fn six_digits(value: f64) -> String {
+    let rounded = format!("{value:.5e}").parse().unwrap_or(value);
+    number(rounded)
+}
+
+/// Removes the sign of a formatted zero: "0.0" for "-0.0"; any other text is unchanged.
+pub fn without_sign_of_zero(text: &str) -> &str {
+    let Some(digits) = text.strip_prefix(['-', MINUS]) else {
+        return text;
+    };
+    let is_zero = digits.contains('0') && digits.chars().all(|digit| matches!(digit, '0' | '.'));
+    if is_zero { digits } else { text }
+}
+
+/// Formats a nonzero value with the given decimals, or with more, so that at least two digits
+/// remain where it would round to zero.
+pub fn telling(value: f64, decimals: usize) -> String {
+    /// Beyond this number of decimals an exponent is shorter.
+    const MOST: i32 = 6;
+    if value == 0.0 || !value.is_finite() || value.abs() >= 10_f64.powi(-(decimals as i32)) {
+        return format!("{value:.decimals$}");
+    }
+    let needed = 1 - value.abs().log10().floor() as i32;
+    if needed > MOST {
+        format!("{value:.1e}")
+    } else {
+        format!("{value:.*}", needed as usize)
+    }
+}
+
+/// Formats two values with the given decimals, or with as many more as needed to distinguish them.
+pub fn told_apart(a: f64, b: f64, decimals: usize) -> (String, String) {
+    /// All decimals of a number of order one.
+    const MOST: usize = 15;
+    let texts = |decimals: usize| (format!("{a:.decimals$}"), format!("{b:.decimals$}"));
+    let enough = (decimals..=MOST).find(|&decimals| texts(decimals).0 != texts(decimals).1);
+    texts(enough.unwrap_or(decimals))
+}
+
+/// Formats a change with its sign and the given decimals: "+12.3", "−0.4"; a change that rounds to
+/// zero has no sign.
+pub fn signed(change: f64, decimals: usize) -> String {
+    let text = format!("{change:+.decimals$}");
+    let is_nothing = text.chars().all(|c| matches!(c, '+' | '-' | '0' | '.'));
+    if is_nothing {
+        text[1..].to_owned()
+    } else {
+        text.replace('-', "−")
+    }
+}
+
+/// Formats `value` with up to six significant digits, without trailing zeros, with a true minus
+/// sign.
+pub fn compact(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return if value == 0.0 {
+            "0".to_owned()
+        } else {
+            value.to_string()
+        };
+    }
+    let decimals = (5 - value.abs().log10().floor() as i64).clamp(0, 12) as usize;
+    let text = format!("{value:.decimals$}");
+    let text = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        &text
+    };
+    with_minus_sign(without_sign_of_zero(text))
+}
+
+/// Formats `value` with `count` decimals and a true minus sign.
+pub fn decimals(value: f64, count: usize) -> String {
+    with_minus_sign(without_sign_of_zero(&format!("{value:.count$}")))
+}
+
+/// Formats `value` with `count` decimals and a true minus sign; a missing value is a hyphen.
+pub fn decimals_or_dash(value: Option<f64>, count: usize) -> String {
+    match value {
+        Some(value) => with_minus_sign(&format!("{value:.count$}")),
+        None => "-".to_owned(),
+    }
+}
+
+/// Replaces hyphens by true minus signs.
+pub fn with_minus_sign(number: &str) -> String {
+    number.replace('-', "\u{2212}")
+}
+
+/// Formats five significant digits with a true minus sign.
+pub fn five_digits(value: f64) -> String {
+    const SIGNIFICANT: i32 = 5;
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return value.to_string();
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    let text = match exponent {
+        -5..=7 => format!("{value:.*}", (SIGNIFICANT - 1 - exponent).max(0) as usize),
+        _ => format!("{value:.4e}"),
+    };
+    with_minus_sign(&text)
+}
+
+/// Rounds to three significant digits, without trailing zeros; `value` is positive.
+pub fn rounded_to_three_digits(value: f64) -> String {
+    let scale = 10_f64.powf(2.0 - value.log10().floor());
+    number((value * scale).round() / scale)
+}
+
+/// Formats `value` with three significant digits; below 1, with three decimals.
+pub fn three_digits(value: f64) -> String {
+    let decimals = (2.0 - value.abs().log10().floor()).clamp(0.0, 3.0) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// Formats three significant digits, without an exponent from 0.001 to 9999.
+pub fn significant(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let magnitude = value.abs().log10().floor();
+    if (-3.0..4.0).contains(&magnitude) {
+        format!("{value:.*}", (2.0 - magnitude).max(0.0) as usize)
+    } else {
+        format!("{value:.2e}")
+    }
+}
+
+/// Formats a gain with three decimals, two if the third is zero; a small gain with three
+/// significant digits.
+pub fn gain_text(gain: f64) -> String {
+    if gain < 0.1 {
+        return significant(gain);
+    }
+    let text = format!("{gain:.3}");
+    text.strip_suffix('0').map(str::to_owned).unwrap_or(text)
+}
+
+/// Formats a value at full precision for a file; empty where it is missing or not finite.
+pub fn full_precision(value: Option<f64>) -> String {
+    match value {
+        // Debug writes an exponent, unlike Display, which would write hundreds of zeros.
+        Some(value) if value.is_finite() => format!("{value:?}"),
+        _ => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_figure_is_given_to_the_digits_that_tell_it() {
+        let figures = [12.34, 0.1, 0.06, 0.0123, -0.000_04, 0.0, 3e-9];
+        assert_eq!(
+            figures.map(|value| telling(value, 1)),
+            [
+                "12.3",
+                "0.1",
+                "0.060",
+                "0.012",
+                "-0.000040",
+                "0.0",
+                "3.0e-9"
+            ]
+        );
+        assert_eq!(
+            told_apart(1.2, 1.4, 3),
+            ("1.200".to_owned(), "1.400".to_owned())
+        );
+        assert_eq!(
+            told_apart(1.000_04, 1.0, 3),
+            ("1.00004".to_owned(), "1.00000".to_owned())
+        );
+        assert_eq!(
+            told_apart(2.0, 2.0, 1),
+            ("2.0".to_owned(), "2.0".to_owned())
+        );
+    }
+
+    #[test]
+    fn a_change_has_its_sign_unless_it_rounds_to_nothing() {
+        assert_eq!(
+            [12.34, -0.44, -0.04, 0.0].map(|change| signed(change, 1)),
+            ["+12.3", "−0.4", "0.0", "0.0"]
+        );
+    }
+
+    #[test]
+    fn a_number_in_a_message_is_short_and_never_another_number() {
+        for (value, text) in [
+            (1e6, "1000000"),
+            (1e-6, "0.000001"),
+            (-1.0, "-1"),
+            (1e300, "1e300"),
+            (f64::MIN_POSITIVE, "2.2250738585072014e-308"),
+            (0.1 + 0.2, "0.30000000000000004"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(number(value), text);
+        }
+    }
+
+    #[test]
+    fn figures_for_people_have_six_digits_and_zeros_no_sign() {
+        let figures = [0.530_278_677_112_3, 12.0, 1e300, -1e-12, 0.0, 1e3 * 0.0123];
+        assert_eq!(
+            figures.map(six_digits),
+            ["0.530279", "12", "1e300", "-1e-12", "0", "12.3"]
+        );
+        let texts = [
+            "-0.0",
+            "\u{2212}0.00",
+            "-0",
+            "-0.01",
+            "-",
+            "-.",
+            "0.0",
+            "-0.0 dB",
+            "-x",
+        ];
+        let expected = [
+            "0.0", "0.00", "0", "-0.01", "-", "-.", "0.0", "-0.0 dB", "-x",
+        ];
+        assert_eq!(texts.map(without_sign_of_zero), expected);
+    }
+
+    #[test]
+    fn alpha_is_shown_with_three_significant_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (1.0, "1.00"),
+            (0.00123, "0.00123"),
+            (120.0, "120"),
+            (1e6, "1.00e6"),
+        ] {
+            assert_eq!(significant(value), text);
+        }
+    }
+
+    #[test]
+    fn a_gain_is_shown_with_two_or_three_digits_behind_the_point() {
+        for (value, text) in [
+            (1.0, "1.00"),
+            (1.25, "1.25"),
+            (1.2346, "1.235"),
+            (1e-6, "1.00e-6"),
+        ] {
+            assert_eq!(gain_text(value), text);
+        }
+    }
+
+    #[test]
+    fn a_figure_has_five_digits() {
+        let figures = [1.234_567, -0.012_345_6, 123_456.7, 0.0, 1e-9, 2.0];
+        assert_eq!(
+            figures.map(five_digits),
+            ["1.2346", "−0.012346", "123457", "0", "1.0000e−9", "2.0000"]
+        );
+    }
+
+    #[test]
+    fn a_compact_number_has_no_more_digits_than_it_needs() {
+        for (value, text) in [
+            (0.3, "0.3"),
+            (1.0 - 1e-12, "1"),
+            (20.0, "20"),
+            (-25.0, "\u{2212}25"),
+            (0.0, "0"),
+            (1.25, "1.25"),
+            (100_000.0, "100000"),
+        ] {
+            assert_eq!(compact(value), text);
+        }
+    }
+
+    #[test]
+    fn what_rounds_to_zero_has_no_sign() {
+        assert_eq!(decimals(-0.04, 1), "0.0");
+        assert_eq!(decimals(-0.06, 1), "\u{2212}0.1");
+    }
+}

@@ -1,0 +1,52 @@
+//! Model entries that are too large to compute with.
+
+use nalgebra::DMatrix;
+
+use crate::dataset::StateSpace;
+
+/// Largest entry accepted in computations. Products of three matrices in any state units (up to
+/// 2^100) then stay far below the largest double, and no entry of a helicopter model comes close.
+pub const LARGEST_ENTRY: f64 = 1e75;
+
+/// An entry of a model's matrices beyond [`LARGEST_ENTRY`].
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "its matrix {matrix} has {value:e} in row {row}, column {column}, beyond the limit {LARGEST_ENTRY:e} of computations"
+)]
+pub struct LargeEntry {
+    /// `A`, `B`, `C` or `D`.
+    pub matrix: char,
+    /// Row, counted from 1.
+    pub row: usize,
+    /// Column, counted from 1.
+    pub column: usize,
+    pub value: f64,
+}
+
+impl LargeEntry {
+    /// Returns the first entry that is too large, or `None`.
+    pub fn find(model: &StateSpace) -> Option<Self> {
+        let matrices = [
+            ('A', model.a()),
+            ('B', model.b()),
+            ('C', model.c()),
+            ('D', model.d()),
+        ];
+        matrices
+            .into_iter()
+            .find_map(|(name, matrix)| Self::find_in(name, matrix))
+    }
+
+    fn find_in(name: char, matrix: &DMatrix<f64>) -> Option<Self> {
+        let index = matrix
+            .iter()
+            .position(|value| value.abs() > LARGEST_ENTRY)?;
+        let (row, column) = matrix.vector_to_matrix_index(index);
+        Some(Self {
+            matrix: name,
+            row: row + 1,
+            column: column + 1,
+            value: matrix[index],
+        })
+    }
+}

@@ -1,0 +1,313 @@
+//! Complex Schur form of a real matrix: its eigenvalues, and the triangular form for its
+//! eigenvectors.
+//!
+//! ```text
+//! 1  A = Q T Q', T with blocks of one and two rows on its diagonal: Francis' implicit double shifts
+//! 2  for each block of two rows [p q; r s]: mean and half difference m = (p + s) / 2, h = (p - s) / 2
+//!       lambda = m +- j sqrt(-(h^2 + q r)), conjugate to the last digit; or two real ones
+//! 3     rotate its rows so that the block becomes triangular: first column (lambda - s, r) / norm
+//! ```
+//!
+//! Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 7.4 and 7.5.
+
+use nalgebra::{Complex, DMatrix, DVector, Schur};
+
+/// `A = Q T Q^H` with `Q` unitary and `T` upper triangular.
+pub struct SchurForm {
+    /// Schur vectors.
+    pub q: DMatrix<Complex<f64>>,
+    /// Triangular, with the eigenvalues on its diagonal.
+    pub t: DMatrix<Complex<f64>>,
+    /// Smallest difference between eigenvalues above rounding.
+    least: f64,
+}
+
+impl SchurForm {
+    /// Computes the Schur form of a square matrix; `None` where the iteration does not converge.
+    pub fn new(a: &DMatrix<f64>) -> Option<Self> {
+        let (q, t) = quasi_triangular(a)?;
+        let blocks: Vec<usize> = (1..a.nrows())
+            .filter(|&row| t[(row, row - 1)] != 0.0)
+            .map(|row| row - 1)
+            .collect();
+        let mut form = Self {
+            q: q.map(Complex::from),
+            t: t.map(Complex::from),
+            least: 0.0,
+        };
+        for first in blocks {
+            let second = first + 1;
+            let block = Block {
+                p: t[(first, first)],
+                q: t[(first, second)],
+                r: t[(second, first)],
+                s: t[(second, second)],
+            };
+            form.split(first, block);
+        }
+        form.least = (f64::EPSILON * form.t.camax()).max(f64::MIN_POSITIVE);
+        Some(form)
+    }
+
+    /// Returns the eigenvalues in the order of the diagonal; pairs are exact conjugates.
+    pub(super) fn eigenvalues(&self) -> Vec<Complex<f64>> {
+        self.t.diagonal().iter().copied().collect()
+    }
+
+    /// Returns the unit eigenvector for the eigenvalue at a position on the diagonal.
+    pub fn eigenvector(&self, at: usize) -> DVector<Complex<f64>> {
+        (&self.q * self.right(at)).normalize()
+    }
+
+    /// Solves `(T - t_kk) x = 0` with `x_k = 1`.
+    pub(super) fn right(&self, k: usize) -> DVector<Complex<f64>> {
+        let mut x = self.unit(k);
+        for row in (0..k).rev() {
+            let sum: Complex<f64> = (row + 1..=k)
+                .map(|column| self.t[(row, column)] * x[column])
+                .sum();
+            x[row] = -sum / self.difference(row, k);
+        }
+        x
+    }
+
+    /// Solves `y (T - t_kk) = 0` with `y_k = 1`.
+    pub(super) fn left(&self, k: usize) -> DVector<Complex<f64>> {
+        let mut y = self.unit(k);
+        for column in k + 1..self.t.nrows() {
+            let sum: Complex<f64> = (k..column).map(|row| y[row] * self.t[(row, column)]).sum();
+            y[column] = -sum / self.difference(column, k);
+        }
+        y
+    }
+
+    /// Returns the unit vector k.
+    fn unit(&self, k: usize) -> DVector<Complex<f64>> {
+        DVector::from_fn(self.t.nrows(), |row, _| {
+            Complex::from(if row == k { 1.0 } else { 0.0 })
+        })
+    }
+
+    /// Returns the difference between two eigenvalues; the rounding error where they are equal.
+    fn difference(&self, at: usize, from: usize) -> Complex<f64> {
+        let difference = self.t[(at, at)] - self.t[(from, from)];
+        if difference.norm() < self.least {
+            Complex::from(self.least)
+        } else {
+            difference
+        }
+    }
+
+    /// Exchanges neighbours until the eigenvalues selected by `first` come first; returns their
+    /// count.
+    pub fn order_by(&mut self, first: impl Fn(Complex<f64>) -> bool) -> usize {
+        let mut placed = 0;
+        for at in 0..self.t.nrows() {
+            if first(self.t[(at, at)]) {
+                for upper in (placed..at).rev() {
+                    self.exchange(upper);
+                }
+                placed += 1;
+            }
+        }
+        placed
+    }
+
+    /// Exchanges the eigenvalues at `upper` and `upper + 1` by one rotation of these two rows and
+    /// columns.
+    fn exchange(&mut self, upper: usize) {
+        let lower = upper + 1;
+        let first = self.t[(upper, upper)];
+        let second = self.t[(lower, lower)];
+        // The eigenvector for `second` in these two rows.
+        let x = self.t[(upper, lower)];
+        let y = second - first;
+        let norm = x.norm().hypot(y.norm());
+        if norm == 0.0 {
+            return;
+        }
+        let c = x / norm;
+        let s = y / norm;
+        for matrix in [&mut self.t, &mut self.q] {
+            for row in 0..matrix.nrows() {
+                let left = matrix[(row, upper)];
+                let right = matrix[(row, lower)];
+                matrix[(row, upper)] = left * c + right * s;
+                matrix[(row, lower)] = right * c.conj() - left * s.conj();
+            }
+        }
+        for column in 0..self.t.ncols() {
+            let above = self.t[(upper, column)];
+            let below = self.t[(lower, column)];
+            self.t[(upper, column)] = above * c.conj() + below * s.conj();
+            self.t[(lower, column)] = below * c - above * s;
+        }
+        self.t[(lower, upper)] = Complex::new(0.0, 0.0);
+        self.t[(upper, upper)] = second;
+        self.t[(lower, lower)] = first;
+    }
+
+    /// Makes the block in rows `first` and `first + 1` triangular.
+    fn split(&mut self, first: usize, block: Block) {
+        let second = first + 1;
+        let size = self.t.nrows();
+        let eigenvalues = block.eigenvalues();
+        let mu = eigenvalues[0] - block.s;
+        let norm = mu.norm().hypot(block.r);
+        let c = mu / norm;
+        let s = block.r / norm;
+        for column in first..size {
+            let upper = self.t[(first, column)];
+            let lower = self.t[(second, column)];
+            self.t[(first, column)] = c.conj() * upper + lower * s;
+            self.t[(second, column)] = c * lower - upper * s;
+        }
+        for row in 0..size {
+            if row <= second {
+                rotate_columns(&mut self.t, row, first, c, s);
+            }
+            rotate_columns(&mut self.q, row, first, c, s);
+        }
+        self.t[(second, first)] = Complex::new(0.0, 0.0);
+        [self.t[(first, first)], self.t[(second, second)]] = eigenvalues;
+    }
+}
+
+/// Rotates the entries of a row in columns `first` and `first + 1`, with cosine `c` and sine `s`.
+fn rotate_columns(
+    matrix: &mut DMatrix<Complex<f64>>,
+    row: usize,
+    first: usize,
+    c: Complex<f64>,
+    s: f64,
+) {
+    let left = matrix[(row, first)];
+    let right = matrix[(row, first + 1)];
+    matrix[(row, first)] = left * c + right * s;
+    matrix[(row, first + 1)] = right * c.conj() - left * s;
+}
+
+/// A 2 x 2 block `[p q; r s]` on the diagonal.
+#[derive(Clone, Copy)]
+struct Block {
+    p: f64,
+    q: f64,
+    r: f64,
+    s: f64,
+}
+
+impl Block {
+    /// Returns the eigenvalues; the value with positive imaginary part comes first.
+    fn eigenvalues(self) -> [Complex<f64>; 2] {
+        let Self { p, q, r, s } = self;
+        let mean = 0.5 * (p + s);
+        let half = 0.5 * (p - s);
+        let squared = half * half + q * r;
+        if squared < 0.0 {
+            let imaginary = (-squared).sqrt();
+            return [
+                Complex::new(mean, imaginary),
+                Complex::new(mean, -imaginary),
+            ];
+        }
+        // The larger distance from s has no cancellation, and the product of both distances is
+        // -q r.
+        let far = half + squared.sqrt().copysign(half);
+        let near = if far == 0.0 { 0.0 } else { -q * r / far };
+        [Complex::from(s + far), Complex::from(s + near)]
+    }
+}
+
+/// Computes `A = Q T Q'`. A stalled iteration (a cyclic permutation is a fixed point) is repeated
+/// on a reflection of the matrix, which has the same eigenvalues.
+fn quasi_triangular(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
+    const TRIES: i32 = 3;
+    /// Iterations per eigenvalue; three or four are typical.
+    const ITERATIONS_PER_EIGENVALUE: usize = 60;
+    let size = a.nrows();
+    let most = ITERATIONS_PER_EIGENVALUE * (size + 1);
+    if let Some(schur) = Schur::try_new(a.clone(), f64::EPSILON, most) {
+        return Some(schur.unpack());
+    }
+    for attempt in 1..TRIES {
+        let axis = DVector::from_fn(size, |row, _| (1.0 + f64::from(attempt) * row as f64).sin())
+            .normalize();
+        let reflection = DMatrix::identity(size, size) - 2.0 * &axis * axis.transpose();
+        if let Some(schur) = Schur::try_new(&reflection * a * &reflection, f64::EPSILON, most) {
+            let (q, t) = schur.unpack();
+            return Some((reflection * q, t));
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::dmatrix;
+
+    use super::*;
+
+    fn check(a: &DMatrix<f64>) {
+        let form = SchurForm::new(a).unwrap();
+        let again = &form.q * &form.t * form.q.adjoint();
+        // A few hundred rotations of the whole matrix, each backward stable.
+        assert!((again - a.map(Complex::from)).norm() < 1e-13 * a.norm());
+        let below = (0..a.nrows()).flat_map(|row| (0..row).map(move |column| (row, column)));
+        assert!(
+            below
+                .into_iter()
+                .all(|at| form.t[at].norm() <= 1e-15 * a.norm())
+        );
+    }
+
+    #[test]
+    fn eigenvectors_satisfy_their_equation() {
+        let a = DMatrix::from_fn(9, 9, |row, column| {
+            ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin()
+        });
+        let form = SchurForm::new(&a).unwrap();
+        for at in 0..9 {
+            let vector = form.eigenvector(at);
+            assert!((a.map(Complex::from) * &vector - &vector * form.t[(at, at)]).norm() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_form_gives_the_matrix_again() {
+        check(&DMatrix::from_fn(9, 9, |row, column| {
+            ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin()
+        }));
+        check(&dmatrix![0.0, 1.0; -4.0, -0.4]);
+        check(&dmatrix![1.0, 1e-9; 1e-9, 1.0]);
+    }
+
+    #[test]
+    fn a_cyclic_permutation_has_the_roots_of_unity() {
+        let shift = DMatrix::from_fn(
+            8,
+            8,
+            |row, column| if row == (column + 1) % 8 { 1.0 } else { 0.0 },
+        );
+        check(&shift);
+        for eigenvalue in SchurForm::new(&shift).unwrap().eigenvalues() {
+            // Orthogonal: each eigenvalue has condition number 1.
+            assert!((eigenvalue.powi(8) - 1.0).norm() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn real_eigenvalues_of_a_block_have_no_cancellation() {
+        let [far, near] = Block {
+            p: 1e8,
+            q: 1.0,
+            r: 1.0,
+            s: 0.0,
+        }
+        .eigenvalues();
+        // lambda^2 - 1e8 lambda - 1 = 0: the smaller root is -1e-8 (1 - 1e-16).
+        assert!(
+            (far.re - 1e8).abs() < 1e-7 && (near.re + 1e-8).abs() < 1e-22,
+            "{far} {near}"
+        );
+    }
+}

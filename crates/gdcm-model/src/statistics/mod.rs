@@ -1,0 +1,5 @@
+//! Statistics of samples.
+
+mod order_statistics;
+
+pub use order_statistics::{mean, median, quantile, weighted_median};

@@ -1,0 +1,101 @@
+//! The engineer's choices among a condition's models.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::dataset::BundleKind;
+
+/// The engineer's choices in a bundle.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct BundleChoice {
+    /// Names of the rejected models.
+    pub rejected: BTreeSet<String>,
+    /// Reasons of rejections, in the engineer's words, where given; studies of older programs have
+    /// none.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub reasons: BTreeMap<String, String>,
+    /// Name of the model that represents the bundle instead of the medoid; never a rejected model.
+    pub pinned: Option<String>,
+}
+
+impl BundleChoice {
+    /// Restores a model; the reason is removed with the rejection.
+    pub(crate) fn restore(&mut self, name: &str) {
+        self.rejected.remove(name);
+        self.reasons.remove(name);
+    }
+}
+
+/// The engineer's choices in a condition.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct ConditionChoice {
+    pub physics: BundleChoice,
+    pub identified: BundleChoice,
+    pub scheduled: bool,
+    /// Whether the condition is held out: analysed and assessed, but kept out of the schedule, to
+    /// validate it.
+    pub held_out: bool,
+}
+
+impl Default for ConditionChoice {
+    fn default() -> Self {
+        Self {
+            physics: BundleChoice::default(),
+            identified: BundleChoice::default(),
+            scheduled: true,
+            held_out: false,
+        }
+    }
+}
+
+impl ConditionChoice {
+    /// Restores every model of both bundles.
+    pub(crate) fn restore_all(&mut self) {
+        for choice in [&mut self.physics, &mut self.identified] {
+            choice.rejected.clear();
+            choice.reasons.clear();
+        }
+    }
+
+    /// Returns the choices that an analysis depends on: without the reasons of rejections.
+    pub(crate) fn without_reasons(&self) -> Self {
+        let mut choice = self.clone();
+        choice.physics.reasons.clear();
+        choice.identified.reasons.clear();
+        choice
+    }
+
+    /// Returns the choices that the comparison of the models depends on.
+    pub(crate) fn of_models(&self) -> Self {
+        Self {
+            scheduled: true,
+            held_out: false,
+            ..self.without_reasons()
+        }
+    }
+
+    /// Returns whether the condition is used in the schedule: chosen for it, and not held out.
+    pub fn is_in_schedule(&self) -> bool {
+        self.scheduled && !self.held_out
+    }
+
+    /// Returns the choices in a bundle.
+    pub fn bundle(&self, kind: BundleKind) -> &BundleChoice {
+        kind.pick(&self.physics, &self.identified)
+    }
+
+    /// Returns the choices in a bundle, mutable.
+    pub fn bundle_mut(&mut self, kind: BundleKind) -> &mut BundleChoice {
+        kind.pick(&mut self.physics, &mut self.identified)
+    }
+}
+
+impl BundleChoice {
+    /// Drops the decisions about models that are absent.
+    pub(crate) fn retain(&mut self, is_there: impl Fn(&str) -> bool) {
+        self.rejected.retain(|name| is_there(name));
+        self.reasons.retain(|name, _| is_there(name));
+        self.pinned = self.pinned.take().filter(|name| is_there(name));
+    }
+}

@@ -1,0 +1,80 @@
+//! Refusals of decisions.
+
+use gdcm_method::correction::Channel;
+use gdcm_model::dataset::dataset::BandError;
+use gdcm_model::dataset::{ConditionId, ModelId, Pair};
+use gdcm_model::units::number;
+
+/// Why a decision was refused; the study is unchanged.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EditRefusal {
+    #[error(
+        "condition {condition}: \"{model}\" is the last model kept in its bundle; at least one \
+         must stay"
+    )]
+    LastModel {
+        condition: ConditionId,
+        model: String,
+    },
+    #[error(
+        "condition {condition}: \"{model}\" is rejected; restore it before using it as \
+         representative"
+    )]
+    PinRejected {
+        condition: ConditionId,
+        model: String,
+    },
+    #[error("condition {condition}: \"{model}\" is not rejected; a reason goes with a rejection")]
+    ReasonOfKept {
+        condition: ConditionId,
+        model: String,
+    },
+    #[error("{what}: expected at most {most} characters, found {found}")]
+    TooLong {
+        what: &'static str,
+        most: usize,
+        found: usize,
+    },
+    /// The models do not fit the condition.
+    #[error("condition {condition}: {why}")]
+    Models { condition: ConditionId, why: String },
+    #[error("a variant needs a name")]
+    VariantWithoutName,
+    #[error("there is a variant \"{name}\" already")]
+    VariantExists { name: String },
+    #[error("there is no variant \"{name}\"")]
+    NoVariant { name: String },
+    #[error("{setting}: expected {expected}, found {}", number(*found))]
+    OutOfRange {
+        setting: &'static str,
+        expected: String,
+        found: f64,
+    },
+    /// The two ends of the band are invalid.
+    #[error(transparent)]
+    Band(#[from] BandError),
+    #[error("{setting}: this is not one of its values")]
+    NotAValue { setting: &'static str },
+    #[error("the dataset has no condition {condition}")]
+    NoCondition { condition: ConditionId },
+    #[error("condition {} has no {} model \"{}\"", model.condition, model.bundle, model.name)]
+    NoModel { model: ModelId },
+    #[error("the dataset has no {}", channel.name(&[], &[]))]
+    NoChannel { channel: Channel },
+    #[error(
+        "the dataset has no response of output number {} to input number {}",
+        pair.output + 1,
+        pair.input + 1
+    )]
+    NoResponse { pair: Pair },
+}
+
+/// Checks a text's length in characters.
+pub(crate) fn check_length(what: &'static str, text: &str, most: usize) -> Result<(), EditRefusal> {
+    let found = text.chars().count();
+    if found > most {
+        Err(EditRefusal::TooLong { what, most, found })
+    } else {
+        Ok(())
+    }
+}

@@ -1,0 +1,206 @@
+//! Decisions by the names of channels, conditions and models, carried over from one dataset to
+//! another.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, ModelId, PairTable};
+
+use super::adopted_models::AdoptedModels;
+use super::choices::{BundleChoice, ConditionChoice};
+use super::differences::{Difference, Inventory};
+use super::edit::Edit;
+use super::requirement_settings::RequirementSettings;
+use super::settings::{ResponseNames, Settings};
+use super::signs::TurnedChannel;
+use super::study::{Study, Variant};
+
+/// Every decision of a study by the names of channels, conditions and models, independent of the
+/// dataset.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decisions {
+    pub settings: Settings<ResponseNames>,
+    pub choices: BTreeMap<ConditionId, ConditionChoice>,
+    /// Models adopted instead of the ones in the file.
+    pub taken: Vec<(ConditionId, Arc<AdoptedModels>)>,
+    /// The channels with reversed sign.
+    pub signs: Vec<TurnedChannel>,
+    pub requirements: Arc<RequirementSettings>,
+    /// The variants; a variant contains no variants of its own.
+    pub variants: Vec<(String, Decisions)>,
+}
+
+impl Decisions {
+    /// Collects a study's decisions.
+    pub fn of(study: &Study) -> Self {
+        let mut variants = Vec::new();
+        for variant in &study.variants {
+            if let Some(study) = study.of_variant(&variant.name) {
+                variants.push((variant.name.clone(), Self::of(&study)));
+            }
+        }
+        Self {
+            settings: study.settings.named(&study.dataset),
+            choices: study.choices.clone(),
+            taken: study.taken.clone().into_iter().collect(),
+            signs: study.turned_channels(),
+            requirements: Arc::clone(&study.requirements),
+            variants,
+        }
+    }
+
+    /// Returns the study of `dataset` with every decision that applies to it, and a list of the
+    /// other decisions.
+    pub fn applied_to(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
+        let mut carried = CarriedDecisions {
+            study: Study::new(dataset),
+            not_applied: Vec::new(),
+        };
+        carried.take_requirements(&self.requirements);
+        carried.take_settings(&self.settings);
+        for taken in &self.taken {
+            carried.apply(&Edit::TakeModels(vec![taken.clone()]));
+        }
+        for turned in &self.signs {
+            carried.take_sign(turned);
+        }
+        for (condition, choice) in &self.choices {
+            carried.take_choice(*condition, choice);
+        }
+        for (name, decisions) in &self.variants {
+            carried.take_variant(name, decisions);
+        }
+        (carried.study, carried.not_applied)
+    }
+}
+
+/// A study that takes decisions over from another dataset.
+struct CarriedDecisions {
+    study: Study,
+    /// The decisions that do not apply.
+    not_applied: Vec<Difference>,
+}
+
+impl CarriedDecisions {
+    fn refuse(&mut self, decision: String, why: &str) {
+        self.not_applied.push(Difference::NotApplied {
+            decision,
+            why: why.to_owned(),
+        });
+    }
+
+    /// Applies an edit, or reports why it is refused.
+    fn apply(&mut self, edit: &Edit) {
+        if let Err(refusal) = self.study.apply(edit) {
+            self.refuse(edit.label(&self.study), &refusal.to_string());
+        }
+    }
+
+    /// Takes the requirement settings; those for channels that the dataset lacks are kept and
+    /// reported.
+    fn take_requirements(&mut self, requirements: &Arc<RequirementSettings>) {
+        self.study.requirements = Arc::clone(requirements);
+        for decision in requirements.without_channel(&self.study.dataset) {
+            self.refuse(decision, "it stays in the study for another dataset");
+        }
+    }
+
+    fn take_settings(&mut self, settings: &Settings<ResponseNames>) {
+        self.study.settings = settings.with_responses(|verb, names| self.marked(verb, names));
+    }
+
+    /// Returns the listed responses as a table.
+    fn marked(&mut self, verb: &str, names: &ResponseNames) -> PairTable<bool> {
+        let mut table = self.study.settings.constrained.map(|_, _| false);
+        for (output, input) in &names.0 {
+            match self.study.dataset.find_pair(output, input) {
+                Some(pair) => table[pair] = true,
+                None => self.refuse(
+                    format!("{verb} {input} → {output}"),
+                    "the dataset has no such response",
+                ),
+            }
+        }
+        table
+    }
+
+    fn take_sign(&mut self, turned: &TurnedChannel) {
+        match turned.find(&self.study.dataset) {
+            Some(channel) => self.apply(&Edit::SetSign {
+                channel,
+                of: Some(turned.of),
+            }),
+            None => self.refuse(
+                format!("turn {}", turned.channel),
+                "the dataset has no such channel",
+            ),
+        }
+    }
+
+    /// Applies every choice as an edit, so that no choice comes in that an edit would refuse.
+    fn take_choice(&mut self, condition: ConditionId, choice: &ConditionChoice) {
+        if !choice.scheduled {
+            self.apply(&Edit::SetScheduled {
+                condition,
+                scheduled: false,
+            });
+        }
+        if choice.held_out {
+            self.apply(&Edit::SetHeldOut {
+                condition,
+                held_out: true,
+            });
+        }
+        for kind in BundleKind::BOTH {
+            self.take_bundle_choice(condition, kind, choice.bundle(kind));
+        }
+    }
+
+    fn take_bundle_choice(
+        &mut self,
+        condition: ConditionId,
+        kind: BundleKind,
+        choice: &BundleChoice,
+    ) {
+        for name in &choice.rejected {
+            self.apply(&Edit::Reject(ModelId::new(condition, kind, name)));
+        }
+        for (name, reason) in &choice.reasons {
+            if choice.rejected.contains(name) {
+                let model = ModelId::new(condition, kind, name);
+                self.apply(&Edit::SetReason(model, reason.clone()));
+            }
+        }
+        if let Some(name) = &choice.pinned {
+            self.apply(&Edit::Pin(ModelId::new(condition, kind, name)));
+        }
+    }
+
+    fn take_variant(&mut self, name: &str, decisions: &Decisions) {
+        let (variant, mut not_applied) = decisions.applied_to(Arc::clone(&self.study.dataset));
+        for difference in &mut not_applied {
+            if let Difference::NotApplied { decision, .. } = difference {
+                decision.push_str(&format!(", of variant \"{name}\""));
+            }
+        }
+        self.not_applied.extend(not_applied);
+        if self.study.variant(name).is_none() {
+            self.study.variants.push(Arc::new(Variant {
+                name: name.to_owned(),
+                settings: variant.settings,
+                choices: variant.choices,
+            }));
+        }
+    }
+}
+
+impl Study {
+    /// Returns this study for another state of its dataset, with every decision that still applies,
+    /// and all differences.
+    pub fn reconciled(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
+        let mut differences = Inventory::of(self.file_dataset()).differences(&dataset);
+        let (study, not_applied) = Decisions::of(self).applied_to(dataset);
+        differences.extend(not_applied);
+        (study, differences)
+    }
+}

@@ -1,0 +1,161 @@
+//! Settings of the qualification requirements (M17), on which no correction depends.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_method::requirements::bandwidth::CommandType;
+use gdcm_method::requirements::{LevelBoundaries, ModeToleranceTable, TestInput, ToleranceTable};
+use gdcm_model::dataset::Dataset;
+use gdcm_model::units::number;
+
+use super::settings::is_default;
+
+/// Requirement settings; an omitted part has its default.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RequirementSettings {
+    /// Names of the outputs with attitude command; all other outputs have rate command.
+    #[serde(skip_serializing_if = "BTreeSet::is_empty")]
+    pub attitude_command: BTreeSet<String>,
+    #[serde(skip_serializing_if = "is_default")]
+    pub levels: LevelBoundaries,
+    /// Tolerances of time histories about the measured ones.
+    #[serde(skip_serializing_if = "is_default")]
+    pub tolerances: ToleranceTable,
+    /// Tolerances of modes about the identified ones.
+    #[serde(skip_serializing_if = "is_default")]
+    pub mode_tolerances: ModeToleranceTable,
+    /// Limits beyond which the overview marks a corrected model as far from the identified one.
+    #[serde(skip_serializing_if = "is_default")]
+    pub overview: OverviewLimits,
+    /// Test input of the models where no flight record is shown.
+    #[serde(skip_serializing_if = "is_default")]
+    pub test: TestInput,
+}
+
+/// Limits beyond which the overview marks a corrected model as far from the identified one. The
+/// limits are the program's own, from no standard.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct OverviewLimits {
+    /// Relative difference of the bandwidth from the identified one.
+    pub bandwidth: f64,
+    pub phase_delay_s: f64,
+    /// Least share of time inside a tolerance, 0 to 1.
+    pub share_inside: f64,
+}
+
+impl Default for OverviewLimits {
+    fn default() -> Self {
+        Self {
+            bandwidth: 0.1,
+            phase_delay_s: 0.02,
+            share_inside: 0.9,
+        }
+    }
+}
+
+/// An invalid limit of the overview: not above zero.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("limits of the overview: expected {name} above zero, found {}", number(*found))]
+pub struct OverviewLimitsError {
+    pub name: &'static str,
+    pub found: f64,
+}
+
+impl OverviewLimits {
+    /// Checks the limits and returns them.
+    ///
+    /// # Errors
+    /// [`OverviewLimitsError`] where a limit is not a number above zero.
+    pub fn checked(self) -> Result<Self, OverviewLimitsError> {
+        let Self {
+            bandwidth,
+            phase_delay_s,
+            share_inside,
+        } = self;
+        let limits = [
+            ("bandwidth", bandwidth),
+            ("phase_delay_s", phase_delay_s),
+            ("share_inside", share_inside),
+        ];
+        match limits
+            .into_iter()
+            .find(|(_, value)| !value.is_finite() || *value <= 0.0)
+        {
+            Some((name, found)) => Err(OverviewLimitsError { name, found }),
+            None => Ok(self),
+        }
+    }
+}
+
+impl RequirementSettings {
+    /// Returns the command type of an axis, by its output's name.
+    pub fn command_of(&self, output: &str) -> CommandType {
+        if self.attitude_command.contains(output) {
+            CommandType::Attitude
+        } else {
+            CommandType::Rate
+        }
+    }
+
+    /// Describes the settings with outputs that the dataset does not have.
+    pub fn without_channel(&self, dataset: &Dataset) -> Vec<String> {
+        let (_, outputs) = dataset.names_of_channels();
+        let mut texts = Vec::new();
+        for name in &self.attitude_command {
+            if !outputs.contains(name) {
+                texts.push(format!(
+                    "attitude command of {name}: the dataset has no such output"
+                ));
+            }
+        }
+        for name in self.levels.unknown_axes(&outputs) {
+            texts.push(format!("levels of {name}: the dataset has no such output"));
+        }
+        texts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_method::requirements::{TestInputShape, Tolerance};
+
+    use super::*;
+
+    #[test]
+    fn what_was_not_decided_is_not_written_and_what_was_comes_back() {
+        assert_eq!(
+            serde_json::to_string(&RequirementSettings::default()).unwrap(),
+            "{}"
+        );
+        let row = Tolerance {
+            absolute: 4.0,
+            ..ToleranceTable::default().rows()[0].clone()
+        };
+        let settings = RequirementSettings {
+            attitude_command: BTreeSet::from(["Q".to_owned()]),
+            tolerances: ToleranceTable::new("our own", vec![row]).unwrap(),
+            overview: OverviewLimits {
+                bandwidth: 0.15,
+                ..OverviewLimits::default()
+            },
+            test: TestInput {
+                shape: TestInputShape::Doublet,
+                ..TestInput::default()
+            },
+            ..RequirementSettings::default()
+        };
+        let text = serde_json::to_string(&settings).unwrap();
+        assert_eq!(
+            serde_json::from_str::<RequirementSettings>(&text).unwrap(),
+            settings,
+            "{text}"
+        );
+        assert_eq!(
+            (settings.command_of("Q"), settings.command_of("P")),
+            (CommandType::Attitude, CommandType::Rate)
+        );
+    }
+}

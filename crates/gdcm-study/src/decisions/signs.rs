@@ -1,0 +1,208 @@
+//! Channels with reversed sign, and datasets with the reversal applied.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_method::correction::Channel;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::measured_response::{MeasuredResponse, MeasuredResponseError};
+use gdcm_model::dataset::state_space::StateSpaceError;
+use gdcm_model::dataset::{BundleKind, Condition, Dataset, Dynamics, Model, Pair, StateSpace};
+
+use super::edit_refusal::EditRefusal;
+
+/// The models whose sign of a channel is reversed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SignRole {
+    /// The identified bundles' models.
+    Identified,
+    /// The physics bundles' models.
+    Physics,
+    All,
+}
+
+impl SignRole {
+    /// Every role.
+    pub const EACH: [Self; 3] = [Self::Identified, Self::Physics, Self::All];
+
+    /// Returns the word in files and options.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Identified => "identified",
+            Self::Physics => "physics",
+            Self::All => "all",
+        }
+    }
+
+    /// Returns the models in words.
+    pub fn models(self) -> &'static str {
+        match self {
+            Self::Identified => "the identified models",
+            Self::Physics => "the physics models",
+            Self::All => "all models",
+        }
+    }
+
+    /// Returns whether the sign is reversed in a bundle's models.
+    pub fn covers(self, kind: BundleKind) -> bool {
+        self == Self::All || self == kind.pick(Self::Physics, Self::Identified)
+    }
+}
+
+/// The channels with reversed sign.
+pub type Signs = BTreeMap<Channel, SignRole>;
+
+/// A channel with reversed sign, as stored in files.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TurnedChannel {
+    pub channel: String,
+    pub side: ChannelSide,
+    pub of: SignRole,
+}
+
+impl TurnedChannel {
+    /// Returns the channel in a dataset, where it exists.
+    pub fn find(&self, dataset: &Dataset) -> Option<Channel> {
+        let channels = match self.side {
+            ChannelSide::Input => dataset.inputs(),
+            ChannelSide::Output => dataset.outputs(),
+        };
+        let index = channels
+            .iter()
+            .position(|channel| channel.name == self.channel)?;
+        Some(match self.side {
+            ChannelSide::Input => Channel::Input(index),
+            ChannelSide::Output => Channel::Output(index),
+        })
+    }
+}
+
+/// Returns the dataset with the signs of these channels reversed: for an output its rows of C and
+/// D, for an input its columns of B and D, for measured responses every response of the channel.
+pub(crate) fn turned(dataset: &Arc<Dataset>, signs: &Signs) -> Result<Arc<Dataset>, EditRefusal> {
+    let mut turned = Arc::clone(dataset);
+    if signs.is_empty() {
+        return Ok(turned);
+    }
+    for condition in dataset.conditions() {
+        let refused = |why: String| EditRefusal::Models {
+            condition: condition.id(),
+            why,
+        };
+        let condition = turned_condition(condition, signs).map_err(refused)?;
+        let dataset = turned.with_condition(condition);
+        turned = Arc::new(dataset.map_err(|error| refused(error.to_string()))?);
+    }
+    Ok(turned)
+}
+
+fn turned_condition(condition: &Condition, signs: &Signs) -> Result<Condition, String> {
+    let physics = turned_models(condition, BundleKind::Physics, signs)?;
+    let identified = turned_models(condition, BundleKind::Identified, signs)?;
+    let state = condition.flight_state().clone();
+    let turned = Condition::new(state, physics, identified).map_err(|error| error.to_string())?;
+    turned
+        .with_records(condition.records().to_vec())
+        .map_err(|error| error.to_string())
+}
+
+fn turned_models(
+    condition: &Condition,
+    kind: BundleKind,
+    signs: &Signs,
+) -> Result<Vec<Model>, String> {
+    let signs = BundleSigns { signs, kind };
+    let mut models = Vec::new();
+    for model in condition.bundle(kind) {
+        models.push(Model {
+            dynamics: signs.turned(&model.dynamics)?,
+            ..model.clone()
+        });
+    }
+    Ok(models)
+}
+
+/// The channels' signs in a bundle's models.
+struct BundleSigns<'a> {
+    signs: &'a Signs,
+    kind: BundleKind,
+}
+
+impl BundleSigns<'_> {
+    /// Returns -1 for a channel with reversed sign, otherwise 1.
+    fn sign(&self, channel: Channel) -> f64 {
+        match self.signs.get(&channel) {
+            Some(role) if role.covers(self.kind) => -1.0,
+            _ => 1.0,
+        }
+    }
+
+    /// Returns the product of the signs of a response's two channels.
+    fn pair_sign(&self, pair: Pair) -> f64 {
+        let [output, input] = Channel::of(pair);
+        self.sign(output) * self.sign(input)
+    }
+
+    fn turned(&self, dynamics: &Dynamics) -> Result<Dynamics, String> {
+        match dynamics {
+            Dynamics::StateSpace(model) => {
+                let turned = self.turned_state_space(model);
+                turned
+                    .map(Dynamics::StateSpace)
+                    .map_err(|error| error.to_string())
+            }
+            Dynamics::Measured(response) => {
+                let turned = self.turned_response(response);
+                turned
+                    .map(Dynamics::Measured)
+                    .map_err(|error| error.to_string())
+            }
+        }
+    }
+
+    fn turned_state_space(&self, model: &StateSpace) -> Result<StateSpace, StateSpaceError> {
+        let mut b = model.b().clone();
+        let mut c = model.c().clone();
+        let mut d = model.d().clone();
+        for input in 0..model.inputs() {
+            let sign = self.sign(Channel::Input(input));
+            b.column_mut(input).scale_mut(sign);
+            d.column_mut(input).scale_mut(sign);
+        }
+        for output in 0..model.outputs() {
+            let sign = self.sign(Channel::Output(output));
+            c.row_mut(output).scale_mut(sign);
+            d.row_mut(output).scale_mut(sign);
+        }
+        StateSpace::new(model.a().clone(), b, c, d)?.timed(model.timing().clone())
+    }
+
+    fn turned_response(
+        &self,
+        response: &MeasuredResponse,
+    ) -> Result<MeasuredResponse, MeasuredResponseError> {
+        let values = response.values();
+        let re = values.map(|pair, values| {
+            let sign = self.pair_sign(pair);
+            values.iter().map(|value| sign * value.re).collect()
+        });
+        let im = values.map(|pair, values| {
+            let sign = self.pair_sign(pair);
+            values.iter().map(|value| sign * value.im).collect()
+        });
+        let turned = MeasuredResponse::new(
+            response.omega().to_vec(),
+            &re,
+            &im,
+            response.coherence().cloned(),
+        )?;
+        let turned = turned.with_estimate(response.estimate())?;
+        match response.valid_bands() {
+            Some(bands) => turned.with_valid_bands(bands.clone()),
+            None => Ok(turned),
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! Execution of an analysis: executor, progress and cancellation; caches of computed values.
+
+use std::convert::Infallible;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use gdcm_model::executor::{Executor, Sequential, each};
+use gdcm_model::progress::{Cancelled, Progress, Unobserved};
+
+/// Runs an analysis's pieces, checks for cancellation between two of them, and reports progress.
+pub struct Execution<'a> {
+    executor: &'a dyn Executor,
+    progress: &'a dyn Progress,
+    done: AtomicUsize,
+    total: usize,
+}
+
+impl<'a> Execution<'a> {
+    /// Creates an analysis's execution with `total` steps.
+    pub fn new(executor: &'a dyn Executor, progress: &'a dyn Progress, total: usize) -> Self {
+        Self {
+            executor,
+            progress,
+            done: AtomicUsize::new(0),
+            total,
+        }
+    }
+
+    /// Creates an execution on one thread without an observer.
+    pub fn sequential() -> Execution<'static> {
+        Execution::new(&Sequential, &Unobserved, 0)
+    }
+
+    /// Returns the progress observer.
+    pub(crate) fn progress(&self) -> &'a dyn Progress {
+        self.progress
+    }
+
+    /// Returns the pieces' executor.
+    pub(crate) fn executor(&self) -> &'a dyn Executor {
+        self.executor
+    }
+
+    /// Counts `count` more steps as done, and reports every hundredth of the total.
+    pub(crate) fn step(&self, count: usize) {
+        let before = self.done.fetch_add(count, Ordering::Relaxed);
+        let hundredth = |done: usize| 100 * done / self.total.max(1);
+        if hundredth(before + count) > hundredth(before) {
+            self.progress.advanced(before + count, self.total);
+        }
+    }
+
+    /// Evaluates `work(0), work(1), ...`, in any order; each is `steps` steps.
+    pub(crate) fn each<T: Send>(
+        &self,
+        count: usize,
+        steps: usize,
+        work: impl Fn(usize) -> T + Sync,
+    ) -> Result<Vec<T>, Cancelled> {
+        each(self.executor, 0..count, |index| {
+            self.piece(steps, || work(index))
+        })
+        .into_iter()
+        .collect::<Option<_>>()
+        .ok_or(Cancelled)
+    }
+
+    /// Runs a piece of work; `None` after cancellation.
+    fn piece<T>(&self, steps: usize, work: impl FnOnce() -> T) -> Option<T> {
+        if self.progress.cancelled() {
+            return None;
+        }
+        let result = work();
+        self.step(steps);
+        Some(result)
+    }
+
+    /// Works as [`Execution::each`] on mutable items, with work that may itself be cancelled.
+    pub(crate) fn each_mut<S: Send, T: Send>(
+        &self,
+        items: Vec<S>,
+        work: impl Fn(S) -> Result<T, Cancelled> + Sync,
+    ) -> Result<Vec<T>, Cancelled> {
+        let pieces = each(self.executor, items, |item| {
+            self.piece(0, || work(item)).unwrap_or(Err(Cancelled))
+        });
+        pieces.into_iter().collect()
+    }
+}
+
+/// Applies `work` to each item, in order.
+///
+/// # Errors
+/// [`Cancelled`] between two items, where `progress` requests it.
+pub(crate) fn in_turn<T, U>(
+    items: &[T],
+    progress: &dyn Progress,
+    mut work: impl FnMut(&T) -> U,
+) -> Result<Vec<U>, Cancelled> {
+    let mut results = Vec::with_capacity(items.len());
+    for item in items {
+        if progress.cancelled() {
+            return Err(Cancelled);
+        }
+        results.push(work(item));
+        progress.advanced(results.len(), items.len());
+    }
+    Ok(results)
+}
+
+/// A cached value, valid while its key stays the same.
+#[derive(Clone, Debug)]
+pub(crate) struct Memo<K, V> {
+    kept: Option<(K, V)>,
+}
+
+impl<K, V> Default for Memo<K, V> {
+    fn default() -> Self {
+        Self { kept: None }
+    }
+}
+
+impl<K: PartialEq, V: Clone> Memo<K, V> {
+    /// Creates a cache with a value computed elsewhere.
+    pub(crate) fn with(key: K, value: V) -> Self {
+        Self {
+            kept: Some((key, value)),
+        }
+    }
+
+    /// Returns the value for `key`: the cached value where the key is the same, `make(&key)`
+    /// otherwise.
+    pub(crate) fn get(&mut self, key: K, make: impl FnOnce(&K) -> V) -> V {
+        let made = self.get_or_fail(key, |key| Ok::<V, Infallible>(make(key)));
+        made.unwrap_or_else(|never| match never {})
+    }
+
+    /// Works as [`Memo::get`] for a fallible computation: an error leaves the cache empty. The old
+    /// value is dropped first, so that a large value is not in memory twice.
+    pub(crate) fn get_or_fail<E>(
+        &mut self,
+        key: K,
+        make: impl FnOnce(&K) -> Result<V, E>,
+    ) -> Result<V, E> {
+        if let Some(value) = self.kept(&key) {
+            return Ok(value.clone());
+        }
+        self.kept = None;
+        let value = make(&key)?;
+        self.kept = Some((key, value.clone()));
+        Ok(value)
+    }
+
+    /// Returns the value for `key`, if cached.
+    pub(crate) fn kept(&self, key: &K) -> Option<&V> {
+        match &self.kept {
+            Some((kept, value)) if kept == key => Some(value),
+            _ => None,
+        }
+    }
+
+    /// Returns whether the value for `key` is cached.
+    pub(crate) fn holds(&self, key: &K) -> bool {
+        self.kept(key).is_some()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+
+    /// Cancels after a number of pieces of work, and records the reports.
+    struct Impatient {
+        left: AtomicUsize,
+        heard: Mutex<Vec<(usize, usize)>>,
+    }
+
+    impl Progress for Impatient {
+        fn cancelled(&self) -> bool {
+            self.left
+                .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
+                    left.checked_sub(1)
+                })
+                .is_err()
+        }
+
+        fn advanced(&self, done: usize, total: usize) {
+            self.heard.lock().unwrap().push((done, total));
+        }
+    }
+
+    fn impatient(left: usize) -> Impatient {
+        Impatient {
+            left: AtomicUsize::new(left),
+            heard: Mutex::default(),
+        }
+    }
+
+    #[test]
+    fn results_come_in_order() {
+        assert_eq!(
+            Execution::sequential().each(4, 1, |index| 10 * index),
+            Ok(vec![0, 10, 20, 30])
+        );
+    }
+
+    #[test]
+    fn work_that_is_not_wanted_any_more_is_given_up() {
+        let progress = impatient(3);
+        let begun = AtomicUsize::new(0);
+        let result = Execution::new(&Sequential, &progress, 100)
+            .each(50, 1, |_| begun.fetch_add(1, Ordering::Relaxed));
+        assert_eq!((result, begun.into_inner()), (Err(Cancelled), 3));
+    }
+
+    #[test]
+    fn hundredths_only_are_told() {
+        let progress = impatient(usize::MAX);
+        Execution::new(&Sequential, &progress, 1000)
+            .each(1000, 1, |_| ())
+            .unwrap();
+        let heard = progress.heard.into_inner().unwrap();
+        assert_eq!(
+            (heard.len(), heard[0], heard[99]),
+            (100, (10, 1000), (1000, 1000))
+        );
+    }
+
+    #[test]
+    fn a_value_is_made_anew_only_when_its_key_changes() {
+        let mut memo = Memo::default();
+        assert_eq!(memo.get(1, |key| key * 10), 10);
+        assert_eq!(memo.get(1, |_| 0), 10, "kept");
+        assert_eq!(memo.get(2, |key| key * 10), 20);
+    }
+
+    #[test]
+    fn a_value_that_could_not_be_made_leaves_nothing() {
+        let mut memo = Memo::default();
+        assert_eq!(memo.get(1, |key| key * 10), 10);
+        assert_eq!(memo.get_or_fail(2, |_| Err("stopped")), Err("stopped"));
+        assert!(!memo.holds(&1) && !memo.holds(&2));
+    }
+}

@@ -1,0 +1,206 @@
+//! Jobs on an analysis: proofs, toggles, variants, error bars, assessments, couplings.
+
+use std::sync::Arc;
+
+use gdcm_method::correction::problem::ProblemError;
+use gdcm_method::correction::sensitivity::{Toggle, toggles};
+use gdcm_method::correction::{Problem, ProofBudget, Solution};
+use gdcm_model::dataset::Pair;
+use gdcm_model::progress::{Cancelled, Progress};
+
+use super::job::Job;
+use crate::decisions::settings::CouplingCorrection;
+use crate::decisions::study::Study;
+use crate::execution::in_turn;
+use crate::results::analysis::{Analysis, ConditionAnalysis};
+use crate::results::assessment_table::{AssessmentChoice, AssessmentTable};
+use crate::results::couplings_assessment::AssessedCouplings;
+use crate::results::uncertainty::Uncertainty;
+use crate::shared::Shared;
+use crate::stages::coupling_costs::with_couplings;
+use crate::stages::engine::Engine;
+use crate::stages::optima::solved;
+
+/// Equation (7)'s complete proof for a condition, where the live answer's budget was too small.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProofJob {
+    pub problem: Arc<Problem>,
+}
+
+impl Job for ProofJob {
+    type Tools = ();
+    type Output = Result<Arc<Solution>, ProblemError>;
+
+    fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        solved(&self.problem, ProofBudget::default(), progress)
+    }
+}
+
+/// What constraining or releasing each response in a condition costs.
+#[derive(Clone, Debug)]
+pub struct TogglesJob {
+    pub condition: ConditionAnalysis,
+}
+
+impl TogglesJob {
+    /// Returns whether the costs apply to this result: they depend on its two problems, and on the
+    /// reference objectives.
+    pub fn is_of(&self, condition: &ConditionAnalysis) -> bool {
+        let a = &self.condition;
+        let b = condition;
+        let same_problems = a.gain_problem == b.gain_problem && a.delay_problem == b.delay_problem;
+        same_problems
+            && a.gains.objective == b.gains.objective
+            && a.delays.objective == b.delays.objective
+    }
+}
+
+impl PartialEq for TogglesJob {
+    fn eq(&self, other: &Self) -> bool {
+        self.is_of(&other.condition)
+    }
+}
+
+impl Job for TogglesJob {
+    type Tools = ();
+    /// `None` where a problem has no solution.
+    type Output = Option<Toggles>;
+
+    fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        // A limited proof: the table is a hint, not a result.
+        let budget = ProofBudget {
+            work: 4_000_000,
+            ..ProofBudget::default()
+        };
+        let ConditionAnalysis {
+            gain_problem,
+            gains,
+            delay_problem,
+            delays,
+            ..
+        } = &self.condition;
+        let gains = toggles(gain_problem, gains, budget, &|| progress.cancelled());
+        let delays = toggles(delay_problem, delays, budget, &|| progress.cancelled());
+        if progress.cancelled() {
+            return Err(Cancelled);
+        }
+        match (gains, delays) {
+            (Ok(gains), Ok(delays)) => Ok(Some(Toggles { gains, delays })),
+            _ => Ok(None),
+        }
+    }
+}
+
+/// What every single toggle in a condition costs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Toggles {
+    pub gains: Vec<Toggle>,
+    pub delays: Vec<Toggle>,
+}
+
+impl Toggles {
+    /// Returns a response's toggles, in gain and in delay.
+    pub fn of_pair(&self, pair: Pair) -> (Option<&Toggle>, Option<&Toggle>) {
+        let gain = self.gains.iter().find(|toggle| toggle.pair == pair);
+        (gain, self.delays.iter().find(|toggle| toggle.pair == pair))
+    }
+}
+
+/// A variant's analysis ([`Study::of_variant`]), beside the live answer.
+#[derive(Clone, Debug)]
+pub struct VariantJob {
+    pub study: Study,
+}
+
+impl PartialEq for VariantJob {
+    /// Compares the dataset and the decisions; rejections' reasons are ignored.
+    fn eq(&self, other: &Self) -> bool {
+        let a = &self.study;
+        let b = &other.study;
+        Arc::ptr_eq(&a.dataset, &b.dataset)
+            && a.settings == b.settings
+            && a.dataset
+                .ids()
+                .all(|id| a.choice(id).without_reasons() == b.choice(id).without_reasons())
+    }
+}
+
+impl Job for VariantJob {
+    /// An engine that caches the results common to variants: responses and distances, which depend
+    /// on no decision but the band.
+    type Tools = Engine;
+    type Output = Arc<Analysis>;
+
+    fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        engine.analyze(&self.study, progress).map(Arc::new)
+    }
+}
+
+/// An analysis's error bars, and the conclusions from them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UncertaintyJob {
+    pub analysis: Shared<Analysis>,
+}
+
+impl Job for UncertaintyJob {
+    /// An engine that keeps responses and substitutions from one analysis to the next.
+    type Tools = Engine;
+    type Output = Arc<Uncertainty>;
+
+    fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        engine.uncertainty(&self.analysis, progress).map(Arc::new)
+    }
+}
+
+/// Job for an assessment of hundreds of conditions, which may take longer than a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssessmentJob {
+    pub analysis: Shared<Analysis>,
+    pub choice: AssessmentChoice,
+}
+
+impl Job for AssessmentJob {
+    type Tools = ();
+    type Output = Arc<AssessmentTable>;
+
+    fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let mut table = AssessmentTable::new(self.choice);
+        let conditions = self.analysis.study.dataset.conditions();
+        in_turn(conditions, progress, |condition| {
+            table.add(&self.analysis, condition.id())
+        })?;
+        Ok(Arc::new(table))
+    }
+}
+
+/// Job that assesses couplings for a study, beside the live answer.
+#[derive(Clone, Debug)]
+pub struct CouplingsJob {
+    /// The study; its own choice about couplings is ignored.
+    pub study: Study,
+    pub couplings: CouplingCorrection,
+}
+
+impl CouplingsJob {
+    fn variant(&self) -> VariantJob {
+        VariantJob {
+            study: with_couplings(&self.study, self.couplings),
+        }
+    }
+}
+
+impl PartialEq for CouplingsJob {
+    fn eq(&self, other: &Self) -> bool {
+        self.variant() == other.variant()
+    }
+}
+
+impl Job for CouplingsJob {
+    /// An engine that caches the results common to all fits.
+    type Tools = Engine;
+    type Output = Option<AssessedCouplings>;
+
+    fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        engine.assess_couplings(&self.study, self.couplings, progress)
+    }
+}

@@ -1,0 +1,634 @@
+//! Mixing and feedback of the reference dataset, from M15's signed delays to the gains and costs
+//! with couplings, against independent numpy code (`tests/data/reference/mixing.json`).
+
+use std::sync::{Arc, LazyLock};
+
+use nalgebra::DMatrix;
+use serde_json::Value;
+
+use gdcm_method::correction::{Channels, Pade};
+use gdcm_method::couplings::coupling_effects::{cyclic_inputs, feedback_shares, mixing_shares};
+use gdcm_method::couplings::fit::{CouplingFit, left_out_fits};
+use gdcm_method::couplings::problem::{
+    CouplingOptions, mean_delays_s, response_deviation, without_channels,
+};
+use gdcm_method::couplings::*;
+use gdcm_method::schedule::CostChange;
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::{
+    Band, BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, ModelId, Pair, PairTable,
+};
+use gdcm_model::executor::{Executor, Sequential, Task};
+use gdcm_model::progress::Unobserved;
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
+
+use crate::decisions::edit::Edit;
+use crate::decisions::setting;
+use crate::decisions::settings::{CouplingCorrection, PhaseCorrection};
+use crate::decisions::study::Study;
+use crate::reference_tests::{dataset_of, list, matrix, number, numbers, reference_dataset};
+use crate::results::analysis::{Analysis, ConditionAnalysis};
+use crate::results::assessment_table::{
+    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable,
+};
+use crate::stages::engine::Engine;
+
+pub(crate) static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
+    serde_json::from_str(include_str!("../../../../tests/data/reference/mixing.json")).unwrap()
+});
+/// A dataset with delays or leads, without rejections.
+pub(crate) struct Example {
+    pub(crate) dataset: Arc<Dataset>,
+    pub(crate) analysis: Analysis,
+}
+
+/// The reference dataset, source of the known answers.
+pub(crate) static EXAMPLE: LazyLock<Example> = LazyLock::new(|| Example::of(reference_dataset()));
+pub(crate) static FEEDBACK: LazyLock<CouplingFit> =
+    LazyLock::new(|| fit(&EXAMPLE.problem(CouplingKind::MixingAndFeedback)));
+
+fn with_leads(dataset: Arc<Dataset>) -> Analysis {
+    let mut study = Study::new(dataset);
+    study
+        .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+        .unwrap();
+    Engine::default().analyze(&study, &Unobserved).unwrap()
+}
+
+fn results(analysis: &Analysis) -> impl Iterator<Item = &ConditionAnalysis> {
+    analysis
+        .conditions
+        .values()
+        .map(|result| result.as_ref().unwrap())
+}
+
+fn representative(result: &ConditionAnalysis, kind: BundleKind) -> &Model {
+    let chosen = match kind {
+        BundleKind::Physics => result.comparison.physics.model,
+        BundleKind::Identified => result.comparison.identified.model,
+    };
+    &result.condition.bundle(kind)[chosen]
+}
+
+impl Example {
+    fn of(dataset: Dataset) -> Self {
+        let dataset = Arc::new(dataset);
+        Self {
+            analysis: with_leads(Arc::clone(&dataset)),
+            dataset,
+        }
+    }
+
+    fn mean_delays_s(&self) -> Channels<f64> {
+        let delays_s: Vec<_> = results(&self.analysis)
+            .map(|result| result.correction.signed_delays_s())
+            .collect();
+        mean_delays_s(&delays_s).unwrap()
+    }
+
+    pub(crate) fn problem(&self, kind: CouplingKind) -> CouplingProblem {
+        let settings = &self.analysis.study.settings;
+        let grid = FrequencyGrid::logarithmic(settings.band, settings.points);
+        let delays_s = self.mean_delays_s();
+        let condition = |result: &ConditionAnalysis| {
+            let of = |kind| representative(result, kind);
+            let response = |kind| FrequencyResponse::of(&of(kind).dynamics, &grid);
+            let leads = result.correction.leads.as_ref().unwrap();
+            let flight = response(BundleKind::Identified);
+            let bands = of(BundleKind::Identified).bands.as_ref();
+            CouplingCondition {
+                id: result.condition.id(),
+                airspeed_kt: result.condition.flight_state().airspeed_kt,
+                physics: Arc::new(response(BundleKind::Physics)),
+                flight: without_channels(&flight, grid.omega(), &delays_s, Some(&leads.design)),
+                usable: result
+                    .comparison
+                    .representative
+                    .mismatch
+                    .map(|_, mismatch| mismatch.is_some()),
+                deviation: bands.map(|bands| response_deviation(bands, grid.omega())),
+                coherence: None,
+            }
+        };
+        CouplingProblem {
+            kind,
+            omega: grid.omega().into(),
+            on_axis: self.dataset.on_axis().clone(),
+            conditions: results(&self.analysis).map(condition).collect(),
+            options: CouplingOptions::default(),
+        }
+    }
+
+    /// Returns the dataset of the representatives alone, with the couplings on the physics models.
+    fn coupled(&self, matrices: &CouplingMatrices) -> Arc<Dataset> {
+        let condition = |result: &ConditionAnalysis| {
+            let state = result.condition.flight_state();
+            let physics = representative(result, BundleKind::Physics)
+                .state_space()
+                .unwrap();
+            let physics = matrices
+                .model(physics, state.airspeed_kt, Pade::new(4).unwrap())
+                .unwrap();
+            let nominal = Model::new(
+                "coupled",
+                Origin::Nominal { perturbation: None },
+                Dynamics::StateSpace(physics),
+            );
+            let flight = representative(result, BundleKind::Identified).clone();
+            Condition::new(state.clone(), vec![nominal], vec![flight]).unwrap()
+        };
+        Arc::new(
+            Dataset::new(
+                self.dataset.header(),
+                results(&self.analysis).map(condition).collect(),
+            )
+            .unwrap(),
+        )
+    }
+
+    /// Returns the least singular value of `I - K H` from `low` to `high` \[rad/s\] over the
+    /// physics representatives.
+    fn least_margin(&self, matrices: &CouplingMatrices, (low, high): (f64, f64)) -> LoopMargin {
+        let grid = FrequencyGrid::logarithmic(Band::beyond(low, high).unwrap(), 60);
+        let margin = |model: &Model| {
+            let singular =
+                matrices.least_singular_values(&FrequencyResponse::of(&model.dynamics, &grid));
+            LoopMargin::of(&singular, grid.omega()).unwrap()
+        };
+        let models =
+            results(&self.analysis).map(|result| representative(result, BundleKind::Physics));
+        models
+            .map(margin)
+            .min_by(|a, b| a.least.total_cmp(&b.least))
+            .unwrap()
+    }
+
+    /// Returns the poles of all physics models that become unstable.
+    fn newly_unstable(&self, matrices: &CouplingMatrices) -> Vec<PoleShift> {
+        let mut unstable = Vec::new();
+        for condition in self.dataset.conditions() {
+            for model in condition.bundle(BundleKind::Physics) {
+                let physics = model.state_space().unwrap();
+                let airspeed_kt = condition.flight_state().airspeed_kt;
+                let shifts = matrices
+                    .pole_shifts(physics, airspeed_kt, Pade::new(4).unwrap())
+                    .unwrap();
+                unstable.extend(shifts.into_iter().filter(PoleShift::is_newly_unstable));
+            }
+        }
+        unstable
+    }
+}
+
+pub(crate) fn fit(problem: &CouplingProblem) -> CouplingFit {
+    fit_couplings(problem, &Sequential, &Unobserved).unwrap()
+}
+
+#[track_caller]
+pub(crate) fn assert_close(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
+    assert_eq!(found.len(), expected.len(), "{what}");
+    for (place, (found, expected)) in found.iter().zip(expected).enumerate() {
+        assert!(
+            (found - expected).abs() < tolerance,
+            "{what}, {place}: found {found}, expected {expected}"
+        );
+    }
+}
+
+fn row_by_row(matrix: &DMatrix<f64>) -> Vec<f64> {
+    matrix.transpose().as_slice().to_vec()
+}
+
+/// Returns `[on-axis, others]` of the corrected J, averaged over the conditions.
+pub(crate) fn mean_costs(of: impl Iterator<Item = PairTable<Option<CostChange>>>) -> [f64; 2] {
+    let mut sums = [(0.0, 0.0); 2];
+    for table in of {
+        for (pair, change) in table.iter() {
+            let sum = &mut sums[usize::from(!EXAMPLE.dataset.on_axis()[pair])];
+            *sum = (sum.0 + change.unwrap().corrected.total(), sum.1 + 1.0);
+        }
+    }
+    sums.map(|(sum, count)| sum / count)
+}
+
+fn the_example_agrees(fit: &CouplingFit, name: &str) {
+    let reference = &REFERENCE["example"][name];
+    let tolerance = &REFERENCE["tolerance"];
+    let [coefficient, tau_s, cost] =
+        ["coefficients", "tau_s", "mean_J"].map(|name| number(&tolerance[name]));
+    let delays_s = EXAMPLE.mean_delays_s();
+    assert_close(
+        "tau_out",
+        &delays_s.outputs,
+        &numbers(&reference["tau_out_s"]),
+        tau_s,
+    );
+    assert_close(
+        "tau_in",
+        &delays_s.inputs,
+        &numbers(&reference["tau_in_s"]),
+        tau_s,
+    );
+    assert!(fit.residual < 1e-12, "{:e}", fit.residual);
+    for (solve, expected) in list(&reference["coefficients"]).iter().enumerate() {
+        assert_close(
+            &format!("solve {solve}"),
+            &fit.coefficients[solve],
+            &numbers(expected),
+            coefficient,
+        );
+    }
+    let analysis = with_leads(EXAMPLE.coupled(&fit.matrices));
+    for expected in list(&reference["conditions"]) {
+        let id = ConditionId(expected["id"].as_i64().unwrap());
+        let found = analysis.condition(id).unwrap();
+        let mixing = fit
+            .matrices
+            .mixing(found.condition.flight_state().airspeed_kt);
+        assert_close(
+            "M",
+            &row_by_row(&mixing),
+            &row_by_row(&matrix(&expected["M"])),
+            coefficient,
+        );
+        let feedback = row_by_row(fit.matrices.feedback());
+        assert_close(
+            "K",
+            &feedback,
+            &row_by_row(&matrix(&expected["K"])),
+            coefficient,
+        );
+        let at = format!("condition {id}");
+        let signed_s = found.correction.signed_delays_s();
+        assert_close(
+            &at,
+            &signed_s.outputs,
+            &numbers(&expected["tau_out_s"]),
+            tau_s,
+        );
+        assert_close(
+            &at,
+            &signed_s.inputs,
+            &numbers(&expected["tau_in_s"]),
+            tau_s,
+        );
+        assert_close(
+            &at,
+            &found.correction.output_gains,
+            &numbers(&expected["k_out"]),
+            coefficient,
+        );
+        assert_close(
+            &at,
+            &found.correction.input_gains,
+            &numbers(&expected["k_in"]),
+            coefficient,
+        );
+    }
+    let own = mean_costs(results(&analysis).map(|result| (*result.cost).clone()));
+    assert_close("own J", &own, &numbers(&reference["mean_J"]["own"]), cost);
+    let choice = AssessmentChoice {
+        model: AssessedModel::Representative,
+        correction: AssessedCorrection::Scheduled,
+        average: analysis.study.settings.cost_average,
+    };
+    let table = AssessmentTable::of(&analysis, choice);
+    let change = |id: ConditionId| PairTable::from_fn(6, 4, |pair| table.change(id, pair));
+    let scheduled = mean_costs(analysis.conditions.keys().map(|&id| change(id)));
+    assert_close(
+        "scheduled J",
+        &scheduled,
+        &numbers(&reference["mean_J"]["scheduled"]),
+        cost,
+    );
+}
+
+#[test]
+fn the_example_with_mixing_agrees() {
+    the_example_agrees(&fit(&EXAMPLE.problem(CouplingKind::Mixing)), "mixing");
+}
+
+#[test]
+fn the_example_with_mixing_and_feedback_agrees() {
+    the_example_agrees(&FEEDBACK, "feedback");
+}
+
+/// The embedded example, whose identified models are the program's own: near the figures of M16.4
+/// and M16.5, which come from other identified models (least singular values of 0.87 in the band
+/// and 0.96 above; two more slow divergences).
+#[test]
+fn the_embedded_example_reads_as_what_was_put_in() {
+    let example = Example::of(dataset_of(include_bytes!(
+        "../../../../assets/example-dataset.json.gz"
+    )));
+    let fit = fit(&example.problem(CouplingKind::MixingAndFeedback));
+    let mixing = fit
+        .matrices
+        .normalised_mixing(fit.matrices.airspeeds().mean_kt);
+    let (inputs, _) = example.dataset.names_of_channels();
+    let at = |name: &str| inputs.iter().position(|of| of == name).unwrap();
+    // True values: from LON to LAT a swashplate phase of 1.8 degrees plus a coupling, then 0.03,
+    // and 0.03.
+    for (from, to, expected) in [
+        ("LON", "LAT", 0.047),
+        ("COL", "LAT", 0.027),
+        ("PED", "LON", 0.026),
+    ] {
+        let found = mixing[(at(to), at(from))];
+        assert!((found - expected).abs() < 0.01, "{from} to {to}: {found}");
+    }
+    let low = example.dataset.band().min();
+    let high = example.dataset.band().max();
+    let margins =
+        [(low, high), (high, 10.0 * high)].map(|range| example.least_margin(&fit.matrices, range));
+    assert!(
+        margins[0].least > 0.86 && margins[1].least > 0.95,
+        "{margins:?}"
+    );
+    assert!(!margins.iter().any(LoopMargin::is_close_to_ringing));
+    let unstable = example.newly_unstable(&fit.matrices);
+    assert!(
+        unstable.len() == 2 && unstable.iter().all(|shift| shift.after.norm() < 0.008),
+        "{unstable:?}"
+    );
+    let [before, after] = [
+        &example.analysis,
+        &with_leads(example.coupled(&fit.matrices)),
+    ]
+    .map(|analysis| mean_costs(results(analysis).map(|result| (*result.cost).clone())));
+    assert!(
+        after[0] < before[0] && after[1] < 0.5 * before[1],
+        "{before:?} {after:?}"
+    );
+}
+
+#[test]
+fn the_bars_of_the_example_tell_its_largest_entries_from_nothing() {
+    let problem = EXAMPLE.problem(CouplingKind::MixingAndFeedback);
+    let fits = left_out_fits(&problem, &Sequential, &Unobserved).unwrap();
+    assert_eq!(fits.len(), 11);
+    let airspeed_kt = FEEDBACK.matrices.airspeeds().mean_kt;
+    let bars = CouplingBars::of(&fits, airspeed_kt, 0.9).unwrap();
+    let mixing = FEEDBACK.matrices.normalised_mixing(airspeed_kt);
+    let is_told = |to: usize, from: usize| mixing[(to, from)].abs() > bars.mixing[(to, from)];
+    let (inputs, _) = EXAMPLE.dataset.names_of_channels();
+    let input = |name: &str| inputs.iter().position(|of| of == name).unwrap();
+    assert!(is_told(input("LAT"), input("LON")));
+    let cyclic = cyclic_inputs(EXAMPLE.dataset.on_axis(), |output| {
+        EXAMPLE.dataset.outputs()[output].unit.contains("deg/s")
+    });
+    assert_eq!(cyclic, Some([input("LON"), input("LAT")]));
+    let shares = mixing_shares(&FEEDBACK.matrices.normalised_mixing(airspeed_kt), cyclic);
+    let swashplate = shares
+        .iter()
+        .find(|share| (share.to, share.from) == (input("LAT"), input("LON")))
+        .unwrap();
+    assert!(
+        (swashplate.swashplate_phase_deg.unwrap().to_radians().tan() - swashplate.share).abs()
+            < 1e-15
+    );
+    let fed = feedback_shares(&problem, &FEEDBACK.matrices);
+    assert!(fed.len() == 24 && fed.windows(2).all(|of| of[0].share >= of[1].share));
+}
+
+/// Executor that starts with the last piece of work.
+struct Backwards;
+
+impl Executor for Backwards {
+    fn carry_out(&self, tasks: Vec<Task<'_>>) {
+        tasks.into_iter().rev().for_each(|task| task());
+    }
+}
+
+#[test]
+fn a_fit_is_the_same_to_the_last_bit_whoever_carries_it_out() {
+    let found = fit_couplings(
+        &EXAMPLE.problem(CouplingKind::MixingAndFeedback),
+        &Backwards,
+        &Unobserved,
+    )
+    .unwrap();
+    assert_eq!(found, *FEEDBACK);
+}
+
+/// Returns the study of the reference dataset with leads and these couplings.
+fn study(couplings: CouplingCorrection) -> Study {
+    let mut study = EXAMPLE.analysis.study.clone();
+    study.apply(&setting::COUPLINGS.to(couplings)).unwrap();
+    study
+}
+
+fn analyze(engine: &mut Engine, study: &Study) -> Analysis {
+    engine.analyze(study, &Unobserved).unwrap()
+}
+
+/// An engine that has analysed the example with mixing and feedback, and its analysis.
+pub(crate) static COUPLED: LazyLock<(Engine, Analysis)> = LazyLock::new(|| {
+    let mut engine = Engine::default();
+    let analysis = analyze(&mut engine, &study(CouplingCorrection::MixingAndFeedback));
+    (engine, analysis)
+});
+
+/// Returns a copy of the engine of [`COUPLED`], for each test to change.
+pub(crate) fn engine() -> Engine {
+    COUPLED.0.fork(Box::new(gdcm_model::executor::Sequential))
+}
+
+/// Returns `[on-axis, others]` of the mean J of each condition's own correction, and of the
+/// scheduled correction.
+pub(crate) fn own_and_scheduled(analysis: &Analysis) -> [[f64; 2]; 2] {
+    let results = analysis
+        .conditions
+        .values()
+        .map(|result| result.as_ref().unwrap());
+    let own = mean_costs(results.map(|result| (*result.cost).clone()));
+    let choice = AssessmentChoice {
+        model: AssessedModel::Representative,
+        correction: AssessedCorrection::Scheduled,
+        average: analysis.study.settings.cost_average,
+    };
+    let table = AssessmentTable::of(analysis, choice);
+    let change = |id: ConditionId| PairTable::from_fn(6, 4, |pair| table.change(id, pair));
+    [
+        own,
+        mean_costs(analysis.conditions.keys().map(|&id| change(id))),
+    ]
+}
+
+fn agrees(analysis: &Analysis, name: &str) {
+    let mean_cost = &REFERENCE["example"][name]["mean_J"];
+    let tolerance = number(&REFERENCE["tolerance"]["mean_J"]);
+    let [own, scheduled] = own_and_scheduled(analysis);
+    assert_close("own J", &own, &numbers(&mean_cost["own"]), tolerance);
+    assert_close(
+        "scheduled J",
+        &scheduled,
+        &numbers(&mean_cost["scheduled"]),
+        tolerance,
+    );
+}
+
+#[test]
+fn the_engine_with_mixing_and_feedback_gives_the_known_answers() {
+    let analysis = &COUPLED.1;
+    assert_eq!(analysis.fitted_couplings().unwrap().fit, *FEEDBACK);
+    agrees(analysis, "feedback");
+    for (id, result) in &analysis.conditions {
+        let result = result.as_ref().unwrap();
+        let before = EXAMPLE.analysis.condition(*id).unwrap();
+        let representatives = |of: &ConditionAnalysis| {
+            BundleKind::BOTH.map(|kind| of.representative_name(kind).to_owned())
+        };
+        assert_eq!(
+            representatives(result),
+            representatives(before),
+            "decided on the models as they are"
+        );
+        assert_eq!(result.suggested(), before.suggested());
+        assert_eq!(result.before_couplings(), &*before.comparison);
+        assert_eq!(result.doubts, before.doubts);
+    }
+}
+
+#[test]
+fn the_engine_with_mixing_gives_the_known_answers() {
+    let analysis = analyze(&mut engine(), &study(CouplingCorrection::Mixing));
+    assert_eq!(
+        analysis.fitted_couplings().unwrap().fit,
+        fit(&EXAMPLE.problem(CouplingKind::Mixing))
+    );
+    agrees(&analysis, "mixing");
+}
+
+#[test]
+fn without_couplings_every_number_is_as_if_there_were_none() {
+    let found = analyze(&mut engine(), &study(CouplingCorrection::None));
+    assert!(found.couplings.is_none());
+    assert_eq!(found, EXAMPLE.analysis);
+    let coupled = analyze(&mut engine(), &study(CouplingCorrection::MixingAndFeedback));
+    assert_eq!(
+        coupled, COUPLED.1,
+        "nor does what was computed between change anything"
+    );
+}
+
+#[test]
+fn a_drag_of_the_gains_weight_does_not_fit_again() {
+    let mut study = study(CouplingCorrection::MixingAndFeedback);
+    study.apply(&setting::ALPHA_GAIN.to(0.2)).unwrap();
+    study.apply(&setting::AGREEMENT.to(0.1)).unwrap();
+    let analysis = analyze(&mut engine(), &study);
+    assert!(Arc::ptr_eq(
+        analysis.fitted_couplings().unwrap(),
+        COUPLED.1.fitted_couplings().unwrap()
+    ));
+    let id = *analysis.conditions.keys().next().unwrap();
+    assert_ne!(
+        analysis.condition(id).unwrap().gains,
+        COUPLED.1.condition(id).unwrap().gains
+    );
+    study.settings.points = 150;
+    assert_ne!(
+        analyze(&mut engine(), &study).fitted_couplings(),
+        COUPLED.1.fitted_couplings(),
+        "other frequencies do"
+    );
+}
+
+#[test]
+fn a_condition_held_out_does_not_enter_the_fit() {
+    let mut study = study(CouplingCorrection::MixingAndFeedback);
+    let held_out = ConditionId(3);
+    study
+        .apply(&Edit::SetHeldOut {
+            condition: held_out,
+            held_out: true,
+        })
+        .unwrap();
+    let mut engine = engine();
+    let analysis = analyze(&mut engine, &study);
+    let couplings = analysis.fitted_couplings().unwrap();
+    assert!(!couplings.is_fitted_to(held_out) && couplings.problem.conditions.len() == 10);
+    assert_ne!(couplings.fit, *FEEDBACK);
+    let result = analysis.condition(held_out).unwrap();
+    assert_ne!(
+        &*result.comparison,
+        result.before_couplings(),
+        "but it is coupled too"
+    );
+    // Another identified model of the condition does not change the fit.
+    let mut other = result
+        .condition
+        .bundle(BundleKind::Identified)
+        .iter()
+        .map(|model| &model.name);
+    let other = other
+        .rfind(|name| *name != result.representative_name(BundleKind::Identified))
+        .unwrap();
+    study
+        .apply(&Edit::Pin(ModelId::new(
+            held_out,
+            BundleKind::Identified,
+            other,
+        )))
+        .unwrap();
+    let pinned = analyze(&mut engine, &study);
+    assert!(Arc::ptr_eq(pinned.fitted_couplings().unwrap(), couplings));
+    assert_ne!(
+        pinned.condition(held_out).unwrap().comparison,
+        result.comparison
+    );
+}
+
+#[test]
+fn couplings_that_cannot_be_fitted_are_refused_in_words_and_leave_the_models_as_they_are() {
+    let mut study = study(CouplingCorrection::MixingAndFeedback);
+    for &condition in EXAMPLE.analysis.conditions.keys() {
+        study
+            .apply(&Edit::SetHeldOut {
+                condition,
+                held_out: true,
+            })
+            .unwrap();
+    }
+    let analysis = analyze(&mut engine(), &study);
+    let refusal = analysis.couplings.as_ref().unwrap().as_ref().unwrap_err();
+    assert!(
+        refusal
+            .to_string()
+            .starts_with("no response of the 0 conditions"),
+        "{refusal}"
+    );
+    let result = analysis.condition(ConditionId(1)).unwrap();
+    assert_eq!(
+        result.comparison,
+        EXAMPLE
+            .analysis
+            .condition(ConditionId(1))
+            .unwrap()
+            .comparison
+    );
+    assert!(result.coupled.is_none());
+}
+
+#[test]
+fn error_bars_are_of_physics_models_with_the_couplings_of_the_representatives() {
+    let mut engine = engine();
+    let id = ConditionId(1);
+    let pair = EXAMPLE.dataset.on_axis().marked().next().unwrap();
+    let bar = |engine: &mut Engine, analysis: &Analysis| {
+        let uncertainty = engine.uncertainty(analysis, &Unobserved).unwrap();
+        *uncertainty
+            .bar(id, gdcm_method::uncertainty::Scalar::Gain(pair))
+            .unwrap()
+    };
+    let with = bar(&mut engine, &COUPLED.1);
+    let without = bar(&mut engine, &EXAMPLE.analysis);
+    let gain = |analysis: &Analysis, pair: Pair| {
+        analysis.condition(id).unwrap().wanted_gain(pair).unwrap()
+    };
+    assert!((with.value - gain(&COUPLED.1, pair).ln()).abs() < 1e-12);
+    assert!((without.value - gain(&EXAMPLE.analysis, pair).ln()).abs() < 1e-12);
+    assert_ne!(with, without);
+    assert_eq!(bar(&mut engine, &COUPLED.1), with);
+}

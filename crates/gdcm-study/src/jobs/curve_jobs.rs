@@ -1,0 +1,232 @@
+//! Jobs for drawing: a condition's responses, responses over the conditions, modes.
+
+use std::sync::Arc;
+
+use gdcm_method::fidelity::{ModeTrack, mode_tracks};
+use gdcm_model::dataset::{
+    Band, BundleKind, Condition, ConditionId, Dataset, Model, ModelId, Pair,
+};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_model::response::eigenvalues::{ModesError, modes_of};
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse, GainDelay, Mode, PreparedModel};
+
+use super::job::Job;
+use crate::execution::in_turn;
+use crate::results::analysis::Analysis;
+use crate::results::fitted_couplings::FittedCouplings;
+use crate::shared::Shared;
+use crate::stages::condition_curves::ConditionCurves;
+use crate::stages::engine::Engine;
+
+/// A condition's frequency responses, for drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurvesJob {
+    pub dataset: Shared<Dataset>,
+    pub condition: ConditionId,
+    /// Band, and how many frequencies it has.
+    pub grid: (Band, usize),
+}
+
+impl Job for CurvesJob {
+    /// The engine that caches the prepared models.
+    type Tools = Engine;
+    /// `None` where the dataset does not have the condition.
+    type Output = Option<Arc<ConditionCurves>>;
+
+    fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        engine.curves(&self.dataset, self.condition, self.grid, progress)
+    }
+}
+
+/// A condition's modes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModesJob {
+    pub condition: Shared<Condition>,
+}
+
+impl Job for ModesJob {
+    type Tools = ();
+    type Output = Arc<ConditionModes>;
+
+    fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        ConditionModes::of(&self.condition, progress).map(Arc::new)
+    }
+}
+
+/// Selected models' responses, from any condition, on a grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AcrossJob {
+    pub dataset: Shared<Dataset>,
+    /// The models; models that the dataset does not have are skipped.
+    pub models: Vec<ModelId>,
+    /// The couplings put on those models; `None` for models without couplings.
+    pub couplings: Option<Arc<FittedCouplings>>,
+    /// Band, and how many frequencies it has.
+    pub grid: (Band, usize),
+}
+
+/// Responses from several conditions' models.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AcrossCurves {
+    pub grid: FrequencyGrid,
+    pub responses: Vec<(ModelId, Arc<FrequencyResponse>)>,
+}
+
+impl AcrossJob {
+    /// Returns the job for a role's model in every condition that has one.
+    pub fn of(
+        dataset: &Arc<Dataset>,
+        analysis: Option<&Analysis>,
+        role: AcrossRole,
+        grid: (Band, usize),
+    ) -> Self {
+        let models = dataset
+            .conditions()
+            .iter()
+            .filter_map(|condition| role.model(condition, analysis))
+            .collect();
+        let couplings = match (role, analysis) {
+            (AcrossRole::Corrected, Some(analysis)) => analysis.fitted_couplings().cloned(),
+            _ => None,
+        };
+        Self {
+            dataset: Arc::clone(dataset).into(),
+            models,
+            couplings,
+            grid,
+        }
+    }
+}
+
+impl Job for AcrossJob {
+    type Tools = ();
+    type Output = Arc<AcrossCurves>;
+
+    fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let (band, points) = self.grid;
+        let grid = FrequencyGrid::logarithmic(band, points);
+        let responses = in_turn(&self.models, progress, |id| {
+            let condition = self.dataset.condition(id.condition)?;
+            let model = condition.model(id.bundle, &id.name)?;
+            let mut response = PreparedModel::of(&model.dynamics).response(&grid);
+            if let Some(fitted) = &self.couplings {
+                let airspeed_kt = condition.flight_state().airspeed_kt;
+                response = fitted.matrices().response(&response, airspeed_kt);
+            }
+            Some((id.clone(), Arc::new(response)))
+        })?;
+        let responses = responses.into_iter().flatten().collect();
+        Ok(Arc::new(AcrossCurves { grid, responses }))
+    }
+}
+
+/// Each condition's model in the overlay of conditions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AcrossRole {
+    /// The physics model at the condition's own trim.
+    #[default]
+    Nominal,
+    /// The physics model that represents its bundle.
+    Representative,
+    /// The physics representative under the condition's own correction.
+    Corrected,
+    /// The identified model that represents its bundle.
+    Identified,
+}
+
+impl AcrossRole {
+    /// Every role, in list order.
+    pub const ALL: [Self; 4] = [
+        Self::Nominal,
+        Self::Representative,
+        Self::Corrected,
+        Self::Identified,
+    ];
+
+    /// Returns the role's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Nominal => "nominal",
+            Self::Representative => "representative",
+            Self::Corrected => "corrected",
+            Self::Identified => "identified",
+        }
+    }
+
+    /// Returns the model with this role in a condition; `None` where the role needs a result and
+    /// there is none.
+    pub fn model(self, condition: &Condition, analysis: Option<&Analysis>) -> Option<ModelId> {
+        let id = condition.id();
+        let kind = match self {
+            Self::Identified => BundleKind::Identified,
+            Self::Representative | Self::Corrected => BundleKind::Physics,
+            Self::Nominal => {
+                let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
+                return Some(ModelId::new(id, BundleKind::Physics, &nominal.name));
+            }
+        };
+        let result = analysis?.condition(id)?;
+        Some(ModelId::new(id, kind, result.representative_name(kind)))
+    }
+
+    /// Returns the correction applied to its response before drawing; `None` where the response has
+    /// no correction.
+    pub fn correction(
+        self,
+        condition: ConditionId,
+        pair: Pair,
+        analysis: Option<&Analysis>,
+    ) -> Option<GainDelay> {
+        match self {
+            Self::Corrected => analysis?.condition(condition)?.correction.on(pair),
+            _ => Some(GainDelay::NONE),
+        }
+    }
+}
+
+/// A model's modes; an error for a measured response.
+pub type ModelModes = Result<Vec<Mode>, ModesError>;
+
+/// A condition's modes, model by model in file order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionModes {
+    /// The condition; it names the models.
+    pub condition: Arc<Condition>,
+    pub physics: Vec<ModelModes>,
+    pub identified: Vec<ModelModes>,
+}
+
+impl ConditionModes {
+    /// Computes every model's modes, model by model; each is a step.
+    ///
+    /// # Errors
+    /// [`Cancelled`] between two models, where `progress` requests it.
+    pub fn of(condition: &Arc<Condition>, progress: &dyn Progress) -> Result<Self, Cancelled> {
+        let models: Vec<&Model> = BundleKind::BOTH
+            .into_iter()
+            .flat_map(|kind| condition.bundle(kind))
+            .collect();
+        let mut physics = in_turn(&models, progress, |model| modes_of(&model.dynamics))?;
+        let identified = physics.split_off(condition.bundle(BundleKind::Physics).len());
+        Ok(Self {
+            condition: Arc::clone(condition),
+            physics,
+            identified,
+        })
+    }
+
+    /// Returns a bundle's modes.
+    pub fn bundle(&self, kind: BundleKind) -> &[ModelModes] {
+        kind.pick(&self.physics, &self.identified)
+    }
+
+    /// Follows each mode from the model with index `reference` through its bundle. A model without
+    /// modes leaves gaps.
+    pub fn tracks(&self, kind: BundleKind, reference: usize) -> Vec<ModeTrack> {
+        let modes = self
+            .bundle(kind)
+            .iter()
+            .map(|modes| modes.as_deref().unwrap_or_default());
+        mode_tracks(&modes.collect::<Vec<&[Mode]>>(), reference)
+    }
+}

@@ -1,0 +1,215 @@
+//! Jobs on flight records: identification of models, simulation of a model.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use gdcm_model::dataset::{ConditionId, StateSpace};
+use gdcm_model::executor::Executor;
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_model::simulation::{FlightRecord, Validation, ValidationSettings, validate};
+use gdcm_sysid::identification::identify::identify;
+use gdcm_sysid::spectra::preparation::segments_of;
+use gdcm_sysid::identification::{Identification, IdentificationError, Options, Preparation};
+use gdcm_sysid::records::LaidOutRecord;
+
+use super::job::Job;
+use crate::shared::Shared;
+
+/// Why no model can be identified.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NothingToIdentify {
+    #[error("there is no record to identify from: add some, or use those that are there")]
+    NoRecord,
+    #[error("every record is held out: at least one has to be left to identify from")]
+    AllHeldOut,
+}
+
+/// Records, and an identification's options.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IdentificationRequest {
+    /// The records, in the channels' units.
+    pub records: Shared<[FlightRecord]>,
+    pub options: Options,
+}
+
+impl IdentificationRequest {
+    /// Builds the request from those `records` that are used, with the records held out whose guess
+    /// says so.
+    ///
+    /// # Errors
+    /// No record is used, or all are held out.
+    pub fn of<'r>(
+        records: impl Iterator<Item = &'r LaidOutRecord>,
+        preparation: Preparation,
+        band: [f64; 2],
+    ) -> Result<Self, NothingToIdentify> {
+        let mut flights: Vec<FlightRecord> = Vec::new();
+        let mut held_out = Vec::new();
+        for record in records {
+            let Some(flight) = record.used_flight() else {
+                continue;
+            };
+            if record.guess.held_out {
+                held_out.push(flights.len());
+            }
+            flights.push(flight.as_ref().clone());
+        }
+        if flights.is_empty() {
+            return Err(NothingToIdentify::NoRecord);
+        }
+        if held_out.len() == flights.len() {
+            return Err(NothingToIdentify::AllHeldOut);
+        }
+        Ok(Self {
+            records: Arc::<[_]>::from(flights).into(),
+            options: Options {
+                held_out,
+                ..Options::new(band, preparation)
+            },
+        })
+    }
+
+    /// Identifies models.
+    ///
+    /// # Errors
+    /// The errors of [`identify`].
+    pub fn identify(
+        &self,
+        executor: &dyn Executor,
+        progress: &dyn Progress,
+    ) -> Result<Identification, IdentificationError> {
+        identify(&self.records, &self.options, executor, progress)
+    }
+}
+
+/// News from a running identification.
+#[derive(Clone, Debug, Default)]
+pub struct IdentificationNews {
+    /// Description of the present step.
+    pub step: String,
+    /// First model, before refinement.
+    pub first_model: Option<Arc<StateSpace>>,
+    /// Duration, once complete \[s\].
+    pub duration_s: Option<f64>,
+}
+
+/// Identification of a condition's models from its flight records.
+#[derive(Clone, Debug)]
+pub struct IdentifyJob {
+    pub condition: ConditionId,
+    pub request: IdentificationRequest,
+    /// News during the run; not part of the request.
+    news: Arc<Mutex<IdentificationNews>>,
+}
+
+impl IdentifyJob {
+    /// Creates this request's job.
+    pub fn new(condition: ConditionId, request: IdentificationRequest) -> Self {
+        Self {
+            condition,
+            request,
+            news: Arc::default(),
+        }
+    }
+
+    /// Returns the news so far.
+    pub fn news(&self) -> IdentificationNews {
+        locked(&self.news).clone()
+    }
+}
+
+impl PartialEq for IdentifyJob {
+    fn eq(&self, other: &Self) -> bool {
+        self.condition == other.condition && self.request == other.request
+    }
+}
+
+/// Locks the news; a panic under the lock leaves them intact.
+fn locked(news: &Mutex<IdentificationNews>) -> MutexGuard<'_, IdentificationNews> {
+    news.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Stores the news, and forwards other progress.
+struct NewsProgress<'a> {
+    progress: &'a dyn Progress,
+    news: &'a Mutex<IdentificationNews>,
+}
+
+impl Progress for NewsProgress<'_> {
+    fn cancelled(&self) -> bool {
+        self.progress.cancelled()
+    }
+
+    fn advanced(&self, done: usize, total: usize) {
+        self.progress.advanced(done, total);
+    }
+
+    fn step(&self, what: &str) {
+        what.clone_into(&mut locked(self.news).step);
+    }
+
+    fn first_model(&self, model: &StateSpace) {
+        locked(self.news).first_model = Some(Arc::new(model.clone()));
+    }
+}
+
+impl Job for IdentifyJob {
+    /// Runs the pieces.
+    type Tools = Box<dyn Executor>;
+    type Output = Result<Arc<Identification>, IdentificationError>;
+
+    fn run(
+        &self,
+        executor: &mut Self::Tools,
+        progress: &dyn Progress,
+    ) -> Result<Self::Output, Cancelled> {
+        let begin = Instant::now();
+        let found = self.request.identify(
+            executor.as_ref(),
+            &NewsProgress {
+                progress,
+                news: &self.news,
+            },
+        );
+        locked(&self.news).duration_s = Some(begin.elapsed().as_secs_f64());
+        match found {
+            Err(IdentificationError::Stopped(cancelled)) => Err(cancelled),
+            found => Ok(found.map(Arc::new)),
+        }
+    }
+}
+
+/// Simulation of a model with a flight record's inputs (M14, section 6).
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulationJob {
+    pub record: Shared<FlightRecord>,
+    /// How its channels are prepared.
+    pub preparation: Preparation,
+    pub model: StateSpace,
+}
+
+impl Job for SimulationJob {
+    /// Runs the pieces.
+    type Tools = Box<dyn Executor>;
+    /// Error: the reason in words.
+    type Output = Result<Arc<Validation>, String>;
+
+    fn run(
+        &self,
+        executor: &mut Self::Tools,
+        progress: &dyn Progress,
+    ) -> Result<Self::Output, Cancelled> {
+        let segments = segments_of(&self.record, &self.preparation);
+        if progress.cancelled() {
+            return Err(Cancelled);
+        }
+        let found = segments
+            .map_err(|error| error.to_string())
+            .and_then(|segments| {
+                let settings = ValidationSettings::unfiltered();
+                validate(&self.model, &segments, &settings, executor.as_ref())
+                    .map_err(|error| error.to_string())
+            });
+        Ok(found.map(Arc::new))
+    }
+}

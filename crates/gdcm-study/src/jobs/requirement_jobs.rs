@@ -1,0 +1,150 @@
+//! Jobs for requirements: findings without records, time histories, single models' answers.
+
+use std::sync::Arc;
+
+use gdcm_method::requirements::{TestInput, ToleranceTable};
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::executor::Executor;
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_sysid::identification::Preparation;
+
+use super::job::Job;
+use crate::decisions::requirement_settings::RequirementSettings;
+use crate::execution::Execution;
+use crate::results::analysis::Analysis;
+use crate::results::condition_answers::{ComparedRecord, RecordHistory, TestAnswers};
+use crate::results::required_modes::KnownPoles;
+use crate::results::requirements::{Requirements, requirements_of};
+use crate::results::time_histories::{
+    HistoryRecord, HistoryRecords, TimeHistories, time_histories_of,
+};
+use crate::results::uncertainty::Uncertainty;
+use crate::shared::Shared;
+
+/// Requirements on an analysis's models, with error bars where they are known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RequirementsJob {
+    pub analysis: Shared<Analysis>,
+    /// Its values' error bars.
+    pub uncertainty: Option<Shared<Uncertainty>>,
+    /// Requirement settings, on which the analysis does not depend.
+    pub settings: Arc<RequirementSettings>,
+    pub known: KnownPoles,
+}
+
+impl Job for RequirementsJob {
+    /// Runs the pieces.
+    type Tools = Box<dyn Executor>;
+    type Output = Arc<Requirements>;
+
+    fn run(
+        &self,
+        executor: &mut Self::Tools,
+        progress: &dyn Progress,
+    ) -> Result<Self::Output, Cancelled> {
+        let analysis = Analysis {
+            uncertainty: self.uncertainty.as_deref().cloned(),
+            ..self.analysis.asked_with(&self.settings)
+        };
+        let execution = Execution::new(executor.as_ref(), progress, analysis.conditions.len());
+        let requirements = requirements_of(&analysis, &self.known, &execution)?;
+        Ok(Arc::new(requirements))
+    }
+}
+
+/// Compares records with an analysis's models.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimeHistoriesJob {
+    pub analysis: Shared<Analysis>,
+    pub records: Vec<HistoryRecords>,
+    pub tolerances: ToleranceTable,
+}
+
+impl Job for TimeHistoriesJob {
+    /// Runs the pieces.
+    type Tools = Box<dyn Executor>;
+    type Output = Arc<TimeHistories>;
+
+    fn run(
+        &self,
+        executor: &mut Self::Tools,
+        progress: &dyn Progress,
+    ) -> Result<Self::Output, Cancelled> {
+        let steps = HistoryRecords::steps(&self.records);
+        let execution = Execution::new(executor.as_ref(), progress, steps);
+        let histories =
+            time_histories_of(&self.analysis, &self.records, &self.tolerances, &execution)?;
+        Ok(Arc::new(histories))
+    }
+}
+
+/// Compares a condition's record with the study's tolerances.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordHistoryJob {
+    pub analysis: Shared<Analysis>,
+    pub condition: ConditionId,
+    pub record: HistoryRecord,
+    /// How its channels are prepared.
+    pub preparation: Preparation,
+    pub tolerances: ToleranceTable,
+}
+
+impl Job for RecordHistoryJob {
+    /// Runs the pieces.
+    type Tools = Box<dyn Executor>;
+    /// Error: the reason in words.
+    type Output = Result<Arc<RecordHistory>, String>;
+
+    fn run(
+        &self,
+        executor: &mut Self::Tools,
+        progress: &dyn Progress,
+    ) -> Result<Self::Output, Cancelled> {
+        let compared = ComparedRecord {
+            condition: self.condition,
+            record: &self.record,
+            preparation: &self.preparation,
+            tolerances: &self.tolerances,
+        };
+        let found = RecordHistory::new(&self.analysis, &compared, executor.as_ref());
+        if progress.cancelled() {
+            return Err(Cancelled);
+        }
+        Ok(found.map(Arc::new))
+    }
+}
+
+/// Simulates a condition's models with the study's test input.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TestAnswersJob {
+    pub analysis: Shared<Analysis>,
+    pub condition: ConditionId,
+    pub input: usize,
+    /// The input's shape.
+    pub test: TestInput,
+}
+
+impl Job for TestAnswersJob {
+    /// Runs the pieces.
+    type Tools = Box<dyn Executor>;
+    /// Error: the reason in words.
+    type Output = Result<Arc<TestAnswers>, String>;
+
+    fn run(
+        &self,
+        executor: &mut Self::Tools,
+        progress: &dyn Progress,
+    ) -> Result<Self::Output, Cancelled> {
+        let found = TestAnswers::new(
+            &self.analysis,
+            self.condition,
+            self.input,
+            self.test,
+            executor.as_ref(),
+        );
+        if progress.cancelled() {
+            return Err(Cancelled);
+        }
+        Ok(found.map(Arc::new))
+    }
+}

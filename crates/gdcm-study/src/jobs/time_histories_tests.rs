@@ -1,0 +1,346 @@
+//! Time histories of the example against flight records.
+
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+
+use gdcm_method::requirements::{Tolerance, ToleranceTable};
+use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics, Pair, StateSpace};
+use gdcm_model::executor::Sequential;
+use gdcm_model::progress::{Cancelled, Progress, Unobserved};
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
+use gdcm_model::simulation::{FirstOrderHold, FlightRecord, validate};
+use gdcm_sysid::identification::Preparation;
+use gdcm_sysid::spectra::preparation::segments_of;
+
+use super::couplings_tests::{COUPLED, EXAMPLE};
+use super::job::Job;
+use super::requirement_jobs::TimeHistoriesJob;
+use crate::execution::Execution;
+use crate::results::analysis::Analysis;
+use crate::results::record_comparison::{Trend, common_windows};
+use crate::results::requirement_role::RequirementRole;
+use crate::results::time_histories::{HistoryRecord, HistoryRecords, TimeHistories, time_histories_of};
+
+const CONDITION: ConditionId = ConditionId(3);
+const SAMPLE_TIME_S: f64 = 0.02;
+
+/// Builds a sweep of the first input alone, `samples` long, with the outputs of a role's model.
+fn flown(analysis: &Analysis, role: RequirementRole, samples: usize) -> FlightRecord {
+    let model = analysis
+        .role_model(analysis.condition(CONDITION).unwrap(), role)
+        .unwrap();
+    let time_s: Vec<f64> = (0..samples).map(|n| SAMPLE_TIME_S * n as f64).collect();
+    let sweep = |t: f64| 5.0 * (t * (0.5 + 0.05 * t)).sin();
+    let inputs = DMatrix::from_fn(samples, model.inputs(), |n, input| {
+        if input == 0 { sweep(time_s[n]) } else { 0.0 }
+    });
+    let held = FirstOrderHold::new(&model, SAMPLE_TIME_S).unwrap();
+    let outputs = held.simulate(&DVector::zeros(model.order()), &inputs);
+    FlightRecord {
+        name: "sweep".into(),
+        time_s,
+        inputs,
+        outputs,
+    }
+}
+
+fn records(analysis: &Analysis, flight: FlightRecord) -> Vec<HistoryRecords> {
+    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    let [inputs, outputs]: [Vec<&str>; 2] =
+        [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
+    let record = HistoryRecord {
+        flight: Arc::new(flight).into(),
+        held_out: true,
+    };
+    let preparation = Preparation {
+        keep_frozen: true,
+        ..Preparation::of(&inputs, &outputs)
+    };
+    vec![HistoryRecords {
+        condition: CONDITION,
+        records: vec![record],
+        preparation,
+    }]
+}
+
+fn histories(analysis: &Analysis, flight: FlightRecord, table: &ToleranceTable) -> TimeHistories {
+    time_histories_of(
+        analysis,
+        &records(analysis, flight),
+        table,
+        &Execution::sequential(),
+    )
+    .unwrap()
+}
+
+#[test]
+fn the_model_that_flew_is_inside_and_the_physics_model_is_not() {
+    let analysis = &EXAMPLE.analysis;
+    let flight = flown(analysis, RequirementRole::Identified, 1500);
+    let found = histories(analysis, flight, &ToleranceTable::default());
+    assert_eq!(found.records.len(), 4, "{:?}", found.missing);
+    let of_role = |role| found.of_role(CONDITION, role).next().unwrap();
+    let identified = of_role(RequirementRole::Identified);
+    assert_eq!(
+        (identified.samples, identified.moved_input.as_deref()),
+        (1500, Some("LON"))
+    );
+    for of in &identified.tolerances {
+        assert!(of.share_inside == 1.0 && of.largest_excess < 0.0, "{of:?}");
+        let trend = (of.on_axis == Some(false)).then_some(Trend::Correct);
+        assert!(
+            of.trend == trend && of.correlation.unwrap() > 0.999_999,
+            "{of:?}"
+        );
+    }
+    // The model reproduces its own record, except for the least-squares fit of the initial
+    // state.
+    assert!(
+        identified.j_rms.unwrap() < 1e-6 && identified.theil["Q"] < 1e-7,
+        "{identified:?}"
+    );
+    let [physics, corrected] = [RequirementRole::Physics, RequirementRole::Corrected].map(of_role);
+    assert!(
+        physics
+            .tolerances
+            .iter()
+            .any(|of| of.share_inside < 1.0 && of.largest_excess > 0.0)
+    );
+    assert!(
+        corrected.j_rms.unwrap() < physics.j_rms.unwrap(),
+        "a correction brings the model nearer to flight"
+    );
+    let pitch = identified
+        .tolerances
+        .iter()
+        .find(|of| of.quantity == "pitch rate")
+        .unwrap();
+    assert_eq!((pitch.on_axis, pitch.trend), (Some(true), None));
+}
+
+#[test]
+fn shares_of_a_condition_are_those_of_its_records_by_their_samples() {
+    let analysis = &EXAMPLE.analysis;
+    let flights = [600, 1200].map(|samples| flown(analysis, RequirementRole::Identified, samples));
+    let mut given = records(analysis, flights[0].clone());
+    given[0].records.push(HistoryRecord {
+        flight: Arc::new(flights[1].clone()).into(),
+        held_out: false,
+    });
+    let table = ToleranceTable::default();
+    let found = time_histories_of(analysis, &given, &table, &Execution::sequential()).unwrap();
+    let role = RequirementRole::Physics;
+    let [short, long] =
+        [0, 1].map(|n| &found.of_role(CONDITION, role).nth(n).unwrap().tolerances[2]);
+    let share = found
+        .share_inside(CONDITION, role, &short.quantity)
+        .unwrap();
+    assert!((share - (short.share_inside + 2.0 * long.share_inside) / 3.0).abs() < 1e-12);
+    assert_eq!(found.conditions(), [(CONDITION, 2)]);
+    let squares = |n: usize| {
+        found
+            .of_role(CONDITION, role)
+            .nth(n)
+            .unwrap()
+            .j_rms
+            .unwrap()
+            .powi(2)
+    };
+    let rms = ((squares(0) + 2.0 * squares(1)) / 3.0).sqrt();
+    assert!((found.j_rms(CONDITION, role).unwrap() - rms).abs() < 1e-12);
+}
+
+#[test]
+fn what_is_not_compared_is_said() {
+    let analysis = &EXAMPLE.analysis;
+    let words = |found: &TimeHistories| {
+        found
+            .missing
+            .iter()
+            .map(|of| of.why.clone())
+            .collect::<Vec<_>>()
+    };
+    let table = ToleranceTable::default();
+    let none = time_histories_of(analysis, &[], &table, &Execution::sequential()).unwrap();
+    assert_eq!(
+        (words(&none), none.records.len()),
+        (vec!["no flight record was given".to_owned()], 0)
+    );
+
+    let short = flown(analysis, RequirementRole::Identified, 50);
+    let found = histories(analysis, short, &table);
+    assert!(found.records.is_empty());
+    assert!(words(&found).iter().any(
+        |why| why.starts_with("record \"sweep\": ") && why.contains("2.0 s are the least")
+    ));
+    let others = found
+        .missing
+        .iter()
+        .filter(|of| of.why == "no flight record of it was given")
+        .count();
+    assert_eq!(others, analysis.conditions.len() - 1);
+
+    let row = Tolerance {
+        channel: "T".into(),
+        quantity: "thrust".into(),
+        ..table.rows()[0].clone()
+    };
+    let other = ToleranceTable::new("mine", vec![row, table.rows()[2].clone()]).unwrap();
+    let found = histories(
+        analysis,
+        flown(analysis, RequirementRole::Identified, 600),
+        &other,
+    );
+    assert!(
+        words(&found).contains(&"\"thrust\" is not compared: there is no output \"T\"".to_owned())
+    );
+    assert!(
+        found.records.iter().all(|of| of.tolerances.len() == 1),
+        "the rest is compared"
+    );
+}
+
+#[test]
+fn a_record_that_is_not_finite_is_refused_with_its_name() {
+    let analysis = &EXAMPLE.analysis;
+    let mut flight = flown(analysis, RequirementRole::Identified, 600);
+    flight.outputs.column_mut(1).fill(f64::NAN);
+    let found = histories(analysis, flight, &ToleranceTable::default());
+    assert!(found.records.is_empty());
+    assert!(
+        found
+            .missing
+            .iter()
+            .any(|of| of.condition == Some(CONDITION) && of.why.contains("\"sweep\""))
+    );
+}
+
+#[test]
+fn a_corrected_model_answers_with_the_couplings_of_the_study() {
+    let analysis = &COUPLED.1;
+    let result = analysis.condition(CONDITION).unwrap();
+    let physics = &result.condition.bundle(BundleKind::Physics)[result.comparison.physics.model];
+    let grid = FrequencyGrid::logarithmic(analysis.study.settings.band, 20);
+    let model = analysis
+        .role_model(result, RequirementRole::Corrected)
+        .unwrap();
+    let answered = FrequencyResponse::of(&Dynamics::StateSpace(model), &grid);
+    let plain = FrequencyResponse::of(&physics.dynamics, &grid);
+    let coupled = result.coupled_response(&plain);
+    let pair = Pair::new(1, 0);
+    let correction = result.correction.on(pair).unwrap();
+    for (k, omega) in grid.omega().iter().enumerate() {
+        let expected = coupled.curve(pair)[k] * correction.at(*omega);
+        // Lag error in the band of a Pade approximant for delays of tens of ms.
+        assert!(
+            (answered.curve(pair)[k] - expected).norm() < 1e-4 * expected.norm(),
+            "{omega}"
+        );
+    }
+    let as_it_is = analysis
+        .role_model(result, RequirementRole::Physics)
+        .unwrap();
+    let as_it_is = FrequencyResponse::of(&Dynamics::StateSpace(as_it_is), &grid);
+    assert!(
+        (as_it_is.curve(pair)[0] - plain.curve(pair)[0]).norm()
+            < 1e-12 * plain.curve(pair)[0].norm()
+    );
+}
+
+#[test]
+fn a_job_is_stopped_and_is_known_by_what_it_depends_on() {
+    struct Stopped;
+    impl Progress for Stopped {
+        fn cancelled(&self) -> bool {
+            true
+        }
+        fn advanced(&self, _: usize, _: usize) {}
+    }
+    let analysis = Arc::new(EXAMPLE.analysis.clone());
+    let records = records(
+        &analysis,
+        flown(&analysis, RequirementRole::Identified, 600),
+    );
+    let job = TimeHistoriesJob {
+        analysis: analysis.into(),
+        records,
+        tolerances: ToleranceTable::default(),
+    };
+    let mut executor: Box<dyn gdcm_model::executor::Executor> = Box::new(Sequential);
+    assert_eq!(job.run(&mut executor, &Stopped).unwrap_err(), Cancelled);
+    assert_eq!(
+        job.run(&mut executor, &Unobserved).unwrap().records.len(),
+        4
+    );
+    assert_eq!(job, job.clone());
+    let tolerances = ToleranceTable::new("mine", job.tolerances.rows()[..1].to_vec()).unwrap();
+    assert_ne!(
+        TimeHistoriesJob {
+            tolerances,
+            ..job.clone()
+        },
+        job
+    );
+    assert_ne!(
+        TimeHistoriesJob {
+            records: Vec::new(),
+            ..job.clone()
+        },
+        job
+    );
+}
+
+#[test]
+fn the_models_of_a_condition_are_compared_in_the_same_windows() {
+    let analysis = &EXAMPLE.analysis;
+    let flight = flown(analysis, RequirementRole::Identified, 1500);
+    let segments = segments_of(&flight, &records(analysis, flight.clone())[0].preparation).unwrap();
+    let result = analysis.condition(CONDITION).unwrap();
+    let slow = analysis
+        .role_model(result, RequirementRole::Physics)
+        .unwrap();
+    // A mode that grows e-fold in 1 s is compared over 3 s.
+    let fast = StateSpace::new(
+        slow.a() + DMatrix::from_diagonal_element(slow.order(), slow.order(), 1.0 - fastest(&slow)),
+        slow.b().clone(),
+        slow.c().clone(),
+        slow.d().clone(),
+    )
+    .unwrap();
+    let alone = common_windows([&slow], &segments);
+    let both = common_windows([&slow, &fast], &segments);
+    assert!(
+        alone.longest_window_s > 3.5 && (both.longest_window_s - 3.0).abs() < 1e-6,
+        "{alone:?} {both:?}"
+    );
+    let windows = |model: &StateSpace| -> Vec<(f64, usize)> {
+        let found = validate(model, &segments, &both, &Sequential).unwrap();
+        found
+            .windows
+            .iter()
+            .map(|window| (window.start_s, window.measured.nrows()))
+            .collect()
+    };
+    assert_eq!(windows(&slow), windows(&fast));
+    // A model that diverges too fast to be compared at all does not shorten the windows of
+    // others.
+    let hopeless = StateSpace::new(
+        slow.a() + DMatrix::from_diagonal_element(slow.order(), slow.order(), 100.0),
+        slow.b().clone(),
+        slow.c().clone(),
+        slow.d().clone(),
+    )
+    .unwrap();
+    assert_eq!(common_windows([&slow, &hopeless], &segments), alone);
+}
+
+/// Returns the greatest real part of the poles \[rad/s\].
+fn fastest(model: &StateSpace) -> f64 {
+    model
+        .a()
+        .complex_eigenvalues()
+        .iter()
+        .map(|pole| pole.re)
+        .fold(f64::NEG_INFINITY, f64::max)
+}

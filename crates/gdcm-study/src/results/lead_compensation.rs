@@ -1,0 +1,96 @@
+//! The difference between two representatives that remains after the lead filters (M15.5), and the
+//! benefit of leads for a study without them.
+
+use std::sync::Arc;
+
+use gdcm_method::correction::ChannelCorrection;
+use gdcm_method::correction::delta::delta_gains;
+use gdcm_method::correction::leads::ChannelLeads;
+use gdcm_method::fidelity::CostAverage;
+use gdcm_method::schedule::CostChange;
+use gdcm_method::schedule::assessment::corrected_cost;
+use gdcm_model::dataset::PairTable;
+
+use super::comparison::Mismatches;
+
+/// The physics representative with its channels' leads against the identified one: the gains'
+/// basis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeadCompensated {
+    /// The signed delays with their filters.
+    pub leads: ChannelLeads,
+    /// Difference of every response that both models have, without the pure delays among the leads.
+    pub mismatch: Mismatches,
+    /// G of the compensated representative, `[output, input]`.
+    pub gain: PairTable<Option<f64>>,
+}
+
+impl LeadCompensated {
+    pub(crate) fn new(mismatch: &Mismatches, leads: ChannelLeads) -> Arc<Self> {
+        let mismatch = mismatch.map(|pair, mismatch| match leads.curve(pair) {
+            None => mismatch.clone(),
+            Some(lead) => mismatch
+                .as_ref()
+                .map(|mismatch| mismatch.multiplied(&lead.magnitude_db, &lead.phase)),
+        });
+        // A pure delay does not change magnitudes.
+        let gain = delta_gains(&mismatch);
+        Arc::new(Self {
+            leads,
+            mismatch,
+            gain,
+        })
+    }
+}
+
+/// Mean J over the constrained responses, all of which want lead: with the present correction, and
+/// with leads too.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeadOffer {
+    /// Under the present correction.
+    pub without: f64,
+    /// With a lead filter in each channel that wants one, and the same gains, which such filters
+    /// change little.
+    pub with: f64,
+}
+
+impl LeadOffer {
+    /// Largest J with leads, relative to J without, at which leads are offered.
+    const WORTH: f64 = 0.9;
+
+    /// Returns the offer of these leads, where they would reduce J over the constrained responses
+    /// by at least a tenth. `mismatch` contains the constrained responses alone; `now` is J under
+    /// the present correction.
+    pub(crate) fn new(
+        leads: ChannelLeads,
+        mismatch: &Mismatches,
+        now: &PairTable<Option<CostChange>>,
+        omega: &[f64],
+        average: CostAverage,
+    ) -> Option<Self> {
+        let phase_alone = ChannelCorrection::of_leads(leads.taus_s.map(|_, _| 1.0), leads);
+        let left = corrected_cost(mismatch, &phase_alone, omega, average);
+        let mut without = 0.0;
+        let mut with = 0.0;
+        let mut count = 0;
+        for (pair, left) in left.iter() {
+            if let (Some(left), Some(now)) = (left, now[pair]) {
+                without += now.corrected.total();
+                with += now.corrected.magnitude + left.phase;
+                count += 1;
+            }
+        }
+        if count == 0 {
+            return None;
+        }
+        let offer = Self {
+            without: without / f64::from(count),
+            with: with / f64::from(count),
+        };
+        if offer.with < Self::WORTH * offer.without {
+            Some(offer)
+        } else {
+            None
+        }
+    }
+}

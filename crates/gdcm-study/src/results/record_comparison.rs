@@ -1,0 +1,127 @@
+//! Compares a model's responses with a flight record, tolerance by tolerance (M17.2).
+
+use serde::Serialize;
+
+use gdcm_method::requirements::tolerance::{ChannelTolerance, ToleranceError};
+use gdcm_method::requirements::{Tolerance, ToleranceTable};
+use gdcm_model::dataset::{Channel, Dataset, Pair, PairTable, StateSpace};
+use gdcm_model::simulation::{Segment, ValidationSettings};
+use gdcm_sysid::identification::Preparation;
+
+/// Shorter pieces are not compared \[s\]: qualification tests are short steps and doublets.
+const LEAST_PIECE_S: f64 = 2.0;
+
+/// Returns a record's preparation for comparison: shorter pieces than for identification.
+pub(crate) fn comparison_preparation(preparation: &Preparation) -> Preparation {
+    Preparation {
+        least_segment_s: LEAST_PIECE_S,
+        ..preparation.clone()
+    }
+}
+
+/// Returns the settings for simulating a condition's models with a record: unfiltered signals, and
+/// the same windows.
+pub(crate) fn common_windows<'m>(
+    models: impl IntoIterator<Item = &'m StateSpace>,
+    segments: &[Segment],
+) -> ValidationSettings {
+    ValidationSettings::unfiltered().common_to(models, segments)
+}
+
+/// Whether an off-axis output has the same trend as in flight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Trend {
+    /// Simulated and measured output correlate positively.
+    Correct,
+    /// The correlation is not positive.
+    Opposite,
+}
+
+impl Trend {
+    /// Returns an output's trend off-axis to the input that moved most, from how simulated and
+    /// measured output correlate; `None` on-axis.
+    pub fn from_correlation(correlation: Option<f64>, on_axis: Option<bool>) -> Option<Self> {
+        let correlation = correlation?;
+        if on_axis != Some(false) {
+            None
+        } else if correlation > 0.0 {
+            Some(Self::Correct)
+        } else {
+            Some(Self::Opposite)
+        }
+    }
+
+    /// Returns the trend's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Correct => "correct",
+            Self::Opposite => "opposite",
+        }
+    }
+}
+
+/// A tolerance row, with its tolerance in the dataset's unit.
+pub(crate) struct AppliedTolerance<'a> {
+    pub(crate) tolerance: &'a Tolerance,
+    pub(crate) channel: ChannelTolerance,
+}
+
+/// What the comparisons with all records share.
+pub(crate) struct RecordComparison<'a> {
+    pub(crate) inputs: &'a [Channel],
+    pub(crate) outputs: &'a [Channel],
+    on_axis: PairTable<bool>,
+    /// The applicable tolerance rows.
+    pub(crate) rows: Vec<AppliedTolerance<'a>>,
+    /// Why the other rows are not applicable.
+    pub(crate) not_applied: Vec<ToleranceError>,
+}
+
+impl<'a> RecordComparison<'a> {
+    pub(crate) fn new(dataset: &'a Dataset, tolerances: &'a ToleranceTable) -> Self {
+        let mut rows = Vec::new();
+        let mut not_applied = Vec::new();
+        for tolerance in tolerances.rows() {
+            match tolerance.of_outputs(dataset.outputs()) {
+                Ok(channel) => rows.push(AppliedTolerance { tolerance, channel }),
+                Err(why) => not_applied.push(why),
+            }
+        }
+        Self {
+            inputs: dataset.inputs(),
+            outputs: dataset.outputs(),
+            on_axis: dataset.measuring_pairs(),
+            rows,
+            not_applied,
+        }
+    }
+
+    /// Returns the input that varies most over a record's segments; `None` where the inputs cannot
+    /// be compared.
+    pub(crate) fn moved_input(&self, segments: &[Segment]) -> Option<usize> {
+        let (first, others) = self.inputs.split_first()?;
+        if others.iter().any(|input| input.unit != first.unit) {
+            return None;
+        }
+        (0..self.inputs.len())
+            .max_by(|a, b| variation(segments, *a).total_cmp(&variation(segments, *b)))
+    }
+
+    /// Returns whether an output is on-axis to the input that moved most; `None` where that input
+    /// is unknown.
+    pub(crate) fn is_on_axis(&self, output: usize, moved: Option<usize>) -> Option<bool> {
+        moved.map(|input| self.on_axis[Pair::new(output, input)])
+    }
+}
+
+/// Sums an input's squares about its mean, segment by segment.
+fn variation(segments: &[Segment], input: usize) -> f64 {
+    segments
+        .iter()
+        .map(|segment| {
+            let samples = segment.inputs.column(input);
+            samples.variance() * samples.len() as f64
+        })
+        .sum()
+}

@@ -1,0 +1,152 @@
+//! Errors that the identified representative reports about itself: by its coherence, or by standard
+//! deviations (M13.2).
+
+use gdcm_method::uncertainty::spread::{CoherenceError, ReportedUncertainty};
+use gdcm_method::uncertainty::{IdentificationSource, Scalar, VarianceComponent};
+use gdcm_model::dataset::{BundleKind, Dynamics, Pair, PairTable};
+use gdcm_model::response::curve_values::coherence_at;
+use gdcm_model::statistics::median;
+
+use super::analysis::{Analysis, ConditionAnalysis};
+
+/// 1 dB as a natural logarithm.
+pub(crate) const LN_DB: f64 = std::f64::consts::LN_10 / 20.0;
+
+/// A response's error, with its degrees of freedom.
+#[derive(Clone, Copy)]
+struct ReportedError {
+    error: CoherenceError,
+    degrees_of_freedom: f64,
+}
+
+/// An identified representative's errors by response, from each source.
+pub(crate) struct ReportedErrors {
+    by_coherence: Option<PairTable<Option<ReportedError>>>,
+    by_bands: Option<PairTable<Option<ReportedError>>>,
+}
+
+impl ReportedErrors {
+    /// Collects the identified representative's errors in a condition.
+    pub(crate) fn new(analysis: &Analysis, result: &ConditionAnalysis) -> Self {
+        Self {
+            by_coherence: errors_by_coherence(analysis, result),
+            by_bands: errors_by_bands(analysis, result),
+        }
+    }
+
+    /// Returns a figure's variance; from coherence where that is known, otherwise from the bands.
+    pub(crate) fn of_scalar(
+        &self,
+        result: &ConditionAnalysis,
+        scalar: Scalar,
+    ) -> Option<ReportedUncertainty> {
+        if !takes_reported_error(result, scalar) {
+            return None;
+        }
+        let (pair, is_gain) = match scalar {
+            Scalar::Gain(pair) | Scalar::NetGain(pair) => (pair, true),
+            Scalar::Delay(pair) | Scalar::BandDelay(pair) => (pair, false),
+            Scalar::ChannelGain(_) | Scalar::ChannelDelay(_) => return None,
+        };
+        let by_coherence = self.by_coherence.as_ref().and_then(|errors| errors[pair]);
+        let by_bands = self.by_bands.as_ref().and_then(|errors| errors[pair]);
+        let (reported, source) = match (by_coherence, by_bands) {
+            (Some(reported), _) => (reported, IdentificationSource::Coherence),
+            (None, Some(reported)) => (reported, IdentificationSource::ModelBand),
+            (None, None) => return None,
+        };
+        let deviation = if is_gain {
+            reported.error.ln_gain
+        } else {
+            reported.error.delay_s
+        };
+        Some(ReportedUncertainty {
+            part: VarianceComponent {
+                variance: deviation.powi(2),
+                degrees_of_freedom: reported.degrees_of_freedom,
+            },
+            source,
+        })
+    }
+}
+
+/// Returns whether the error that the identified representative reports applies to a value: to G, D
+/// and the constrained, matched net gains, which equal G (M13.2). The other net gains and the
+/// channels rely on the models' spread alone: how a single response's error affects them is unknown
+/// without the errors in all responses together.
+pub fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -> bool {
+    match scalar {
+        Scalar::Gain(_) | Scalar::Delay(_) | Scalar::BandDelay(_) => true,
+        Scalar::NetGain(pair) => {
+            result.held()[pair] && result.gains.unmatched.iter().all(|miss| miss.pair != pair)
+        }
+        Scalar::ChannelGain(_) | Scalar::ChannelDelay(_) => false,
+    }
+}
+
+/// Returns whether a condition's identified representative reports its own error.
+pub fn reports_error(analysis: &Analysis, result: &ConditionAnalysis) -> bool {
+    errors_by_bands(analysis, result).is_some() || errors_by_coherence(analysis, result).is_some()
+}
+
+/// Returns the identified representative's errors from its coherence; `None` where it was measured
+/// without coherence, or coherence is not used.
+fn errors_by_coherence(
+    analysis: &Analysis,
+    result: &ConditionAnalysis,
+) -> Option<PairTable<Option<ReportedError>>> {
+    let settings = &analysis.study.settings;
+    let identified = result.representative_model(BundleKind::Identified);
+    let (Dynamics::Measured(response), Some(threshold)) =
+        (&identified.dynamics, settings.coherence_threshold)
+    else {
+        return None;
+    };
+    let estimate = response.estimate();
+    let measurement = settings
+        .uncertainty
+        .measurement(estimate.averages, estimate.window_s)?;
+    let coherence = coherence_at(response, &analysis.omega)?;
+    Some(coherence.map(|_, coherence| {
+        Some(ReportedError {
+            error: measurement.error(&analysis.omega, coherence, threshold)?,
+            degrees_of_freedom: measurement.degrees_of_freedom(),
+        })
+    }))
+}
+
+/// Returns the identified representative's errors from its own bands: medians over the comparison
+/// band. Its deviations are taken as known.
+fn errors_by_bands(
+    analysis: &Analysis,
+    result: &ConditionAnalysis,
+) -> Option<PairTable<Option<ReportedError>>> {
+    let identified = result.representative_model(BundleKind::Identified);
+    let bands = identified.bands.as_ref()?;
+    let band = analysis.study.settings.band;
+    let inside: Vec<(usize, f64)> = bands
+        .omega()
+        .iter()
+        .copied()
+        .enumerate()
+        .filter(|(_, omega)| (band.min()..=band.max()).contains(omega))
+        .collect();
+    if inside.is_empty() {
+        return Some(bands.sd_db().map(|_, _| None));
+    }
+    Some(bands.sd_db().map(|pair: Pair, sd_db| {
+        let sd_deg = &bands.sd_deg()[pair];
+        let mut ln_gains: Vec<f64> = inside.iter().map(|(at, _)| LN_DB * sd_db[*at]).collect();
+        let mut delays_s: Vec<f64> = inside
+            .iter()
+            .map(|(at, omega)| sd_deg[*at].to_radians() / omega)
+            .collect();
+        Some(ReportedError {
+            error: CoherenceError {
+                ln_gain: median(&mut ln_gains),
+                delay_s: median(&mut delays_s),
+            },
+            degrees_of_freedom: f64::INFINITY,
+        })
+    }))
+}

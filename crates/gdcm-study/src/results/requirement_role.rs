@@ -1,0 +1,113 @@
+//! Roles of a condition's models in the requirements, and each role's model for simulation.
+
+use serde::Serialize;
+
+use gdcm_method::correction::Pade;
+use gdcm_method::correction::corrected_model::CorrectedModelError;
+use gdcm_method::couplings::CoupledModelError;
+use gdcm_method::couplings::coupling_matrices::without_delays;
+use gdcm_method::schedule::ScheduleError;
+use gdcm_model::dataset::{BundleKind, Model, StateSpace};
+
+use super::analysis::{Analysis, ConditionAnalysis};
+use super::assessment_table::AssessedCorrection;
+
+/// Role of a model in a condition.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RequirementRole {
+    /// The uncorrected physics representative.
+    #[default]
+    Physics,
+    /// The physics representative under the condition's own correction.
+    Corrected,
+    /// The physics representative under the schedule at the condition's airspeed.
+    Scheduled,
+    Identified,
+}
+
+impl RequirementRole {
+    /// Every role, in the order of tables.
+    pub const ALL: [Self; 4] = [
+        Self::Physics,
+        Self::Corrected,
+        Self::Scheduled,
+        Self::Identified,
+    ];
+
+    /// Returns the bundle of the role's representative.
+    pub fn bundle(self) -> BundleKind {
+        if self == Self::Identified {
+            BundleKind::Identified
+        } else {
+            BundleKind::Physics
+        }
+    }
+
+    /// Returns the role's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Physics => "physics",
+            Self::Corrected => "corrected",
+            Self::Scheduled => "scheduled",
+            Self::Identified => "identified",
+        }
+    }
+}
+
+/// Why the model of a role cannot be simulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RoleModelError {
+    /// The model is a measured response.
+    #[error("\"{model}\" is a measured response: without matrices it answers to no record")]
+    Measured { model: String },
+    /// The model is discrete-time.
+    #[error("\"{model}\" acts in discrete time: records are simulated in continuous time")]
+    Discrete { model: String },
+    #[error(transparent)]
+    NoSchedule(#[from] ScheduleError),
+    #[error(transparent)]
+    Delays(#[from] CorrectedModelError),
+    /// Couplings or a correction cannot be applied to the model.
+    #[error(transparent)]
+    Coupled(#[from] CoupledModelError),
+}
+
+impl Analysis {
+    /// Returns the model of a role of a condition in continuous time, with delays as states: the
+    /// uncorrected physics representative, with the couplings of the study and a correction (`M_O
+    /// H~ M_I`), or the identified representative.
+    ///
+    /// # Errors
+    /// [`RoleModelError`] where the model has no matrices or is discrete-time, there is no
+    /// schedule, or the matrices cannot be used in computations.
+    pub fn role_model(
+        &self,
+        result: &ConditionAnalysis,
+        role: RequirementRole,
+    ) -> Result<StateSpace, RoleModelError> {
+        let correction = match role {
+            RequirementRole::Physics | RequirementRole::Identified => None,
+            RequirementRole::Corrected => Some(AssessedCorrection::Own.of(self, result)?),
+            RequirementRole::Scheduled => Some(AssessedCorrection::Scheduled.of(self, result)?),
+        };
+        let model = continuous(result.representative_model(role.bundle()))?;
+        let pade = Pade::default();
+        match correction {
+            None => Ok(without_delays(model, pade)?),
+            Some(correction) => Ok(result.corrected_model(model, &correction, pade)?.model),
+        }
+    }
+}
+
+/// Returns a continuous-time model's matrices.
+fn continuous(model: &Model) -> Result<&StateSpace, RoleModelError> {
+    let name = || model.name.clone();
+    let matrices = model
+        .state_space()
+        .ok_or_else(|| RoleModelError::Measured { model: name() })?;
+    match matrices.timing().sample_time_s {
+        None => Ok(matrices),
+        Some(_) => Err(RoleModelError::Discrete { model: name() }),
+    }
+}

@@ -1,0 +1,109 @@
+//! The schedule's conditions, and its alternatives: without a condition, in other forms (M11).
+
+use gdcm_method::schedule::form_comparison::{compare_forms, compare_lead_degrees};
+use gdcm_method::schedule::{DelayScheduling, Schedule, ScheduleError, ScheduleSettings, ScheduledPoint};
+use gdcm_method::schedule::form_comparison::{FormComparison, LeadDegreeFit};
+use gdcm_method::schedule::settings::NOTABLE_DELAY_S;
+use gdcm_model::dataset::ConditionId;
+
+use super::analysis::{Analysis, ConditionAnalysis, Outcomes};
+use crate::decisions::study::Study;
+
+impl Analysis {
+    /// Returns the conditions in the schedule, in the dataset's order: the chosen conditions with a
+    /// result.
+    pub fn scheduled(&self) -> Vec<ConditionId> {
+        self.study
+            .dataset
+            .ids()
+            .filter(|id| self.study.choice(*id).is_in_schedule() && self.condition(*id).is_some())
+            .collect()
+    }
+
+    /// Fits the chosen conditions' schedule without one of them.
+    ///
+    /// # Errors
+    /// [`ScheduleError`] where these conditions have no schedule.
+    pub fn schedule_without(&self, left_out: ConditionId) -> Result<Schedule, ScheduleError> {
+        let mut others = self.study.clone();
+        if let Some(choice) = others.choices.get_mut(&left_out) {
+            choice.scheduled = false;
+        }
+        let settings = schedule_settings(&others, &self.conditions);
+        Schedule::of(&scheduled_points(&others, &self.conditions), settings)
+    }
+
+    /// Compares the schedule's forms, with lists in the order of [`Analysis::scheduled`] (M11).
+    /// Solves some hundred small least squares problems.
+    ///
+    /// # Errors
+    /// [`ScheduleError`] where there is no schedule.
+    pub fn compare_forms(&self) -> Result<FormComparison, ScheduleError> {
+        compare_forms(
+            &scheduled_points(&self.study, &self.conditions),
+            self.study.settings.schedule,
+        )
+    }
+
+    /// Compares the degrees of the scheduled signed delays; `None` where leads are not requested
+    /// (M15.5).
+    pub fn compare_lead_degrees(&self) -> Vec<LeadDegreeFit> {
+        compare_lead_degrees(
+            &scheduled_points(&self.study, &self.conditions),
+            self.study.settings.schedule,
+        )
+    }
+}
+
+/// Returns the scheduled conditions with a result, in the dataset's order.
+pub(crate) fn scheduled_points<'a>(
+    study: &Study,
+    outcomes: &'a Outcomes,
+) -> Vec<ScheduledPoint<'a>> {
+    let second_variable = study.settings.schedule.second;
+    in_schedule(study, outcomes)
+        .map(|result| {
+            let state = result.condition.flight_state();
+            ScheduledPoint {
+                airspeed_kt: state.airspeed_kt,
+                correction: &result.correction,
+                delay_upper_s: result.delay_upper_s(),
+                second: second_variable.and_then(|variable| variable.value(state)),
+            }
+        })
+        .collect()
+}
+
+/// Returns the schedule settings for these conditions, with the choice about delays resolved for
+/// them (M11).
+pub(crate) fn schedule_settings(study: &Study, outcomes: &Outcomes) -> ScheduleSettings {
+    let delays = match study.settings.schedule_delays {
+        DelayScheduling::Always => true,
+        DelayScheduling::Never => false,
+        DelayScheduling::Automatic => in_schedule(study, outcomes).any(has_notable_delay),
+    };
+    ScheduleSettings {
+        delays,
+        ..study.settings.schedule
+    }
+}
+
+/// Returns whether a constrained response has a net delay above half a millisecond.
+fn has_notable_delay(result: &ConditionAnalysis) -> bool {
+    result
+        .held()
+        .marked()
+        .any(|pair| result.correction.net_delay_s(pair) > NOTABLE_DELAY_S)
+}
+
+/// Returns the scheduled conditions' results, in file order.
+pub(crate) fn in_schedule<'a>(
+    study: &Study,
+    outcomes: &'a Outcomes,
+) -> impl Iterator<Item = &'a ConditionAnalysis> {
+    let chosen = study
+        .dataset
+        .ids()
+        .filter(|id| study.choice(*id).is_in_schedule());
+    chosen.filter_map(|id| outcomes.get(&id)?.as_ref().ok())
+}

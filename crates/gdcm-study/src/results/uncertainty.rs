@@ -1,0 +1,143 @@
+//! How uncertain an analysis's figures are, what their scatter over the conditions consists in, and
+//! what follows for the schedule (M13).
+
+use std::collections::BTreeMap;
+
+use gdcm_method::schedule::{Schedule, SecondVariable};
+use gdcm_method::uncertainty::least_squares::{SecondVariableEffect, SecondVariableError};
+use gdcm_method::uncertainty::spread::ScalarTable;
+use gdcm_method::uncertainty::{
+    BandWidths, Bar, Difference, Scalar, ScheduleBand, VarianceDecomposition,
+};
+use gdcm_model::dataset::{ConditionId, Pair, PairTable};
+
+use super::model_swap::ConditionSubstitutions;
+
+/// Airspeeds that differ by no more count as equal \[kt\] (M13.4).
+pub(crate) const EQUAL_AIRSPEED_KT: f64 = 1.0;
+
+/// How uncertain an analysis's figures are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// Level for all error bars, intervals and tests.
+    pub level: f64,
+    /// Each analysed condition.
+    pub conditions: BTreeMap<ConditionId, ConditionUncertainty>,
+    /// Differences in on-axis net gain between every two conditions at equal airspeed.
+    pub differences: Vec<AirspeedDifference>,
+    /// How many differences there are, where that is too many to compare; none is stored then.
+    pub too_many_differences: Option<usize>,
+    /// Scatter components, for each on-axis net gain.
+    pub scatter: Vec<PairScatter>,
+    /// The schedule's confidence bands, where it schedules `ln k` and has degrees of freedom left.
+    pub bands: Option<ScheduleBands>,
+    /// Test for a second scheduling variable, for each on-axis response and each variable.
+    pub second_variables: Vec<SecondVariableTest>,
+}
+
+impl Uncertainty {
+    /// Returns, for each airspeed, a net gain's largest difference relative to the expected
+    /// difference; empty where the differences have no spread.
+    pub fn greatest_differences(&self, pair: Pair) -> Vec<&AirspeedDifference> {
+        let mut greatest: Vec<&AirspeedDifference> = Vec::new();
+        for found in &self.differences {
+            if found.pair != pair || found.difference.ratio().is_none() {
+                continue;
+            }
+            let at_same_airspeed = greatest
+                .iter_mut()
+                .find(|known| (known.airspeed_kt - found.airspeed_kt).abs() <= EQUAL_AIRSPEED_KT);
+            match at_same_airspeed {
+                Some(known) if known.difference.ratio() < found.difference.ratio() => {
+                    *known = found;
+                }
+                Some(_) => {}
+                None => greatest.push(found),
+            }
+        }
+        greatest
+    }
+
+    /// Returns a figure's error bar in a condition.
+    pub fn bar(&self, condition: ConditionId, figure: Scalar) -> Option<&Bar> {
+        self.conditions.get(&condition)?.bars[figure].as_ref()
+    }
+}
+
+/// How uncertain a condition's figures are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionUncertainty {
+    /// Error bars, for each figure that exists.
+    pub bars: ScalarTable<Option<Bar>>,
+    /// `(Q84 - Q16) / 2` over the band, for the representatives' `ln |H_ref| / |H_sim|`: the
+    /// mismatch that a single gain leaves.
+    pub left_in_band: PairTable<Option<f64>>,
+    /// Swaps behind the error bars.
+    pub substitutions: ConditionSubstitutions,
+}
+
+/// An on-axis net gain's scatter components (M13.5).
+#[derive(Clone, Debug, PartialEq)]
+pub struct PairScatter {
+    pub pair: Pair,
+    /// Scatter at equal airspeed; `None` where no two conditions share an airspeed.
+    pub same_airspeed: Option<VarianceDecomposition>,
+    /// Scatter about the schedule; `None` where it passes through every condition.
+    pub about_schedule: Option<VarianceDecomposition>,
+}
+
+/// Tests whether an on-axis net gain depends on a second variable (M13.7).
+#[derive(Clone, Debug, PartialEq)]
+pub struct SecondVariableTest {
+    pub pair: Pair,
+    pub variable: SecondVariable,
+    /// Its effect, or why it cannot be determined.
+    pub effect: Result<SecondVariableEffect, SecondVariableError>,
+    /// Probability that the effect is at least as large under the null hypothesis, after Holm's
+    /// correction over all responses and variables.
+    pub p_holm: Option<f64>,
+    pub needed: bool,
+}
+
+/// Confidence bands where `ln k` is scheduled (M13.6).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScheduleBands {
+    /// Each scheduled figure's band.
+    pub(crate) bands: Vec<(Scalar, ScheduleBand)>,
+}
+
+impl ScheduleBands {
+    /// Returns the half-widths about the scheduled figure, a channel's `ln k` or a net gain's, at
+    /// an airspeed \[kt\].
+    pub fn at(&self, schedule: &Schedule, figure: Scalar, airspeed_kt: f64) -> Option<BandWidths> {
+        let (_, band) = self.bands.iter().find(|(scalar, _)| *scalar == figure)?;
+        let widths = band.at(&schedule.design_row(airspeed_kt));
+        if widths.confidence.is_finite() && widths.scatter.is_finite() {
+            Some(widths)
+        } else {
+            None
+        }
+    }
+}
+
+/// An on-axis net gain's difference between two conditions at equal airspeed (M13.4).
+#[derive(Clone, Debug, PartialEq)]
+pub struct AirspeedDifference {
+    pub pair: Pair,
+    pub conditions: [ConditionId; 2],
+    /// The two conditions' mean airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// The difference in `ln k_o k_i`.
+    pub difference: Difference,
+    /// Probability that a difference is at least as large under the null hypothesis, after Holm's
+    /// correction over all displayed differences; `None` where the bundles have no spread.
+    pub p_holm: Option<f64>,
+}
+
+impl AirspeedDifference {
+    /// Returns whether the difference exceeds the expectation from trim and identification
+    /// uncertainty.
+    pub fn is_significant(&self, level: f64) -> bool {
+        self.p_holm.is_some_and(|p| p < 1.0 - level)
+    }
+}

@@ -1,0 +1,123 @@
+//! Distances within each bundle, and discontinuity ratios of the physics bundle (M5).
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use gdcm_method::fidelity::absolute_deviations::FitError;
+use gdcm_method::fidelity::distance::{
+    BundleDistance, ComparedModel, DiscontinuityError, MeasuredPairs, distances_from,
+};
+use gdcm_method::fidelity::{CoherenceWeights, Discontinuity};
+use gdcm_model::dataset::{BundleKind, Condition, PairTable};
+use gdcm_model::progress::Cancelled;
+use gdcm_model::response::{FrequencyResponse, PolarResponse};
+
+use super::compared_model::ComparisonGrid;
+use super::condition_responses::ConditionResponses;
+use crate::execution::Execution;
+use crate::results::comparison::BundleMetrics;
+
+impl BundleMetrics {
+    /// Computes the distances over the responses marked in `measuring`, two steps for each model.
+    /// Measured models are compared with coherence weights where a least coherence is set (M4a).
+    ///
+    /// # Errors
+    /// [`Cancelled`] where `execution` is cancelled.
+    pub fn compute(
+        condition: &Condition,
+        responses: &ConditionResponses,
+        measuring: &PairTable<bool>,
+        grid: ComparisonGrid<'_>,
+        execution: &Execution<'_>,
+    ) -> Result<Self, Cancelled> {
+        let distances = |kind| {
+            let coherence_weights: Vec<Option<PairTable<CoherenceWeights>>> = condition
+                .bundle(kind)
+                .iter()
+                .map(|model| {
+                    CoherenceWeights::of_model(&model.dynamics, grid.grid.omega(), grid.coherence)
+                })
+                .collect();
+            bundle_distance(
+                responses.bundle(kind),
+                &coherence_weights,
+                measuring,
+                execution,
+            )
+        };
+        let physics = distances(BundleKind::Physics)?;
+        let identified = distances(BundleKind::Identified)?;
+        let perturbations: Vec<(&str, Option<&BTreeMap<String, f64>>)> = condition
+            .bundle(BundleKind::Physics)
+            .iter()
+            .map(|model| (model.name.as_str(), model.perturbation()))
+            .collect();
+        let discontinuity = Discontinuity::fit(&physics, &perturbations, &|| {
+            execution.progress().cancelled()
+        });
+        if discontinuity == Err(DiscontinuityError::Fit(FitError::Cancelled)) {
+            return Err(Cancelled);
+        }
+        Ok(Self {
+            physics,
+            identified,
+            discontinuity,
+        })
+    }
+}
+
+/// Responses of a bundle in polar form, and the responses in which its models are compared.
+pub(crate) struct MeasuredBundle {
+    polar: Vec<PolarResponse>,
+    pub(crate) measured: MeasuredPairs,
+}
+
+impl MeasuredBundle {
+    /// Selects the marked responses of every model, or all responses where no model has a marked
+    /// one; one step for each model.
+    ///
+    /// # Errors
+    /// [`Cancelled`] where `execution` is cancelled.
+    pub(crate) fn new(
+        responses: &[Arc<FrequencyResponse>],
+        measuring: &PairTable<bool>,
+        execution: &Execution<'_>,
+    ) -> Result<Self, Cancelled> {
+        let polar = execution.each(responses.len(), 1, |model| {
+            PolarResponse::from_marked(&responses[model], measuring)
+        })?;
+        let measured = MeasuredPairs::new(&polar, measuring);
+        if !measured.compared.is_empty() {
+            return Ok(Self { polar, measured });
+        }
+        let all = measuring.map(|_, _| true);
+        let polar = execution.each(responses.len(), 0, |model| {
+            PolarResponse::from_marked(&responses[model], &all)
+        })?;
+        let measured = MeasuredPairs::new(&polar, &all);
+        Ok(Self { polar, measured })
+    }
+}
+
+/// Computes the distances between every two models of a bundle, two steps for each model.
+fn bundle_distance(
+    responses: &[Arc<FrequencyResponse>],
+    coherence_weights: &[Option<PairTable<CoherenceWeights>>],
+    measuring: &PairTable<bool>,
+    execution: &Execution<'_>,
+) -> Result<BundleDistance, Cancelled> {
+    let MeasuredBundle { polar, measured } = MeasuredBundle::new(responses, measuring, execution)?;
+    let compared: Vec<ComparedModel<'_>> = measured
+        .compared_models()
+        .into_iter()
+        .map(|model| ComparedModel {
+            responses: &polar[model],
+            coherence_weights: coherence_weights[model].as_ref(),
+        })
+        .collect();
+    let rows = execution.each(compared.len(), 1, |index| {
+        distances_from(index, &compared, &measured.compared)
+    })?;
+    execution.step(polar.len() - compared.len());
+    Ok(BundleDistance::from_rows(rows, measured))
+}

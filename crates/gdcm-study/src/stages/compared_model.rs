@@ -1,0 +1,132 @@
+//! A model prepared for comparison with a model of the other bundle.
+
+use nalgebra::Complex;
+
+use gdcm_method::correction::delta::mismatch_table;
+use gdcm_method::fidelity::CoherenceWeights;
+use gdcm_model::dataset::{BundleKind, Condition, Pair, PairTable};
+use gdcm_model::response::{FrequencyGrid, PolarResponse};
+
+use super::condition_responses::ConditionResponses;
+use crate::results::caution::{GainOutOfRange, Undefined};
+use crate::results::comparison::Mismatches;
+
+/// Frequencies of a comparison, and their least coherence.
+#[derive(Clone, Copy)]
+pub struct ComparisonGrid<'a> {
+    pub grid: &'a FrequencyGrid,
+    /// Least coherence at a frequency with weight; `None`: coherence is not used (M4a).
+    pub coherence: Option<f64>,
+}
+
+/// Why a response has no magnitude in dB at every frequency.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Absence {
+    Zero,
+    ZeroSomewhere,
+    NotFinite,
+}
+
+impl Absence {
+    /// Classifies a response that is zero, or not finite, at one frequency at least.
+    fn classify(values: &[Complex<f64>]) -> Self {
+        let finite: Vec<&Complex<f64>> = values.iter().filter(|value| value.is_finite()).collect();
+        if !finite.is_empty() && finite.iter().all(|value| value.norm() == 0.0) {
+            Self::Zero
+        } else if finite.len() == values.len() {
+            Self::ZeroSomewhere
+        } else {
+            Self::NotFinite
+        }
+    }
+}
+
+/// A model prepared for comparison, without its numerically zero responses.
+pub(crate) struct ComparedModel {
+    pub(crate) polar: PolarResponse,
+    /// Why the unmodified model lacks a response; `None` where it has it, even if numerically zero.
+    absent: PairTable<Option<Absence>>,
+    /// The numerically zero responses (M6a).
+    pub(crate) nothing: PairTable<bool>,
+    /// Weights of the frequencies, where coherence is used.
+    coherence_weights: Option<PairTable<CoherenceWeights>>,
+}
+
+impl ComparedModel {
+    /// Prepares a model of a bundle; an identified model with coherence weights where a least
+    /// coherence is set (M4a).
+    pub(crate) fn new(
+        condition: &Condition,
+        responses: &ConditionResponses,
+        kind: BundleKind,
+        model: usize,
+        grid: ComparisonGrid<'_>,
+    ) -> Self {
+        let response = responses.compared(kind, model);
+        let mut polar = PolarResponse::new(&response);
+        let absent = polar.curves().map(|pair, curve| match curve {
+            Some(_) => None,
+            None => Some(Absence::classify(response.curve(pair))),
+        });
+        let nothing = polar.numerically_nothing();
+        polar.clear(&nothing);
+        let coherence = match kind {
+            BundleKind::Identified => grid.coherence,
+            BundleKind::Physics => None,
+        };
+        let dynamics = &condition.bundle(kind)[model].dynamics;
+        Self {
+            polar,
+            absent,
+            nothing,
+            coherence_weights: CoherenceWeights::of_model(dynamics, grid.grid.omega(), coherence),
+        }
+    }
+
+    /// Computes the mismatches against a reference, response by response.
+    pub(crate) fn mismatches(&self, reference: &Self) -> Mismatches {
+        mismatch_table(
+            &self.polar,
+            &reference.polar,
+            reference.coherence_weights.as_ref(),
+        )
+    }
+
+    /// Counts the frequencies with weight in a response, where coherence is used.
+    pub(crate) fn weighted_frequencies(&self, pair: Pair) -> Option<usize> {
+        let weights = self.coherence_weights.as_ref()?;
+        Some(weights[pair].weights.len())
+    }
+}
+
+/// Returns why a response of two representatives has no G and no D.
+pub(crate) fn why_undefined(
+    physics: &ComparedModel,
+    identified: &ComparedModel,
+    pair: Pair,
+) -> Undefined {
+    let models = [
+        (BundleKind::Physics, physics),
+        (BundleKind::Identified, identified),
+    ];
+    for (bundle, model) in models {
+        if model.nothing[pair] {
+            return Undefined::NumericallyNothing(bundle);
+        }
+    }
+    for (bundle, model) in models {
+        match model.absent[pair] {
+            Some(Absence::Zero) => return Undefined::Zero(bundle),
+            Some(Absence::ZeroSomewhere) => return Undefined::ZeroSomewhere(bundle),
+            Some(Absence::NotFinite) => return Undefined::NotFinite(bundle),
+            None => {}
+        }
+    }
+    match GainOutOfRange::of_pair(&physics.polar, &identified.polar, pair) {
+        Some(gain) if identified.weighted_frequencies(pair) != Some(0) => {
+            Undefined::GainOutOfRange(gain.power_of_ten)
+        }
+        // Both have the response, and no frequency has weight.
+        _ => Undefined::NotCoherent,
+    }
+}

@@ -1,0 +1,279 @@
+//! Search for apparent sign and unit differences between the two bundles.
+
+use std::collections::BTreeSet;
+use std::f64::consts::PI;
+
+use gdcm_method::correction::Channel;
+use gdcm_method::correction::delta::delta_gains;
+use gdcm_method::fidelity::Mismatch;
+use gdcm_model::dataset::{BundleKind, ConditionId, Pair, PairTable};
+use gdcm_model::progress::Cancelled;
+use gdcm_model::response::FrequencyGrid;
+use gdcm_model::statistics::median;
+
+use super::compared_model::{ComparedModel, ComparisonGrid};
+use super::condition_responses::ConditionResponses;
+use crate::decisions::study::Study;
+use crate::execution::Execution;
+use crate::results::comparison::Mismatches;
+use crate::results::convention_doubt::{Convention, ConventionDoubt};
+
+/// A phase difference this near to half a turn \[rad\] indicates a reversed sign.
+const NEAR_HALF_A_TURN: f64 = 20.0 / 180.0 * PI;
+/// Scale factors usually stay within this, up or down; beyond it, a unit is suspected.
+const USUAL_FACTOR: f64 = 5.0;
+/// Greatest ratio between a single response's factor and the median: models differ by that much
+/// besides a unit.
+const MOST_SPREAD: f64 = 2.0;
+
+/// A condition's mismatches.
+struct Sample<'a> {
+    condition: ConditionId,
+    mismatch: &'a Mismatches,
+    /// G, response by response.
+    gains: PairTable<Option<f64>>,
+}
+
+impl Sample<'_> {
+    /// Returns a channel's responses that have a mismatch.
+    fn of_channel(&self, channel: Channel) -> impl Iterator<Item = (Pair, &Mismatch)> {
+        self.mismatch
+            .iter()
+            .filter(move |(pair, _)| channel.is_of(*pair))
+            .filter_map(|(pair, mismatch)| Some((pair, mismatch.as_ref()?)))
+    }
+
+    /// Returns which share of a channel's responses the opposite sign would bring nearer.
+    fn opposed_share(&self, channel: Channel) -> f64 {
+        let mut responses = 0;
+        let mut opposed = 0;
+        for (_, mismatch) in self.of_channel(channel) {
+            responses += 1;
+            if weighted_sum(mismatch, f64::cos) < 0.0 {
+                opposed += 1;
+            }
+        }
+        f64::from(opposed) / f64::from(responses.max(1))
+    }
+
+    /// Returns `ln G` for a channel's responses.
+    fn ln_gains(&self, channel: Channel) -> Vec<f64> {
+        self.of_channel(channel)
+            .filter_map(|(pair, _)| Some(self.gains[pair]?.ln()))
+            .collect()
+    }
+
+    /// Returns whether a sign is reversed in this channel rather than in the response's other
+    /// channel: in the channel with more opposed responses; in the output where both are alike.
+    fn blames_sign_on(&self, channel: Channel, pair: Pair) -> bool {
+        let here = self.opposed_share(channel);
+        let there = self.opposed_share(other_channel(channel, pair));
+        here > there || (here == there && matches!(channel, Channel::Output(_)))
+    }
+
+    /// Returns whether a unit differs in this channel rather than in the response's other channel:
+    /// in the channel whose responses have the nearer factor; in the output where both are alike.
+    fn blames_factor_on(&self, channel: Channel, pair: Pair, ln_gain: f64) -> bool {
+        let distance = |channel| (median(&mut self.ln_gains(channel)) - ln_gain).abs();
+        let here = distance(channel);
+        let there = distance(other_channel(channel, pair));
+        here < there || (here == there && matches!(channel, Channel::Output(_)))
+    }
+}
+
+/// Returns a response's other channel.
+fn other_channel(channel: Channel, pair: Pair) -> Channel {
+    let [output, input] = Channel::of(pair);
+    if channel == output { input } else { output }
+}
+
+/// Sums a phase difference's function over frequency, weighted as in J (M4a).
+fn weighted_sum(mismatch: &Mismatch, function: impl Fn(f64) -> f64) -> f64 {
+    let weights = mismatch.weights();
+    mismatch
+        .phase
+        .iter()
+        .enumerate()
+        .map(|(index, phase)| {
+            let weight = match weights {
+                Some(weights) => weights[index],
+                None => 1.0,
+            };
+            weight * function(*phase)
+        })
+        .sum()
+}
+
+/// Returns whether the phase difference is near half a turn over most frequencies.
+fn is_turned(mismatch: &Mismatch) -> bool {
+    let near = weighted_sum(mismatch, |phase| {
+        if PI - phase.abs() <= NEAR_HALF_A_TURN {
+            1.0
+        } else {
+            0.0
+        }
+    });
+    near > 0.5 * weighted_sum(mismatch, |_| 1.0)
+}
+
+/// Evidence for a channel in a condition.
+struct Evidence {
+    condition: ConditionId,
+    /// The responses that show the difference.
+    pairs: Vec<Pair>,
+    /// Whether all the channel's responses show it.
+    is_everywhere: bool,
+}
+
+/// Collects the sign and unit differences suspected in each condition; signs first.
+pub(crate) fn convention_doubts(
+    conditions: &[(ConditionId, &Mismatches)],
+    measuring: &PairTable<bool>,
+) -> Vec<ConventionDoubt> {
+    let samples: Vec<Sample<'_>> = conditions
+        .iter()
+        .map(|(condition, mismatch)| Sample {
+            condition: *condition,
+            mismatch,
+            gains: delta_gains(mismatch),
+        })
+        .collect();
+    let channels: Vec<Channel> = Channel::all(measuring.inputs(), measuring.outputs()).collect();
+    let mut doubts = Vec::new();
+    for channel in &channels {
+        doubts.extend(sign_doubt(&samples, measuring, *channel));
+    }
+    for channel in &channels {
+        doubts.extend(factor_doubt(&samples, measuring, *channel));
+    }
+    doubts
+}
+
+fn sign_doubt(
+    samples: &[Sample<'_>],
+    measuring: &PairTable<bool>,
+    channel: Channel,
+) -> Option<ConventionDoubt> {
+    let evidence = samples.iter().map(|sample| Evidence {
+        condition: sample.condition,
+        pairs: sample
+            .of_channel(channel)
+            .filter(|(pair, mismatch)| {
+                measuring[*pair] && is_turned(mismatch) && sample.blames_sign_on(channel, *pair)
+            })
+            .map(|(pair, _)| pair)
+            .collect(),
+        is_everywhere: sample.opposed_share(channel) == 1.0,
+    });
+    doubt_from(Convention::Sign, channel, evidence.collect())
+}
+
+fn factor_doubt(
+    samples: &[Sample<'_>],
+    measuring: &PairTable<bool>,
+    channel: Channel,
+) -> Option<ConventionDoubt> {
+    let mut ln_gains = Vec::new();
+    let mut evidence = Vec::new();
+    for sample in samples {
+        let mut pairs = Vec::new();
+        for (pair, _) in sample.of_channel(channel) {
+            let Some(gain) = sample.gains[pair] else {
+                continue;
+            };
+            let ln_gain = gain.ln();
+            if measuring[pair]
+                && is_unusual(ln_gain)
+                && sample.blames_factor_on(channel, pair, ln_gain)
+            {
+                pairs.push(pair);
+                ln_gains.push(ln_gain);
+            }
+        }
+        evidence.push(Evidence {
+            condition: sample.condition,
+            pairs,
+            is_everywhere: sample.ln_gains(channel).into_iter().all(is_unusual),
+        });
+    }
+    let factor = median(&mut ln_gains);
+    // A unit is a single factor: responses with different factors differ for another reason.
+    let is_spread = ln_gains
+        .iter()
+        .any(|ln_gain| (ln_gain - factor).abs() > MOST_SPREAD.ln());
+    if is_spread {
+        return None;
+    }
+    doubt_from(Convention::Factor(factor.exp()), channel, evidence)
+}
+
+/// Returns whether a factor is beyond the usual limits.
+fn is_unusual(ln_gain: f64) -> bool {
+    ln_gain.abs() > USUAL_FACTOR.ln()
+}
+
+/// Returns the difference that several conditions' evidence suggests; `None` without evidence.
+fn doubt_from(
+    convention: Convention,
+    channel: Channel,
+    mut evidence: Vec<Evidence>,
+) -> Option<ConventionDoubt> {
+    evidence.retain(|evidence| !evidence.pairs.is_empty());
+    if evidence.is_empty() {
+        return None;
+    }
+    let pairs: BTreeSet<Pair> = evidence
+        .iter()
+        .flat_map(|evidence| &evidence.pairs)
+        .copied()
+        .collect();
+    Some(ConventionDoubt {
+        convention,
+        channel,
+        pairs: pairs.into_iter().collect(),
+        all_responses: evidence.iter().all(|evidence| evidence.is_everywhere),
+        conditions: evidence.iter().map(|evidence| evidence.condition).collect(),
+    })
+}
+
+/// Compares the nominal physics model with the first kept identified model in each condition,
+/// before any analysis.
+///
+/// # Errors
+/// [`Cancelled`] where `execution` is cancelled.
+pub fn doubts_of_models(
+    study: &Study,
+    execution: &Execution<'_>,
+) -> Result<Vec<ConventionDoubt>, Cancelled> {
+    let settings = &study.settings;
+    let grid = FrequencyGrid::logarithmic(settings.band, settings.points);
+    let comparison_grid = ComparisonGrid {
+        grid: &grid,
+        coherence: settings.coherence_threshold,
+    };
+    let mut mismatches = Vec::new();
+    for condition in study.dataset.conditions() {
+        let key = (settings.band, settings.points);
+        let responses = ConditionResponses::of(condition, key, execution)?;
+        let rejected = &study.choice(condition.id()).identified.rejected;
+        let kept = condition
+            .bundle(BundleKind::Identified)
+            .iter()
+            .position(|model| !rejected.contains(&model.name));
+        let compared =
+            |kind, model| ComparedModel::new(condition, &responses, kind, model, comparison_grid);
+        if let Some(kept) = kept {
+            let physics = compared(BundleKind::Physics, condition.nominal());
+            let identified = compared(BundleKind::Identified, kept);
+            mismatches.push((condition.id(), physics.mismatches(&identified)));
+        }
+    }
+    let samples: Vec<(ConditionId, &Mismatches)> = mismatches
+        .iter()
+        .map(|(id, mismatch)| (*id, mismatch))
+        .collect();
+    Ok(convention_doubts(
+        &samples,
+        &study.dataset.measuring_pairs(),
+    ))
+}

@@ -1,0 +1,508 @@
+//! Assesses couplings: analyses the study without and with them, and without each condition in turn
+//! (M16.4).
+//!
+//! ```text
+//! 1  analysis without couplings, and with them
+//! 2  fit and schedule without each condition in turn: J of the condition left out
+//! 3  J without and with couplings: own corrections, schedule, conditions left out
+//! 4  each condition: moved poles, least singular value of I - K H, change above the band
+//! ```
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use gdcm_method::correction::Pade;
+use gdcm_method::correction::lead_price::ABOVE_BAND;
+use gdcm_method::couplings::coupling_effects::relative_change_db;
+use gdcm_method::couplings::{LEAST_CONDITIONS, LeftOutFit, LoopMargin, PoleShift};
+use gdcm_method::schedule::CostChange;
+use gdcm_model::dataset::{Band, BundleKind, ConditionId, Model, Pair, PairTable};
+use gdcm_model::executor::{Sequential, each};
+use gdcm_model::progress::{Cancelled, Portion, Progress, Shares};
+use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::{FrequencyGrid, PreparedModel};
+
+use super::condition_stages::SUBSTITUTION_PROOF;
+use super::engine::Engine;
+use crate::decisions::edit::Edit;
+use crate::decisions::settings::CouplingCorrection;
+use crate::decisions::study::Study;
+use crate::results::analysis::{Analysis, ConditionAnalysis};
+use crate::results::assessment_table::{AssessedCorrection, AssessedModel, AssessmentChoice, assessed};
+use crate::results::couplings_assessment::{AssessedCouplings, AxisCost, ConditionCouplings, CouplingCost, CouplingCosts, CouplingsAssessment, UnstablePole};
+use crate::results::fitted_couplings::{CoupledCondition, FittedCouplings};
+
+/// The step's name in progress reports.
+const LEAVING_OUT: &str = "couplings without each condition";
+
+/// How many frequencies the singular values have below the band, and from its lower end to ten
+/// times its top: 2 % apart over the example's band.
+const MARGIN_POINTS: [usize; 2] = [60, 300];
+
+impl Engine {
+    /// Assesses a study's couplings; `None` where it requests none.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `progress` requests it.
+    pub fn assess_couplings(
+        &mut self,
+        study: &Study,
+        couplings: CouplingCorrection,
+        progress: &dyn Progress,
+    ) -> Result<Option<AssessedCouplings>, Cancelled> {
+        let shares = Shares::new(progress);
+        let portion = Portion::new(&shares, 0.1, LEAVING_OUT);
+        let without = self.analyze(&with_couplings(study, CouplingCorrection::None), &portion)?;
+        portion.finish()?;
+        let portion = Portion::new(&shares, 0.1, LEAVING_OUT);
+        let with = self.analyze(&with_couplings(study, couplings), &portion)?;
+        portion.finish()?;
+        let fitted = match &with.couplings {
+            None => return Ok(None),
+            Some(Err(error)) => return Ok(Some(Err(error.clone()))),
+            Some(Ok(fitted)) => Arc::clone(fitted),
+        };
+        let left_out = self.leave_out_each(&without, &with, &fitted, &shares)?;
+        let grid = margin_grid(study.settings.band);
+        let results: Vec<&ConditionAnalysis> = with.conditions.values().flatten().collect();
+        let share = 0.2 / results.len().max(1) as f64;
+        let effects = each(self.executor(), &results, |result| {
+            let effect = condition_effect(&with.study, result, &grid, progress)?;
+            shares.advance(share, LEAVING_OUT)?;
+            Ok::<_, Cancelled>(effect)
+        });
+        let mut conditions = BTreeMap::new();
+        let mut unstable = Vec::new();
+        for (result, effect) in results.iter().zip(effects) {
+            let mut effect = effect?;
+            let id = result.condition.id();
+            effect.couplings.left_out = left_out
+                .iter()
+                .find(|left_out| left_out.fit.condition == id)
+                .map(|left_out| left_out.cost);
+            conditions.insert(id, effect.couplings);
+            unstable.extend(effect.unstable);
+        }
+        let want_leads = without
+            .conditions
+            .values()
+            .flatten()
+            .filter(|result| result.offer.is_some())
+            .count();
+        Ok(Some(Ok(Arc::new(CouplingsAssessment {
+            couplings,
+            fitted,
+            level: study.settings.uncertainty.level,
+            band: study.settings.band,
+            costs: coupling_costs(&without, &with, &left_out),
+            omega: grid.omega().into(),
+            conditions,
+            unstable,
+            want_leads,
+            left_out_fits: left_out.into_iter().map(|left_out| left_out.fit).collect(),
+        }))))
+    }
+
+    /// Repeats the fit and the schedule without each condition in turn; empty with fewer than three
+    /// conditions.
+    fn leave_out_each(
+        &self,
+        without: &Analysis,
+        with: &Analysis,
+        fitted: &FittedCouplings,
+        shares: &Shares<'_>,
+    ) -> Result<Vec<LeftOutCondition>, Cancelled> {
+        let ids: Vec<ConditionId> = fitted
+            .problem
+            .conditions
+            .iter()
+            .map(|condition| condition.id)
+            .collect();
+        if ids.len() < LEAST_CONDITIONS {
+            return Ok(Vec::new());
+        }
+        let share = 0.6 / ids.len() as f64;
+        let found = each(self.executor(), ids, |condition| {
+            let held_out = Edit::SetHeldOut {
+                condition,
+                held_out: true,
+            };
+            let mut study = with.study.clone();
+            if study.apply(&held_out).is_err() {
+                return Ok(None);
+            }
+            let mut engine = self
+                .fork(Box::new(Sequential))
+                .with_proofs_within(SUBSTITUTION_PROOF);
+            let portion = Portion::new(shares, share, LEAVING_OUT);
+            let analysis = engine.analyze(&study, &portion)?;
+            portion.finish()?;
+            Ok(LeftOutCondition::new(condition, without, &analysis))
+        });
+        found.into_iter().filter_map(Result::transpose).collect()
+    }
+}
+
+/// Returns the study with other couplings.
+pub(crate) fn with_couplings(study: &Study, couplings: CouplingCorrection) -> Study {
+    let mut study = study.clone();
+    study.settings.couplings = couplings;
+    study
+}
+
+/// A condition left out from fit and schedule.
+struct LeftOutCondition {
+    fit: LeftOutFit,
+    cost: CouplingCost,
+    /// J without couplings, response by response.
+    without: PairTable<Option<CostChange>>,
+    /// J with couplings, response by response.
+    with: PairTable<Option<CostChange>>,
+}
+
+impl LeftOutCondition {
+    /// Returns `None` where the other conditions give no couplings or schedule, or the condition
+    /// cannot be assessed.
+    fn new(condition: ConditionId, without: &Analysis, held_out: &Analysis) -> Option<Self> {
+        let fit = LeftOutFit {
+            condition,
+            fit: held_out.fitted_couplings()?.fit.clone(),
+        };
+        let without_changes = changes(without, condition, AssessedCorrection::ScheduleOfOthers)?;
+        let with_changes = changes(held_out, condition, AssessedCorrection::Scheduled)?;
+        let mut sums = CostSums::new(without.study.dataset.on_axis());
+        sums.add(&without_changes, &with_changes);
+        Some(Self {
+            fit,
+            cost: sums.corrected(),
+            without: without_changes,
+            with: with_changes,
+        })
+    }
+}
+
+/// Returns the representative's J before and after a correction.
+fn changes(
+    analysis: &Analysis,
+    condition: ConditionId,
+    correction: AssessedCorrection,
+) -> Option<PairTable<Option<CostChange>>> {
+    let choice = AssessmentChoice {
+        model: AssessedModel::Representative,
+        correction,
+        average: analysis.study.settings.cost_average,
+    };
+    Some(assessed(analysis, condition, choice).ok()?.changes)
+}
+
+/// Averages J over the conditions, without and with couplings.
+fn coupling_costs(
+    without: &Analysis,
+    with: &Analysis,
+    left_out: &[LeftOutCondition],
+) -> CouplingCosts {
+    let own = cost_sums(without, with, AssessedCorrection::Own);
+    let scheduled = cost_sums(without, with, AssessedCorrection::Scheduled);
+    let mut unseen = CostSums::new(without.study.dataset.on_axis());
+    for condition in left_out {
+        unseen.add(&condition.without, &condition.with);
+    }
+    CouplingCosts {
+        uncorrected: own.uncorrected(),
+        own: own.corrected(),
+        scheduled: scheduled.corrected(),
+        left_out: if left_out.is_empty() {
+            None
+        } else {
+            Some(unseen.corrected())
+        },
+    }
+}
+
+/// Sums a correction's J over the conditions that can be assessed both without and with couplings.
+fn cost_sums<'a>(
+    without: &'a Analysis,
+    with: &Analysis,
+    correction: AssessedCorrection,
+) -> CostSums<'a> {
+    let mut sums = CostSums::new(without.study.dataset.on_axis());
+    for &id in without.conditions.keys() {
+        let without = changes(without, id, correction);
+        let with = changes(with, id, correction);
+        if let (Some(without), Some(with)) = (without, with) {
+            sums.add(&without, &with);
+        }
+    }
+    sums
+}
+
+/// Returns the grid from a tenth to ten times the band, with the ends of its lower part included.
+fn margin_grid(band: Band) -> FrequencyGrid {
+    let [below, above] = MARGIN_POINTS;
+    let mut omega = log_spaced(band.min() / ABOVE_BAND, band.min(), below);
+    omega.pop();
+    omega.extend(log_spaced(band.min(), ABOVE_BAND * band.max(), above));
+    FrequencyGrid::at(omega)
+}
+
+/// The couplings' effect on a condition, and the poles that they make unstable.
+struct ConditionEffect {
+    couplings: ConditionCouplings,
+    unstable: Vec<UnstablePole>,
+}
+
+/// Computes the couplings' effect on a condition.
+fn condition_effect(
+    study: &Study,
+    result: &ConditionAnalysis,
+    grid: &FrequencyGrid,
+    progress: &dyn Progress,
+) -> Result<ConditionEffect, Cancelled> {
+    let Some(coupled) = &result.coupled else {
+        return Err(Cancelled);
+    };
+    let representative = result.representative_model(BundleKind::Physics);
+    let response = PreparedModel::of(&representative.dynamics).response(grid);
+    let singular_values = coupled.fitted.matrices().least_singular_values(&response);
+    let from_band = grid
+        .omega()
+        .partition_point(|omega| *omega < study.settings.band.min());
+    let above_band_db = relative_change_db(
+        &response,
+        &result.coupled_response(&response),
+        grid.len() - 1,
+    );
+    let poles = condition_poles(study, result, coupled, progress)?;
+    let margin = LoopMargin::of(&singular_values[from_band..], &grid.omega()[from_band..]);
+    Ok(ConditionEffect {
+        couplings: ConditionCouplings {
+            airspeed_kt: result.condition.flight_state().airspeed_kt,
+            poles: poles.representative,
+            singular_values,
+            margin,
+            above_band_db,
+            left_out: None,
+            refused: poles.refused,
+        },
+        unstable: poles.unstable,
+    })
+}
+
+/// A condition's poles without and with couplings, over its kept physics models.
+struct ConditionPoles {
+    /// The representative's poles, or why they are unknown.
+    representative: Result<Vec<PoleShift>, String>,
+    /// Every kept model's newly unstable poles.
+    unstable: Vec<UnstablePole>,
+    /// Other kept models with matrices whose loop cannot be closed, with the reason.
+    refused: Vec<(String, String)>,
+}
+
+/// Computes the kept physics models' poles.
+fn condition_poles(
+    study: &Study,
+    result: &ConditionAnalysis,
+    coupled: &CoupledCondition,
+    progress: &dyn Progress,
+) -> Result<ConditionPoles, Cancelled> {
+    let id = result.condition.id();
+    let band = study.settings.band;
+    let rejected = &study.choice(id).physics.rejected;
+    let mut poles = ConditionPoles {
+        representative: Err(String::new()),
+        unstable: Vec::new(),
+        refused: Vec::new(),
+    };
+    let models = result.condition.bundle(BundleKind::Physics);
+    for (index, model) in models.iter().enumerate() {
+        if progress.cancelled() {
+            return Err(Cancelled);
+        }
+        let is_representative = index == result.comparison.physics.model;
+        if rejected.contains(&model.name) && !is_representative {
+            continue;
+        }
+        let shifts = pole_shifts(result, coupled, model);
+        for shift in shifts.iter().flatten() {
+            if shift.is_newly_unstable() {
+                poles.unstable.push(UnstablePole {
+                    condition: id,
+                    model: model.name.clone(),
+                    is_representative,
+                    pole: shift.after,
+                    is_in_band: (band.min()..=band.max()).contains(&shift.after.norm()),
+                });
+            }
+        }
+        if is_representative {
+            poles.representative = shifts;
+        } else if let Err(why) = shifts
+            && model.state_space().is_some()
+        {
+            poles.refused.push((model.name.clone(), why));
+        }
+    }
+    Ok(poles)
+}
+
+/// Returns a model's poles without and with couplings, or why they are unknown.
+fn pole_shifts(
+    result: &ConditionAnalysis,
+    coupled: &CoupledCondition,
+    model: &Model,
+) -> Result<Vec<PoleShift>, String> {
+    let matrices = model
+        .state_space()
+        .ok_or("the physics representative is a measured response: it has no poles")?;
+    let airspeed_kt = result.condition.flight_state().airspeed_kt;
+    coupled
+        .fitted
+        .matrices()
+        .pole_shifts(matrices, airspeed_kt, Pade::default())
+        .map_err(|error| error.to_string())
+}
+
+/// Sums J over responses.
+#[derive(Clone, Copy, Default)]
+struct CostSum {
+    count: usize,
+    uncorrected: f64,
+    without: f64,
+    with: f64,
+}
+
+impl CostSum {
+    fn add(&mut self, without: &CostChange, with: &CostChange) {
+        self.count += 1;
+        self.uncorrected += without.uncorrected.total();
+        self.without += without.corrected.total();
+        self.with += with.corrected.total();
+    }
+
+    /// Returns a sum's mean; `None` over no response.
+    fn mean(&self, sum: f64) -> Option<f64> {
+        if self.count > 0 {
+            Some(sum / self.count as f64)
+        } else {
+            None
+        }
+    }
+}
+
+/// Sums J over many conditions' responses.
+struct CostSums<'a> {
+    is_on_axis: &'a PairTable<bool>,
+    on_axis: CostSum,
+    others: CostSum,
+}
+
+impl<'a> CostSums<'a> {
+    fn new(is_on_axis: &'a PairTable<bool>) -> Self {
+        Self {
+            is_on_axis,
+            on_axis: CostSum::default(),
+            others: CostSum::default(),
+        }
+    }
+
+    /// Adds a condition's responses that can be compared both without and with couplings.
+    fn add(
+        &mut self,
+        without: &PairTable<Option<CostChange>>,
+        with: &PairTable<Option<CostChange>>,
+    ) {
+        for (pair, without) in without.iter() {
+            if let (Some(without), Some(with)) = (without, &with[pair]) {
+                self.sum(pair).add(without, with);
+            }
+        }
+    }
+
+    /// Returns the sum that a response belongs to.
+    fn sum(&mut self, pair: Pair) -> &mut CostSum {
+        if self.is_on_axis[pair] {
+            &mut self.on_axis
+        } else {
+            &mut self.others
+        }
+    }
+
+    /// Returns a sum's means.
+    fn means(&self, sum: fn(&CostSum) -> f64) -> AxisCost {
+        AxisCost {
+            on_axis: self.on_axis.mean(sum(&self.on_axis)),
+            others: self.others.mean(sum(&self.others)),
+        }
+    }
+
+    /// Returns the mean J before any correction.
+    fn uncorrected(&self) -> AxisCost {
+        self.means(|sum| sum.uncorrected)
+    }
+
+    /// Returns the mean J without and with couplings.
+    fn corrected(&self) -> CouplingCost {
+        CouplingCost {
+            without: self.means(|sum| sum.without),
+            with: self.means(|sum| sum.with),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_method::fidelity::Cost;
+
+    use super::*;
+
+    fn change(uncorrected: f64, corrected: f64) -> Option<CostChange> {
+        let cost = |magnitude| Cost {
+            magnitude,
+            phase: 0.0,
+        };
+        Some(CostChange {
+            uncorrected: cost(uncorrected),
+            corrected: cost(corrected),
+        })
+    }
+
+    #[test]
+    fn only_responses_that_can_be_compared_both_times_count() {
+        let on_axis = PairTable::from_fn(2, 1, |pair| pair.output == 0);
+        let mut sums = CostSums::new(&on_axis);
+        let table =
+            |values: [Option<CostChange>; 2]| PairTable::from_fn(2, 1, |pair| values[pair.output]);
+        sums.add(
+            &table([change(9.0, 4.0), change(50.0, 40.0)]),
+            &table([change(9.0, 2.0), None]),
+        );
+        sums.add(
+            &table([change(5.0, 2.0), change(70.0, 20.0)]),
+            &table([change(5.0, 2.0), change(70.0, 18.0)]),
+        );
+        assert_eq!(
+            sums.uncorrected(),
+            AxisCost {
+                on_axis: Some(7.0),
+                others: Some(70.0)
+            }
+        );
+        let found = sums.corrected();
+        assert_eq!(
+            found.without,
+            AxisCost {
+                on_axis: Some(3.0),
+                others: Some(20.0)
+            }
+        );
+        assert_eq!(
+            found.with,
+            AxisCost {
+                on_axis: Some(2.0),
+                others: Some(18.0)
+            }
+        );
+        assert!(found.is_worth_it(), "a tenth less");
+        assert!(!CouplingCost::default().is_worth_it());
+    }
+}

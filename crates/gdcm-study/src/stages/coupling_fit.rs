@@ -1,0 +1,212 @@
+//! Fits a study's couplings (M16.1, M16.2).
+
+use std::sync::Arc;
+
+use gdcm_method::correction::Channels;
+use gdcm_method::correction::leads::{LeadDesign, LeadSettings};
+use gdcm_method::couplings::problem::{
+    CouplingError, CouplingOptions, coherence_deviation, mean_delays_s, response_deviation,
+    without_channels,
+};
+use gdcm_method::couplings::{CouplingCondition, CouplingKind, CouplingProblem, fit_couplings};
+use gdcm_method::fidelity::CoherenceWeights;
+use gdcm_model::dataset::model::{ContentHash, ModelBands};
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dynamics, Model, PairTable};
+use gdcm_model::executor::Executor;
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_model::response::curve_values::coherence_at;
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
+
+use super::condition_responses::GridKey;
+use crate::decisions::settings::PhaseCorrection;
+use crate::decisions::study::Study;
+use crate::results::comparison::Comparison;
+use crate::results::fitted_couplings::FittedCouplings;
+
+/// The requested couplings, or why there are none.
+pub(crate) type CouplingOutcome = Result<Arc<FittedCouplings>, CouplingError>;
+
+/// A condition's contribution to the fit: its representatives, and its channel delays without
+/// couplings.
+pub(crate) struct CouplingSource {
+    pub(crate) condition: Arc<Condition>,
+    pub(crate) comparison: Arc<Comparison>,
+    /// The channels' signed delays \[s\] (M9, M15).
+    pub(crate) delays_s: Channels<f64>,
+    /// The representatives' hashes, physics first.
+    pub(crate) contents: [ContentHash; 2],
+    /// The physics representative's response.
+    pub(crate) physics: Arc<FrequencyResponse>,
+    /// The identified representative's response.
+    pub(crate) flight: Arc<FrequencyResponse>,
+}
+
+impl CouplingSource {
+    fn identified(&self) -> &Model {
+        &self.condition.bundle(BundleKind::Identified)[self.comparison.identified.model]
+    }
+
+    fn airspeed_kt(&self) -> f64 {
+        self.condition.flight_state().airspeed_kt
+    }
+
+    fn usable(&self) -> PairTable<bool> {
+        self.comparison
+            .representative
+            .mismatch
+            .map(|_, mismatch| mismatch.is_some())
+    }
+}
+
+/// What a fit depends on in a condition.
+#[derive(Clone, Debug, PartialEq)]
+struct ConditionKey {
+    id: ConditionId,
+    airspeed_kt: f64,
+    /// The representatives' hashes, physics first.
+    contents: [ContentHash; 2],
+    usable: PairTable<bool>,
+    bands: Option<Arc<ModelBands>>,
+}
+
+/// Averages that measured responses are taken to have where they do not state them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Averaging {
+    averages: Option<f64>,
+    /// A window's length \[s\].
+    window_s: Option<f64>,
+    /// Whether the windows overlap by half.
+    half_overlap: bool,
+}
+
+/// Everything that a fit depends on: neither the gains' weight nor their bounds.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct CouplingFitKey {
+    kind: CouplingKind,
+    grid: GridKey,
+    on_axis: PairTable<bool>,
+    airspeed_tolerance_kt: f64,
+    lead: Option<LeadSettings>,
+    coherence: Option<f64>,
+    averaging: Averaging,
+    delays_s: Option<Channels<f64>>,
+    conditions: Vec<ConditionKey>,
+}
+
+impl CouplingFitKey {
+    pub(crate) fn new(study: &Study, kind: CouplingKind, sources: &[CouplingSource]) -> Self {
+        let settings = &study.settings;
+        let delays_s: Vec<Channels<f64>> = sources
+            .iter()
+            .map(|source| source.delays_s.clone())
+            .collect();
+        Self {
+            kind,
+            grid: (settings.band, settings.points),
+            on_axis: study.dataset.on_axis().clone(),
+            airspeed_tolerance_kt: settings.schedule.airspeed_tolerance_kt,
+            lead: match settings.phase {
+                PhaseCorrection::Lead => Some(settings.lead),
+                PhaseCorrection::None | PhaseCorrection::Delay => None,
+            },
+            coherence: settings.coherence_threshold,
+            averaging: Averaging {
+                averages: settings.uncertainty.averages,
+                window_s: settings.uncertainty.window_s,
+                half_overlap: settings.uncertainty.half_overlap,
+            },
+            delays_s: mean_delays_s(&delays_s),
+            conditions: sources
+                .iter()
+                .map(|source| ConditionKey {
+                    id: source.condition.id(),
+                    airspeed_kt: source.airspeed_kt(),
+                    contents: source.contents,
+                    usable: source.usable(),
+                    bands: source.identified().bands.clone(),
+                })
+                .collect(),
+        }
+    }
+
+    /// Builds these sources' problem (M16.1).
+    fn problem(
+        &self,
+        study: &Study,
+        grid: &FrequencyGrid,
+        sources: &[CouplingSource],
+    ) -> CouplingProblem {
+        let omega: Arc<[f64]> = grid.omega().into();
+        let design = self
+            .lead
+            .map(|lead| LeadDesign::new(lead, Arc::clone(&omega)));
+        let mut conditions = Vec::new();
+        for source in sources {
+            let dynamics = &source.identified().dynamics;
+            let flight = match &self.delays_s {
+                Some(delays_s) => {
+                    without_channels(&source.flight, &omega, delays_s, design.as_ref())
+                }
+                None => (*source.flight).clone(),
+            };
+            conditions.push(CouplingCondition {
+                id: source.condition.id(),
+                airspeed_kt: source.airspeed_kt(),
+                physics: Arc::clone(&source.physics),
+                flight,
+                usable: source.usable(),
+                deviation: deviation(study, source.identified(), &omega),
+                coherence: CoherenceWeights::of_model(dynamics, &omega, self.coherence),
+            });
+        }
+        CouplingProblem {
+            kind: self.kind,
+            conditions,
+            on_axis: self.on_axis.clone(),
+            options: CouplingOptions {
+                airspeed_tolerance_kt: self.airspeed_tolerance_kt,
+                ..CouplingOptions::default()
+            },
+            omega,
+        }
+    }
+
+    /// Fits couplings to these sources, or returns why there are none.
+    pub(crate) fn fit(
+        &self,
+        study: &Study,
+        grid: &FrequencyGrid,
+        sources: &[CouplingSource],
+        executor: &dyn Executor,
+        progress: &dyn Progress,
+    ) -> Result<CouplingOutcome, Cancelled> {
+        let problem = self.problem(study, grid, sources);
+        match fit_couplings(&problem, executor, progress) {
+            Err(CouplingError::Cancelled(cancelled)) => Err(cancelled),
+            Err(error) => Ok(Err(error)),
+            Ok(fit) => Ok(Ok(Arc::new(FittedCouplings { problem, fit }))),
+        }
+    }
+}
+
+/// Returns the standard deviation in `ln H` from an identified model's bands, or from its coherence
+/// where that is used (M16.2).
+fn deviation(study: &Study, identified: &Model, omega: &[f64]) -> Option<PairTable<Vec<f64>>> {
+    if let Some(bands) = &identified.bands {
+        return Some(response_deviation(bands, omega));
+    }
+    let settings = &study.settings;
+    let (Dynamics::Measured(response), Some(_)) =
+        (&identified.dynamics, settings.coherence_threshold)
+    else {
+        return None;
+    };
+    let estimate = response.estimate();
+    let measurement = settings
+        .uncertainty
+        .measurement(estimate.averages, estimate.window_s)?;
+    Some(coherence_deviation(
+        &coherence_at(response, omega)?,
+        &measurement,
+    ))
+}

@@ -1,0 +1,170 @@
+//! Cautions about the models alone: responses that cannot be computed or compared in the band.
+
+use gdcm_method::fidelity::distance::MeasuredPairs;
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dynamics, Pair};
+use gdcm_model::progress::Cancelled;
+use gdcm_model::response::PolarResponse;
+
+use super::bundle_metrics::MeasuredBundle;
+use super::condition_responses::ConditionResponses;
+use crate::decisions::choices::{BundleChoice, ConditionChoice};
+use crate::decisions::study::Study;
+use crate::execution::Execution;
+use crate::results::caution::{BundleModel, Caution, GainOutOfRange, NotFinite};
+
+/// A bundle of a condition with the choices about it.
+pub(crate) struct BundleCautions<'a> {
+    pub(crate) condition: &'a Condition,
+    pub(crate) kind: BundleKind,
+    pub(crate) choice: &'a BundleChoice,
+    pub(crate) responses: &'a ConditionResponses,
+    pub(crate) measured: &'a MeasuredPairs,
+    /// Upper end of the band \[rad/s\].
+    pub(crate) band_top: f64,
+}
+
+impl BundleCautions<'_> {
+    /// Returns the cautions about the kept models: models set aside, models with responses that are
+    /// not finite, measured models with missing responses, and channels assigned by position.
+    pub(crate) fn all(&self) -> Vec<Caution> {
+        let mut cautions = Vec::new();
+        for index in 0..self.condition.bundle(self.kind).len() {
+            self.add_of_model(index, &mut cautions);
+        }
+        cautions.extend(self.channels_by_position());
+        cautions
+    }
+
+    fn add_of_model(&self, index: usize, cautions: &mut Vec<Caution>) {
+        let model = &self.condition.bundle(self.kind)[index];
+        if self.choice.rejected.contains(&model.name) {
+            return;
+        }
+        let bundle_model = BundleModel::new(self.condition, self.kind, index);
+        let response = &self.responses.bundle(self.kind)[index];
+        let zero = response.zero_where_finite();
+        // A response that is zero wherever it has values is absent: a wider measurement would not
+        // add it.
+        let mut not_finite = response.not_finite();
+        not_finite.retain(|pair| !zero.contains(pair));
+        let lacks = self.measured.lacks[index].clone();
+        if matches!(model.dynamics, Dynamics::Measured(_)) {
+            let missing: Vec<Pair> = zero
+                .iter()
+                .copied()
+                .filter(|pair| !lacks.contains(pair))
+                .collect();
+            if !missing.is_empty() {
+                cautions.push(Caution::MissingResponses {
+                    model: bundle_model.clone(),
+                    responses: missing,
+                });
+            }
+        }
+        let why = NotFinite::new(&model.dynamics, self.band_top);
+        if !lacks.is_empty() {
+            let is_not_finite = lacks.iter().any(|pair| not_finite.contains(pair));
+            cautions.push(Caution::SetAside {
+                model: bundle_model,
+                zero: lacks
+                    .iter()
+                    .copied()
+                    .filter(|pair| zero.contains(pair))
+                    .collect(),
+                why: if is_not_finite { Some(why) } else { None },
+                lacks,
+                pinned: self.choice.pinned.as_ref() == Some(&model.name),
+            });
+        } else if !not_finite.is_empty() {
+            cautions.push(Caution::NotFinite {
+                model: bundle_model,
+                responses: not_finite,
+                why,
+            });
+        }
+    }
+
+    /// Returns the caution about kept models whose channels were assigned by position, if any.
+    fn channels_by_position(&self) -> Option<Caution> {
+        let mut models = Vec::new();
+        for model in self.condition.bundle(self.kind) {
+            let is_by_position = model
+                .source
+                .as_ref()
+                .is_some_and(|source| !source.by_position.is_empty());
+            if is_by_position && !self.choice.rejected.contains(&model.name) {
+                models.push(model.name.clone());
+            }
+        }
+        if models.is_empty() {
+            return None;
+        }
+        Some(Caution::ChannelsByPosition {
+            bundle: self.kind,
+            models,
+        })
+    }
+}
+
+/// Returns the cautions about the models alone, condition by condition, in the study's band.
+///
+/// # Errors
+/// [`Cancelled`] where `execution` is cancelled.
+pub fn cautions_of_models(
+    study: &Study,
+    execution: &Execution<'_>,
+) -> Result<Vec<(ConditionId, Caution)>, Cancelled> {
+    let band = study.settings.band;
+    let measuring = study.dataset.measuring_pairs();
+    let mut found = Vec::new();
+    for condition in study.dataset.conditions() {
+        let id = condition.id();
+        let choice = study.choice(id);
+        let responses =
+            ConditionResponses::of(condition, (band, study.settings.points), execution)?;
+        for kind in BundleKind::BOTH {
+            let bundle = MeasuredBundle::new(responses.bundle(kind), &measuring, execution)?;
+            let cautions = BundleCautions {
+                condition,
+                kind,
+                choice: choice.bundle(kind),
+                responses: &responses,
+                measured: &bundle.measured,
+                band_top: band.max(),
+            };
+            for caution in cautions.all() {
+                found.push((id, caution));
+            }
+        }
+        if let Some(caution) = gains_out_of_range(condition, &responses, choice) {
+            found.push((id, caution));
+        }
+    }
+    Ok(found)
+}
+
+/// Returns the gains beyond the computable range, between the nominal physics model and the first
+/// kept identified model with any.
+fn gains_out_of_range(
+    condition: &Condition,
+    responses: &ConditionResponses,
+    choice: &ConditionChoice,
+) -> Option<Caution> {
+    let nominal = condition.nominal();
+    let physics = PolarResponse::new(&responses.bundle(BundleKind::Physics)[nominal]);
+    let models = condition.bundle(BundleKind::Identified);
+    for (model, response) in models.iter().zip(responses.bundle(BundleKind::Identified)) {
+        if choice.identified.rejected.contains(&model.name) {
+            continue;
+        }
+        let responses = GainOutOfRange::of_models(&physics, &PolarResponse::new(response));
+        if !responses.is_empty() {
+            return Some(Caution::GainsOutOfRange {
+                physics: condition.bundle(BundleKind::Physics)[nominal].name.clone(),
+                identified: model.name.clone(),
+                responses,
+            });
+        }
+    }
+    None
+}

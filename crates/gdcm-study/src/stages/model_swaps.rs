@@ -1,0 +1,312 @@
+//! Swaps: another model in a representative's place (M13.1).
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use gdcm_method::correction::ChannelCorrection;
+use gdcm_method::correction::delta::{Delta, GainSource};
+use gdcm_method::uncertainty::Scalar;
+use gdcm_method::uncertainty::spread::{ConditionSpread, Figures, ScalarTable};
+use gdcm_model::dataset::{BundleKind, PairTable};
+use gdcm_model::progress::Cancelled;
+
+use super::compared_model::ComparedModel;
+use super::condition_responses::ConditionResponses;
+use super::run::Run;
+use crate::decisions::settings::Settings;
+use crate::results::analysis::ConditionAnalysis;
+use crate::results::comparison::Mismatches;
+use crate::results::fitted_couplings::FittedCouplings;
+use crate::results::model_swap::{ConditionSubstitutions, ModelSwap};
+
+/// A physics and an identified model by their indices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct ModelPair {
+    physics: usize,
+    identified: usize,
+}
+
+impl ModelPair {
+    /// Returns the pair with another model in a bundle's place.
+    fn with(self, kind: BundleKind, model: usize) -> Self {
+        match kind {
+            BundleKind::Physics => Self {
+                physics: model,
+                ..self
+            },
+            BundleKind::Identified => Self {
+                identified: model,
+                ..self
+            },
+        }
+    }
+}
+
+/// What swaps depend on.
+#[derive(Clone, Copy)]
+pub(crate) struct SwapInput<'a> {
+    pub(crate) run: Run<'a>,
+    pub(crate) analysis: &'a ConditionAnalysis,
+    pub(crate) responses: &'a ConditionResponses,
+    pub(crate) couplings: Option<&'a Arc<FittedCouplings>>,
+}
+
+/// A model pair's correction, with its G and both D \[s\].
+#[derive(Clone, Debug)]
+pub(crate) struct SwapOptimum {
+    pub(crate) correction: ChannelCorrection,
+    /// The deltas, with G after the leads.
+    pub(crate) delta: Delta,
+}
+
+impl SwapOptimum {
+    /// Returns logarithmic gains, and delays \[s\]; `None` where a figure is not defined.
+    fn figures(&self) -> Figures {
+        let correction = &self.correction;
+        let delta = &self.delta;
+        ScalarTable::from_fn(delta.gain.outputs(), delta.gain.inputs(), |scalar| {
+            let figure = match scalar {
+                Scalar::Gain(pair) => delta.gain[pair]?.ln(),
+                Scalar::Delay(pair) => delta.delay_s[pair]?,
+                Scalar::BandDelay(pair) => delta.band_delay_s[pair]?,
+                Scalar::NetGain(pair) => correction.net_gain(pair).ln(),
+                Scalar::ChannelGain(channel) => correction.gain(channel).ln(),
+                Scalar::ChannelDelay(channel) => correction.delay_s(channel),
+            };
+            if figure.is_finite() {
+                Some(figure)
+            } else {
+                None
+            }
+        })
+    }
+}
+
+/// Returns the representatives' own figures.
+pub(crate) fn representative_figures(analysis: &ConditionAnalysis) -> Figures {
+    let optimum = SwapOptimum {
+        correction: analysis.correction.clone(),
+        delta: Delta {
+            gain: analysis.gain_problem.delta.clone(),
+            ..analysis.comparison.delta.clone()
+        },
+    };
+    optimum.figures()
+}
+
+/// What a swap depends on besides the two models.
+#[derive(Clone, Debug, PartialEq)]
+struct SwapKey {
+    /// The analysis's settings, without those that no swap depends on.
+    settings: Settings,
+    measuring: PairTable<bool>,
+    /// The reference for phase branches.
+    representatives: ModelPair,
+    couplings: Option<Arc<FittedCouplings>>,
+}
+
+/// The last swaps, by their models: rejecting or restoring a model keeps the others' swaps.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SwapMemo {
+    key: Option<SwapKey>,
+    kept: BTreeMap<ModelPair, Option<Arc<Figures>>>,
+}
+
+impl SwapInput<'_> {
+    fn representatives(&self) -> ModelPair {
+        ModelPair {
+            physics: self.analysis.comparison.physics.model,
+            identified: self.analysis.comparison.identified.model,
+        }
+    }
+
+    /// Returns a bundle's other kept models, in file order, without models set aside (M5b).
+    /// Duplicate models count once, because they add no information; the representative's copies
+    /// count where there are no others.
+    fn others(&self, kind: BundleKind) -> Vec<usize> {
+        let representative = self.analysis.representative(kind);
+        let responses = self.responses.bundle(kind);
+        // Models with the same numbers share their response.
+        let is_copy = |a: usize, b: usize| Arc::ptr_eq(&responses[a], &responses[b]);
+        let mut distinct: Vec<usize> = Vec::new();
+        let mut copies = Vec::new();
+        for (model, score) in representative.scores.iter().enumerate() {
+            if score.is_none() || model == representative.model {
+                continue;
+            }
+            if is_copy(model, representative.model) {
+                copies.push(model);
+            } else if !distinct.iter().any(|&known| is_copy(known, model)) {
+                distinct.push(model);
+            }
+        }
+        if distinct.is_empty() {
+            copies.truncate(1);
+            copies
+        } else {
+            distinct
+        }
+    }
+
+    /// Returns the swaps' dependencies.
+    fn key(&self) -> SwapKey {
+        let mut settings = self.run.study.settings.clone();
+        settings.schedule = Default::default();
+        settings.schedule_delays = Default::default();
+        settings.uncertainty = Default::default();
+        settings.gain_source = GainSource::Representatives;
+        SwapKey {
+            settings,
+            measuring: self.run.study.dataset.measuring_pairs(),
+            representatives: self.representatives(),
+            couplings: self.couplings.cloned(),
+        }
+    }
+
+    fn compared(&self, kind: BundleKind, model: usize) -> ComparedModel {
+        ComparedModel::new(
+            &self.analysis.condition,
+            self.responses,
+            kind,
+            model,
+            self.run.comparison_grid(),
+        )
+    }
+}
+
+impl SwapMemo {
+    /// Completes all swaps; those not cached are computed, each a step, with the correction that
+    /// `optimum` returns for a comparison.
+    ///
+    /// # Errors
+    /// [`Cancelled`] where the execution is cancelled.
+    pub(crate) fn complete(
+        &mut self,
+        input: &SwapInput<'_>,
+        optimum: impl Fn(&Mismatches, Delta) -> Result<Option<SwapOptimum>, Cancelled> + Sync,
+    ) -> Result<ConditionSubstitutions, Cancelled> {
+        let key = input.key();
+        if self.key.as_ref() != Some(&key) {
+            self.kept.clear();
+            self.key = Some(key);
+        }
+        let mut swaps = Vec::new();
+        for kind in BundleKind::BOTH {
+            for model in input.others(kind) {
+                swaps.push((kind, model));
+            }
+        }
+        let representatives = input.representatives();
+        // The mean over all pairs is not the representatives' figure: the changes' reference is
+        // computed too.
+        let is_mean = input.run.study.settings.gain_source == GainSource::MeanOfPairs;
+        let mut wanted: Vec<ModelPair> = swaps
+            .iter()
+            .map(|(kind, model)| representatives.with(*kind, *model))
+            .collect();
+        if is_mean {
+            wanted.push(representatives);
+        }
+        self.compute_missing(input, wanted, swaps.len(), optimum)?;
+        let substitutions: Vec<ModelSwap> = swaps
+            .into_iter()
+            .map(|(bundle, model)| ModelSwap {
+                bundle,
+                model,
+                figures: self.figures(representatives.with(bundle, model)),
+            })
+            .collect();
+        let base = match (is_mean, self.figures(representatives)) {
+            (false, _) => representative_figures(input.analysis),
+            (true, Some(base)) => Figures::clone(&base),
+            (true, None) => representative_figures(input.analysis).map(|_, _| None),
+        };
+        let spread = ConditionSpread::of(
+            &base,
+            &bundle_figures(&substitutions, BundleKind::Physics),
+            &bundle_figures(&substitutions, BundleKind::Identified),
+        );
+        Ok(ConditionSubstitutions {
+            spread,
+            substitutions,
+        })
+    }
+
+    /// Computes the figures of the pairs that are not cached; `swaps` counts the pairs that count
+    /// as steps.
+    fn compute_missing(
+        &mut self,
+        input: &SwapInput<'_>,
+        mut wanted: Vec<ModelPair>,
+        swaps: usize,
+        optimum: impl Fn(&Mismatches, Delta) -> Result<Option<SwapOptimum>, Cancelled> + Sync,
+    ) -> Result<(), Cancelled> {
+        wanted.retain(|pair| !self.kept.contains_key(pair));
+        input.run.execution.step(swaps.saturating_sub(wanted.len()));
+        let figures = swap_figures(input, &wanted, optimum)?;
+        self.kept.extend(wanted.into_iter().zip(figures));
+        Ok(())
+    }
+
+    /// Returns a pair's cached figures.
+    fn figures(&self, pair: ModelPair) -> Option<Arc<Figures>> {
+        self.kept.get(&pair).cloned().flatten()
+    }
+}
+
+/// Returns the figures after each swap in a bundle.
+fn bundle_figures(swaps: &[ModelSwap], bundle: BundleKind) -> Vec<Option<&Figures>> {
+    swaps
+        .iter()
+        .filter(|swap| swap.bundle == bundle)
+        .map(|swap| swap.figures.as_deref())
+        .collect()
+}
+
+/// Computes each model pair's figures.
+fn swap_figures(
+    input: &SwapInput<'_>,
+    pairs: &[ModelPair],
+    optimum: impl Fn(&Mismatches, Delta) -> Result<Option<SwapOptimum>, Cancelled> + Sync,
+) -> Result<Vec<Option<Arc<Figures>>>, Cancelled> {
+    if pairs.is_empty() {
+        return Ok(Vec::new());
+    }
+    let representatives = input.representatives();
+    let physics = input.compared(BundleKind::Physics, representatives.physics);
+    let identified = input.compared(BundleKind::Identified, representatives.identified);
+    let omega = input.run.grid.omega();
+    let base = &input.analysis.comparison.representative.mismatch;
+    let median_phases = base.map(|_, mismatch| {
+        mismatch
+            .as_ref()
+            .map(|mismatch| mismatch.median_phase(omega))
+    });
+    let figures = input.run.execution.each(pairs.len(), 1, |index| {
+        let pair = pairs[index];
+        let mut mismatch = if pair.identified == representatives.identified {
+            let other = input.compared(BundleKind::Physics, pair.physics);
+            other.mismatches(&identified)
+        } else {
+            let other = input.compared(BundleKind::Identified, pair.identified);
+            physics.mismatches(&other)
+        };
+        // As with the pair pinned: each phase difference is on the branch nearest to the
+        // representatives' (M13.1).
+        for (pair, entry) in mismatch.iter_mut() {
+            if let Some(median_phase) = median_phases[pair] {
+                *entry = entry
+                    .take()
+                    .map(|entry| entry.align_branch(omega, median_phase));
+            }
+        }
+        let delta = Delta::new(&mismatch, omega);
+        // As for a pinned pair without comparable responses.
+        if delta.gain.iter().all(|(_, gain)| gain.is_none()) {
+            return Ok(None);
+        }
+        let optimum = optimum(&mismatch, delta)?;
+        Ok(optimum.map(|optimum| Arc::new(optimum.figures())))
+    })?;
+    figures.into_iter().collect()
+}

@@ -1,0 +1,310 @@
+//! A condition's optimal gains and delays (M8, M9, M15).
+//!
+//! ```text
+//! 1  delays, or signed delays for leads, from D                     eq. (11), M15.4
+//! 2  lead filters of the negative signed delays                     M15.3
+//! 3  gains from the difference left after the leads                 eq. (7), M15.5
+//! ```
+
+use std::sync::Arc;
+
+use gdcm_method::correction::delta::{Delta, delay_upper_s, gain_bounds};
+use gdcm_method::correction::leads::{ChannelLeads, LeadDesign};
+use gdcm_method::correction::problem::{DELAY_AGREEMENT_S, ProblemError};
+use gdcm_method::correction::solve::solve;
+use gdcm_method::correction::{
+    Bounds, ChannelCorrection, Problem, ProofBudget, Quantity, Solution,
+};
+use gdcm_method::schedule::CostChange;
+use gdcm_model::dataset::PairTable;
+use gdcm_model::progress::{Cancelled, Progress};
+
+use super::run::Run;
+use crate::decisions::settings::{DelayFrom, PhaseCorrection, Settings};
+use crate::execution::Memo;
+use crate::results::analysis::ConditionFailure;
+use crate::results::comparison::Mismatches;
+use crate::results::lead_compensation::{LeadCompensated, LeadOffer};
+
+/// A problem's outcome.
+pub(crate) type Solved = Result<Arc<Solution>, ProblemError>;
+
+/// Solves a problem, with the proof within a budget.
+///
+/// # Errors
+/// [`Cancelled`] where `progress` requests it.
+pub(crate) fn solved(
+    problem: &Problem,
+    proofs: ProofBudget,
+    progress: &dyn Progress,
+) -> Result<Solved, Cancelled> {
+    match solve(problem, proofs, &|| progress.cancelled()) {
+        Err(ProblemError::Stopped) => Err(Cancelled),
+        solved => Ok(solved.map(Arc::new)),
+    }
+}
+
+/// A condition's two optima with their problems.
+pub(crate) struct Optima {
+    pub(crate) gain_problem: Arc<Problem>,
+    pub(crate) delay_problem: Arc<Problem>,
+    pub(crate) gains: Arc<Solution>,
+    pub(crate) delays: Arc<Solution>,
+    pub(crate) compensated: Option<Arc<LeadCompensated>>,
+}
+
+impl Optima {
+    /// Returns gains and delays as one correction.
+    pub(crate) fn correction(&self) -> ChannelCorrection {
+        match &self.compensated {
+            Some(compensated) => {
+                ChannelCorrection::of_leads(self.gains.channels(), compensated.leads.clone())
+            }
+            None => ChannelCorrection::of_delays(self.gains.channels(), self.delays.channels()),
+        }
+    }
+}
+
+/// Why there are no optima.
+pub(crate) enum NoOptima {
+    Cancelled,
+    Failed(ConditionFailure),
+}
+
+impl From<Cancelled> for NoOptima {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+impl From<ConditionFailure> for NoOptima {
+    fn from(failure: ConditionFailure) -> Self {
+        Self::Failed(failure)
+    }
+}
+
+/// The last solution to each problem in a condition.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SolvedProblems {
+    offer: Memo<Arc<Problem>, Solved>,
+    gains: Memo<Arc<Problem>, Solved>,
+    delays: Memo<Arc<Problem>, Solved>,
+}
+
+impl SolvedProblems {
+    /// Replaces the cached gains for the same problem.
+    pub(crate) fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
+        if self.gains.holds(problem) {
+            self.gains = Memo::with(Arc::clone(problem), Ok(Arc::clone(solution)));
+        }
+    }
+
+    /// Solves for the delays, then for the gains on the difference left after the leads (M15.5).
+    ///
+    /// # Errors
+    /// [`NoOptima`] where a problem has no solution, or the run is cancelled.
+    pub(crate) fn solve(&mut self, input: &SolveInput<'_>) -> Result<Optima, NoOptima> {
+        let design = input.lead_design();
+        let delay_problem = Arc::new(input.delay_problem(design.as_deref()));
+        let delays = self.delays(input, &delay_problem)?;
+        let compensated = match design {
+            None => None,
+            Some(design) => {
+                let delays = delays.as_ref().map_err(delay_failure)?;
+                let leads = ChannelLeads::new(design, delays.channels());
+                Some(LeadCompensated::new(input.mismatch, leads))
+            }
+        };
+        let gain_problem = Arc::new(input.gain_problem(compensated.as_deref()));
+        let gains = self
+            .gains
+            .get_or_fail(Arc::clone(&gain_problem), |problem| input.solved(problem))?;
+        Ok(Optima {
+            gains: gains.map_err(ConditionFailure::Gains)?,
+            delays: delays.as_ref().map_err(delay_failure)?.clone(),
+            gain_problem,
+            delay_problem,
+            compensated,
+        })
+    }
+
+    /// Solves for the delays, or signed delays.
+    pub(crate) fn delays(
+        &mut self,
+        input: &SolveInput<'_>,
+        problem: &Arc<Problem>,
+    ) -> Result<Solved, Cancelled> {
+        self.delays
+            .get_or_fail(Arc::clone(problem), |problem| input.solved(problem))
+    }
+
+    /// Estimates what leads would gain, where they are not requested and all constrained responses
+    /// want them. `now` is J under the present correction.
+    pub(crate) fn offer(
+        &mut self,
+        input: &SolveInput<'_>,
+        held: &PairTable<bool>,
+        now: &PairTable<Option<CostChange>>,
+    ) -> Result<Option<LeadOffer>, Cancelled> {
+        let settings = input.settings();
+        if settings.phase == PhaseCorrection::Lead || !input.all_want_lead(held) {
+            return Ok(None);
+        }
+        let omega = input.run.grid.omega();
+        let design = Arc::new(LeadDesign::new(settings.lead, omega.into()));
+        let problem = Problem {
+            constrained: held.clone(),
+            bounds: Bounds {
+                lower: design.lower_s(),
+                upper: input.delay_upper_s,
+            },
+            // The weight decides on shares, not on the constraints: it is 1 whatever the delays'
+            // weight.
+            alpha: 1.0,
+            ..input.delay_problem(Some(&design))
+        };
+        let progress = input.run.execution.progress();
+        let solution = self.offer.get_or_fail(Arc::new(problem), |problem| {
+            solved(problem, ProofBudget::default(), progress)
+        })?;
+        // An offer that cannot be computed is no offer.
+        let Ok(solution) = solution else {
+            return Ok(None);
+        };
+        let leads = ChannelLeads::new(design, solution.channels());
+        let held_mismatch = input.mismatch.map(
+            |pair, mismatch| {
+                if held[pair] { mismatch.clone() } else { None }
+            },
+        );
+        Ok(LeadOffer::new(
+            leads,
+            &held_mismatch,
+            now,
+            omega,
+            settings.cost_average,
+        ))
+    }
+}
+
+fn delay_failure(error: &ProblemError) -> ConditionFailure {
+    ConditionFailure::Delays(error.clone())
+}
+
+/// What a condition's optimisation problems depend on.
+pub(crate) struct SolveInput<'a> {
+    run: Run<'a>,
+    /// The responses that measure the bounds.
+    measuring: &'a PairTable<bool>,
+    mismatch: &'a Mismatches,
+    delta: &'a Delta,
+    /// Upper delay bound \[s\].
+    delay_upper_s: f64,
+}
+
+impl<'a> SolveInput<'a> {
+    pub(crate) fn new(
+        run: Run<'a>,
+        measuring: &'a PairTable<bool>,
+        mismatch: &'a Mismatches,
+        delta: &'a Delta,
+    ) -> Self {
+        let settings = &run.study.settings;
+        let delay_upper_s = match settings.delay_upper_s {
+            Some(upper_s) => upper_s,
+            None => delay_upper_s(mismatch, measuring, run.grid.omega(), settings.quantile),
+        };
+        Self {
+            run,
+            measuring,
+            mismatch,
+            delta,
+            delay_upper_s,
+        }
+    }
+
+    fn settings(&self) -> &'a Settings {
+        &self.run.study.settings
+    }
+
+    /// Solves a problem, with the proof as far as the run's budget allows.
+    fn solved(&self, problem: &Problem) -> Result<Solved, Cancelled> {
+        solved(problem, self.run.proofs, self.run.execution.progress())
+    }
+
+    /// Returns whether there are constrained responses, and all want lead.
+    fn all_want_lead(&self, held: &PairTable<bool>) -> bool {
+        held.marked().next().is_some()
+            && held.marked().all(|pair| {
+                let delay_s = self.delta.band_delay_s[pair].unwrap_or_default();
+                delay_s < 0.0
+            })
+    }
+
+    /// Returns the lead filters' common design, where leads are requested.
+    pub(crate) fn lead_design(&self) -> Option<Arc<LeadDesign>> {
+        if self.settings().phase != PhaseCorrection::Lead {
+            return None;
+        }
+        let omega = self.run.grid.omega().into();
+        Some(Arc::new(LeadDesign::new(self.settings().lead, omega)))
+    }
+
+    /// Builds the gains' problem, on the difference left after the leads where there are any.
+    fn gain_problem(&self, compensated: Option<&LeadCompensated>) -> Problem {
+        let settings = self.settings();
+        let (mismatch, gain) = match compensated {
+            Some(compensated) => (&compensated.mismatch, &compensated.gain),
+            None => (self.mismatch, &self.delta.gain),
+        };
+        Problem {
+            quantity: Quantity::Gain(settings.gain_objective),
+            delta: gain.clone(),
+            constrained: settings
+                .constrained
+                .map(|pair, held| *held && self.delta.gain[pair].is_some()),
+            fitted: settings.fitted(),
+            bounds: match settings.gain_bounds {
+                Some(bounds) => bounds,
+                None => gain_bounds(mismatch, self.measuring, settings.quantile),
+            },
+            alpha: settings.alpha_gain,
+            agreement: settings.agreement_db,
+        }
+    }
+
+    /// Builds the delay problem for the chosen D, or with signed delays for the band delay; an
+    /// empty problem where the phase is not corrected.
+    pub(crate) fn delay_problem(&self, design: Option<&LeadDesign>) -> Problem {
+        let settings = self.settings();
+        let is_corrected = settings.phase != PhaseCorrection::None;
+        let from_band = design.is_some() || settings.delay_from == DelayFrom::Band;
+        let delta = if from_band {
+            &self.delta.band_delay_s
+        } else {
+            &self.delta.delay_s
+        };
+        let (quantity, lower) = match design {
+            Some(design) => (Quantity::SignedDelay, design.lower_s()),
+            None => (Quantity::Delay, 0.0),
+        };
+        Problem {
+            quantity,
+            delta: delta.clone(),
+            constrained: settings
+                .constrained
+                .map(|pair, held| *held && is_corrected && self.delta.gain[pair].is_some()),
+            fitted: settings.fitted(),
+            bounds: Bounds {
+                lower,
+                upper: if is_corrected {
+                    self.delay_upper_s
+                } else {
+                    0.0
+                },
+            },
+            alpha: settings.alpha_delay,
+            agreement: DELAY_AGREEMENT_S,
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Sentences about assessments: what a correction gains, where it comes from, and why a condition
+//! or a response is left out (M12).
+
+use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::units::{number, signed};
+use gdcm_study::results::analysis::NotAssessed;
+use gdcm_study::results::assessment_table::{AssessmentChoice, AssessmentSummary, MissingCost};
+use gdcm_study::{Analysis, AssessedCorrection, AssessmentTable};
+
+use crate::caution::{failure_text, undefined_text};
+
+/// Returns an assessed correction's origin in words.
+pub(crate) fn correction_source(correction: AssessedCorrection, airspeed_kt: f64) -> String {
+    let at = format!("at {} kt", number(airspeed_kt));
+    match correction {
+        AssessedCorrection::Own => "the condition's own optimum".to_owned(),
+        AssessedCorrection::Scheduled => format!("the schedule {at}"),
+        AssessedCorrection::ScheduledWithoutLeads => {
+            format!("the schedule {at}, its leads left out")
+        }
+        AssessedCorrection::ScheduleOfOthers => {
+            format!("the schedule of the other conditions {at}")
+        }
+    }
+}
+
+/// Returns why an assessment leaves a condition out.
+pub fn not_assessed_text(why: &NotAssessed, dataset: &Dataset) -> String {
+    match why {
+        NotAssessed::NotAnalysed => "it was not analysed".to_owned(),
+        NotAssessed::NominalRejected => "the nominal model is rejected".to_owned(),
+        NotAssessed::NoResult(failure) => failure_text(failure, dataset),
+        NotAssessed::NoSchedule(error) => error.to_string(),
+    }
+}
+
+/// Returns why a response has no J.
+pub fn missing_cost_text(why: MissingCost) -> String {
+    match why {
+        MissingCost::NetGainNotPositive => "the scheduled net gain is not positive".to_owned(),
+        MissingCost::Undefined(why) => undefined_text(why),
+        MissingCost::NominalUndefined => {
+            "the nominal model's response is zero, numerically nothing or not finite somewhere in \
+             the band"
+                .to_owned()
+        }
+    }
+}
+
+/// Writes the sentence: "better in 41 of 50, worst PED → NY in condition 5: +12.3".
+pub fn summary_text(summary: &AssessmentSummary, dataset: &Dataset) -> String {
+    let Some((condition, pair, change)) = summary.worst else {
+        return "nothing to assess".to_owned();
+    };
+    format!(
+        "better in {} of {}, worst {} in condition {condition}: {}",
+        summary.better,
+        summary.compared,
+        dataset.pair_name(pair),
+        signed(change, 1)
+    )
+}
+
+/// Compares the schedule on the held-out conditions with the conditions in its fit: "held out (3,
+/// 8): better in 9 of 10 responses, mean ΔJ −12.3; the others: better in 40 of 45 responses, mean
+/// ΔJ −15.0". `None` where no condition is held out.
+pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option<String> {
+    let study = &analysis.study;
+    let held_out: Vec<String> = study
+        .dataset
+        .ids()
+        .filter(|id| study.choice(*id).held_out)
+        .map(|id| id.to_string())
+        .collect();
+    if held_out.is_empty() {
+        return None;
+    }
+    let table = AssessmentTable::of(analysis, choice);
+    let of_held_out = change_words(analysis, &table, |id| study.choice(id).held_out);
+    let of_others = change_words(analysis, &table, |id| !study.choice(id).held_out);
+    Some(format!(
+        "held out ({}): {of_held_out}; the others: {of_others}",
+        held_out.join(", ")
+    ))
+}
+
+/// Describes how J changes over the selected conditions' on-axis responses.
+fn change_words(
+    analysis: &Analysis,
+    table: &AssessmentTable,
+    is_selected: impl Fn(ConditionId) -> bool,
+) -> String {
+    let measuring = analysis.study.dataset.measuring_pairs();
+    let mut changes = Vec::new();
+    for assessed in &table.conditions {
+        if !is_selected(assessed.condition) {
+            continue;
+        }
+        for pair in measuring.marked() {
+            if let Some(change) = assessed.changes[pair] {
+                changes.push(change.total());
+            }
+        }
+    }
+    if changes.is_empty() {
+        return "nothing to assess".to_owned();
+    }
+    let better = changes.iter().filter(|change| **change < 0.0).count();
+    let mean = changes.iter().sum::<f64>() / changes.len() as f64;
+    format!(
+        "better in {better} of {} responses, mean ΔJ {}",
+        changes.len(),
+        signed(mean, 1)
+    )
+}

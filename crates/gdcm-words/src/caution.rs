@@ -1,0 +1,231 @@
+//! Sentences about cautions, and about conditions without a result.
+
+use gdcm_model::dataset::{Dataset, Pair};
+use gdcm_model::units::number;
+use gdcm_study::results::analysis::ConditionFailure;
+use gdcm_study::results::caution::{Caution, NotFinite, USUAL_GAINS, Undefined};
+
+/// The computable gains in words.
+const GAIN_RANGE: &str = "gains are computed with from 1e-50 to 1e50";
+
+/// What "numerically nothing" means (M6a).
+const NOTHING: &str =
+    "over the band less than 1e-6 of the greatest response of its output and of its input";
+
+/// How many models or responses are listed by name.
+const LISTED: usize = 3;
+
+/// Returns why a condition has no result, with the cautions that explain it.
+pub fn failure_text(failure: &ConditionFailure, dataset: &Dataset) -> String {
+    let mut text = failure.to_string();
+    if let ConditionFailure::NothingToCompare { cautions, .. } = failure {
+        for caution in cautions {
+            text.push_str("; ");
+            text.push_str(&caution_text(caution, |pair| dataset.pair_name(pair)));
+        }
+    }
+    text
+}
+
+/// Returns a caution in words; `pair_name` names a response.
+pub fn caution_text(caution: &Caution, pair_name: impl Fn(Pair) -> String) -> String {
+    let names = |pairs: &[Pair]| {
+        pairs
+            .iter()
+            .map(|pair| pair_name(*pair))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    match caution {
+        Caution::HeldButUndefined { pair, why } => {
+            format!("{} is not held: {}", pair_name(*pair), undefined_text(*why))
+        }
+        Caution::NoSuggestions(error) => error.to_string(),
+        Caution::SetAside {
+            model,
+            lacks,
+            zero,
+            why,
+            pinned,
+        } => {
+            let why = match why {
+                None if zero == lacks => "zero over the whole band".to_owned(),
+                None => "zero somewhere in the band".to_owned(),
+                Some(why) if zero.is_empty() => not_finite_text(why),
+                Some(why) => format!(
+                    "{} zero wherever it has values; of the others, {}",
+                    names(zero),
+                    not_finite_text(why)
+                ),
+            };
+            let pin = if *pinned {
+                "; it is not used as representative, as was chosen"
+            } else {
+                ""
+            };
+            format!(
+                "{model} is set aside: it has no {}, which another model of its bundle has \
+                 ({why}){pin}",
+                names(lacks)
+            )
+        }
+        Caution::NotFinite {
+            model,
+            responses,
+            why,
+        } => format!(
+            "{model} has no {} over the whole band: {}",
+            names(responses),
+            not_finite_text(why)
+        ),
+        Caution::MissingResponses { model, responses } => format!(
+            "{model} has no {}: every value in its file is zero, as where a response was not \
+             measured or its channels have other names; give the response, or reject the model",
+            names(responses)
+        ),
+        Caution::GainsOutOfRange {
+            physics,
+            identified,
+            responses,
+        } => {
+            let gains: Vec<String> = responses
+                .iter()
+                .map(|gain| format!("1e{} in {}", gain.power_of_ten, pair_name(gain.pair)))
+                .collect();
+            format!(
+                "the gain between physics model \"{physics}\" and identified model \
+                 \"{identified}\" is about {}, and {GAIN_RANGE}: these responses are not compared; \
+                 check the units and the matrices of both models",
+                gains.join(", ")
+            )
+        }
+        Caution::NumericallyNothing { model, responses } => format!(
+            "of {model}, {} are numerically nothing ({NOTHING}): they have no G and no D, as if \
+             they were zero",
+            names(responses)
+        ),
+        Caution::NotCoherent {
+            threshold,
+            weighed,
+            left_out,
+            points,
+        } => format!(
+            "coherence weighs J, G and D of {weighed} responses; of {points} frequencies, {} are \
+             left out: their coherence is under {}, or they lie outside the valid band",
+            left_out_words(left_out, &pair_name),
+            number(*threshold)
+        ),
+        Caution::CoherenceNotUsed => {
+            "the identified representative is measured with coherence, which is switched off: \
+             every frequency counts alike"
+                .to_owned()
+        }
+        Caution::ChannelsByPosition { bundle, models } => format!(
+            "the channels of {bundle} models were taken by their position, as their files have no \
+             names for them: check that their order is that of the dataset ({})",
+            first_names(models)
+        ),
+        Caution::UnusualGain { pair, gain } => format!(
+            "{} has a G of {}, outside {} to {}, and is fitted like the others: ignore it in the \
+             objective if it means nothing (in a study file: \"ignored\")",
+            pair_name(*pair),
+            gain_words(*gain),
+            USUAL_GAINS.start(),
+            USUAL_GAINS.end()
+        ),
+    }
+}
+
+/// Returns why a response has no G and no D; begins with "its response".
+pub fn undefined_text(why: Undefined) -> String {
+    match why {
+        Undefined::Zero(bundle) => {
+            format!("its response is zero over the whole band in the {bundle} model")
+        }
+        Undefined::ZeroSomewhere(bundle) => {
+            format!("its response is zero at some frequency of the band in the {bundle} model")
+        }
+        Undefined::NotFinite(bundle) => {
+            format!(
+                "its response is not finite at some frequency of the band in the {bundle} model"
+            )
+        }
+        Undefined::GainOutOfRange(power_of_ten) => format!(
+            "its response has a gain of about 1e{power_of_ten} between the physics and the \
+             identified model, and {GAIN_RANGE}: check the units and the matrices of both"
+        ),
+        Undefined::NotCoherent => {
+            "its response was not measured: no frequency of the band is coherent enough, or lies \
+             in the valid band"
+                .to_owned()
+        }
+        Undefined::NotMeasured => {
+            "its response was not measured: the identified model has no numbers of it".to_owned()
+        }
+        Undefined::NumericallyNothing(bundle) => {
+            format!("its response is numerically nothing in the {bundle} model: {NOTHING}")
+        }
+    }
+}
+
+/// Returns why a model has responses that are not finite.
+fn not_finite_text(why: &NotFinite) -> String {
+    match why {
+        NotFinite::Entry(entry) => format!("{entry}: correct the file, or reject the model"),
+        NotFinite::Measured { min, max } => format!(
+            "it is measured from {} to {} rad/s only: narrow the band, or reject the model",
+            six_decimals(*min),
+            six_decimals(*max)
+        ),
+        NotFinite::Sampled {
+            sample_time_s,
+            nyquist_rad_s,
+        } => format!(
+            "it is of discrete time, T = {} s, and has no response from π/T = {nyquist_rad_s:.4} \
+             rad/s on: narrow the band, or reject the model",
+            number(*sample_time_s)
+        ),
+        NotFinite::Pole => {
+            "a pole lies on a frequency of the grid, or its numbers overflow: change the band or \
+             the number of frequencies, or reject the model"
+                .to_owned()
+        }
+    }
+}
+
+/// Rounds a frequency \[rad/s\] to six decimals, which suffice in a message.
+fn six_decimals(omega: f64) -> f64 {
+    (omega * 1e6).round() / 1e6
+}
+
+/// Joins names: "nominal, roll+5, roll-5 and 6 more".
+fn first_names(names: &[String]) -> String {
+    let listed = names[..names.len().min(LISTED)].join(", ");
+    match names.len().saturating_sub(LISTED) {
+        0 => listed,
+        rest => format!("{listed} and {rest} more"),
+    }
+}
+
+/// Joins counts: "31 of PED → P, 12 of COL → Q, and some of 5 more".
+fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> String) -> String {
+    let mut parts: Vec<String> = left_out
+        .iter()
+        .take(LISTED)
+        .map(|(pair, count)| format!("{count} of {}", pair_name(*pair)))
+        .collect();
+    let rest = left_out.len().saturating_sub(LISTED);
+    if rest > 0 {
+        parts.push(format!("and some of {rest} more"));
+    }
+    parts.join(", ")
+}
+
+/// Formats a gain with three decimals; very small and very large gains with an exponent.
+fn gain_words(gain: f64) -> String {
+    if (1e-3..1e4).contains(&gain) {
+        format!("{gain:.3}")
+    } else {
+        format!("{gain:.2e}")
+    }
+}

@@ -1,0 +1,91 @@
+//! Sentences about apparent sign and unit differences between the two bundles.
+
+use std::f64::consts::PI;
+
+use gdcm_model::dataset::Dataset;
+use gdcm_model::number_format::rounded_to_three_digits;
+use gdcm_study::results::convention_doubt::{Convention, ConventionDoubt};
+
+/// Tolerance for a factor to match a known one, as a ratio.
+const NEAR_FACTOR: f64 = 1.08;
+
+/// Known conversion factors between units, with their names.
+const KNOWN_FACTORS: [(f64, &str); 6] = [
+    (9.806_65, "g and m/s²"),
+    (32.174, "g and ft/s²"),
+    (180.0 / PI, "radians and degrees"),
+    (100.0, "a fraction and percent"),
+    (12.0, "feet and inches"),
+    (1000.0, "a unit and its thousandth"),
+];
+
+/// Describes a suspected difference in sign or unit, and how to settle it.
+pub fn doubt_text(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
+    let channel = doubt.channel.name_in(dataset);
+    let pairs: Vec<String> = doubt
+        .pairs
+        .iter()
+        .map(|&pair| dataset.pair_name(pair))
+        .collect();
+    let names = pairs.join(", ");
+    let place = conditions_text(doubt, dataset);
+    let alike = if doubt.all_responses {
+        format!(", like all responses of {channel},")
+    } else {
+        String::new()
+    };
+    let is_single = pairs.len() == 1;
+    match doubt.convention {
+        Convention::Sign => {
+            let differ = if is_single { "differs" } else { "differ" };
+            format!(
+                "{names} {differ} by half a turn at all frequencies{alike} {place}: {channel} of \
+                 the identified models has the other sign. Turn it?"
+            )
+        }
+        Convention::Factor(factor) => {
+            let are = if is_single { "is" } else { "are" };
+            format!(
+                "{names} of the identified models {are} {} times that of the physics model{alike} \
+                 {place}{}. Check the unit of {channel}",
+                rounded_to_three_digits(factor),
+                known_units_text(factor)
+            )
+        }
+    }
+}
+
+/// Names the conditions: "in every condition", "in condition 3", "in conditions 3, 8".
+fn conditions_text(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
+    let ids: Vec<String> = doubt.conditions.iter().map(ToString::to_string).collect();
+    match ids.len() {
+        count if count == dataset.conditions().len() => "in every condition".to_owned(),
+        1 => format!("in condition {}", ids[0]),
+        _ => format!("in conditions {}", ids.join(", ")),
+    }
+}
+
+/// Names the units with nearly this conversion factor: ", near 57.3: radians and degrees"; empty
+/// where none is near.
+fn known_units_text(factor: f64) -> String {
+    for (known, units) in KNOWN_FACTORS {
+        if is_near(factor, known) {
+            let known = if factor < 1.0 {
+                format!("1/{}", rounded_to_three_digits(known))
+            } else {
+                rounded_to_three_digits(known)
+            };
+            return format!(", near {known}: {units}");
+        }
+    }
+    String::new()
+}
+
+fn is_near(factor: f64, known: f64) -> bool {
+    let ratio = if factor < 1.0 {
+        factor * known
+    } else {
+        factor / known
+    };
+    (1.0 / NEAR_FACTOR..=NEAR_FACTOR).contains(&ratio)
+}

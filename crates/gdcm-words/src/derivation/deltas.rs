@@ -1,0 +1,141 @@
+//! Derives G and D (M6).
+
+use gdcm_method::correction::delta::GainSource;
+use gdcm_method::fidelity::Mismatch;
+use gdcm_model::dataset::{BundleKind, Pair};
+use gdcm_model::number_format::five_digits;
+use gdcm_model::units::{db_to_ratio, s_to_ms};
+
+use super::sample_words::{median_words, spread};
+use super::{Context, Derivation};
+
+/// Returns `|H_ref| / |H_sim|` at each frequency.
+pub(super) fn gain_ratios(mismatch: &Mismatch) -> Vec<f64> {
+    mismatch
+        .magnitude_db
+        .iter()
+        .map(|error_db| db_to_ratio(-error_db))
+        .collect()
+}
+
+/// Returns `Δφ/ω` \[ms\] at each frequency, on the branch by M6b.
+pub(super) fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
+    let phases = mismatch.phase_difference(omega);
+    phases
+        .iter()
+        .zip(mismatch.omega(omega))
+        .map(|(phase, omega)| s_to_ms(phase / omega))
+        .collect()
+}
+
+/// Describes the median over the frequencies with weight.
+fn weighted_median_words(mismatch: &Mismatch, values: &[f64]) -> String {
+    match mismatch.coherence_weights {
+        None => median_words(values),
+        Some(_) => format!("where half of the weight lies of {}", spread(values)),
+    }
+}
+
+/// Derives a response's delta gain `G`.
+pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
+    let value = context.result.wanted_gain(pair)?;
+    let mismatch = context.compensated_mismatch(pair)?;
+    let title = context.title(&format!("G of {}", context.pair(pair)));
+    if context.result.compensated.is_none()
+        && context.settings().gain_source == GainSource::MeanOfPairs
+    {
+        return Some(mean_gain(context, title, value));
+    }
+    let (equation, section) = match context.result.compensated {
+        None => ("G = median_ω |H_ref| / |H_sim|", "M6, eq. (5)"),
+        Some(_) => ("G = median_ω |H_ref| / |L_o H_sim L_i|", "M15.5, eq. (5)"),
+    };
+    let median = weighted_median_words(mismatch, &gain_ratios(mismatch));
+    Some(Derivation {
+        title,
+        equation: equation.to_owned(),
+        with_numbers: vec![format!("G = {median} = {}", five_digits(value))],
+        rests_on: context.models_and_frequencies(mismatch),
+        section,
+        value,
+    })
+}
+
+/// Derives a delta gain that is the mean over all pairs between kept models.
+fn mean_gain(context: &Context<'_>, title: String, value: f64) -> Derivation {
+    let [physics, identified] = BundleKind::BOTH.map(|kind| {
+        let scores = &context.result.representative(kind).scores;
+        scores.iter().flatten().count()
+    });
+    let models = format!("{physics} physics and {identified} identified models that are kept");
+    Derivation {
+        title,
+        equation:
+            "G = exp mean ln median_ω |H_ref| / |H_sim|, the mean over all pairs of kept models"
+                .to_owned(),
+        with_numbers: vec![format!("G = {}", five_digits(value))],
+        rests_on: vec![models, context.band()],
+        section: "M6, eq. (5)",
+        value,
+    }
+}
+
+/// Derives a response's delta delay `D`: over the band where that is asked for, otherwise the
+/// median.
+pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
+    let value = s_to_ms(context.result.wanted_delay_s(pair)?);
+    let mismatch = context.mismatch(pair)?;
+    let mut rests_on = context.models_and_frequencies(mismatch);
+    let is_of_band = context.result.asks_band_delays();
+    let (equation, step, section) = if is_of_band {
+        (
+            "D = Σ W ω Δφ(H_sim, H_ref) / Σ W ω²",
+            band_delay_words(context, mismatch),
+            "M15.2",
+        )
+    } else {
+        (
+            "D = median_ω Δφ(H_sim, H_ref) / ω",
+            weighted_median_words(mismatch, &delays_ms(mismatch, context.omega())),
+            "M6, eq. (9)",
+        )
+    };
+    if !is_of_band && mismatch.leaves_half_a_turn() {
+        rests_on.push(
+            "at each frequency the turn nearest to the pure delay that fits best (M6b)".to_owned(),
+        );
+    }
+    Some(Derivation {
+        title: context.title(&format!("D of {}", context.pair(pair))),
+        equation: equation.to_owned(),
+        with_numbers: vec![format!("D = {step} = {} ms", five_digits(value))],
+        rests_on,
+        section,
+        value,
+    })
+}
+
+/// Writes the slope as a quotient: a least-squares line through the missing phase.
+fn band_delay_words(context: &Context<'_>, mismatch: &Mismatch) -> String {
+    let omega = mismatch.omega(context.omega());
+    let phase = mismatch.phase_difference(context.omega());
+    format!(
+        "{} rad²/s / {} rad²/s²",
+        five_digits(weighted_sum(mismatch, omega, &phase)),
+        five_digits(weighted_sum(mismatch, omega, omega))
+    )
+}
+
+/// Returns `Σ W ω x`.
+fn weighted_sum(mismatch: &Mismatch, omega: &[f64], x: &[f64]) -> f64 {
+    let weights = mismatch.weights();
+    (0..omega.len())
+        .map(|index| {
+            let weight = match weights {
+                Some(weights) => weights[index],
+                None => 1.0,
+            };
+            weight * (omega[index] * x[index])
+        })
+        .sum()
+}

@@ -1,0 +1,110 @@
+//! Error bars on explained figures, and the figures after each swap (M13).
+
+use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::units::s_to_ms;
+use gdcm_study::results::model_swap::ModelSwap;
+use gdcm_study::results::reported_error::{reports_error, takes_reported_error};
+use gdcm_study::{Analysis, ConditionAnalysis};
+
+use super::explain_target::ExplainTarget;
+
+/// For a net gain that is not constrained and for a channel, where the identified models report
+/// their own error.
+const SPREAD_ALONE: &str = "its identification part is the spread of the models alone, too small \
+                            where they share their records: the error that a model tells of itself \
+                            counts for G, D and the net gains that are held (M13.2)";
+
+/// Describes a figure's error bar with its parts, and the figure after every swap; empty where it
+/// has no error bar, or where that was not computed.
+pub(super) fn error_bar_lines(analysis: &Analysis, target: &ExplainTarget) -> Vec<String> {
+    lines_of(analysis, target).unwrap_or_default()
+}
+
+fn lines_of(analysis: &Analysis, target: &ExplainTarget) -> Option<Vec<String>> {
+    let (condition, scalar) = scalar_of(analysis, target)?;
+    let uncertainty = analysis.uncertainty.as_ref()?;
+    let found = uncertainty.conditions.get(&condition)?;
+    let bar = found.bars[scalar].as_ref()?;
+    let mut lines = bar_lines(bar, scalar, uncertainty.level);
+    if let Some(result) = analysis.condition(condition) {
+        if !takes_reported_error(result, scalar) && reports_error(analysis, result) {
+            lines.push(SPREAD_ALONE.to_owned());
+        }
+        for swap in &found.substitutions.substitutions {
+            lines.push(swap_words(result, swap, scalar));
+        }
+    }
+    Some(lines)
+}
+
+/// Returns the condition and the scalar with the requested error bar.
+fn scalar_of(analysis: &Analysis, target: &ExplainTarget) -> Option<(ConditionId, Scalar)> {
+    Some(match target {
+        ExplainTarget::DeltaGain(id, pair) => (*id, Scalar::Gain(*pair)),
+        ExplainTarget::DeltaDelay(id, pair) => (*id, analysis.condition(*id)?.wanted_delay(*pair)),
+        ExplainTarget::NetGain(id, pair) => (*id, Scalar::NetGain(*pair)),
+        ExplainTarget::Gain(id, channel) => (*id, Scalar::ChannelGain(*channel)),
+        ExplainTarget::Delay(id, channel) => (*id, Scalar::ChannelDelay(*channel)),
+        _ => return None,
+    })
+}
+
+/// Describes the error bar, its two parts, and its remarks.
+fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
+    let whole = match (bar.half_width(level), bar.degrees_of_freedom()) {
+        (Some(half_width), Some(degrees)) => format!(
+            "bar of {:.0} %: ± {} = t({degrees:.1}) · {} (M13)",
+            100.0 * level,
+            deviation_words(scalar, half_width),
+            deviation_words(scalar, bar.deviation())
+        ),
+        _ => "no bar (M13)".to_owned(),
+    };
+    let mut lines = vec![
+        whole,
+        part_words("trim", scalar, bar.trim),
+        part_words("identification", scalar, bar.identification),
+    ];
+    lines.extend(bar.remarks().into_iter().map(str::to_owned));
+    if bar.left_out > 0 {
+        lines.push(format!(
+            "{} substitutions have no such figure",
+            bar.left_out
+        ));
+    }
+    lines
+}
+
+fn part_words(name: &str, scalar: Scalar, part: Option<VarianceComponent>) -> String {
+    match part {
+        Some(part) => format!(
+            "{name}: {} ({:.1} degrees of freedom)",
+            deviation_words(scalar, part.variance.sqrt()),
+            part.degrees_of_freedom
+        ),
+        None => format!("{name}: not included"),
+    }
+}
+
+/// Formats a deviation: delays in ms, gains in percent.
+fn deviation_words(scalar: Scalar, deviation: f64) -> String {
+    if scalar.is_delay() {
+        format!("{:.2} ms", s_to_ms(deviation))
+    } else {
+        format!("{:.2} %", 100.0 * deviation)
+    }
+}
+
+/// Describes a figure after a swap: "with physics model roll+5: 1.0423".
+fn swap_words(result: &ConditionAnalysis, swap: &ModelSwap, scalar: Scalar) -> String {
+    let kind = swap.bundle;
+    let name = &result.condition.bundle(kind)[swap.model].name;
+    let figure = swap.figures.as_ref().and_then(|figures| figures[scalar]);
+    let words = match figure {
+        Some(figure) if scalar.is_delay() => format!("{:.2} ms", s_to_ms(figure)),
+        Some(figure) => format!("{:.4}", figure.exp()),
+        None => "none".to_owned(),
+    };
+    format!("with {kind} model {name}: {words}")
+}

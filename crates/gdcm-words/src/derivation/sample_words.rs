@@ -1,0 +1,60 @@
+//! Describes samples: range and median.
+
+use gdcm_model::number_format::five_digits;
+
+/// Describes how many values there are, and their range.
+pub(super) fn spread(values: &[f64]) -> String {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    match sorted.as_slice() {
+        [] => "no values".to_owned(),
+        [only] => five_digits(*only),
+        [least, .., most] => format!(
+            "{} values from {} to {}",
+            sorted.len(),
+            five_digits(*least),
+            five_digits(*most)
+        ),
+    }
+}
+
+/// Describes how values lead to their median.
+pub(super) fn median_words(values: &[f64]) -> String {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted.len() / 2;
+    match sorted.len() {
+        0 => "no values".to_owned(),
+        count if count % 2 == 1 => format!(
+            "the middle one of {}: {}",
+            spread(values),
+            five_digits(sorted[middle])
+        ),
+        _ => {
+            let below = five_digits(sorted[middle - 1]);
+            let above = five_digits(sorted[middle]);
+            format!(
+                "the mean of the middle two of {}: ({below} + {above}) / 2",
+                spread(values)
+            )
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_median_is_told_from_its_middle_values() {
+        assert_eq!(
+            median_words(&[3.0, 1.0, 2.0]),
+            "the middle one of 3 values from 1.0000 to 3.0000: 2.0000"
+        );
+        let even = median_words(&[4.0, 1.0, 3.0, 2.0]);
+        assert_eq!(
+            even,
+            "the mean of the middle two of 4 values from 1.0000 to 4.0000: (2.0000 + 3.0000) / 2"
+        );
+    }
+}

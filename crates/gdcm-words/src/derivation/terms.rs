@@ -1,0 +1,112 @@
+//! The equations' symbols with their meanings.
+
+/// Every symbol used in these equations, its meaning, and its unit where it has one
+/// (docs/method.md).
+const TERMS: [(&str, &str); 30] = [
+    ("G", "gain that the response wants, a ratio"),
+    ("D", "delay that the response wants [s]"),
+    ("H_ref", "response of the identified representative"),
+    ("H_sim", "response of the physics representative"),
+    (
+        "Δφ",
+        "phase of H_ref less that of H_sim, unwrapped [rad; in J deg]",
+    ),
+    ("ΔdB", "magnitude of H_sim less that of H_ref [dB]"),
+    ("ω", "frequency [rad/s]"),
+    (
+        "W",
+        "weight of a frequency, by coherence where that is used",
+    ),
+    ("k_o", "gain of the output channel"),
+    ("k_i", "gain of the input channel"),
+    ("τ_o", "delay of the output channel [s]"),
+    ("τ_i", "delay of the input channel [s]"),
+    ("τ", "delay of a channel [s]"),
+    ("k", "gain of a channel"),
+    ("L_o", "lead filter of the output channel"),
+    ("L_i", "lead filter of the input channel"),
+    ("w", "weight of a response, 0 where it is ignored"),
+    ("w_k", "weight of coordinate k of the trim"),
+    ("α", "weight of the corrections of the outputs"),
+    ("LB", "lower bound of the channels"),
+    ("UB", "upper bound of the channels"),
+    ("q", "quantile that sets the bounds"),
+    (
+        "J",
+        "cost of a response: what is left of magnitude and phase",
+    ),
+    ("ΔJ", "what the correction changes of J"),
+    (
+        "d",
+        "distance of two models: root of the mean J of one against the other",
+    ),
+    (
+        "s_a",
+        "score of a model: how far the others of its bundle are",
+    ),
+    (
+        "r_a",
+        "discontinuity ratio: the distance found over the one that the trims explain",
+    ),
+    ("p_ak", "coordinate k of the trim of model a"),
+    ("v", "airspeed, from −1 to 1 over the conditions"),
+    ("V", "airspeed [kt]"),
+];
+
+/// Returns an equation's symbols with their meanings, as they appear.
+pub(super) fn terms_of(equation: &str) -> Vec<(&'static str, &'static str)> {
+    let mut found: Vec<(usize, (&str, &str))> = Vec::new();
+    for (symbol, meaning) in TERMS {
+        if let Some(place) = place_of(symbol, equation) {
+            found.push((place, (symbol, meaning)));
+        }
+    }
+    found.sort_by_key(|(place, _)| *place);
+    found.into_iter().map(|(_, term)| term).collect()
+}
+
+/// Returns a symbol's position in an equation, where it is not a part of another symbol.
+fn place_of(symbol: &str, equation: &str) -> Option<usize> {
+    for (place, _) in equation.match_indices(symbol) {
+        let before = equation[..place].chars().next_back();
+        let after = equation[place + symbol.len()..].chars().next();
+        if !is_symbol_part(before) && !is_symbol_part(after) {
+            return Some(place);
+        }
+    }
+    None
+}
+
+/// Returns whether a neighbouring character belongs to a symbol.
+fn is_symbol_part(neighbour: Option<char>) -> bool {
+    neighbour.is_some_and(|c| c.is_alphabetic() || c == '_')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn terms(equation: &str) -> Vec<&'static str> {
+        terms_of(equation)
+            .into_iter()
+            .map(|(symbol, _)| symbol)
+            .collect()
+    }
+
+    #[test]
+    fn the_symbols_of_an_equation_are_found_and_no_part_of_another() {
+        assert_eq!(
+            terms("G = median_ω |H_ref| / |L_o H_sim L_i|"),
+            ["G", "H_ref", "L_o", "H_sim", "L_i"]
+        );
+        let gains = terms(
+            "min Σ w (G − k_o k_i)² + α Σ (k_o − 1)², subject to k_o k_i = G (held), LB ≤ k ≤ UB",
+        );
+        assert_eq!(gains, ["w", "G", "k_o", "k_i", "α", "LB", "k", "UB"]);
+        assert_eq!(
+            terms("D = Σ W ω Δφ(H_sim, H_ref) / Σ W ω²"),
+            ["D", "W", "ω", "Δφ", "H_sim", "H_ref"]
+        );
+        assert_eq!(terms("ΔJ = J(corrected) − J(uncorrected)"), ["ΔJ", "J"]);
+    }
+}

@@ -1,0 +1,17 @@
+//! The analysis of the reference dataset with leads, and sentences and tables about it.
+
+use std::sync::{Arc, LazyLock};
+
+use gdcm_study::decisions::setting;
+use gdcm_study::{Analysis, Engine, PhaseCorrection, Study, Unobserved};
+
+use crate::reference_tests::reference_dataset;
+
+/// The analysis of the reference dataset with leads.
+pub(crate) static EXAMPLE: LazyLock<Analysis> = LazyLock::new(|| {
+    let mut study = Study::new(Arc::new(reference_dataset()));
+    study
+        .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+        .unwrap();
+    Engine::default().analyze(&study, &Unobserved).unwrap()
+});

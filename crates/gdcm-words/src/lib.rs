@@ -1,0 +1,53 @@
+//! The Gain-Delay Correction Method: results as sentences and tables.
+//!
+//! **Question answered:** how does the program say what it found?
+//!
+//! The crates below return typed facts with numbers; this crate turns them into English for the
+//! terminal, the window, the report and the exported files. Nothing is computed here but the
+//! numbers in a sentence.
+//!
+//! Sentences: [`remark`] and [`condition_remarks`], with [`leads`] and [`missed_targets`], for a
+//! condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for suspected faults;
+//! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`decisions`] for its
+//! decisions. Tables: [`table`], [`requirements`], [`time_histories`]. Explained figures:
+//! [`derivation`].
+//!
+//! # Example
+//!
+//! ```
+//! use gdcm_words::Table;
+//!
+//! let mut table = Table::new("Condition 3", ["response", "G [-]"]);
+//! table.row(["LON → Q", "1.346"]);
+//! assert_eq!(table.text(), "Condition 3\nresponse  G [-]\nLON → Q   1.346\n");
+//! ```
+
+pub mod assessment;
+pub mod caution;
+pub mod channel_time_skew;
+pub mod condition_remarks;
+pub mod convention_doubt;
+pub mod couplings;
+pub mod decisions;
+pub mod derivation;
+pub mod leads;
+pub mod missed_targets;
+pub mod remark;
+pub mod requirements;
+pub mod schedule;
+pub mod table;
+pub mod time_histories;
+pub mod uncertainty;
+
+pub use derivation::ExplainTarget;
+pub use table::Table;
+
+#[cfg(test)]
+mod couplings_tests;
+#[cfg(test)]
+mod example_tests;
+#[cfg(test)]
+#[path = "../../gdcm-study/src/reference_tests.rs"]
+mod reference_tests;
+#[cfg(test)]
+mod time_histories_tests;

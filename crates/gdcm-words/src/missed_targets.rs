@@ -1,0 +1,21 @@
+//! Sentences about constrained responses that miss their targets.
+
+use gdcm_method::correction::Solution;
+use gdcm_study::Study;
+
+/// Describes what constrained responses achieve that miss their targets, in a single text; then
+/// each conflict that causes it.
+pub fn missed_target_texts(study: &Study, solution: &Solution) -> Vec<String> {
+    let (inputs, outputs) = study.dataset.names_of_channels();
+    let band_top = study.settings.band.max();
+    let misses: Vec<String> = solution
+        .unmatched
+        .iter()
+        .map(|miss| miss.words(band_top, &inputs, &outputs))
+        .collect();
+    let mut texts = vec![misses.join(" ")];
+    for conflict in &solution.conflicts {
+        texts.push(conflict.words(&inputs, &outputs));
+    }
+    texts
+}

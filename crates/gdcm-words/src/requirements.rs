@@ -1,0 +1,550 @@
+//! Requirements as tables (M17). [`RequirementsOverview`] compares every condition's corrected
+//! model with the identified model, requirement by requirement:
+//!
+//! ```text
+//! bandwidth     100 (omega_BW / omega_BW of the identified model - 1) [%]
+//! phase delay   tau_p - tau_p of the identified model [ms]
+//! records       share of time inside each tolerance that is not of an integral [%]
+//! modes         those beyond their tolerance, of those that have one and are determined
+//! ```
+
+use gdcm_method::requirements::{BandwidthRule, ModeVerdict, NamedBy};
+use gdcm_model::dataset::{ConditionId, Dataset, Pair};
+use gdcm_model::number_format::decimals_or_dash;
+use gdcm_model::units::{number, s_to_ms, signed, telling};
+use gdcm_study::decisions::requirement_settings::OverviewLimits;
+use gdcm_study::results::required_bandwidth::BandwidthFinding;
+use gdcm_study::results::required_modes::{ModeFinding, ModeNumbers};
+use gdcm_study::results::requirement_role::RequirementRole;
+use gdcm_study::results::requirements::{Requirements, SummaryFinding};
+use gdcm_study::results::time_histories::TimeHistories;
+
+use crate::table::Table;
+use crate::time_histories::{cost_cells, cost_heads, output_weights_text, percent_rounded_down};
+
+/// A modulus's heading.
+const MODULUS: &str = "|\u{3bb}| [rad/s]";
+
+/// Tabulates every on-axis bandwidth and phase delay, with cautions.
+pub fn bandwidth_table(requirements: &Requirements, dataset: &Dataset) -> Table {
+    let columns = [
+        "condition",
+        "airspeed [kt]",
+        "response",
+        "model",
+        "ω_BW [rad/s]",
+        "ω_phase [rad/s]",
+        "ω_gain [rad/s]",
+        "ω180 [rad/s]",
+        "τ_p [ms]",
+        "remark",
+    ];
+    let mut table = Table::new("Bandwidth and phase delay of the attitudes", columns);
+    for finding in &requirements.bandwidth {
+        table.row([
+            finding.condition.to_string(),
+            telling(finding.airspeed_kt, 0),
+            dataset.pair_name(finding.pair),
+            finding.role.name().to_owned(),
+            decimals_or_dash(finding.omega_bw_rad_s, 2),
+            decimals_or_dash(finding.omega_phase_rad_s, 2),
+            decimals_or_dash(finding.omega_gain_rad_s, 2),
+            decimals_or_dash(finding.omega_180_rad_s, 2),
+            decimals_or_dash(finding.phase_delay_s.map(s_to_ms), 0),
+            bandwidth_remark(finding),
+        ]);
+    }
+    table
+}
+
+/// Returns the cautions about a bandwidth, or why it has no number.
+fn bandwidth_remark(finding: &BandwidthFinding) -> String {
+    let mut words = Vec::new();
+    let absent = finding
+        .absent
+        .get("omega_bw_rad_s")
+        .or_else(|| finding.absent.get("phase_delay_s"));
+    if let Some(why) = absent {
+        words.push(why.as_str());
+    }
+    if let Some(rule) = finding.rule
+        && (finding.gain_limited || words.is_empty())
+    {
+        words.push(match rule {
+            BandwidthRule::Gain => "gain-limited: the standard warns of it",
+            BandwidthRule::Phase => "of the phase margin",
+            BandwidthRule::PhaseGainUnknown => "of the phase margin; the gain margin is not known",
+        });
+    }
+    if !finding.rests_above_band.is_empty() {
+        words.push("rests on the model above the band");
+    }
+    if !finding.rests_below_band.is_empty() {
+        words.push("rests on the model below the band");
+    }
+    if finding.phase_delay_of_line {
+        words.push("τ_p of the least-squares line");
+    }
+    words.join("; ")
+}
+
+/// Tabulates a condition's modes: identified, physics, and physics with the study's couplings where
+/// there are any.
+pub fn mode_table(requirements: &Requirements, condition: ConditionId) -> Table {
+    let modes: Vec<&ModeFinding> = requirements
+        .modes
+        .iter()
+        .filter(|mode| mode.condition == condition)
+        .collect();
+    let is_coupled = modes.iter().any(|mode| mode.corrected_verdict.is_some());
+    let has_deviations = modes.iter().any(|mode| mode.identified_deviation.is_some());
+    let deviations = if has_deviations {
+        "standard deviations of flown modes known"
+    } else {
+        "standard deviations of flown modes not known (they are of a model identified in this \
+         session): not determined is what lies below the band"
+    };
+    let title = format!("Modes of condition {condition}; {deviations}");
+    let mut table = Table::new(title, mode_columns(is_coupled));
+    for mode in modes {
+        table.row(mode_row(mode));
+    }
+    table
+}
+
+/// Returns the headings above [`mode_row`].
+fn mode_columns(is_coupled: bool) -> Vec<String> {
+    let heads = |model: &str| {
+        [MODULUS, "\u{3b6}", "period [s]"].map(|quantity| format!("{model} {quantity}"))
+    };
+    let mut columns = vec!["mode".to_owned(), "named by".to_owned()];
+    columns.extend(heads("flown"));
+    columns.extend(heads("physics"));
+    columns.push("physics: tolerance".to_owned());
+    if is_coupled {
+        columns.extend(heads("corrected"));
+        columns.push("corrected: tolerance".to_owned());
+    }
+    columns
+}
+
+fn mode_row(mode: &ModeFinding) -> Vec<String> {
+    let name = match mode.name {
+        Some(name) => name.to_string(),
+        None => format!("mode {}", mode.number),
+    };
+    let named_by = match mode.named_by {
+        NamedBy::States => "states",
+        _ => "frequency",
+    };
+    let entry = match &mode.tolerance {
+        Some(tolerance) => format!(" ({})", tolerance.entry),
+        None => String::new(),
+    };
+    let mut cells = vec![name, named_by.to_owned()];
+    cells.extend(mode_cells(Some(&mode.identified)));
+    cells.extend(mode_cells(mode.physics.as_ref()));
+    cells.push(format!("{}{entry}", mode_verdict_words(mode.verdict)));
+    if let Some(verdict) = mode.corrected_verdict {
+        cells.extend(mode_cells(mode.corrected.as_ref()));
+        cells.push(format!("{}{entry}", mode_verdict_words(verdict)));
+    }
+    cells
+}
+
+/// Formats a mode's modulus, damping ratio and period; dashes where there is none.
+fn mode_cells(mode: Option<&ModeNumbers>) -> [String; 3] {
+    [
+        decimals_or_dash(
+            mode.map(|mode| mode.pole_real_rad_s.hypot(mode.pole_imaginary_rad_s)),
+            2,
+        ),
+        decimals_or_dash(mode.and_then(|mode| mode.values.damping_ratio), 2),
+        decimals_or_dash(mode.and_then(|mode| mode.values.period_s), 1),
+    ]
+}
+
+/// Returns the words for the verdict on a mode.
+#[must_use]
+pub fn mode_verdict_words(verdict: ModeVerdict) -> &'static str {
+    match verdict {
+        ModeVerdict::Within => "within",
+        ModeVerdict::Outside => "outside",
+        ModeVerdict::NotDetermined => "not determined by flight",
+        ModeVerdict::NoTolerance => "no tolerance",
+        ModeVerdict::NotPaired => "unpaired",
+    }
+}
+
+/// Tabulates, for every condition and model, mean J and the share of the band inside the
+/// unnoticeable envelopes; with flight records, also `J_rms` and Theil's coefficients.
+pub fn summary_table(requirements: &Requirements, histories: Option<&TimeHistories>) -> Table {
+    let histories = histories.filter(|histories| !histories.records.is_empty());
+    let mut columns = [
+        "condition",
+        "airspeed [kt]",
+        "model",
+        "J on-axis",
+        "J of all",
+        "in MUAD on-axis [%]",
+        "in MUAD of all [%]",
+    ]
+    .map(str::to_owned)
+    .to_vec();
+    let mut title = "Summary: models against flight".to_owned();
+    if let Some(histories) = histories {
+        columns.extend(cost_heads(histories));
+        title.push_str(&format!(
+            "; J_rms over all records of a condition, {}",
+            output_weights_text(histories)
+        ));
+    }
+    let mut table = Table::new(title, columns);
+    for finding in &requirements.summary {
+        let mut cells = summary_cells(finding);
+        if let Some(histories) = histories {
+            cells.extend(cost_cells(histories, finding.condition, finding.role));
+        }
+        table.row(cells);
+    }
+    if let Some(histories) = histories {
+        add_identified_rows(&mut table, histories);
+    }
+    table
+        .rows
+        .sort_by_key(|row| row[0].parse::<i64>().unwrap_or(i64::MAX));
+    table
+}
+
+fn summary_cells(finding: &SummaryFinding) -> Vec<String> {
+    let percent = |share: Option<f64>| decimals_or_dash(share.map(|share| 100.0 * share), 0);
+    vec![
+        finding.condition.to_string(),
+        telling(finding.airspeed_kt, 0),
+        finding.role.name().to_owned(),
+        decimals_or_dash(finding.mean_j_on_axis, 1),
+        decimals_or_dash(finding.mean_j_all, 1),
+        percent(finding.muad_share_on_axis),
+        percent(finding.muad_share_all),
+    ]
+}
+
+/// Adds the identified models, the others' reference, about which time histories alone say
+/// anything.
+fn add_identified_rows(table: &mut Table, histories: &TimeHistories) {
+    let role = RequirementRole::Identified;
+    for finding in &histories.records {
+        if finding.role != role {
+            continue;
+        }
+        let mut row = vec![
+            finding.condition.to_string(),
+            telling(finding.airspeed_kt, 0),
+            role.name().to_owned(),
+        ];
+        row.extend(["-"; 4].map(str::to_owned));
+        row.extend(cost_cells(histories, finding.condition, role));
+        if !table.rows.contains(&row) {
+            table.row(row);
+        }
+    }
+}
+
+/// Returns the summary in a row of [`summary_table`]; `None` for the identified model, the others'
+/// reference.
+pub fn summary_of_row<'a>(
+    requirements: &'a Requirements,
+    row: &[String],
+) -> Option<&'a SummaryFinding> {
+    let [condition, _, role, ..] = row else {
+        return None;
+    };
+    requirements
+        .summary
+        .iter()
+        .find(|finding| finding.condition.to_string() == *condition && finding.role.name() == role)
+}
+
+/// Every condition's corrected model against the identified model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RequirementsOverview {
+    /// A row for each requirement with its limit, a column for each condition; a dash where there
+    /// is no number.
+    pub table: Table,
+    /// Whether a cell is beyond its limit, row by row.
+    outside: Vec<Vec<bool>>,
+}
+
+/// Columns that identify a row's requirement.
+const HEADS: [&str; 3] = ["requirement", "unit", "limit"];
+
+/// A requirement in the overview, with its unit and its limit.
+struct OverviewRow {
+    requirement: String,
+    unit: &'static str,
+    limit: String,
+}
+
+/// A cell's value, and whether it is beyond its limit.
+struct Judged {
+    text: String,
+    is_outside: bool,
+}
+
+impl RequirementsOverview {
+    /// How many columns precede the first condition.
+    pub const HEADS: usize = HEADS.len();
+
+    /// Compares every condition's corrected model with the identified model; with flight records,
+    /// also their shares inside.
+    pub fn new(
+        requirements: &Requirements,
+        dataset: &Dataset,
+        histories: Option<&TimeHistories>,
+        limits: &OverviewLimits,
+    ) -> Self {
+        let ids: Vec<ConditionId> = requirements
+            .summary
+            .iter()
+            .filter(|finding| finding.role == RequirementRole::Corrected)
+            .map(|finding| finding.condition)
+            .collect();
+        let mut columns = HEADS.map(str::to_owned).to_vec();
+        columns.extend(ids.iter().map(ToString::to_string));
+        let title = "Corrected against identified models, condition by condition; the limits are \
+                     the program's, of no standard";
+        let mut overview = Self {
+            table: Table::new(title, columns),
+            outside: Vec::new(),
+        };
+        for pair in dataset.measuring_pairs().marked() {
+            if has_bandwidth(requirements, pair) {
+                let name = dataset.pair_name(pair);
+                overview.add_bandwidth(requirements, &ids, pair, &name, limits);
+            }
+        }
+        if let Some(histories) = histories {
+            overview.add_histories(histories, &ids, limits);
+        }
+        overview.add(
+            OverviewRow {
+                requirement: "modes beyond tolerance".to_owned(),
+                unit: "of those with a tolerance",
+                limit: "0".to_owned(),
+            },
+            &ids,
+            |id| modes_outside(requirements, id),
+        );
+        overview
+    }
+
+    /// Adds a response's bandwidth and phase delay.
+    fn add_bandwidth(
+        &mut self,
+        requirements: &Requirements,
+        ids: &[ConditionId],
+        pair: Pair,
+        name: &str,
+        limits: &OverviewLimits,
+    ) {
+        let both = |id: ConditionId, value: fn(&BandwidthFinding) -> Option<f64>| {
+            let corrected = requirements
+                .bandwidth_of(id, pair, RequirementRole::Corrected)
+                .and_then(value);
+            let identified = requirements
+                .bandwidth_of(id, pair, RequirementRole::Identified)
+                .and_then(value);
+            corrected.zip(identified)
+        };
+        let bandwidth = OverviewRow {
+            requirement: format!("{name}: bandwidth"),
+            unit: "%",
+            limit: plus_minus(100.0 * limits.bandwidth),
+        };
+        self.add(bandwidth, ids, |id| {
+            let (corrected, identified) = both(id, |finding| finding.omega_bw_rad_s)?;
+            let change = corrected / identified - 1.0;
+            Some(Judged {
+                text: signed(100.0 * change, 0),
+                is_outside: change.abs() > limits.bandwidth,
+            })
+        });
+        let phase_delay = OverviewRow {
+            requirement: format!("{name}: phase delay"),
+            unit: "ms",
+            limit: plus_minus(s_to_ms(limits.phase_delay_s)),
+        };
+        self.add(phase_delay, ids, |id| {
+            let (corrected, identified) = both(id, |finding| finding.phase_delay_s)?;
+            let change_s = corrected - identified;
+            Some(Judged {
+                text: signed(s_to_ms(change_s), 0),
+                is_outside: change_s.abs() > limits.phase_delay_s,
+            })
+        });
+    }
+
+    /// Adds the share inside each measured quantity's tolerance, except integrals.
+    fn add_histories(
+        &mut self,
+        histories: &TimeHistories,
+        ids: &[ConditionId],
+        limits: &OverviewLimits,
+    ) {
+        for quantity in histories.measured_quantities() {
+            let row = OverviewRow {
+                requirement: format!("{quantity} inside"),
+                unit: "% of time",
+                limit: format!("\u{2265} {}", rounded(100.0 * limits.share_inside)),
+            };
+            self.add(row, ids, |id| {
+                let share = histories.share_inside(id, RequirementRole::Corrected, quantity)?;
+                Some(Judged {
+                    text: percent_rounded_down(Some(share)),
+                    is_outside: share < limits.share_inside,
+                })
+            });
+        }
+    }
+
+    /// Adds a requirement with a cell for each condition.
+    fn add(
+        &mut self,
+        row: OverviewRow,
+        ids: &[ConditionId],
+        judge: impl Fn(ConditionId) -> Option<Judged>,
+    ) {
+        let mut cells = vec![row.requirement, row.unit.to_owned(), row.limit];
+        let mut outside = vec![false; HEADS.len()];
+        for id in ids {
+            match judge(*id) {
+                Some(judged) => {
+                    cells.push(judged.text);
+                    outside.push(judged.is_outside);
+                }
+                None => {
+                    cells.push("-".to_owned());
+                    outside.push(false);
+                }
+            }
+        }
+        self.table.row(cells);
+        self.outside.push(outside);
+    }
+
+    /// Returns whether a cell is beyond its limit.
+    pub fn is_outside(&self, row: usize, column: usize) -> bool {
+        self.outside
+            .get(row)
+            .and_then(|row| row.get(column))
+            .copied()
+            .unwrap_or(false)
+    }
+}
+
+/// Returns whether any model has a bandwidth or a phase delay in a response.
+fn has_bandwidth(requirements: &Requirements, pair: Pair) -> bool {
+    requirements.bandwidth.iter().any(|finding| {
+        finding.pair == pair
+            && (finding.omega_bw_rad_s.is_some() || finding.phase_delay_s.is_some())
+    })
+}
+
+/// Counts the corrected model's modes beyond their tolerance; `None` where no mode with a tolerance
+/// is determined.
+fn modes_outside(requirements: &Requirements, id: ConditionId) -> Option<Judged> {
+    let mut within = 0;
+    let mut outside = 0;
+    for mode in &requirements.modes {
+        if mode.condition != id {
+            continue;
+        }
+        // Gains and delays move no pole: without couplings the corrected model has the physics
+        // model's poles.
+        match mode.corrected_verdict.unwrap_or(mode.verdict) {
+            ModeVerdict::Within => within += 1,
+            ModeVerdict::Outside => outside += 1,
+            ModeVerdict::NotDetermined | ModeVerdict::NoTolerance | ModeVerdict::NotPaired => {}
+        }
+    }
+    if within + outside == 0 {
+        return None;
+    }
+    Some(Judged {
+        text: format!("{outside} of {}", within + outside),
+        is_outside: outside > 0,
+    })
+}
+
+/// Formats a symmetric limit: "±10".
+fn plus_minus(value: f64) -> String {
+    format!("\u{b1}{}", rounded(value))
+}
+
+/// Formats a limit without floating-point noise from its unit.
+fn rounded(value: f64) -> String {
+    number((1e6 * value).round() / 1e6)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gdcm_study::Execution;
+    use gdcm_study::results::required_modes::KnownPoles;
+    use gdcm_study::results::requirements::requirements_of;
+
+    use crate::example_tests::EXAMPLE;
+
+    #[test]
+    fn what_is_beyond_its_limit_is_marked_and_nothing_else() {
+        let analysis = &*EXAMPLE;
+        let dataset = &analysis.study.dataset;
+        let found =
+            requirements_of(analysis, &KnownPoles::default(), &Execution::sequential()).unwrap();
+        let usual = RequirementsOverview::new(&found, dataset, None, &OverviewLimits::default());
+        let heads = RequirementsOverview::HEADS;
+        assert_eq!(usual.table.columns.len() - heads, analysis.conditions.len());
+        let row = usual
+            .table
+            .rows
+            .iter()
+            .position(|row| row[0] == "LAT \u{2192} P: bandwidth")
+            .unwrap();
+        assert_eq!(usual.table.rows[row][1..heads], ["%", "\u{b1}10"]);
+        let pair = found
+            .bandwidth
+            .iter()
+            .find(|of| of.output == "P" && of.input == "LAT")
+            .unwrap()
+            .pair;
+        for (column, id) in usual.table.columns.iter().enumerate().skip(heads) {
+            let id = ConditionId(id.parse().unwrap());
+            let of = |role| {
+                found
+                    .bandwidth_of(id, pair, role)
+                    .and_then(|of| of.omega_bw_rad_s)
+            };
+            let change = of(RequirementRole::Corrected)
+                .zip(of(RequirementRole::Identified))
+                .map(|(of, by)| of / by - 1.0);
+            let shown = usual.table.rows[row][column]
+                .replace('\u{2212}', "-")
+                .parse::<f64>()
+                .ok();
+            assert_eq!(shown, change.map(|change| (100.0 * change).round()), "{id}");
+            assert_eq!(
+                usual.is_outside(row, column),
+                change.is_some_and(|change| change.abs() > 0.1)
+            );
+        }
+        let strict = OverviewLimits {
+            bandwidth: 1e-9,
+            ..OverviewLimits::default()
+        };
+        let strict = RequirementsOverview::new(&found, dataset, None, &strict);
+        let known = (heads..strict.table.columns.len())
+            .find(|column| strict.table.rows[row][*column] != "-")
+            .unwrap();
+        assert!(strict.is_outside(row, known) && !strict.is_outside(row, 0));
+    }
+}

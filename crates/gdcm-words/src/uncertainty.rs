@@ -1,0 +1,260 @@
+//! Sentences and tables about the figures' uncertainty (M13).
+
+use gdcm_method::uncertainty::{Scalar, VarianceDecomposition};
+use gdcm_model::dataset::Dataset;
+use gdcm_model::units::signed;
+use gdcm_study::Analysis;
+use gdcm_study::results::uncertainty::{AirspeedDifference, SecondVariableTest, Uncertainty};
+
+use crate::table::Table;
+
+/// Placeholder for a missing figure.
+const NONE: &str = "–";
+
+/// Returns the verdict on a difference at equal airspeed, at a confidence level.
+pub fn difference_verdict(difference: &AirspeedDifference, level: f64) -> &'static str {
+    if difference.p_holm.is_none() {
+        "no spread"
+    } else if difference.is_significant(level) {
+        "significant: a physical effect, or a model-form error"
+    } else {
+        "not significant"
+    }
+}
+
+/// Describes a difference: "conditions 3 and 5 (45 kt) differ by 13 %, 5.4 × expected from trim and
+/// identification uncertainty; significant: a physical effect, or a model-form error".
+pub fn difference_text(difference: &AirspeedDifference, level: f64) -> String {
+    let [first, second] = difference.conditions;
+    let airspeed_kt = difference.airspeed_kt;
+    let percent = 100.0 * difference.difference.delta.abs();
+    let differ =
+        format!("conditions {first} and {second} ({airspeed_kt:.0} kt) differ by {percent:.0} %");
+    let Some(ratio) = difference.difference.ratio() else {
+        return format!("{differ}; their bundles have no spread to compare that with");
+    };
+    format!(
+        "{differ}, {ratio:.1} × expected from trim and identification uncertainty; {}",
+        difference_verdict(difference, level)
+    )
+}
+
+/// Summarises the differences at equal airspeed in a sentence.
+pub fn differences_summary(uncertainty: &Uncertainty) -> String {
+    let all = uncertainty.differences.len();
+    let significant = uncertainty
+        .differences
+        .iter()
+        .filter(|difference| difference.is_significant(uncertainty.level))
+        .count();
+    match (all, significant, uncertainty.too_many_differences) {
+        (0, _, None) => "No two conditions fly at equal airspeed.".to_owned(),
+        (0, _, Some(count)) => {
+            format!("{count} differences at equal airspeed are too many to compare.")
+        }
+        (_, 0, _) => format!(
+            "None of the {all} pairs of conditions at equal airspeed has significantly different \
+             net gains."
+        ),
+        (_, significant, _) => format!(
+            "{significant} of {all} pairs of conditions at equal airspeed have significantly \
+             different net gains."
+        ),
+    }
+}
+
+/// Describes the test for a second variable: "from the lowest to the highest altitude −7 %: not
+/// needed; an effect smaller than ± 6 % could not have been seen".
+pub fn second_variable_text(test: &SecondVariableTest) -> String {
+    let variable = test.variable.name();
+    let effect = match &test.effect {
+        Ok(effect) => effect,
+        Err(error) => return format!("{variable}: {error}"),
+    };
+    let percent = 100.0 * effect.effect;
+    let visible = 100.0 * effect.visible;
+    let sign = if percent < 0.0 { "−" } else { "+" };
+    format!(
+        "from the lowest to the highest {variable} {sign}{:.1} %: {}; an effect smaller than ± \
+         {visible:.1} % could not have been seen",
+        percent.abs(),
+        need(test)
+    )
+}
+
+/// Returns the verdict on a second variable.
+fn need(test: &SecondVariableTest) -> &'static str {
+    if test.needed { "needed" } else { "not needed" }
+}
+
+/// Formats a figure with fixed decimals, or the placeholder.
+fn cell(figure: Option<f64>, decimals: usize) -> String {
+    match figure {
+        Some(figure) => format!("{figure:.decimals$}"),
+        None => NONE.to_owned(),
+    }
+}
+
+/// Formats a logarithm's standard deviation in percent.
+fn percent(deviation: Option<f64>) -> String {
+    cell(deviation.map(|deviation| 100.0 * deviation), 1)
+}
+
+fn probability(p: Option<f64>) -> String {
+    match p {
+        None => NONE.to_owned(),
+        Some(p) if p < 0.001 => "< 0.001".to_owned(),
+        Some(p) => format!("{p:.3}"),
+    }
+}
+
+/// Tabulates how net gains differ at equal airspeed, largest in relation to the expected difference
+/// first, with each row's difference.
+pub fn difference_table(
+    dataset: &Dataset,
+    uncertainty: &Uncertainty,
+) -> (Table, Vec<AirspeedDifference>) {
+    let columns = [
+        "response",
+        "conditions",
+        "airspeed [kt]",
+        "difference [%]",
+        "× expected",
+        "Holm p",
+        "verdict",
+    ];
+    let mut table = Table::new("Differences at equal airspeed", columns);
+    let mut differences = uncertainty.differences.clone();
+    let ratio = |difference: &AirspeedDifference| difference.difference.ratio().unwrap_or_default();
+    differences.sort_by(|a, b| ratio(b).total_cmp(&ratio(a)));
+    for difference in &differences {
+        let [first, second] = difference.conditions;
+        table.row([
+            dataset.pair_name(difference.pair),
+            format!("{first} and {second}"),
+            format!("{:.0}", difference.airspeed_kt),
+            signed(100.0 * difference.difference.delta, 1),
+            cell(difference.difference.ratio(), 1),
+            probability(difference.p_holm),
+            difference_verdict(difference, uncertainty.level).to_owned(),
+        ]);
+    }
+    (table, differences)
+}
+
+/// Tabulates whether the schedule needs a second variable, with the smallest detectable effect.
+pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
+    let columns = [
+        "response",
+        "variable",
+        "effect [%]",
+        "not seen below ± [%]",
+        "Holm p",
+        "unseen [%]",
+        "with it [%]",
+        "verdict",
+    ];
+    let mut table = Table::new("Does the schedule need a second variable?", columns);
+    for test in &uncertainty.second_variables {
+        let mut cells = vec![
+            dataset.pair_name(test.pair),
+            test.variable.name().to_owned(),
+        ];
+        match &test.effect {
+            Err(error) => {
+                cells.extend([NONE; 5].map(str::to_owned));
+                cells.push(error.to_string());
+            }
+            Ok(effect) => cells.extend([
+                signed(100.0 * effect.effect, 1),
+                percent(Some(effect.visible)),
+                probability(test.p_holm),
+                percent(effect.left_out_without),
+                percent(effect.left_out_with),
+                need(test).to_owned(),
+            ]),
+        }
+        table.row(cells);
+    }
+    table
+}
+
+/// Tabulates each on-axis net gain's scatter components.
+pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
+    let columns = [
+        "response",
+        "about",
+        "scatter [%]",
+        "trim [%]",
+        "identification [%]",
+        "unexplained [%]",
+        "interval [%]",
+        "× expected",
+    ];
+    let mut table = Table::new("What the scatter of the net gains is made of", columns);
+    let deviation = |variance: f64| percent(Some(variance.sqrt()));
+    for scatter in &uncertainty.scatter {
+        for (about, decomposition) in [
+            ("equal airspeed", &scatter.same_airspeed),
+            ("the schedule", &scatter.about_schedule),
+        ] {
+            let Some(decomposition) = decomposition else {
+                continue;
+            };
+            table.row([
+                dataset.pair_name(scatter.pair),
+                about.to_owned(),
+                deviation(decomposition.scatter),
+                deviation(decomposition.trim),
+                deviation(decomposition.identification),
+                deviation(decomposition.unexplained()),
+                interval(decomposition, uncertainty.level),
+                cell(decomposition.ratio(), 1),
+            ]);
+        }
+    }
+    table
+}
+
+/// Formats the unexplained component's interval: "1.2 to 5.6".
+fn interval(decomposition: &VarianceDecomposition, level: f64) -> String {
+    match decomposition.unexplained_interval(level) {
+        Some([low, high]) => format!("{} to {}", percent(Some(low)), percent(Some(high))),
+        None => NONE.to_owned(),
+    }
+}
+
+/// Tabulates every condition's on-axis net gains with their error bars.
+pub fn bar_table(analysis: &Analysis, uncertainty: &Uncertainty) -> Table {
+    let level = format!("± [%] of {:.0} %", 100.0 * uncertainty.level);
+    let columns = [
+        "condition",
+        "response",
+        "net gain",
+        &level,
+        "trim uncertainty [%]",
+        "identification [%]",
+        "residual in the band [%]",
+        "remarks",
+    ];
+    let mut table = Table::new("Error bars of the net gains", columns);
+    let dataset = &analysis.study.dataset;
+    for (id, condition) in &uncertainty.conditions {
+        for pair in dataset.measuring_pairs().marked() {
+            let Some(bar) = &condition.bars[Scalar::NetGain(pair)] else {
+                continue;
+            };
+            table.row([
+                id.to_string(),
+                dataset.pair_name(pair),
+                format!("{:.3}", bar.value.exp()),
+                percent(bar.half_width(uncertainty.level)),
+                percent(bar.trim.map(|part| part.variance.sqrt())),
+                percent(bar.identification.map(|part| part.variance.sqrt())),
+                percent(condition.left_in_band[pair]),
+                bar.remarks().join(", "),
+            ]);
+        }
+    }
+    table
+}

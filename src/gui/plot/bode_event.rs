@@ -1,0 +1,50 @@
+//! Bode events: gestures and menu entries, as requests to the owner.
+
+use super::curve_command::CurveCommand;
+use super::drawn_curves::CurveId;
+
+/// Event in a Bode plot.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BodeEvent {
+    /// Another curve, or none, is under the pointer.
+    Hovered(Option<CurveId>),
+    Clicked(CurveId),
+    /// The last click began a double click: its effect is to be undone.
+    TakenBack(CurveId),
+    /// A curve was clicked with Alt pressed.
+    Isolated(CurveId),
+    /// The band is being dragged to these ends \[rad/s\].
+    BandDragged {
+        min: f64,
+        max: f64,
+    },
+    /// The band was released after dragging.
+    BandReleased,
+    /// Another display of curves, or marks at frequencies, were requested.
+    Display(CurveCommand),
+    /// The model is to be rejected, with a reason.
+    RejectedBecause(CurveId, String),
+    /// An entry of a curve's menu was chosen.
+    Wished(CurveId, CurveWish),
+    /// A box was drawn over these curves.
+    Boxed(Vec<CurveId>),
+    /// A chip was clicked; the argument is its index.
+    ChipClicked(usize),
+}
+
+/// Action on a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveWish {
+    /// Reject its model, or restore it.
+    RejectOrRestore,
+    /// Make its model the bundle's representative.
+    Pin,
+    /// Show it alone beside the representatives, or show all again.
+    Isolate,
+    /// Hide it.
+    Hide,
+    /// Copy its frequencies and values to the clipboard.
+    CopyValues,
+    /// Shift its phase by whole turns.
+    Turn(i32),
+}

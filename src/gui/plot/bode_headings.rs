@@ -1,0 +1,171 @@
+//! Texts around the Bode panes: contents, effect of the correction, curve names.
+
+use egui::{Align2, Rect, Ui, pos2};
+use egui_plot::{PlotPoint, PlotTransform};
+
+use super::bode_layout::BodeLayout;
+use super::bode_scene::{BodeScene, PaneNote};
+use super::bode_view::BodeView;
+use super::coherence_strip::coherence_ui;
+use super::curve_style::Role;
+use super::drawn_curves::{PANES, Pane};
+use super::end_labels::{EndLabel, height_beside, paint_end_labels};
+use super::panel_axis::TICKS_HEIGHT;
+use super::panel_text::caption_font;
+use super::readout::readout_strip_ui;
+use super::reference_lines::line_labels;
+use crate::gui::widgets::controls::{elided, painted_text, row_text};
+use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
+
+/// Gap between two texts in a heading \[pt\].
+const GAP: f32 = 12.0;
+
+/// Roles whose curves have names beside them.
+const NAMED: [Role; 5] = [
+    Role::IdentifiedRepresentative,
+    Role::Corrected,
+    Role::WithoutLeads,
+    Role::Variant,
+    Role::Nominal,
+];
+
+/// Draws the texts around the panes: contents, effect of the correction, values at
+/// the cursor, names beside the heavy curves, and whether newer curves are expected.
+pub(super) fn headings_ui(
+    ui: &Ui,
+    layout: &BodeLayout,
+    scene: &BodeScene<'_>,
+    view: &BodeView,
+    palette: &Palette,
+) {
+    for pane in PANES {
+        let line = layout.headings[pane as usize];
+        let name_end = paint_quantity(ui, line, scene, pane, palette);
+        if let Some(note) = scene.notes[pane as usize] {
+            let room = line.with_min_x(name_end + 8.0);
+            paint_note(ui, room, note, price_in_heading(scene, pane), palette);
+        } else if scene.stale && pane == Pane::Magnitude {
+            let words = scene.message.unwrap_or("updating…");
+            row_text(ui, line, -0.01, words, SMALL_SIZE, palette.dim_text);
+        }
+        if let Some(transform) = view.transform(pane)
+            && (scene.names_curves || !scene.rules.is_empty())
+        {
+            let labels = pane_labels(scene, pane, view, transform, palette);
+            paint_end_labels(ui, *transform.frame(), labels);
+        }
+    }
+    let Some(transform) = view.transform(Pane::Phase) else {
+        return;
+    };
+    paint_frequency_unit(ui, *transform.frame(), scene, palette);
+    if let (Some(strip), Some(readout)) = (layout.readout, scene.readout) {
+        readout_strip_ui(ui, strip, readout, palette);
+    }
+    if let Some(strip) = layout.coherence {
+        coherence_ui(ui, strip, scene, transform, palette);
+    }
+}
+
+/// Paints quantity and unit; returns the right end.
+fn paint_quantity(
+    ui: &Ui,
+    line: Rect,
+    scene: &BodeScene<'_>,
+    pane: Pane,
+    palette: &Palette,
+) -> f32 {
+    let label = scene.quantity.axis_label(pane);
+    let (name, unit) = label.split_once(" [").unwrap_or((&label, ""));
+    let name = painted_text(ui, line, 0.0, name, medium(BODY_SIZE), palette.text);
+    let unit = unit.trim_end_matches(']');
+    let beside = name.right() - line.left() + 4.0;
+    row_text(ui, line, beside, unit, BODY_SIZE, palette.dim_text).right()
+}
+
+/// Returns the magnitude added by the leads, if there is no margin for it beside the
+/// bracket.
+fn price_in_heading(scene: &BodeScene<'_>, pane: Pane) -> Option<String> {
+    if pane != Pane::Magnitude || scene.names_curves {
+        return None;
+    }
+    Some(format!("leads {}", scene.price_words()?))
+}
+
+/// Paints a note at the right in a heading: verdict, price of the leads, and the cost as
+/// far as there is room.
+fn paint_note(ui: &Ui, room: Rect, note: &PaneNote, price: Option<String>, palette: &Palette) {
+    let color = if note.warns {
+        palette.warning
+    } else {
+        palette.dim_text
+    };
+    let verdict = row_text(ui, room, -0.01, &note.verdict, BODY_SIZE, color);
+    let mut rest = room.with_max_x(verdict.left() - GAP);
+    if let Some(price) = price {
+        let place = row_text(ui, rest, -0.01, &price, BODY_SIZE, palette.warning);
+        rest = rest.with_max_x(place.left() - GAP);
+    }
+    let cost = elided(ui, &note.cost, rest.right() - rest.left(), BODY_SIZE);
+    row_text(ui, rest, -0.01, &cost, BODY_SIZE, palette.dim_text);
+}
+
+fn paint_frequency_unit(ui: &Ui, frame: Rect, scene: &BodeScene<'_>, palette: &Palette) {
+    let at = pos2(frame.right() + 14.0, frame.bottom() + 0.5 * TICKS_HEIGHT);
+    ui.painter().text(
+        at,
+        Align2::LEFT_CENTER,
+        scene.unit.symbol(),
+        caption_font(),
+        palette.dim_text,
+    );
+}
+
+/// Returns the names beside the heavy curves and the reference lines, and the price paid for
+/// the leads.
+fn pane_labels(
+    scene: &BodeScene<'_>,
+    pane: Pane,
+    view: &BodeView,
+    transform: &PlotTransform,
+    palette: &Palette,
+) -> Vec<EndLabel> {
+    let frame = *transform.frame();
+    let mut labels = Vec::new();
+    if scene.names_curves {
+        let last_omega = view.omega_range().1;
+        for role in NAMED {
+            let Some(end) = curve_end(scene, role, pane, last_omega) else {
+                continue;
+            };
+            let at = transform.position_from_point(&end);
+            let color = palette.role_style(role, false).color.to_opaque();
+            labels.push(EndLabel {
+                y: height_beside(frame, at.y),
+                text: role.name().to_owned(),
+                color: palette.name_of(color),
+            });
+        }
+    }
+    labels.extend(line_labels(scene.rules, pane, transform, palette));
+    if pane == Pane::Magnitude
+        && let Some([with, without]) = scene.invalid.and_then(|invalid| invalid.ends_db)
+        && let Some(text) = scene.price_words()
+    {
+        let middle = PlotPoint::new(0.0, 0.5 * (with + without));
+        let at = transform.position_from_point(&middle);
+        labels.push(EndLabel {
+            y: height_beside(frame, at.y),
+            text,
+            color: palette.warning,
+        });
+    }
+    labels
+}
+
+/// Returns the last visible point in a role's first curve.
+fn curve_end(scene: &BodeScene<'_>, role: Role, pane: Pane, last_omega: f64) -> Option<PlotPoint> {
+    let curve = scene.curves.iter().find(|curve| curve.role == role)?;
+    let omega = curve.omega.last()?.min(last_omega);
+    Some(PlotPoint::new(omega.log10(), curve.value_at(pane, omega)?))
+}

@@ -1,0 +1,54 @@
+//! Keys that pan and zoom a focused Bode pane.
+
+use egui::{EventFilter, Key, Modifiers, Response, Ui, vec2};
+
+use super::bode_view::BodeView;
+use super::drawn_curves::Pane;
+
+/// Share of the visible range per arrow key.
+const STEP: f32 = 0.1;
+/// Zoom factor per press of the + key.
+const CLOSER: f64 = 1.25;
+
+/// Handles the keys if the pane has the focus: arrows pan, + and − zoom (with Shift only the
+/// frequencies), Home fits, Escape leaves the plot.
+pub(super) fn handle_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView) {
+    if !response.has_focus() {
+        return;
+    }
+    let arrows = EventFilter {
+        horizontal_arrows: true,
+        vertical_arrows: true,
+        ..EventFilter::default()
+    };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
+    let Some(frame) = view.frame(pane) else {
+        return;
+    };
+    let is_shifted = ui.input(|input| input.modifiers.shift);
+    // The view follows the arrow, and the drawing moves in the opposite direction.
+    let along = presses(ui, Key::ArrowRight) - presses(ui, Key::ArrowLeft);
+    let up = presses(ui, Key::ArrowUp) - presses(ui, Key::ArrowDown);
+    let closer = presses(ui, Key::Plus) + presses(ui, Key::Equals) - presses(ui, Key::Minus);
+    let is_fitted = presses(ui, Key::Home) > 0.0;
+    if along != 0.0 || up != 0.0 {
+        let by = STEP * vec2(-along * frame.width(), up * frame.height());
+        view.pan(pane, by);
+    }
+    if closer != 0.0 {
+        let factor = CLOSER.powf(f64::from(closer));
+        let value_factor = if is_shifted { 1.0 } else { factor };
+        view.zoom(pane, frame.center(), factor, value_factor);
+    }
+    if is_fitted {
+        view.request_fit();
+    }
+    if along != 0.0 || up != 0.0 || closer != 0.0 || is_fitted {
+        ui.ctx().request_repaint();
+    }
+}
+
+/// Takes a key's presses out of the input and counts them.
+fn presses(ui: &Ui, key: Key) -> f32 {
+    ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as f32
+}

@@ -1,0 +1,184 @@
+//! Chart on the screen: its frame, its gestures and the texts above.
+
+use egui::{Align2, Rect, Response, Ui, Vec2, Vec2b, pos2, vec2};
+use egui_plot::PlotUi;
+
+use gdcm_plot::figure::Range;
+
+use super::chart::{Chart, ChartAxis};
+use super::chart_layers::{add_layers, visible_ends};
+use super::navigation::ZoomGesture;
+use super::painter::{Follow, Gestures, PanelPainter};
+use super::panel_axis::{LABELLED_HEIGHT, PanelAxis, TICKS_HEIGHT};
+use super::panel_text::caption_font;
+use super::stretch::choose_by_dragging;
+use super::ticks::{Ticks, VERTICAL_TICK_GAP};
+use super::viewed_range::{ZoomLimit, ranges_of, zoomed_within};
+use crate::gui::widgets::palette::Palette;
+
+const TITLE_HEIGHT: f32 = 18.0;
+/// Room for the longest number, so that stacked frames align \[pt\].
+const VALUE_AXIS_WIDTH: f32 = 54.0;
+const RIGHT_MARGIN: f32 = 8.0;
+/// Gap between two notes \[pt\].
+const NOTE_GAP: f32 = 8.0;
+/// Space left and right, relative to the width.
+const EDGE: f64 = 0.01;
+/// Space above and below, relative to the height.
+const VALUE_EDGE: f32 = 0.08;
+/// Least distance between numbers along a linear horizontal axis \[pt\].
+const TICK_GAP: f64 = 50.0;
+
+/// Draws a chart into `rect`: dragging pans, the wheel zooms, a double click shows everything.
+pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> Response {
+    let panel = PanelPainter {
+        id: ui.make_persistent_id(chart.title),
+        rect: Rect::from_min_max(
+            rect.min + vec2(0.0, TITLE_HEIGHT),
+            rect.max - vec2(RIGHT_MARGIN, 0.0),
+        ),
+        name: &description(chart),
+        across: horizontal_axis(chart),
+        values: vertical_axis(chart),
+        gestures: Gestures::Following(Follow {
+            pans: if chart.chooses {
+                Vec2b::FALSE
+            } else {
+                Vec2b::new(true, !chart.fits_values)
+            },
+            margins: vec2(EDGE as f32, VALUE_EDGE),
+            group: chart.group,
+        }),
+        is_transparent: false,
+        palette,
+    };
+    let shown = panel.show(ui, |plot| {
+        add_layers(plot, chart, palette);
+        zoom_by_scrolling(plot, chart);
+        if let Some(group) = chart.group
+            && chart.chooses
+        {
+            choose_by_dragging(plot, group);
+        }
+        visible_ends(plot)
+    });
+    let [across, _] = ranges_of(shown.transform.bounds());
+    let drawn = shown.inner;
+    let is_whole = drawn[0] == f64::NEG_INFINITY;
+    if !is_whole && drawn != [across.min, across.max] {
+        // The lines were drawn for the view of the previous frame.
+        ui.request_repaint();
+    }
+    paint_title(ui, rect, *shown.transform.frame(), chart, palette);
+    shown.response
+}
+
+/// Returns the accessible name.
+fn description(chart: &Chart<'_>) -> String {
+    let marks: usize = chart.marks.iter().map(|marks| marks.points.len()).sum();
+    let mut description = format!(
+        "{}: {} lines, {marks} marks",
+        chart.title,
+        chart.lines.len()
+    );
+    for (words, _) in &chart.notes {
+        description.push_str("; ");
+        description.push_str(words);
+    }
+    description
+}
+
+fn horizontal_axis(chart: &Chart<'_>) -> PanelAxis {
+    let ticks = match chart.across {
+        ChartAxis::Linear => Ticks::Decimal(TICK_GAP),
+        ChartAxis::Frequency(unit) => Ticks::Frequency(unit),
+    };
+    let height = if chart.across_label.is_empty() {
+        TICKS_HEIGHT
+    } else {
+        LABELLED_HEIGHT
+    };
+    PanelAxis::new(ticks, height).labelled(chart.across_label)
+}
+
+fn vertical_axis(chart: &Chart<'_>) -> PanelAxis {
+    let ticks = match &chart.image {
+        Some(image) => Ticks::Frequency(image.unit),
+        None => Ticks::Decimal(VERTICAL_TICK_GAP),
+    };
+    PanelAxis::new(ticks, VALUE_AXIS_WIDTH).labelled(chart.value_label)
+}
+
+/// Paints the title at the left above `frame`, the notes at the right.
+fn paint_title(ui: &Ui, rect: Rect, frame: Rect, chart: &Chart<'_>, palette: &Palette) {
+    let painter = ui.painter();
+    let mut at = pos2(frame.left(), rect.top() + 0.5 * TITLE_HEIGHT);
+    let font = caption_font();
+    painter.text(at, Align2::LEFT_CENTER, chart.title, font, palette.text);
+    at.x = frame.right();
+    for (words, color) in chart.notes.iter().rev() {
+        let place = painter.text(at, Align2::RIGHT_CENTER, words, caption_font(), *color);
+        at.x = place.left() - NOTE_GAP;
+    }
+}
+
+/// Zooms about the pointer by wheel and pinching.
+fn zoom_by_scrolling(plot: &mut PlotUi<'_>, chart: &Chart<'_>) {
+    let fits_values = chart.fits_values;
+    let Some(gesture) = ZoomGesture::find(plot.ctx(), plot.response()) else {
+        if fits_values && !plot.auto_bounds().y {
+            // The drag has ended the automatic fit.
+            plot.set_auto_bounds(Vec2b::new(plot.auto_bounds().x, true));
+        }
+        return;
+    };
+    let factors = if fits_values {
+        [gesture.along_one_axis(), 1.0]
+    } else {
+        [gesture.across(), gesture.upward()]
+    };
+    let fixed = plot.plot_from_screen(gesture.pointer);
+    let [x, y] = ranges_of(&plot.plot_bounds());
+    let limits = zoom_limits(chart);
+    if let Some(x) = zoomed_within(x, factors[0], fixed.x, limits[0]) {
+        plot.set_plot_bounds_x(x.min..=x.max);
+    }
+    if let Some(y) = zoomed_within(y, factors[1], fixed.y, limits[1]) {
+        plot.set_plot_bounds_y(y.min..=y.max);
+    }
+    plot.set_auto_bounds(Vec2b::new(false, fits_values));
+    // Keeps the surrounding area from scrolling as well.
+    plot.ctx()
+        .input_mut(|input| input.smooth_scroll_delta = Vec2::ZERO);
+}
+
+/// Returns the greatest ranges that zooming out reaches: the data along a time axis, a decade or
+/// ten widths for other data, anything without data.
+fn zoom_limits(chart: &Chart<'_>) -> [Range; 2] {
+    let mut across = Vec::new();
+    let mut values = Vec::new();
+    for line in &chart.lines {
+        across.extend(line.points.iter().map(|point| point[0]));
+        values.extend(line.points.iter().map(|point| point[1]));
+    }
+    for marks in &chart.marks {
+        across.extend(marks.points.iter().map(|point| point[0]));
+        values.extend(marks.points.iter().map(|point| point[1]));
+    }
+    if let Some(image) = &chart.image {
+        across.extend(image.across);
+        values.extend(image.omega.map(f64::log10));
+    }
+    let places = across.into_iter().map(|value| chart.across.place(value));
+    let shows_times = chart.fits_values || chart.image.is_some();
+    let widths = ZoomLimit::TenWidths { least: 0.0 };
+    let limit_across = match chart.across {
+        ChartAxis::Frequency(_) => ZoomLimit::Decade,
+        ChartAxis::Linear if shows_times => ZoomLimit::DataWithMargin(EDGE),
+        ChartAxis::Linear => widths,
+    };
+    [
+        Range::of(places).map_or(Range::ALL, |data| limit_across.range(data)),
+        Range::of(values).map_or(Range::ALL, |data| widths.range(data)),
+    ]
+}

@@ -1,0 +1,132 @@
+//! Curve layer: order, styles and lines, and the image that replaces many static curves.
+
+use egui::{Context, Pos2, Shape};
+use egui_plot::{PlotPoint, PlotTransform};
+
+use super::cached_raster::{CachedRaster, MANY, StillImage, StillScene};
+use super::curve_style::{CurveStyle, Role};
+use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves};
+use crate::gui::widgets::palette::Palette;
+
+/// Opacity while curves are being recomputed.
+pub(super) const STALE: f32 = 0.5;
+
+/// Pane as last drawn: place, lines, and the image of its static lines.
+#[derive(Clone, Debug, Default)]
+pub(super) struct DrawnPane {
+    /// Last transform, where x is `log10 omega`; `None` if there was
+    /// nothing to draw.
+    pub(super) transform: Option<PlotTransform>,
+    pub(super) curves: DrawnCurves,
+    pub(super) image: CachedRaster,
+}
+
+/// Emphasis and size of the curves in a pane.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct CurveLooks<'a> {
+    /// Curve under the pointer.
+    pub(super) pointed: Option<&'a CurveId>,
+    /// Role drawn above all others.
+    pub(super) raised: Option<Role>,
+    /// Whether the curves are being recomputed: they are dimmed.
+    pub(super) is_stale: bool,
+    /// Whether the pane is small: lines are narrower.
+    pub(super) is_miniature: bool,
+}
+
+impl CurveLooks<'_> {
+    /// Returns whether the pointer is on a curve, or on its counterpart in another view.
+    pub(super) fn is_emphasized(&self, curve: &BodeCurve) -> bool {
+        curve.highlighted || self.pointed == Some(&curve.id)
+    }
+
+    pub(super) fn style(&self, curve: &BodeCurve, palette: &Palette) -> CurveStyle {
+        let mut style = palette.role_style(curve.role, curve.rejected);
+        if self.is_miniature {
+            style = style.in_miniature();
+        }
+        if self.is_emphasized(curve) {
+            style.emphasized()
+        } else if self.is_stale {
+            CurveStyle {
+                color: style.color.gamma_multiply(STALE),
+                ..style
+            }
+        } else {
+            style
+        }
+    }
+
+    /// Sorts curves from bottom to top, the most important last.
+    pub(super) fn sort(&self, curves: &mut [(usize, &BodeCurve)]) {
+        curves.sort_by_key(|(_, curve)| {
+            (
+                self.is_emphasized(curve),
+                self.raised == Some(curve.role.shown(curve.rejected)),
+                curve.role.layer(curve.rejected),
+            )
+        });
+    }
+}
+
+/// Adds the lines through these runs of points to the shapes on the screen.
+pub(super) fn add_curve_lines(
+    runs: &[Vec<PlotPoint>],
+    style: CurveStyle,
+    transform: &PlotTransform,
+    shapes: &mut Vec<Shape>,
+) {
+    for run in runs {
+        let path: Vec<Pos2> = run
+            .iter()
+            .map(|point| transform.position_from_point(point))
+            .collect();
+        style.add_shapes(path, shapes);
+    }
+}
+
+/// Returns whether a curve only shows the spread of its bundle, together with many others.
+pub(super) fn lies_at_the_bottom(curve: &BodeCurve) -> bool {
+    curve.role.layer(curve.rejected) <= Role::Perturbed.layer(false)
+}
+
+impl DrawnPane {
+    /// Returns the image of the curves at the bottom, if there are a great many and they are
+    /// static.
+    pub(super) fn image_of_many(
+        &mut self,
+        ctx: &Context,
+        curves: &[BodeCurve],
+        transform: &PlotTransform,
+        palette: &Palette,
+    ) -> Option<StillImage> {
+        let mut lowest: Vec<(usize, &BodeCurve)> = curves
+            .iter()
+            .enumerate()
+            .filter(|(_, curve)| lies_at_the_bottom(curve))
+            .collect();
+        if lowest.len() < MANY {
+            return None;
+        }
+        lowest.sort_by_key(|(_, curve)| curve.role.layer(curve.rejected));
+        let drawn = &self.curves;
+        let mut lines = Vec::with_capacity(lowest.len());
+        let mut still = StillScene {
+            frame: *transform.frame(),
+            pixels_per_point: ctx.pixels_per_point(),
+            curves: Vec::with_capacity(lowest.len()),
+        };
+        for (index, curve) in lowest {
+            let style = palette.role_style(curve.role, curve.rejected);
+            still.curves.push((drawn.serial(index), style));
+            lines.push((drawn.runs(index), style));
+        }
+        self.image.image_of(ctx, still, || {
+            let mut shapes = Vec::new();
+            for (runs, style) in lines {
+                add_curve_lines(runs, style, transform, &mut shapes);
+            }
+            shapes
+        })
+    }
+}

@@ -1,0 +1,67 @@
+//! Labels in the right margin, at the height where their lines end.
+
+use egui::{Align2, Color32, Rect, Ui, pos2};
+
+use super::panel_text::caption_font;
+
+/// Least distance between two labels \[pt\].
+const LABEL_GAP: f32 = 14.0;
+/// Least distance from the frame's corners \[pt\].
+const MARGIN: f32 = 5.0;
+/// Distance from the frame \[pt\].
+const BESIDE: f32 = 6.0;
+
+/// Line label in the margin.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct EndLabel {
+    /// Height on the screen \[pt\].
+    pub(super) y: f32,
+    pub(super) text: String,
+    pub(super) color: Color32,
+}
+
+/// Limits a height to the room beside `frame`.
+pub(super) fn height_beside(frame: Rect, y: f32) -> f32 {
+    y.clamp(frame.top() + MARGIN, frame.bottom() - MARGIN)
+}
+
+/// Paints the labels beside `frame`, apart from one another.
+pub(super) fn paint_end_labels(ui: &Ui, frame: Rect, mut labels: Vec<EndLabel>) {
+    labels.sort_by(|a, b| a.y.total_cmp(&b.y));
+    spread(&mut labels, frame.bottom() - MARGIN);
+    for label in labels {
+        let at = pos2(frame.right() + BESIDE, label.y);
+        let font = caption_font();
+        ui.painter()
+            .text(at, Align2::LEFT_CENTER, label.text, font, label.color);
+    }
+}
+
+/// Shifts labels, sorted by height, down until they no longer overlap, then up again if they leave
+/// the plot.
+fn spread(labels: &mut [EndLabel], bottom: f32) {
+    for index in 1..labels.len() {
+        labels[index].y = labels[index].y.max(labels[index - 1].y + LABEL_GAP);
+    }
+    let mut limit = bottom;
+    for label in labels.iter_mut().rev() {
+        label.y = label.y.min(limit);
+        limit = label.y - LABEL_GAP;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_keep_clear_of_one_another_and_within_the_plot() {
+        let mut labels = [80.0, 95.0, 96.0].map(|y| EndLabel {
+            y,
+            text: String::new(),
+            color: Color32::WHITE,
+        });
+        spread(&mut labels, 100.0);
+        assert_eq!(labels.map(|label| label.y), [72.0, 86.0, 100.0]);
+    }
+}

@@ -1,0 +1,160 @@
+//! Figure marks on the screen: as on paper, and emphasized under the pointer.
+
+use egui::{Color32, Painter, Pos2, Rect, Stroke, Ui};
+use egui_plot::{PlotPoint, PlotTransform};
+
+use gdcm_plot::figure::axis::Scale;
+use gdcm_plot::figure::drawing::{Area, Shape};
+use gdcm_plot::figure::figure::{Dot, Dots};
+use gdcm_plot::figure::paint::dot_shapes;
+use gdcm_plot::figure::{Mark, MarkId, Panel, Range};
+
+use super::canvas::{Canvas, LETTERS_PT, area};
+use super::viewed_range::ranges_of;
+use crate::gui::widgets::palette::Palette;
+
+/// Radius of the ring around a focused or highlighted dot \[pt\].
+pub(super) const RING: f32 = 8.0;
+const RING_WIDTH: f32 = 1.4;
+/// Magnification of a highlighted dot.
+const EMPHASIZED: f64 = 1.3;
+
+/// Shapes as last drawn: placing labels takes longer than drawing them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct DrawnMarks {
+    drawn: Option<DrawnPanel>,
+}
+
+/// Shapes of a panel, and the arguments from which they were made.
+#[derive(Clone, Debug)]
+struct DrawnPanel {
+    panel: Panel,
+    area: Area,
+    ranges: [Range; 2],
+    shapes: Vec<Shape>,
+}
+
+impl DrawnMarks {
+    /// Returns the panel as last drawn.
+    pub(super) fn panel(&self) -> Option<&Panel> {
+        Some(&self.drawn.as_ref()?.panel)
+    }
+
+    /// Returns the panel's shapes for these ranges, recomputed only if changed.
+    fn shapes(&mut self, panel: &Panel, area: Area, ranges: [Range; 2]) -> &[Shape] {
+        let is_same = self.drawn.as_ref().is_some_and(|drawn| {
+            drawn.area == area && drawn.ranges == ranges && drawn.panel == *panel
+        });
+        if !is_same {
+            let (shapes, _) = panel.shapes(area, ranges, LETTERS_PT);
+            self.drawn = Some(DrawnPanel {
+                panel: panel.clone(),
+                area,
+                ranges,
+                shapes,
+            });
+        }
+        match &self.drawn {
+            Some(drawn) => &drawn.shapes,
+            None => &[],
+        }
+    }
+}
+
+/// Marks to draw, and which are emphasized.
+pub(super) struct MarkScene<'a> {
+    pub(super) panel: &'a Panel,
+    pub(super) transform: PlotTransform,
+    /// Column marks, if columns are interactive instead of dots.
+    pub(super) columns: &'a [MarkId],
+    /// Mark in focus.
+    pub(super) selected: Option<&'a MarkId>,
+    /// Mark highlighted in this figure or by another view.
+    pub(super) emphasized: Option<&'a MarkId>,
+    /// Place on the axes of the mark under the pointer.
+    pub(super) pointed_at: Option<[f64; 2]>,
+    pub(super) palette: &'a Palette,
+}
+
+impl MarkScene<'_> {
+    /// Draws the marks; those near the frame reach beyond it.
+    pub(super) fn paint(&self, ui: &Ui, drawn: &mut DrawnMarks) {
+        let frame = *self.transform.frame();
+        let clip = frame.expand(RING).intersect(ui.clip_rect());
+        let painter = ui.painter().with_clip_rect(clip);
+        self.paint_columns(&painter);
+        let canvas = Canvas {
+            painter: &painter,
+            origin: frame.min,
+            palette: self.palette,
+        };
+        let [x, y] = ranges_of(self.transform.bounds());
+        let ranges = [values_at(self.panel, x), y];
+        canvas.paint(drawn.shapes(self.panel, area(frame), ranges));
+        for mark in &self.panel.marks {
+            if let Mark::Dots(dots) = mark {
+                self.paint_emphasis(&canvas, dots);
+            }
+        }
+        if let Some(at) = self.pointed_at
+            && self.columns.is_empty()
+        {
+            let [x, y] = at;
+            self.paint_ring(&painter, PlotPoint::new(x, y), self.palette.dim_text);
+        }
+    }
+
+    /// Shades the columns in focus and under the pointer.
+    fn paint_columns(&self, painter: &Painter) {
+        for (column, id) in self.columns.iter().enumerate() {
+            let place = column as f64;
+            let strength = if self.selected == Some(id) {
+                0.6
+            } else if self.pointed_at.is_some_and(|at| at[0] == place) {
+                0.35
+            } else {
+                continue;
+            };
+            let left = self.transform.position_from_point_x(place - 0.5);
+            let right = self.transform.position_from_point_x(place + 0.5);
+            let ground = Rect::from_x_y_ranges(left..=right, self.transform.frame().y_range());
+            let fill = self.palette.selected.gamma_multiply(strength);
+            painter.rect_filled(ground, 0.0, fill);
+        }
+    }
+
+    /// Enlarges the highlighted dots, and draws a ring around those in focus.
+    fn paint_emphasis(&self, canvas: &Canvas<'_>, dots: &Dots) {
+        for dot in dots.dots.iter().filter(|dot| dot.id.is_some()) {
+            if dot.id.as_ref() == self.emphasized {
+                let at = canvas.paper_place(self.position(dot));
+                let look = (dots.shape, EMPHASIZED * dots.size.max(0.8));
+                canvas.paint(&dot_shapes(at, look, dots.color, dots.filled));
+            }
+            if dot.id.as_ref() == self.selected {
+                let at = PlotPoint::new(dot.x, dot.y);
+                self.paint_ring(canvas.painter, at, self.palette.text);
+            }
+        }
+    }
+
+    fn paint_ring(&self, painter: &Painter, at: PlotPoint, color: Color32) {
+        let at = self.transform.position_from_point(&at);
+        painter.circle_stroke(at, RING, Stroke::new(RING_WIDTH, color));
+    }
+
+    /// Returns a dot's position on the screen.
+    fn position(&self, dot: &Dot) -> Pos2 {
+        self.transform
+            .position_from_point(&PlotPoint::new(dot.x, dot.y))
+    }
+}
+
+/// Returns the values at these places along the horizontal axis; on the screen, a
+/// logarithmic axis has logarithms.
+fn values_at(panel: &Panel, places: Range) -> Range {
+    match panel.x.scale {
+        Scale::Logarithmic => Range::new(10f64.powf(places.min), 10f64.powf(places.max)),
+        Scale::Linear | Scale::Degrees => places,
+    }
+}

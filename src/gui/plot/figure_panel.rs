@@ -1,0 +1,357 @@
+//! Figure panel: axes, the mark under the pointer, zooming and panning.
+
+use egui::{Align2, Id, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
+use egui_plot::{PlotPoint, PlotTransform};
+
+use gdcm_plot::figure::axis::{FrequencyUnit, Scale};
+use gdcm_plot::figure::figure::Along;
+use gdcm_plot::figure::{MarkId, Panel, Range};
+
+use super::figure_marks::{DrawnMarks, MarkScene, RING};
+use super::figure_scene::FigureScene;
+use super::navigation::ZoomGesture;
+use super::painter::{Gestures, PanelPainter};
+use super::panel_axis::{LABELLED_HEIGHT, PanelAxis, TICKS_HEIGHT, TickSpacing, tick_font};
+use super::panel_text::caption_font;
+use super::picking::{PointedMark, nearest_dot};
+use super::ticks::Ticks;
+use super::viewed_range::{ZoomLimit, bounds_of, ranges_of, zoomed_within};
+use crate::gui::widgets::palette::{Palette, SMALL_SIZE, medium};
+
+/// Title height above the first panel \[pt\].
+pub(super) const TITLE_HEIGHT: f32 = 18.0;
+/// Vertical axis width \[pt\].
+pub(super) const VALUE_AXIS_WIDTH: f32 = 38.0;
+const RIGHT_MARGIN: f32 = 8.0;
+/// Gap between panels \[pt\].
+const PANEL_GAP: f32 = 4.0;
+/// Least distance between ticks \[pt\].
+const TICK_GAP: f64 = 26.0;
+/// The same in a low plot, which has as many numbers as fit \[pt\].
+const COMPACT_TICK_GAP: f64 = 17.0;
+/// Greatest visible width, relative to the whole panel.
+const FARTHEST: f64 = 10.0;
+/// Least visible width.
+const LEAST_WIDTH: f64 = 1e-4;
+
+/// State of a panel between frames.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PanelView {
+    /// Visible ranges, if zoomed or panned.
+    pub(super) ranges: Option<[Range; 2]>,
+    /// Last transform; on the screen, a logarithmic horizontal axis has logarithms.
+    pub(super) transform: Option<PlotTransform>,
+    pub(super) marks: DrawnMarks,
+}
+
+impl PanelView {
+    /// Adopts the horizontal range from another panel.
+    pub(super) fn share_places(&mut self, panel: &Panel, other: &Self) {
+        let Some([x, _]) = other.ranges else {
+            self.ranges = None;
+            return;
+        };
+        let y = match self.ranges {
+            Some([_, y]) => y,
+            None => panel.shown(Along::Y),
+        };
+        self.ranges = Some([x, y]);
+    }
+}
+
+/// Figure panel at its place.
+pub(super) struct PlacedPanel<'a> {
+    pub(super) scene: &'a FigureScene<'a>,
+    /// Plot index in the figure.
+    pub(super) plot: usize,
+    /// Panel index in the plot, from top to bottom.
+    pub(super) number: usize,
+    pub(super) id: Id,
+    pub(super) rect: Rect,
+    /// Mark highlighted in this figure or by another view.
+    pub(super) emphasized: Option<&'a MarkId>,
+    pub(super) palette: &'a Palette,
+}
+
+/// Panel as drawn, with the mark under the pointer.
+pub(super) struct PlacedResponse {
+    pub(super) response: Response,
+    pub(super) pointed: Option<PointedMark>,
+}
+
+impl PlacedPanel<'_> {
+    /// Draws the panel.
+    pub(super) fn ui(&self, ui: &mut Ui, view: &mut PanelView) -> PlacedResponse {
+        let panel = self.panel();
+        let has_values = self.has_values(ui);
+        let rect = self.frame_with_axes(has_values);
+        let bounds = bounds_of(view.ranges.unwrap_or_else(|| whole(panel)));
+        let across = self.horizontal_axis(ui);
+        let room = rect.height() - across.thickness;
+        let values = self.vertical_axis(ui, room, has_values);
+        let painter = PanelPainter {
+            id: self.id,
+            rect,
+            name: &self.description(),
+            across,
+            values,
+            gestures: if self.scene.zooms {
+                Gestures::PanAndZoom
+            } else {
+                Gestures::Clicks
+            },
+            is_transparent: false,
+            palette: self.palette,
+        };
+        let shown = painter.show(ui, move |plot| plot.set_plot_bounds(bounds));
+        let response = shown.response;
+        let transform = shown.transform;
+        view.transform = Some(transform);
+        if self.number == 0 {
+            self.title_ui(ui, *transform.frame());
+        }
+        let pointed = self.pointed_mark(&response, &transform);
+        let marks = MarkScene {
+            panel,
+            transform,
+            columns: self.scene.columns,
+            selected: self.scene.selected.as_ref(),
+            emphasized: self.emphasized,
+            pointed_at: pointed.as_ref().map(|pointed| pointed.at),
+            palette: self.palette,
+        };
+        marks.paint(ui, &mut view.marks);
+        self.describe_dots(ui, &transform);
+        if self.scene.zooms {
+            navigate(panel, &response, &transform, view);
+            if response.double_clicked() && pointed.is_none() {
+                view.ranges = None;
+                response.ctx.request_repaint();
+            }
+        }
+        PlacedResponse { response, pointed }
+    }
+
+    fn panel(&self) -> &Panel {
+        &self.scene.figure.plots[self.plot].panels[self.number]
+    }
+
+    /// Returns the accessible name.
+    fn description(&self) -> String {
+        let plot = self.scene.words.plot(self.scene.first_plot + self.plot);
+        if self.number == 0 {
+            plot
+        } else {
+            format!("{plot}: {}", self.panel().y.label)
+        }
+    }
+
+    /// Returns whether the vertical axis has numbers: in a compact figure only in the first column.
+    fn has_values(&self, ui: &Ui) -> bool {
+        let is_first_column = self.rect.left() - ui.max_rect().left() < 0.5 * self.rect.width();
+        !self.scene.is_compact || is_first_column
+    }
+
+    /// Returns the place for frame and axes.
+    fn frame_with_axes(&self, has_values: bool) -> Rect {
+        let above = if self.number == 0 {
+            TITLE_HEIGHT
+        } else {
+            PANEL_GAP
+        };
+        let mut rect = Rect::from_min_max(
+            self.rect.min + vec2(0.0, above),
+            self.rect.max - vec2(RIGHT_MARGIN, 0.0),
+        );
+        if self.scene.is_compact && has_values {
+            rect.min.x -= VALUE_AXIS_WIDTH;
+        }
+        rect
+    }
+
+    fn horizontal_axis(&self, ui: &Ui) -> PanelAxis {
+        let panel = self.panel();
+        let ticks = match panel.x.scale {
+            Scale::Logarithmic => Ticks::Frequency(FrequencyUnit::RadPerSecond),
+            Scale::Linear | Scale::Degrees => Ticks::Decimal(TICK_GAP),
+        };
+        let mut axis = PanelAxis::new(ticks, TICKS_HEIGHT);
+        axis.spacing = spacing_across(ui, panel, self.palette);
+        let is_last = self.number + 1 == self.scene.figure.plots[self.plot].panels.len();
+        if is_last && !self.scene.is_compact {
+            axis.thickness = LABELLED_HEIGHT;
+            axis.label.clone_from(&panel.x.label);
+        }
+        axis
+    }
+
+    /// Returns the vertical axis, with a label if it fits into `room` \[pt\].
+    fn vertical_axis(&self, ui: &Ui, room: f32, has_values: bool) -> PanelAxis {
+        let gap = if self.scene.is_compact {
+            COMPACT_TICK_GAP
+        } else {
+            TICK_GAP
+        };
+        let mut axis = PanelAxis::new(Ticks::Decimal(gap), VALUE_AXIS_WIDTH);
+        axis.is_drawn = has_values;
+        if !self.scene.figure.shared.y {
+            axis.label = label_within(ui, &self.panel().y.label, room, self.palette);
+        }
+        axis
+    }
+
+    /// Returns the mark under the pointer: the nearest dot, or the column.
+    fn pointed_mark(&self, response: &Response, transform: &PlotTransform) -> Option<PointedMark> {
+        let clicked_at = if response.clicked() {
+            response.interact_pointer_pos()
+        } else {
+            None
+        };
+        let pointer = response.hover_pos().or(clicked_at)?;
+        if self.scene.columns.is_empty() {
+            return nearest_dot(self.panel(), transform, pointer);
+        }
+        let column = transform.value_from_position(pointer).x.round();
+        if column < 0.0 {
+            return None;
+        }
+        let id = self.scene.columns.get(column as usize)?.clone();
+        Some(PointedMark {
+            id,
+            at: [column, 0.0],
+        })
+    }
+
+    /// Describes the dots for screen readers; the plot itself handles pointing and clicking, and
+    /// takes the nearest dot.
+    fn describe_dots(&self, ui: &Ui, transform: &PlotTransform) {
+        let plot = self.scene.first_plot + self.plot;
+        for dot in self.panel().dots() {
+            let Some(id) = &dot.id else { continue };
+            let Some(words) = self.scene.words.dot(plot, id, [dot.x, dot.y]) else {
+                continue;
+            };
+            let at = transform.position_from_point(&PlotPoint::new(dot.x, dot.y));
+            let place = Rect::from_center_size(at, Vec2::splat(RING));
+            let response = ui.interact(place, self.id.with(("dot", &dot.id)), Sense::hover());
+            response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &words));
+        }
+    }
+
+    /// Draws the name above a plot, with a bar in the accent colour if it is in focus; beside the
+    /// last plot in a compact figure, the horizontal unit.
+    fn title_ui(&self, ui: &Ui, frame: Rect) {
+        let palette = self.palette;
+        let is_accented = self.scene.accented == Some(self.plot);
+        let font = if is_accented {
+            medium(SMALL_SIZE)
+        } else {
+            caption_font()
+        };
+        let color = if self.scene.is_compact && !is_accented {
+            palette.dim_text
+        } else {
+            palette.text
+        };
+        let title = &self.scene.figure.plots[self.plot].title;
+        let place = pos2(frame.center().x, frame.top() - 0.5 * TITLE_HEIGHT);
+        ui.painter()
+            .text(place, Align2::CENTER_CENTER, title, font, color);
+        if is_accented {
+            let bar = Stroke::new(2.0, palette.accent);
+            ui.painter().hline(frame.x_range(), frame.top() - 1.0, bar);
+        }
+        if self.scene.is_compact && self.plot + 1 == self.scene.figure.plots.len() {
+            let label = &self.panel().x.label;
+            let unit = label.split(['[', ']']).nth(1).unwrap_or_default();
+            let at = pos2(frame.right() + 6.0, frame.bottom() + 0.5 * TICKS_HEIGHT);
+            let font = caption_font();
+            ui.painter()
+                .text(at, Align2::LEFT_CENTER, unit, font, palette.dim_text);
+        }
+    }
+}
+
+/// Returns the distance between numbers or names along a horizontal axis.
+fn spacing_across(ui: &Ui, panel: &Panel, palette: &Palette) -> TickSpacing {
+    let named = panel.x.names.as_deref().unwrap_or_default();
+    if named.is_empty() {
+        return TickSpacing::WidestNumber {
+            digit_pt: f64::from(tick_width(ui, "0", palette)),
+        };
+    }
+    let mut names = Vec::with_capacity(named.len());
+    let mut widest = 0.0f32;
+    for (_, name) in named {
+        widest = widest.max(tick_width(ui, name, palette));
+        names.push(name.clone());
+    }
+    TickSpacing::Names {
+        names,
+        widest_pt: f64::from(widest),
+    }
+}
+
+/// Returns a label, or only its unit if the label is longer than its axis.
+fn label_within(ui: &Ui, label: &str, room: f32, palette: &Palette) -> String {
+    if tick_width(ui, label, palette) > room
+        && let Some(unit) = label.rfind('[')
+    {
+        return label[unit..].to_owned();
+    }
+    label.to_owned()
+}
+
+/// Returns a text's width beside an axis \[pt\].
+fn tick_width(ui: &Ui, text: &str, palette: &Palette) -> f32 {
+    let galley = ui
+        .painter()
+        .layout_no_wrap(text.to_owned(), tick_font(), palette.text);
+    galley.size().x
+}
+
+/// Adopts the ranges after a gesture: the wheel zooms about the pointer, dragging pans.
+fn navigate(panel: &Panel, response: &Response, transform: &PlotTransform, view: &mut PanelView) {
+    let whole = whole(panel);
+    let limits = zoom_limits(panel);
+    let mut shown = ranges_of(transform.bounds());
+    if let Some(gesture) = ZoomGesture::find(&response.ctx, response) {
+        let factor = gesture.along_one_axis();
+        let fixed = transform.value_from_position(gesture.pointer);
+        for (axis, fixed) in [fixed.x, fixed.y].into_iter().enumerate() {
+            let limit = limits[axis].range(whole[axis]);
+            // An axis whose whole range was dragged beyond the limit stays as it is.
+            if let Some(zoomed) = zoomed_within(shown[axis], factor, fixed, limit) {
+                shown[axis] = zoomed;
+            }
+        }
+        response.ctx.request_repaint();
+    }
+    let widths = whole.map(|whole| Range::new(LEAST_WIDTH, FARTHEST * whole.width()));
+    let x = shown[0].limited(widths[0]);
+    let y = shown[1].limited(widths[1]);
+    if let (Some(x), Some(y)) = (x, y) {
+        view.ranges = Some([x, y]);
+    }
+}
+
+/// Returns the zoom limits: the data along a time axis, a decade or ten widths for other data.
+fn zoom_limits(panel: &Panel) -> [ZoomLimit; 2] {
+    let widths = ZoomLimit::TenWidths { least: LEAST_WIDTH };
+    let across = match panel.x.scale {
+        Scale::Logarithmic => ZoomLimit::Decade,
+        Scale::Linear | Scale::Degrees if panel.x.label.ends_with("[s]") => ZoomLimit::Data,
+        Scale::Linear | Scale::Degrees => widths,
+    };
+    [across, widths]
+}
+
+/// Returns a panel's full ranges; on the screen, a logarithmic horizontal axis has logarithms.
+fn whole(panel: &Panel) -> [Range; 2] {
+    let x = panel.shown(Along::X);
+    let y = panel.shown(Along::Y);
+    match panel.x.scale {
+        Scale::Logarithmic => [Range::new(x.min.log10(), x.max.log10()), y],
+        Scale::Linear | Scale::Degrees => [x, y],
+    }
+}

@@ -1,0 +1,98 @@
+//! Frequencies above the band at which the corrected model is invalid: a hatched region, and the
+//! magnitude added by the leads.
+
+use egui::{Align2, FontId, Rect, Shape, Stroke, Ui, pos2, vec2};
+use egui_plot::{PlotPoint, PlotTransform, PlotUi};
+
+use super::bode_scene::InvalidRegion;
+use super::layers::DrawnItem;
+use crate::gui::widgets::controls::elided;
+use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+
+/// Distance between hatching lines \[pt\].
+const HATCH_STEP: f32 = 7.0;
+/// Least width with room for words \[pt\].
+const LEAST_STRIP: f32 = 40.0;
+
+/// Hatches the frequencies above `omega` \[rad/s\].
+pub(super) fn add_hatching(plot: &mut PlotUi<'_>, omega: f64, palette: &Palette) {
+    let from = omega.log10();
+    let stroke = Stroke::new(1.0, palette.warning.gamma_multiply(0.14));
+    plot.add(DrawnItem::new(move |transform, shapes| {
+        let left = transform.position_from_point(&PlotPoint::new(from, 0.0)).x;
+        let frame = *transform.frame();
+        let region = frame.with_min_x(left.max(frame.left()));
+        hatch(region, stroke, shapes);
+    }));
+}
+
+/// Adds lines descending to the left at 45 degrees, clipped to the region.
+fn hatch(region: Rect, stroke: Stroke, shapes: &mut Vec<Shape>) {
+    let width = region.right() - region.left();
+    let height = region.height();
+    if width <= 0.0 {
+        return;
+    }
+    for line in 1..=((width + height) / HATCH_STEP) as usize {
+        let along = line as f32 * HATCH_STEP;
+        let top = along.min(width);
+        let foot = (along - height).max(0.0);
+        let point = |x: f32| pos2(region.left() + x, region.top() + along - x);
+        shapes.push(Shape::line_segment([point(top), point(foot)], stroke));
+    }
+}
+
+/// Draws a strip over the upper edge from the band's upper end \[rad/s\], with the frequency
+/// above which the model is invalid; and the magnitude added by the leads.
+pub(super) fn paint_invalid_strip(
+    ui: &Ui,
+    band_end: f64,
+    invalid: &InvalidRegion,
+    transform: &PlotTransform,
+    palette: &Palette,
+) {
+    let frame = *transform.frame();
+    let left = transform
+        .position_from_point(&PlotPoint::new(band_end.log10(), 0.0))
+        .x
+        .max(frame.left());
+    let strip = Rect::from_min_max(
+        pos2(left, frame.top() + 1.0),
+        pos2(frame.right() - 1.0, frame.top() + 17.0),
+    );
+    if strip.width() < LEAST_STRIP {
+        return;
+    }
+    ui.painter().rect_filled(strip, 0.0, palette.warning_ground);
+    let words = elided(ui, &invalid.words, strip.width() - 8.0, SMALL_SIZE);
+    let font = FontId::proportional(SMALL_SIZE);
+    ui.painter().text(
+        strip.center(),
+        Align2::CENTER_CENTER,
+        words,
+        font,
+        palette.warning,
+    );
+    paint_increase(ui, invalid, transform, palette);
+}
+
+/// Draws a bracket between the magnitudes with and without leads at the end of the curves, if both
+/// are visible.
+fn paint_increase(ui: &Ui, invalid: &InvalidRegion, transform: &PlotTransform, palette: &Palette) {
+    let Some(ends_db) = invalid.ends_db else {
+        return;
+    };
+    let [upper, lower] =
+        ends_db.map(|db| transform.position_from_point(&PlotPoint::new(invalid.up_to.log10(), db)));
+    let beside = vec2(6.0, 0.0);
+    let frame = *transform.frame();
+    if !frame.contains(upper - beside) || !frame.contains(lower - beside) {
+        return;
+    }
+    let x = upper.x - 9.0;
+    let stroke = Stroke::new(1.5, palette.warning);
+    ui.painter().vline(x, upper.y..=lower.y, stroke);
+    for y in [upper.y, lower.y] {
+        ui.painter().hline(x - 3.0..=x + 3.0, y, stroke);
+    }
+}

@@ -1,0 +1,98 @@
+//! Layers common to several plots: shades, areas, lines across a panel.
+
+use std::ops::RangeInclusive;
+
+use egui::{Color32, Shape, Stroke, Ui};
+use egui_plot::{
+    FilledArea, LineStyle, PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotTransform, PlotUi,
+    Span, VLine,
+};
+
+/// Distance between dots \[pt\].
+const DOT_SPACING: f32 = 4.0;
+
+/// Shades a horizontal stretch.
+pub(super) fn add_shade(plot: &mut PlotUi<'_>, stretch: RangeInclusive<f64>, fill: Color32) {
+    plot.span(Span::new("", stretch).fill(fill).border_width(0.0));
+}
+
+/// Fills the area between two lines through `points`: places, lower and upper values, all finite.
+pub(super) fn add_area(plot: &mut PlotUi<'_>, points: &[[f64; 3]], fill: Color32) {
+    let places = column(points, 0);
+    let lower = column(points, 1);
+    let upper = column(points, 2);
+    let area = FilledArea::new("", &places, &lower, &upper);
+    plot.add(area.fill_color(fill).allow_hover(false));
+}
+
+fn column(points: &[[f64; 3]], index: usize) -> Vec<f64> {
+    points.iter().map(|point| point[index]).collect()
+}
+
+/// Draws a line across the panel at a place on the horizontal axis.
+pub(super) fn add_vertical(plot: &mut PlotUi<'_>, place: f64, stroke: Stroke) {
+    plot.vline(vertical(place, stroke));
+}
+
+/// Draws a dotted line across the panel at a place on the horizontal axis.
+pub(super) fn add_dotted_vertical(plot: &mut PlotUi<'_>, place: f64, stroke: Stroke) {
+    let style = LineStyle::Dotted {
+        spacing: DOT_SPACING,
+    };
+    plot.vline(vertical(place, stroke).style(style));
+}
+
+fn vertical(place: f64, stroke: Stroke) -> VLine {
+    VLine::new("", place).stroke(stroke)
+}
+
+type Drawing<'a> = Box<dyn Fn(&PlotTransform, &mut Vec<Shape>) + 'a>;
+
+/// Layer with shapes in screen coordinates. It has no part in fitting and hovering by
+/// egui_plot.
+pub(super) struct DrawnItem<'a> {
+    base: PlotItemBase,
+    draw: Drawing<'a>,
+}
+
+impl<'a> DrawnItem<'a> {
+    /// Creates a layer from the function that adds its shapes to the panel.
+    pub(super) fn new(draw: impl Fn(&PlotTransform, &mut Vec<Shape>) + 'a) -> Self {
+        Self {
+            base: PlotItemBase::new(String::new()),
+            draw: Box::new(draw),
+        }
+    }
+}
+
+impl PlotItem for DrawnItem<'_> {
+    fn shapes(&self, _: &Ui, transform: &PlotTransform, shapes: &mut Vec<Shape>) {
+        (self.draw)(transform, shapes);
+    }
+
+    fn initialize(&mut self, _: RangeInclusive<f64>) {}
+
+    fn color(&self) -> Color32 {
+        Color32::TRANSPARENT
+    }
+
+    fn allow_hover(&self) -> bool {
+        false
+    }
+
+    fn geometry(&self) -> PlotGeometry<'_> {
+        PlotGeometry::None
+    }
+
+    fn bounds(&self) -> PlotBounds {
+        PlotBounds::NOTHING
+    }
+
+    fn base(&self) -> &PlotItemBase {
+        &self.base
+    }
+
+    fn base_mut(&mut self) -> &mut PlotItemBase {
+        &mut self.base
+    }
+}

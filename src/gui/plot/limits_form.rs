@@ -1,0 +1,112 @@
+//! Form for axis limits.
+
+use egui::{RichText, Role, TextEdit, Ui, WidgetInfo};
+
+use super::bode_scene::BodeScene;
+use super::drawn_curves::Pane;
+use super::plot_axis::PlotAxis;
+use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LimitsForm {
+    axis: PlotAxis,
+    /// Pane beside which the form is open.
+    pane: Pane,
+    texts: [String; 2],
+    /// Reason why the limits are refused.
+    trouble: Option<String>,
+    is_new: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum FormAnswer {
+    #[default]
+    Waiting,
+    Show,
+    Fit,
+}
+
+impl LimitsForm {
+    /// Opens the form beside a pane, with the limits as numbers.
+    pub(super) fn new(axis: PlotAxis, pane: Pane, texts: [String; 2]) -> Self {
+        Self {
+            axis,
+            pane,
+            texts,
+            trouble: None,
+            is_new: true,
+        }
+    }
+
+    /// Returns whether the form is open for an axis beside a pane.
+    pub(super) fn is_for(&self, axis: PlotAxis, pane: Pane) -> bool {
+        self.axis == axis && self.pane == pane
+    }
+
+    /// Returns the typed limits.
+    pub(super) fn texts(&self) -> &[String; 2] {
+        &self.texts
+    }
+
+    /// Reports why the limits are refused.
+    pub(super) fn refuse(&mut self, trouble: String) {
+        self.trouble = Some(trouble);
+    }
+
+    /// Draws the form.
+    pub(super) fn ui(
+        &mut self,
+        ui: &mut Ui,
+        scene: &BodeScene<'_>,
+        palette: &Palette,
+    ) -> FormAnswer {
+        let unit = self.axis.unit(scene);
+        ui.set_max_width(190.0);
+        let mut answer = FormAnswer::Waiting;
+        for (index, name) in ["Lower limit", "Upper limit"].into_iter().enumerate() {
+            if self.limit_ui(ui, index, name, &unit) {
+                answer = FormAnswer::Show;
+            }
+        }
+        if let Some(trouble) = &self.trouble {
+            let trouble = RichText::new(trouble).size(SMALL_SIZE);
+            ui.label(trouble.color(palette.warning));
+        }
+        ui.horizontal(|ui| {
+            let show = ui.button("Show limits");
+            if show
+                .on_hover_text("Show the range between the limits")
+                .clicked()
+            {
+                answer = FormAnswer::Show;
+            }
+            let fit = ui.button("Fit axis");
+            if fit
+                .on_hover_text("Show all of the curves on this axis")
+                .clicked()
+            {
+                answer = FormAnswer::Fit;
+            }
+        });
+        answer
+    }
+
+    /// Draws the field; returns whether the limit was entered.
+    fn limit_ui(&mut self, ui: &mut Ui, index: usize, name: &str, unit: &str) -> bool {
+        let mut is_entered = false;
+        ui.horizontal(|ui| {
+            ui.label(format!("{name}{unit}"));
+            let text = &mut self.texts[index];
+            let field = ui.add(TextEdit::singleline(text).desired_width(70.0));
+            field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, name));
+            if self.is_new {
+                field.request_focus();
+                self.is_new = false;
+            }
+            is_entered =
+                field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            field.on_hover_text(format!("{name} of the visible range{unit}; Enter shows it"));
+        });
+        is_entered
+    }
+}

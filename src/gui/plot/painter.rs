@@ -1,0 +1,147 @@
+//! Panel painter: frame, axes, grid, and the layers added by the scene. Every plot with axes
+//! is drawn here.
+
+use egui::{Color32, Id, Rect, Response, Sense, Ui, UiBuilder, Vec2, Vec2b, WidgetInfo};
+use egui_plot::{Axis, Plot, PlotTransform, PlotUi};
+
+use super::panel_axis::PanelAxis;
+use super::ticks::GRID_SPACING;
+use crate::gui::widgets::palette::Palette;
+
+/// Panel on the screen, except for its content.
+pub(super) struct PanelPainter<'a> {
+    pub(super) id: Id,
+    /// Place of the panel with its axes.
+    pub(super) rect: Rect,
+    /// Accessible name.
+    pub(super) name: &'a str,
+    pub(super) across: PanelAxis,
+    pub(super) values: PanelAxis,
+    pub(super) gestures: Gestures,
+    /// Whether the ground below the panel already has its colour. Without a graphics processor
+    /// every pixel filled twice costs time.
+    pub(super) is_transparent: bool,
+    pub(super) palette: &'a Palette,
+}
+
+/// Gestures handled by the panel itself; any others are up to its owner.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Gestures {
+    /// Reports clicks and drags.
+    Reported,
+    /// Reports clicks only.
+    Clicks,
+    /// Dragging pans, pinching and dragging an axis zooms.
+    PanAndZoom,
+    /// As [`Self::PanAndZoom`], and the ranges follow the data until a gesture changes them; a
+    /// double click fits them again.
+    Following(Follow),
+}
+
+/// Behaviour of a panel whose ranges follow its data.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Follow {
+    /// Axes along which dragging pans.
+    pub(super) pans: Vec2b,
+    /// Space at either end, relative to the axis' length.
+    pub(super) margins: Vec2,
+    /// Panels in a group share their horizontal range.
+    pub(super) group: Option<Id>,
+}
+
+/// Panel as drawn.
+pub(super) struct PanelResponse<R> {
+    pub(super) response: Response,
+    /// Transform from the places on the axes to the screen.
+    pub(super) transform: PlotTransform,
+    /// Value returned by the content.
+    pub(super) inner: R,
+}
+
+impl PanelPainter<'_> {
+    /// Draws the panel; `content` sets its ranges and adds its layers, from bottom to top.
+    pub(super) fn show<'p, R>(
+        &self,
+        ui: &mut Ui,
+        content: impl FnOnce(&mut PlotUi<'p>) -> R + 'p,
+    ) -> PanelResponse<R> {
+        let builder = UiBuilder::new().id_salt(self.id).max_rect(self.rect);
+        let shown = ui.scope_builder(builder, |ui| {
+            if self.is_transparent {
+                ui.visuals_mut().extreme_bg_color = Color32::TRANSPARENT;
+            }
+            self.empty_plot().show(ui, content)
+        });
+        let shown = shown.inner;
+        shown
+            .response
+            .widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, self.name));
+        PanelResponse {
+            response: shown.response,
+            transform: shown.transform,
+            inner: shown.inner,
+        }
+    }
+
+    /// Returns the frame with its axes.
+    fn empty_plot<'p>(&self) -> Plot<'p> {
+        let plot = quiet_plot(self.id, self.palette)
+            .width(self.rect.width())
+            .height(self.rect.height())
+            .show_grid([self.across.has_grid(), self.values.has_grid()])
+            .x_grid_spacer(self.across.spacer())
+            .y_grid_spacer(self.values.spacer())
+            .custom_x_axes(self.across.hints(Axis::X, self.palette))
+            .custom_y_axes(self.values.hints(Axis::Y, self.palette));
+        match self.gestures {
+            Gestures::Reported => plot,
+            Gestures::Clicks => plot.sense(Sense::click()),
+            Gestures::PanAndZoom => plot
+                .sense(Sense::click_and_drag())
+                .allow_drag(true)
+                .allow_zoom(true)
+                .allow_axis_zoom_drag(true),
+            Gestures::Following(follow) => following(plot, follow),
+        }
+    }
+}
+
+/// Creates a plot without interaction, whose ranges are set by its content.
+fn quiet_plot<'p>(id: Id, palette: &Palette) -> Plot<'p> {
+    Plot::new(id)
+        .id(id)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_double_click_reset(false)
+        .show_x(false)
+        .show_y(false)
+        .grid_spacing(GRID_SPACING)
+        .grid_color(palette.grid)
+        .auto_bounds(false)
+}
+
+fn following<'p>(plot: Plot<'p>, follow: Follow) -> Plot<'p> {
+    let plot = plot
+        .sense(Sense::click_and_drag())
+        .auto_bounds(true)
+        .allow_drag(follow.pans)
+        .allow_axis_zoom_drag(true)
+        .allow_double_click_reset(true)
+        .set_margin_fraction(follow.margins);
+    match follow.group {
+        Some(group) => plot
+            .link_axis(group, Vec2b::new(true, false))
+            .link_cursor(group, Vec2b::new(true, false)),
+        None => plot,
+    }
+}
+
+/// Takes the frame colours in `ui` from the palette, whatever the surrounding style.
+pub(super) fn use_frame_colors(ui: &mut Ui, palette: &Palette) {
+    let visuals = ui.visuals_mut();
+    visuals.extreme_bg_color = palette.background;
+    visuals.widgets.noninteractive.bg_stroke.color = palette.line;
+}

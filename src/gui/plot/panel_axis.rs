@@ -1,0 +1,116 @@
+//! Panel axis: ticks, label and thickness.
+
+use std::ops::RangeInclusive;
+
+use egui::{FontId, RichText};
+use egui_plot::{Axis, AxisHints, GridInput, GridMark};
+
+use super::ticks::{LABEL_SPACING, Ticks, named_marks};
+use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+
+/// Font size in tick labels \[pt\].
+const TICK_SIZE: f32 = 11.0;
+/// Axis height with tick labels only \[pt\].
+pub(super) const TICKS_HEIGHT: f32 = 15.0;
+/// Axis height with tick labels and a label \[pt\].
+pub(super) const LABELLED_HEIGHT: f32 = 33.0;
+
+pub(super) fn tick_font() -> FontId {
+    FontId::proportional(TICK_SIZE)
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct PanelAxis {
+    pub(super) ticks: Ticks,
+    pub(super) spacing: TickSpacing,
+    /// Quantity and unit beside the numbers; may be empty.
+    pub(super) label: String,
+    /// Height if horizontal, width if vertical \[pt\].
+    pub(super) thickness: f32,
+    /// Whether numbers and label are drawn; without them the axis takes no room and leaves its grid
+    /// lines.
+    pub(super) is_drawn: bool,
+}
+
+/// Distance between the numbers along an axis.
+#[derive(Clone, Debug)]
+pub(super) enum TickSpacing {
+    /// Distance that suits the kind of ticks.
+    Usual,
+    /// As the usual distance, and room for the widest number where a digit has this width \[pt\].
+    WidestNumber { digit_pt: f64 },
+    /// Names at 0, 1, 2 … instead of numbers, without grid lines.
+    Names { names: Vec<String>, widest_pt: f64 },
+}
+
+impl PanelAxis {
+    /// Creates an axis with numbers and without a label; `thickness` in \[pt\].
+    pub(super) fn new(ticks: Ticks, thickness: f32) -> Self {
+        Self {
+            ticks,
+            spacing: TickSpacing::Usual,
+            label: String::new(),
+            thickness,
+            is_drawn: true,
+        }
+    }
+
+    /// Returns the axis with a label.
+    pub(super) fn labelled(self, label: impl Into<String>) -> Self {
+        Self {
+            label: label.into(),
+            ..self
+        }
+    }
+
+    /// Returns whether the axis has grid lines.
+    pub(super) fn has_grid(&self) -> bool {
+        !matches!(self.spacing, TickSpacing::Names { .. })
+    }
+
+    /// Returns the function that places ticks and grid lines.
+    pub(super) fn spacer(&self) -> impl Fn(GridInput) -> Vec<GridMark> + use<> {
+        let ticks = self.ticks;
+        let spacing = self.spacing.clone();
+        move |input| match &spacing {
+            TickSpacing::Usual => ticks.marks(input.bounds, input.base_step_size),
+            TickSpacing::WidestNumber { digit_pt } => {
+                ticks.marks_beside(input.bounds, input.base_step_size, *digit_pt)
+            }
+            TickSpacing::Names { names, widest_pt } => named_marks(&input, names.len(), *widest_pt),
+        }
+    }
+
+    /// Returns the appearance of the axis, if it is drawn.
+    pub(super) fn hints<'a>(&self, side: Axis, palette: &Palette) -> Vec<AxisHints<'a>> {
+        if !self.is_drawn {
+            return Vec::new();
+        }
+        let ticks = self.ticks;
+        let spacing = self.spacing.clone();
+        let mut hints = AxisHints::new(side)
+            .formatter(move |mark, _: &RangeInclusive<f64>| mark_text(ticks, &spacing, mark))
+            .min_thickness(self.thickness)
+            .label_spacing(LABEL_SPACING)
+            .tick_label_color(palette.text)
+            .tick_label_font(tick_font());
+        if !self.label.is_empty() {
+            let label = RichText::new(&self.label)
+                .size(SMALL_SIZE)
+                .color(palette.dim_text);
+            hints = hints.label(label);
+        }
+        vec![hints]
+    }
+}
+
+/// Returns the text at a mark.
+fn mark_text(ticks: Ticks, spacing: &TickSpacing, mark: GridMark) -> String {
+    match spacing {
+        TickSpacing::Usual | TickSpacing::WidestNumber { .. } => ticks.text(mark),
+        TickSpacing::Names { names, .. } => names
+            .get(mark.value.round() as usize)
+            .cloned()
+            .unwrap_or_default(),
+    }
+}

@@ -1,0 +1,57 @@
+//! Menu for values under the pointer whose derivations can be shown.
+
+use egui::{Id, Response};
+
+use gdcm_words::derivation::ExplainTarget;
+
+use crate::gui::widgets::controls::QUESTION;
+
+/// Value with a derivation, and its name.
+pub type NamedFigure = (String, ExplainTarget);
+
+/// Values listed in an open menu.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Questions {
+    open: Option<OpenMenu>,
+}
+
+#[derive(Clone, Debug)]
+struct OpenMenu {
+    plot: Id,
+    values: Vec<NamedFigure>,
+}
+
+impl Questions {
+    /// Opens a plot's menu on a secondary click on the values `pointed`; returns the value
+    /// chosen in it.
+    pub(super) fn ui(
+        &mut self,
+        response: &Response,
+        pointed: &[NamedFigure],
+    ) -> Option<ExplainTarget> {
+        if response.secondary_clicked() {
+            self.open = None;
+            if !pointed.is_empty() {
+                self.open = Some(OpenMenu {
+                    plot: response.id,
+                    values: pointed.to_vec(),
+                });
+            }
+        }
+        let menu = self.open.as_ref()?;
+        if menu.plot != response.id {
+            return None;
+        }
+        let mut chosen = None;
+        response.context_menu(|ui| {
+            ui.label(QUESTION);
+            for (name, target) in &menu.values {
+                if ui.button(name).clicked() {
+                    chosen = Some(target.clone());
+                    ui.close();
+                }
+            }
+        });
+        chosen
+    }
+}

@@ -1,0 +1,344 @@
+//! Ticks and grid lines: places, and the numbers written there.
+
+use egui::Rangef;
+use egui_plot::{GridInput, GridMark};
+
+use gdcm_model::number_format::compact;
+use gdcm_model::units::{db_to_ratio, ratio_to_db};
+use gdcm_plot::figure::Range;
+use gdcm_plot::figure::axis::FrequencyUnit;
+use gdcm_plot::figure::axis::Scale;
+use gdcm_plot::figure::axis::Tick;
+use gdcm_plot::figure::axis::TickGaps;
+use gdcm_plot::figure::axis::ticks_of;
+
+/// Least distance between ticks on a vertical axis \[pt\].
+pub(super) const VERTICAL_TICK_GAP: f64 = 27.0;
+
+/// Nominal distance between labelled marks \[pt\].
+const LABELLED: f64 = 100.0;
+/// Nominal distance between minor marks \[pt\].
+const MINOR: f64 = 25.0;
+
+/// `grid_spacing` for which the nominal distances mean full and half strength.
+pub(super) const GRID_SPACING: Rangef = Rangef {
+    min: 1.0,
+    max: 100.0,
+};
+/// `label_spacing` for which labelled marks have labels in full strength, and minor marks none.
+pub(super) const LABEL_SPACING: Rangef = Rangef {
+    min: 50.0,
+    max: 51.0,
+};
+
+/// Least distance between two labels within a decade \[pt\].
+const DECADE_LABEL_GAP: f64 = 34.0;
+/// Least distance between two grid lines within a decade \[pt\].
+const DECADE_LINE_GAP: f64 = 5.0;
+/// Least distance between labelled ticks \[pt\]; letters are 11 high.
+const CLOSEST: f64 = 13.0;
+/// Least gap between two names along an axis \[pt\].
+const NAME_GAP: f64 = 6.0;
+
+/// Kind of tick labels along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Ticks {
+    /// Plain values with labels at this distance in points: decibels, knots, gains.
+    Decimal(f64),
+    /// Plain values with labels at fractions of a turn.
+    Degrees,
+    /// Values of `log10(omega)`, labelled as frequencies in a unit.
+    Frequency(FrequencyUnit),
+    /// Decibels, labelled as ratios.
+    Ratio,
+}
+
+impl Ticks {
+    /// Converts a place on the axis to its number.
+    pub(super) fn number(self, place: f64) -> f64 {
+        match self {
+            Self::Decimal(_) | Self::Degrees => place,
+            Self::Frequency(unit) => unit.of_omega(10f64.powf(place)),
+            Self::Ratio => db_to_ratio(place),
+        }
+    }
+
+    /// Converts a number to its place on the axis; not finite if it has none.
+    pub(super) fn place(self, number: f64) -> f64 {
+        match self {
+            Self::Decimal(_) | Self::Degrees => number,
+            Self::Frequency(unit) => (number / unit.of_omega(1.0)).log10(),
+            Self::Ratio => ratio_to_db(number),
+        }
+    }
+
+    /// Returns the ticks and grid lines between two places on an axis.
+    pub(super) fn marks(self, bounds: (f64, f64), units_per_point: f64) -> Vec<GridMark> {
+        let is_finite = [bounds.0, bounds.1, units_per_point]
+            .into_iter()
+            .all(f64::is_finite);
+        if !(is_finite && units_per_point > 0.0 && bounds.0 < bounds.1) {
+            return Vec::new();
+        }
+        let mut gap = self.label_gap();
+        let mut found = self.ticks_between(bounds, units_per_point, gap);
+        // A single number does not show the scale: in a low plot the numbers are closer together.
+        while count_labels(&found) < 2 && gap > CLOSEST {
+            gap = (0.8 * gap).max(CLOSEST);
+            found = self.ticks_between(bounds, units_per_point, gap);
+        }
+        let mut marks = Vec::with_capacity(found.len());
+        for tick in found {
+            let distance = if tick.label.is_some() {
+                LABELLED
+            } else {
+                MINOR
+            };
+            marks.push(GridMark {
+                value: self.place(tick.value),
+                step_size: distance * units_per_point,
+            });
+        }
+        marks
+    }
+
+    /// Returns the usual least distance between two labels \[pt\].
+    fn label_gap(self) -> f64 {
+        match self {
+            Self::Decimal(gap) => gap,
+            Self::Degrees => VERTICAL_TICK_GAP,
+            Self::Frequency(_) | Self::Ratio => DECADE_LABEL_GAP,
+        }
+    }
+
+    /// Returns the ticks between two places, with labels at least `gap` points apart.
+    fn ticks_between(self, bounds: (f64, f64), units_per_point: f64, gap: f64) -> Vec<Tick> {
+        let scale = match self {
+            Self::Decimal(_) => Scale::Linear,
+            Self::Degrees => Scale::Degrees,
+            Self::Frequency(_) | Self::Ratio => Scale::Logarithmic,
+        };
+        let range = Range::new(self.number(bounds.0), self.number(bounds.1));
+        let length = (bounds.1 - bounds.0) / units_per_point;
+        let gaps = TickGaps {
+            labels: gap,
+            equal_steps: 1.5 * gap,
+            lines: DECADE_LINE_GAP,
+        };
+        ticks_of(scale, range, length, gaps)
+    }
+
+    /// Returns [`Self::marks`] for a horizontal axis, far enough apart for the widest label where a
+    /// letter is `digit` points wide.
+    pub(super) fn marks_beside(
+        self,
+        bounds: (f64, f64),
+        units_per_point: f64,
+        digit: f64,
+    ) -> Vec<GridMark> {
+        let found = self.marks(bounds, units_per_point);
+        let letters = found
+            .iter()
+            .map(|mark| self.text(*mark).chars().count())
+            .max()
+            .unwrap_or(0);
+        let needed = (letters as f64 + 0.6) * digit;
+        match self {
+            Self::Decimal(gap) if gap < needed => {
+                Self::Decimal(needed).marks(bounds, units_per_point)
+            }
+            _ => found,
+        }
+    }
+
+    pub(super) fn text(self, mark: GridMark) -> String {
+        compact(self.number(mark.value))
+    }
+}
+
+fn count_labels(ticks: &[Tick]) -> usize {
+    ticks.iter().filter(|tick| tick.label.is_some()).count()
+}
+
+/// Returns marks for `count` names at 0, 1, 2 …: only for every second, third … name if the widest
+/// does not fit otherwise.
+pub(super) fn named_marks(input: &GridInput, count: usize, widest_pt: f64) -> Vec<GridMark> {
+    let every = ((widest_pt + NAME_GAP) * input.base_step_size)
+        .ceil()
+        .max(1.0);
+    let mut marks = Vec::new();
+    for index in (0..count).step_by(every as usize) {
+        marks.push(GridMark {
+            value: index as f64,
+            step_size: LABELLED * input.base_step_size,
+        });
+    }
+    marks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns whether a mark on an axis of `units_per_point` has a label.
+    fn is_labelled(mark: GridMark, units_per_point: f64) -> bool {
+        mark.step_size / units_per_point > f64::from(LABEL_SPACING.min)
+    }
+
+    fn values(ticks: Ticks, bounds: (f64, f64), points: f64) -> Vec<f64> {
+        let marks = ticks.marks(bounds, (bounds.1 - bounds.0) / points);
+        marks.into_iter().map(|mark| mark.value).collect()
+    }
+
+    #[test]
+    fn magnitudes_are_labelled_at_five_ten_or_twenty_decibels() {
+        assert_eq!(
+            values(Ticks::Decimal(28.0), (-26.0, 10.0), 290.0),
+            [-25.0, -20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0]
+        );
+        assert_eq!(
+            values(Ticks::Decimal(28.0), (-80.0, 20.0), 290.0),
+            [
+                -80.0, -70.0, -60.0, -50.0, -40.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0
+            ]
+        );
+    }
+
+    #[test]
+    fn phases_are_labelled_at_parts_of_a_turn() {
+        assert_eq!(
+            values(Ticks::Degrees, (-330.0, 60.0), 200.0),
+            [-300.0, -240.0, -180.0, -120.0, -60.0, 0.0, 60.0]
+        );
+        assert_eq!(
+            values(Ticks::Degrees, (-200.0, 10.0), 250.0),
+            [-180.0, -150.0, -120.0, -90.0, -60.0, -30.0, 0.0]
+        );
+        assert_eq!(
+            values(Ticks::Degrees, (-900.0, 0.0), 200.0),
+            [-900.0, -720.0, -540.0, -360.0, -180.0, 0.0]
+        );
+    }
+
+    #[test]
+    fn numbers_beside_one_another_have_the_room_of_the_widest() {
+        let values = |bounds: (f64, f64), points: f64| -> Vec<f64> {
+            let marks =
+                Ticks::Decimal(26.0).marks_beside(bounds, (bounds.1 - bounds.0) / points, 6.5);
+            marks.into_iter().map(|mark| mark.value).collect()
+        };
+        // "−120" and "−110" took 29 points of 27.
+        assert_eq!(
+            values((-130.0, 8.0), 360.0),
+            [-120.0, -100.0, -80.0, -60.0, -40.0, -20.0, 0.0]
+        );
+        assert_eq!(
+            values((40.0, 145.0), 150.0),
+            [40.0, 60.0, 80.0, 100.0, 120.0, 140.0]
+        );
+    }
+
+    #[test]
+    fn invalid_bounds_give_no_ticks() {
+        assert!(Ticks::Decimal(28.0).marks((1.0, 1.0), 0.0).is_empty());
+        // Chart of a record, 58 points high.
+        assert_eq!(
+            values(Ticks::Decimal(28.0), (-8.0, 8.0), 58.0),
+            [-5.0, 0.0, 5.0]
+        );
+        assert!(Ticks::Degrees.marks((0.0, f64::NAN), f64::NAN).is_empty());
+    }
+
+    fn labels(unit: FrequencyUnit, omega: (f64, f64), points: f64) -> Vec<String> {
+        let bounds = (omega.0.log10(), omega.1.log10());
+        let decades_per_point = (bounds.1 - bounds.0) / points;
+        let marks = Ticks::Frequency(unit).marks(bounds, decades_per_point);
+        marks
+            .into_iter()
+            .filter(|mark| is_labelled(*mark, decades_per_point))
+            .map(|mark| Ticks::Frequency(unit).text(mark))
+            .collect()
+    }
+
+    #[test]
+    fn a_usual_plot_is_labelled_at_one_two_five() {
+        assert_eq!(
+            labels(FrequencyUnit::RadPerSecond, (0.3, 20.0), 800.0),
+            ["0.5", "1", "2", "5", "10", "20"]
+        );
+    }
+
+    #[test]
+    fn a_narrow_plot_is_labelled_at_decades_only() {
+        assert_eq!(
+            labels(FrequencyUnit::RadPerSecond, (0.05, 200.0), 300.0),
+            ["0.1", "1", "10", "100"]
+        );
+        assert_eq!(
+            labels(FrequencyUnit::RadPerSecond, (1e-6, 1e6), 200.0).len(),
+            5
+        );
+    }
+
+    #[test]
+    fn a_close_view_is_labelled_in_equal_steps() {
+        assert_eq!(
+            labels(FrequencyUnit::RadPerSecond, (1.98, 2.32), 800.0)
+                .first()
+                .map(String::as_str),
+            Some("2")
+        );
+        assert!(labels(FrequencyUnit::RadPerSecond, (2.0001, 2.0009), 800.0).len() > 3);
+        let texts = labels(FrequencyUnit::RadPerSecond, (1.2, 4.2), 900.0);
+        assert_eq!(texts, ["1.5", "2", "2.5", "3", "3.5", "4"]);
+    }
+
+    #[test]
+    fn ticks_in_hertz_are_round_in_hertz() {
+        assert_eq!(
+            labels(FrequencyUnit::Hertz, (0.3, 20.0), 800.0),
+            ["0.05", "0.1", "0.2", "0.5", "1", "2"]
+        );
+    }
+
+    #[test]
+    fn no_two_labels_are_closer_than_the_gap_at_any_zoom() {
+        for width in [1e-4, 0.01, 0.1, 0.4, 0.8, 1.3, 1.8, 3.0, 7.0, 12.0] {
+            for points in [150.0, 400.0, 900.0, 2500.0] {
+                let per_point = width / points;
+                let marks = Ticks::Frequency(FrequencyUnit::RadPerSecond)
+                    .marks((-0.52, -0.52 + width), per_point);
+                let labelled: Vec<_> = marks
+                    .iter()
+                    .filter(|m| is_labelled(**m, per_point))
+                    .collect();
+                assert!(labelled.len() < 80, "{width} {points}: {}", labelled.len());
+                for pair in labelled.windows(2) {
+                    let gap = (pair[1].value - pair[0].value) / per_point;
+                    assert!(gap > 0.99 * DECADE_LABEL_GAP, "{width} {points}: {gap}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_decade_has_nine_lines_where_there_is_room() {
+        let marks =
+            Ticks::Frequency(FrequencyUnit::RadPerSecond).marks((0.0, 1.0 - 1e-6), 1.0 / 400.0);
+        assert_eq!(marks.len(), 9);
+    }
+
+    #[test]
+    fn invalid_frequencies_give_no_marks() {
+        assert!(
+            Ticks::Frequency(FrequencyUnit::RadPerSecond)
+                .marks((1.0, 1.0), 0.1)
+                .is_empty()
+        );
+        assert!(
+            Ticks::Frequency(FrequencyUnit::RadPerSecond)
+                .marks((f64::NAN, 1.0), 0.1)
+                .is_empty()
+        );
+    }
+}

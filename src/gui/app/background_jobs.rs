@@ -23,8 +23,11 @@ use std::sync::Arc;
 use gdcm_method::correction::Outcome;
 use gdcm_model::executor::Executor;
 use gdcm_study::Engine;
-use gdcm_study::jobs::job::{CurvesJob, Job, ProofJob, TogglesJob, UncertaintyJob};
-use gdcm_study::stages::condition_responses::{CURVE_POINTS, KnownModels, curves_band};
+use gdcm_study::jobs::analysis_jobs::{ProofJob, TogglesJob, UncertaintyJob};
+use gdcm_study::jobs::curve_jobs::CurvesJob;
+use gdcm_study::jobs::job::Job;
+use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
+use gdcm_study::stages::condition_responses::KnownModels;
 
 use super::GdcmApp;
 use super::job_kind::{AnyJobKind, JobKind, JobKinds};

@@ -12,7 +12,8 @@ use gdcm_io::files::corrections_file::write_results;
 use gdcm_io::output_set::OutputSet;
 use gdcm_model::message_text::sanitized_path;
 use gdcm_plot::figure::{ColumnWidth, Figure, FigureFormat, FigureKind};
-use gdcm_study::{Analysis, Table};
+use gdcm_study::Analysis;
+use gdcm_words::Table;
 
 use super::GdcmApp;
 use crate::gui::commands::command::Command;

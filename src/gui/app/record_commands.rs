@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::condition::ChannelRemedy;
 use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::names::ChannelRule;
 use gdcm_model::simulation::Signal;
 use gdcm_study::Edit;
 use gdcm_sysid::records::{

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Edit;
-use gdcm_study::decisions::changed_models::{AdoptedModels, OfferedModels};
-use gdcm_study::jobs::job::IdentifyJob;
+use gdcm_study::decisions::adopted_models::{AdoptedModels, OfferedModels};
+use gdcm_study::jobs::identification_jobs::IdentifyJob;
 use gdcm_sysid::identification::{Identification, IdentificationError};
 
 use super::GdcmApp;

@@ -7,7 +7,7 @@ use gdcm_io::FileError;
 use gdcm_io::files::requirements_file::{add_tolerances, load_tolerances, read_levels};
 use gdcm_model::message_text::sanitized_path;
 use gdcm_study::Edit;
-use gdcm_study::results::requirements::RequirementSettings;
+use gdcm_study::decisions::requirement_settings::RequirementSettings;
 
 use super::GdcmApp;
 use crate::gui::commands::command::Command;

@@ -3,7 +3,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use egui::{CentralPanel, Context, Frame, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, ViewportCommand, Visuals};
+use egui::{
+    CentralPanel, Context, Frame, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, ViewportCommand,
+    Visuals,
+};
 
 use gdcm_io::Opened;
 use gdcm_io::files::study_file::holds_models;
@@ -29,7 +32,10 @@ use crate::gui::commands::layout::LayoutCommand;
 use crate::gui::commands::records::RecordsCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::panels::explanation::sheet_ui;
-use crate::gui::panels::{answer_panel, bars, centre, conditions_panel, explanation, forms, help, models_panel, start_page};
+use crate::gui::panels::{
+    answer_panel, bars, centre, conditions_panel, explanation, forms, help, models_panel,
+    start_page,
+};
 use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::preferences::Preferences;
 use crate::gui::state::sheet::Sheet;

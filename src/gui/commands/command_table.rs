@@ -3,7 +3,7 @@
 use egui::{Key, Modifiers};
 
 use gdcm_plot::figure::FigureFormat;
-use gdcm_study::decisions::changed_models::OfferedModels;
+use gdcm_study::decisions::adopted_models::OfferedModels;
 use gdcm_study::decisions::setting::SETTINGS;
 use gdcm_study::decisions::setting_row::{Kind, Value};
 

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::names::ChannelRule;
 use gdcm_model::simulation::Signal;
 use gdcm_model::units::{number, telling};
-use gdcm_study::decisions::changed_models::{AdoptedModels, OfferedModels};
-use gdcm_study::jobs::job::{IdentificationRequest, IdentifyJob};
+use gdcm_study::decisions::adopted_models::{AdoptedModels, OfferedModels};
+use gdcm_study::jobs::identification_jobs::{IdentificationRequest, IdentifyJob};
 use gdcm_sysid::identification::{
     CautionNote, ChannelPreparation, Identification, IdentificationError, Preparation, SearchSpace,
 };

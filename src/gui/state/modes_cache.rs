@@ -6,9 +6,9 @@ use nalgebra::Complex;
 
 use gdcm_method::couplings::PoleShift;
 use gdcm_model::dataset::{ModelId, Pair};
-use gdcm_words::Table;
 use gdcm_study::jobs::curve_jobs::ConditionModes;
 use gdcm_study::results::fitted_couplings::FittedCouplings;
+use gdcm_words::Table;
 
 /// Modes followed from model to model, zeros in the focused response, and pole shifts by
 /// couplings; cached as long as their inputs are the same.

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use gdcm_model::dataset::ConditionId;
-use gdcm_study::jobs::job::IdentifyJob;
+use gdcm_study::jobs::identification_jobs::IdentifyJob;
 use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::results::time_histories::HistoryRecords;
 use gdcm_sysid::records::LayoutProblem;

@@ -6,7 +6,7 @@ use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, Model, Pair};
 use gdcm_model::units::s_to_ms;
 use gdcm_plot::figure::all_channels;
-use gdcm_study::Table;
+use gdcm_words::Table;
 
 use super::results::Sureness;
 use super::window_state::State;

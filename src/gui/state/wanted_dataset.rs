@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::Band;
 use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::names::ChannelRule;
 use gdcm_model::units::number;
 use gdcm_sysid::records::channel_list::{ChannelList, SaidChannel};
 use gdcm_sysid::records::record_channels::ResamplingWish;

@@ -12,9 +12,9 @@ impl Executor for Pool {
     fn carry_out(&self, tasks: Vec<Task<'_>>) {
         // First in, first out: earlier requests are computed first.
         rayon::scope_fifo(|scope| {
-            tasks
-                .into_iter()
-                .for_each(|task| scope.spawn_fifo(move |_| task()))
+            for task in tasks {
+                scope.spawn_fifo(move |_| task());
+            }
         });
     }
 }
@@ -25,10 +25,11 @@ impl Executor for Pool {
 /// The reason, if no thread can be started.
 pub fn start_threads() -> Result<(), String> {
     static STARTED: OnceLock<Result<(), String>> = OnceLock::new();
-    let start = || {
-        rayon::ThreadPoolBuilder::new()
-            .build_global()
-            .map_err(|error| error.to_string())
-    };
-    STARTED.get_or_init(start).clone()
+    STARTED.get_or_init(build_pool).clone()
+}
+
+fn build_pool() -> Result<(), String> {
+    rayon::ThreadPoolBuilder::new()
+        .build_global()
+        .map_err(|error| error.to_string())
 }

@@ -1,4 +1,4 @@
-//! The program: a window, or one of the commands without one.
+//! The executable: opens the window, or carries out a command.
 
 use std::process::ExitCode;
 

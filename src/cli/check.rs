@@ -20,13 +20,16 @@ use gdcm_study::{Execution, Study};
 use gdcm_words::Table;
 use gdcm_words::caution::caution_text;
 
-use super::arguments::{ChannelSign, OpeningArguments};
+use super::channel_values::ChannelSign;
+use super::failure::Failure;
 use super::open;
-use super::study_options::turn;
+use super::study_arguments::OpeningArguments;
+use super::study_options::apply_signs;
 use super::summary::doubt_words;
-use super::terminal::{Failure, by_words, error, indented, line, of_conditions, say};
+use super::terminal::{error, print};
+use super::text::{ConditionMessage, indented, line, shared_messages, with_conditions};
 
-/// Prints the contents of a dataset or a study.
+/// Prints the contents of a dataset or study.
 pub(super) fn check(
     file: &Path,
     arguments: &OpeningArguments,
@@ -38,7 +41,7 @@ pub(super) fn check(
     }
     let opened = match open(file, arguments) {
         Err(Failure::File(error)) if has_several_faults(&error) => {
-            return Err(all_faults(file, error));
+            return Err(report_faults(file, error));
         }
         opened => opened?,
     };
@@ -48,22 +51,24 @@ pub(super) fn check(
             (decisions(file, &study), study, loaded)
         }
     };
-    turn(&mut study, signs)?;
-    say(&(decided + &contents(&loaded) + &model_cautions(&study)?))
+    apply_signs(&mut study, signs)?;
+    print(&(decided + &contents(&loaded) + &model_cautions(&study)?))
 }
 
-/// Returns whether an error concerns the content of a dataset, which may have further faults; a
-/// syntax error is the only one reported.
+/// Returns whether an error concerns a dataset's content, which may have further faults; behind a
+/// syntax error no further fault can be found.
 fn has_several_faults(error: &FileError) -> bool {
     matches!(error, FileError::Content { fault, .. } if matches!(**fault, ContentFault::Dataset(_)))
 }
 
-/// Reports every fault of a dataset; returns the single fault itself, or a failure with their
+/// Reports every fault in a dataset; returns a single fault itself, or a failure with their
 /// number.
-fn all_faults(file: &Path, first: FileError) -> Failure {
+fn report_faults(file: &Path, first: FileError) -> Failure {
     match dataset_faults(file) {
         Ok(faults) if faults.len() > 1 => {
-            faults.iter().for_each(|fault| error(&fault.to_string()));
+            for fault in &faults {
+                error(&fault.to_string());
+            }
             Failure::Faulty {
                 path: sanitized_path(file),
                 count: faults.len(),
@@ -74,113 +79,101 @@ fn all_faults(file: &Path, first: FileError) -> Failure {
     }
 }
 
+/// Returns the dataset's contents: its header, conditions, timings, records and cautions.
 fn contents(loaded: &LoadedDataset) -> String {
     let dataset = &loaded.dataset;
-    let on_axis: Vec<String> = dataset
-        .on_axis()
-        .marked()
-        .map(|pair| sanitized(&dataset.pair_name(pair)))
-        .collect();
-    let on_axis = if on_axis.is_empty() {
-        "none given: every response counts".to_owned()
-    } else {
-        on_axis.join(", ")
-    };
     let band = format!(
         "{} to {} rad/s",
         number(dataset.band().min()),
         number(dataset.band().max())
     );
-    let lines = [
-        (
-            "Dataset",
-            format!("{}, {}", sanitized(dataset.name()), loaded.origin),
-        ),
-        ("SHA-256", loaded.sha256.clone()),
-        ("About", sanitized(dataset.description())),
-        ("Inputs", channel_words(dataset.inputs())),
-        ("Outputs", channel_words(dataset.outputs())),
-        ("On-axis", on_axis),
-        ("Band", band),
-        ("Conditions", dataset.conditions().len().to_string()),
-    ];
-    let text: String = lines
-        .iter()
-        .map(|(label, words)| line(label, words))
-        .collect();
-    let cautions: String = loaded
-        .cautions
-        .iter()
-        .map(|words| caution_line(words))
-        .collect();
-    text + &condition_table(dataset) + &timings(dataset) + &records(dataset) + &cautions
+    let name = format!("{}, {}", sanitized(dataset.name()), loaded.origin);
+    let mut text = line("Dataset", &name);
+    text += &line("SHA-256", &loaded.sha256);
+    text += &line("About", &sanitized(dataset.description()));
+    text += &line("Inputs", &channel_words(dataset.inputs()));
+    text += &line("Outputs", &channel_words(dataset.outputs()));
+    text += &line("On-axis", &on_axis_words(dataset));
+    text += &line("Band", &band);
+    text += &line("Conditions", &dataset.conditions().len().to_string());
+    text += &condition_table(dataset);
+    text += &timings(dataset);
+    text += &records(dataset);
+    for words in &loaded.cautions {
+        text += &caution_line(words);
+    }
+    text
 }
 
-/// Returns the cautions of an analysis that concern the models alone.
+fn on_axis_words(dataset: &Dataset) -> String {
+    let pairs: Vec<String> = dataset
+        .on_axis()
+        .marked()
+        .map(|pair| sanitized(&dataset.pair_name(pair)))
+        .collect();
+    if pairs.is_empty() {
+        "none given: every response counts".to_owned()
+    } else {
+        pairs.join(", ")
+    }
+}
+
+/// Returns an analysis's cautions about the models alone. Missing references come
+/// first, then signs and units, because other cautions may follow from them.
 fn model_cautions(study: &Study) -> Result<String, Failure> {
     let execution = Execution::new(&crate::executor::Pool, &Unobserved, 0);
-    // Signs and units come first, because other cautions may follow from them.
-    let doubts = doubts_of_models(study, &execution)?;
-    let doubts = doubts
-        .iter()
-        .map(|doubt| doubt_words(doubt, &study.dataset));
+    let dataset = &study.dataset;
+    let mut text = String::new();
+    let without = dataset.without_reference();
+    if !without.is_empty() {
+        let words = ConditionFailure::NoReference.to_string();
+        text += &caution_line(&with_conditions(&without, &words));
+    }
+    for doubt in doubts_of_models(study, &execution)? {
+        text += &caution_line(&doubt_words(&doubt, dataset));
+    }
     let cautions = cautions_of_models(study, &execution)?;
-    let cautions = cautions.into_iter().map(|(id, caution)| {
-        (
-            id,
-            caution_text(&caution, |pair| study.dataset.pair_name(pair)),
-        )
+    let messages = cautions.into_iter().map(|(id, caution)| {
+        let words = caution_text(&caution, |pair| dataset.pair_name(pair));
+        ConditionMessage::new(id, words)
     });
-    let cautions = by_words(cautions)
-        .into_iter()
-        .map(|(conditions, words)| of_conditions(&conditions, &words));
-    let without = study.dataset.without_reference();
-    let no_reference = (!without.is_empty())
-        .then(|| of_conditions(&without, &ConditionFailure::NoReference.to_string()));
-    Ok(no_reference
-        .into_iter()
-        .chain(doubts)
-        .chain(cautions)
-        .map(|words| caution_line(&words))
-        .collect())
+    for message in shared_messages(messages) {
+        text += &caution_line(&message.words());
+    }
+    Ok(text)
 }
 
 fn caution_line(words: &str) -> String {
     line("Caution", &sanitized(words))
 }
 
+/// Lists channels with their units: "LON [in], LAT [in]".
 fn channel_words(channels: &[Channel]) -> String {
-    let words = channels.iter().map(|channel| {
-        format!(
-            "{} [{}]",
-            sanitized(&channel.name),
-            sanitized(&channel.unit)
-        )
-    });
-    words.collect::<Vec<_>>().join(", ")
+    let mut words = Vec::new();
+    for channel in channels {
+        let unit = sanitized(&channel.unit);
+        words.push(format!("{} [{unit}]", sanitized(&channel.name)));
+    }
+    words.join(", ")
 }
 
 fn condition_table(dataset: &Dataset) -> String {
-    let with_unit = |value: Option<f64>, unit: &str| {
-        value.map_or("-".to_owned(), |value| format!("{} {unit}", number(value)))
-    };
-    let mut table = Table::new(
-        "",
-        [
-            "id",
-            "airspeed",
-            "altitude",
-            "mass",
-            "physics",
-            "states",
-            "identified",
-            "states",
-            "name",
-        ],
-    );
+    let columns = [
+        "id",
+        "airspeed",
+        "altitude",
+        "mass",
+        "physics",
+        "states",
+        "identified",
+        "states",
+        "name",
+    ];
+    let mut table = Table::new("", columns);
     for condition in dataset.conditions() {
         let state = condition.flight_state();
-        let [physics, identified] = BundleKind::BOTH.map(|of| condition.bundle(of));
+        let physics = condition.bundle(BundleKind::Physics);
+        let identified = condition.bundle(BundleKind::Identified);
         table.row([
             state.id.to_string(),
             format!("{} kt", number(state.airspeed_kt)),
@@ -194,6 +187,14 @@ fn condition_table(dataset: &Dataset) -> String {
         ]);
     }
     indented(&table, 2)
+}
+
+/// Formats a number with its unit; "-" without a number.
+fn with_unit(value: Option<f64>, unit: &str) -> String {
+    match value {
+        Some(value) => format!("{} {unit}", number(value)),
+        None => "-".to_owned(),
+    }
 }
 
 /// Returns the sample times and delays, for each bundle with the models that share them (M2a).
@@ -226,59 +227,58 @@ fn timings(dataset: &Dataset) -> String {
     text
 }
 
-/// Returns the flight records of each condition: their number, manoeuvres and use.
+/// Returns each condition's flight records: their number, manoeuvres and use.
 fn records(dataset: &Dataset) -> String {
     let mut text = String::new();
-    for condition in dataset
-        .conditions()
-        .iter()
-        .filter(|condition| !condition.records().is_empty())
-    {
-        let count = |is_it: &dyn Fn(&ConditionRecord) -> bool, what: &str| {
-            let count = condition
-                .records()
-                .iter()
-                .filter(|record| is_it(record))
-                .count();
-            (count > 0).then(|| format!("{count} {what}"))
-        };
-        let kinds = RecordKind::ALL
-            .into_iter()
-            .filter_map(|kind| count(&|record| record.kind == kind, kind.word()));
-        let rest = [
-            count(&|record| record.held_out, "held out"),
-            count(&|record| !record.used, "not used"),
-        ];
-        let words: Vec<String> = kinds.chain(rest.into_iter().flatten()).collect();
-        text += &line(
-            "Records",
-            &format!("condition {}: {}", condition.id(), words.join(", ")),
-        );
+    for condition in dataset.conditions() {
+        if condition.records().is_empty() {
+            continue;
+        }
+        let words = record_words(condition.records());
+        text += &line("Records", &format!("condition {}: {words}", condition.id()));
     }
     text
 }
 
-/// Returns the numbers of states of the models: "39", "11-14", "measured", "12, measured".
+/// Counts records by kind and use: "3 sweep, 1 doublet, 1 held out".
+fn record_words(records: &[ConditionRecord]) -> String {
+    let mut counts: Vec<(usize, &str)> = Vec::new();
+    for kind in RecordKind::ALL {
+        let count = records.iter().filter(|record| record.kind == kind).count();
+        counts.push((count, kind.word()));
+    }
+    let held_out = records.iter().filter(|record| record.held_out).count();
+    counts.push((held_out, "held out"));
+    let unused = records.iter().filter(|record| !record.used).count();
+    counts.push((unused, "not used"));
+    let words: Vec<String> = counts
+        .into_iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, label)| format!("{count} {label}"))
+        .collect();
+    words.join(", ")
+}
+
+/// Returns the models' state counts: "39", "11-14", "measured", "12, measured".
 fn order_words(models: &[Model]) -> String {
-    let orders = models.iter().filter_map(|model| match &model.dynamics {
-        Dynamics::StateSpace(matrices) => Some(matrices.order()),
-        Dynamics::Measured(_) => None,
-    });
-    let orders: Vec<usize> = orders.collect();
-    let measured = (orders.len() < models.len()).then(|| "measured".to_owned());
-    let ends = orders.iter().min().zip(orders.iter().max());
-    let range = ends.map(|(least, most)| {
-        if least == most {
+    let mut orders: Vec<usize> = Vec::new();
+    for model in models {
+        if let Dynamics::StateSpace(matrices) = &model.dynamics {
+            orders.push(matrices.order());
+        }
+    }
+    let mut words: Vec<String> = Vec::new();
+    if let (Some(least), Some(most)) = (orders.iter().min(), orders.iter().max()) {
+        words.push(if least == most {
             least.to_string()
         } else {
             format!("{least}-{most}")
-        }
-    });
-    range
-        .into_iter()
-        .chain(measured)
-        .collect::<Vec<_>>()
-        .join(", ")
+        });
+    }
+    if orders.len() < models.len() {
+        words.push("measured".to_owned());
+    }
+    words.join(", ")
 }
 
 /// Returns the decisions in a study.
@@ -286,31 +286,23 @@ fn decisions(file: &Path, study: &Study) -> String {
     let mut text = line("Study", &sanitized_path(file));
     for condition in study.dataset.conditions() {
         let id = condition.id();
-        let choice = study.choice(condition.id());
-        let rejected: Vec<String> = study
-            .rejected_names(id)
-            .into_iter()
-            .map(sanitized)
-            .collect();
+        let choice = study.choice(id);
+        let rejected = study.rejected_names(id);
+        let rejected: Vec<String> = rejected.into_iter().map(sanitized).collect();
         if !rejected.is_empty() {
-            text += &line(
-                "Rejected",
-                &format!("condition {id}: {}", rejected.join(", ")),
-            );
+            let words = format!("condition {id}: {}", rejected.join(", "));
+            text += &line("Rejected", &words);
         }
-        for name in BundleKind::BOTH
-            .iter()
-            .filter_map(|kind| choice.bundle(*kind).pinned.as_ref())
-        {
-            text += &line("Pinned", &format!("condition {id}: {}", sanitized(name)));
-        }
-        for (label, is_so) in [
-            ("Held out", choice.held_out),
-            ("Unscheduled", !choice.scheduled),
-        ] {
-            if is_so {
-                text += &line(label, &format!("condition {id}"));
+        for kind in BundleKind::BOTH {
+            if let Some(name) = &choice.bundle(kind).pinned {
+                text += &line("Pinned", &format!("condition {id}: {}", sanitized(name)));
             }
+        }
+        if choice.held_out {
+            text += &line("Held out", &format!("condition {id}"));
+        }
+        if !choice.scheduled {
+            text += &line("Unscheduled", &format!("condition {id}"));
         }
     }
     text

@@ -8,7 +8,7 @@ use clap::CommandFactory;
 use gdcm_model::message_text::{sanitized, shortened};
 
 use super::arguments::Arguments;
-use super::terminal::Failure;
+use super::failure::Failure;
 
 /// Returns the failure for a command line whose first word is neither a command nor a file but
 /// differs from a command by a letter or two; `None` for any other. The first element of
@@ -20,30 +20,23 @@ pub(super) fn misspelt_command(arguments: &[OsString]) -> Option<Failure> {
         .find(|argument| !argument.to_string_lossy().starts_with('-'))?;
     let word = word.to_str()?;
     let names_a_file = word.contains(['/', '\\', '.']) || Path::new(word).exists();
-    if names_a_file {
+    let commands = Arguments::command();
+    let is_a_command = word == "help" || commands.find_subcommand(word).is_some();
+    if names_a_file || is_a_command {
         return None;
     }
-    let commands = Arguments::command();
-    let names: Vec<&str> = commands
+    let nearest = commands
         .get_subcommands()
         .flat_map(|command| command.get_name_and_visible_aliases())
-        .collect();
-    let is_a_command = word == "help" || commands.find_subcommand(word).is_some();
-    if is_a_command {
-        return None;
-    }
-    let distances = names
-        .into_iter()
-        .map(|name| (edit_distance(word, name), name));
-    let (distance, suggestion) = distances.min_by_key(|(distance, _)| *distance)?;
-    // In a short word two letters are half of it: that is another word.
+        .min_by_key(|name| edit_distance(word, name))?;
+    // Two letters are half of a short word: that is another word.
     let most = if word.chars().count() < 5 { 1 } else { 2 };
-    if distance > most {
+    if edit_distance(word, nearest) > most {
         return None;
     }
     Some(Failure::UnknownCommand {
         found: shortened(&sanitized(word)),
-        suggestion: suggestion.to_owned(),
+        suggestion: nearest.to_owned(),
     })
 }
 
@@ -79,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_that_is_written_wrongly_is_told_from_a_file() {
+    fn a_misspelt_command_is_distinguished_from_a_file() {
         for (word, command) in [
             ("analize", "analyze"),
             ("exprot", "export"),

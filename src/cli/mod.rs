@@ -3,21 +3,41 @@
 //! Exit status: 0 done, 1 the analysis could not be done, 2 the command line or a file is wrong;
 //! the reason on standard error.
 
+mod analyze;
 mod arguments;
+mod assemble;
+mod channel_values;
 mod check;
-pub mod flight_records;
+mod convert;
+mod destination;
+mod export;
+mod failure;
+mod figure;
+mod flight_records;
+mod found_models;
+mod histories;
+mod identification_task;
 mod identify;
 mod identify_arguments;
 mod misspelling;
-mod models;
+mod model_arguments;
+mod option_values;
+mod progress;
+mod record_parts;
+mod report;
+mod requested_channels;
 mod requirements;
-mod results;
+mod result_arguments;
+mod schedule_summary;
+mod shared_cautions;
+mod study_arguments;
 mod study_options;
 mod summary;
 mod terminal;
+mod text;
 
 use std::error::Error;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -34,8 +54,10 @@ use gdcm_study::decisions::setting_row::Kind;
 use gdcm_words::decisions::dataset_difference_text;
 
 use crate::executor::start_threads;
-use arguments::{Arguments, Command, OpeningArguments};
-use terminal::{Failure, Manner, WRONG_INPUT, caution, coded_error, error, say};
+use arguments::{Arguments, Command};
+use failure::{Failure, WRONG_INPUT};
+use study_arguments::OpeningArguments;
+use terminal::{OutputFormat, caution, coded_error, print};
 
 /// Carries out a command line. Without a command it opens a window, on a file or on the embedded
 /// example; it prints help, version and errors itself.
@@ -43,13 +65,13 @@ pub fn run(
     arguments: impl IntoIterator<Item = OsString>,
     open_window: impl FnOnce(Option<PathBuf>) -> ExitCode,
 ) -> ExitCode {
-    let arguments = joined(arguments);
+    let mut arguments = with_values_joined(arguments);
     // A command line that cannot be parsed is still reported in the requested format.
-    let asks = |option: &str| arguments.iter().any(|argument| argument == option);
-    terminal::speak(Manner {
-        quiet: asks("--quiet"),
-        json: asks("--json"),
+    terminal::set_output(OutputFormat {
+        quiet: has_argument(&arguments, "--quiet"),
+        json: has_argument(&arguments, "--json"),
     });
+    let leading = take_leading_switches(&mut arguments);
     if let Some(misspelling) = misspelling::misspelt_command(&arguments) {
         return finish(Err(misspelling));
     }
@@ -60,12 +82,11 @@ pub fn run(
             json,
             ..
         }) => {
-            terminal::speak(Manner { quiet, json });
-            finish(
-                start_threads()
-                    .map_err(|reason| Failure::NoThreads { reason })
-                    .and_then(|()| carry_out(&command)),
-            )
+            terminal::set_output(OutputFormat {
+                quiet: quiet || leading.quiet,
+                json: json || leading.json,
+            });
+            finish(carry_out(&command))
         }
         Ok(Arguments {
             command: None,
@@ -73,51 +94,78 @@ pub fn run(
             ..
         }) => open_window(file),
         Err(wrong) if wrong.use_stderr() => {
-            error(&usage_words(&wrong));
+            coded_error(Some("wrong-command-line"), &usage_words(&wrong));
             ExitCode::from(terminal::end(WRONG_INPUT))
         }
-        Err(help) => finish(say(&help.to_string())),
+        Err(help) => finish(print(&help.to_string())),
     }
+}
+
+fn has_argument(arguments: &[OsString], option: &str) -> bool {
+    arguments.iter().any(|argument| argument == option)
+}
+
+/// Removes `--json` and `--quiet` before the command and returns the requested output: the parser
+/// refuses a command behind any option, as it must behind the window's file. The first
+/// element of `arguments` is the program.
+fn take_leading_switches(arguments: &mut Vec<OsString>) -> OutputFormat {
+    let mut output = OutputFormat::default();
+    while let Some(argument) = arguments.get(1) {
+        if argument == "--json" {
+            output.json = true;
+        } else if argument == "--quiet" {
+            output.quiet = true;
+        } else {
+            break;
+        }
+        arguments.remove(1);
+    }
+    output
 }
 
 /// Joins a value to its option if the option takes a variable number of values: `--gain-bounds auto
 /// FILE` must not take the file for its second number, nor `--schedule-delays FILE` for its value.
-fn joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+fn with_values_joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut joined: Vec<OsString> = Vec::new();
     for argument in arguments {
-        let joins = SETTINGS.iter().any(|setting| {
-            let is_word = match setting.kind {
-                Kind::Range {
-                    nothing: Some([word, _]),
-                    ..
-                } => argument == word,
-                Kind::Choice { words, .. } if setting.bare.is_some() => {
-                    words.iter().any(|[word, ..]| argument == *word)
-                }
-                _ => false,
-            };
-            is_word && joined.last().is_some_and(|last| last == setting.option)
-        });
-        match joined.last_mut().filter(|_| joins) {
-            Some(option) => {
+        match joined.last_mut() {
+            Some(option) if is_value_of(&argument, option) => {
                 option.push("=");
                 option.push(argument);
             }
-            None => joined.push(argument),
+            _ => joined.push(argument),
         }
     }
     joined
 }
 
+/// Returns whether an argument is a word for an option with a variable number of values.
+fn is_value_of(argument: &OsStr, option: &OsStr) -> bool {
+    let Some(setting) = SETTINGS.iter().find(|setting| option == setting.option) else {
+        return false;
+    };
+    match setting.kind {
+        Kind::Range {
+            nothing: Some([word, _]),
+            ..
+        } => argument == word,
+        Kind::Choice { words, .. } if setting.bare.is_some() => {
+            words.iter().any(|[word, ..]| argument == *word)
+        }
+        _ => false,
+    }
+}
+
 fn carry_out(command: &Command) -> Result<(), Failure> {
+    start_threads().map_err(|reason| Failure::NoThreads { reason })?;
     match command {
-        Command::Analyze(arguments) => results::analyze(arguments),
-        Command::Figure(arguments) => results::figure(arguments),
-        Command::Report(arguments) => results::report(arguments),
+        Command::Analyze(arguments) => analyze::analyze(arguments),
+        Command::Figure(arguments) => figure::figure(arguments),
+        Command::Report(arguments) => report::report(arguments),
         Command::Requirements(arguments) => requirements::requirements(arguments),
-        Command::Export(arguments) => results::export(arguments),
-        Command::Assemble(arguments) => models::assemble(arguments),
-        Command::Convert(arguments) => models::convert(arguments),
+        Command::Export(arguments) => export::export(arguments),
+        Command::Assemble(arguments) => assemble::assemble(arguments),
+        Command::Convert(arguments) => convert::convert(arguments),
         Command::Identify(arguments) => identify::identify(arguments),
         Command::Check {
             file,
@@ -161,9 +209,9 @@ fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
 /// Writes the embedded example into a directory and reports the path.
 fn example(directory: &Path, existing: Existing) -> Result<(), Failure> {
     let path = write_example(directory, existing)?;
-    say(&format!(
-        "{}: the example dataset (synthetic data)\nthe flight records that it names, example-records.zip, are under assets in the \
-         program's source; the window finds them beside the dataset\n",
+    print(&format!(
+        "{}: the example dataset (synthetic data)\nits flight records, example-records.zip, are in the folder assets of the program's \
+         source; the window finds them beside the dataset\n",
         sanitized_path(&path)
     ))
 }
@@ -176,11 +224,15 @@ fn existing(force: bool) -> Existing {
     }
 }
 
+/// Reports a failure and returns the exit status.
 fn finish(result: Result<(), Failure>) -> ExitCode {
-    let status = result.err().map_or(0, |failure| {
-        coded_error(failure.code(), &failure.to_string());
-        failure.status()
-    });
+    let status = match result {
+        Ok(()) => 0,
+        Err(failure) => {
+            coded_error(failure.code(), &failure.to_string());
+            failure.status()
+        }
+    };
     ExitCode::from(terminal::end(status))
 }
 
@@ -194,19 +246,49 @@ fn usage_words(error: &clap::Error) -> String {
     }
     let words = error.to_string();
     let complaint = words.split("\n\nUsage:").next().unwrap_or(&words);
-    let paragraphs = complaint
+    let paragraphs: Vec<String> = complaint
         .split("\n\n")
-        .filter(|paragraph| !paragraph.starts_with("For more information"));
-    let line = |paragraph: &str| {
-        paragraph
-            .lines()
-            .map(str::trim)
-            .collect::<Vec<_>>()
-            .join(" ")
-    };
-    let line = paragraphs.map(line).collect::<Vec<_>>().join("; ");
+        .filter(|paragraph| !paragraph.starts_with("For more information"))
+        .map(on_one_line)
+        .collect();
+    let line = paragraphs.join("; ");
     format!(
-        "{} (gdcm --help says more)",
+        "{} (see gdcm --help)",
         line.strip_prefix("error: ").unwrap_or(&line).trim_end()
     )
+}
+
+fn on_one_line(paragraph: &str) -> String {
+    let lines: Vec<&str> = paragraph.lines().map(str::trim).collect();
+    lines.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Arguments left behind the program, and the output that the removed switches request.
+    fn leading(words: &str) -> (Vec<String>, OutputFormat) {
+        let mut arguments: Vec<OsString> = words.split(' ').map(OsString::from).collect();
+        let output = take_leading_switches(&mut arguments);
+        let left = arguments.into_iter().skip(1);
+        let left = left.map(|word| word.into_string().expect("text")).collect();
+        (left, output)
+    }
+
+    #[test]
+    fn switches_before_the_command_are_taken_and_others_stay() {
+        let both = OutputFormat {
+            quiet: true,
+            json: true,
+        };
+        let none = OutputFormat::default();
+        let words = ["check".to_owned(), "--json".to_owned()];
+        assert_eq!(
+            leading("gdcm --json --quiet check --json"),
+            (words.to_vec(), both)
+        );
+        assert_eq!(leading("gdcm check --json"), (words.to_vec(), none));
+        assert_eq!(leading("gdcm"), (Vec::new(), none));
+    }
 }

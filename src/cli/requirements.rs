@@ -6,137 +6,159 @@ use std::collections::BTreeSet;
 use gdcm_io::files::requirements_file::{
     REQUIREMENT_FILES, add_tolerances, requirement_paths, write_requirements,
 };
-use gdcm_io::output_set::make_directory;
+use gdcm_io::output_set::{OutputSet, make_directory};
 use gdcm_method::requirements::ModeVerdict;
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::s_to_ms;
-use gdcm_study::Analysis;
+use gdcm_study::Study;
 use gdcm_study::results::required_bandwidth::BandwidthFinding;
 use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::results::requirement_role::RequirementRole;
-use gdcm_study::results::requirements::{MissingFinding, Requirements, SummaryFinding};
+use gdcm_study::results::requirements::{MissingFinding, Requirements};
 use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_words::Table;
 use gdcm_words::time_histories::{history_cost_table, output_weights_text, share_table};
 
-use super::arguments::RequirementsArguments;
-use super::flight_records::time_histories;
-use super::models::counted;
-use super::study_options::{analysis_of, study_of};
-use super::terminal::{
-    Failure, TerminalProgress, by_words, caution_of, indented, line, note, of_conditions, say,
-};
+use super::failure::Failure;
+use super::histories::{read_histories, simulated_histories};
+use super::progress::TerminalProgress;
+use super::result_arguments::RequirementsArguments;
+use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study};
+use super::terminal::{caution_for, note, print};
+use super::text::{ConditionMessage, counted, indented, indented_untitled, line, shared_messages};
 
-/// Writes the table of tolerances if requested; analyses, writes the requirements, and prints a
+/// Writes the tolerance table if requested; analyses, writes the requirements, and prints a
 /// short table.
 pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Failure> {
-    let histories = &arguments.histories;
-    let (study, loaded, outputs) = study_of(&arguments.study, arguments.force)?;
-    let mut outputs = outputs.also_reading(histories.records.iter().cloned());
-    let written = match &arguments.write_tolerances {
-        Some(path) => {
-            let tolerances = &study.requirements.tolerances;
-            add_tolerances(tolerances, path, &mut outputs)?;
-            let rows = counted(tolerances.rows().len(), "row");
-            line("Tolerances", &format!("{rows} in {}", sanitized_path(path)))
-        }
-        None => String::new(),
-    };
+    let CommandStudy {
+        study,
+        loaded,
+        outputs,
+    } = CommandStudy::open(&arguments.study, arguments.force)?;
+    let mut outputs = outputs.also_reading(arguments.histories.records.iter().cloned());
+    let tolerances = tolerance_line(arguments, &study, &mut outputs)?;
     let Some(out) = &arguments.out else {
         outputs.persist()?;
-        return say(&written);
+        return print(&tolerances);
     };
     outputs.check(&requirement_paths(out))?;
     make_directory(out)?;
-    let records = histories.read(&study.dataset, study.settings.band)?;
-    let (analysis, engine) = analysis_of(study, &arguments.study, true)?;
+    let records = read_histories(&arguments.histories, &study.dataset, study.settings.band)?;
+    let StudyAnalysis { analysis, engine } =
+        analyze_study(study, &arguments.study, ErrorBars::Computed)?;
     let requirements = engine.requirements(
         &analysis,
         &KnownPoles::default(),
         &TerminalProgress::new("reading bandwidths"),
     )?;
-    let histories = time_histories(&analysis, &records)?;
+    let histories = simulated_histories(&analysis, &records)?;
     let dataset = (analysis.study.dataset.name(), loaded.sha256.as_str());
     write_requirements((&requirements, &histories), dataset, out, outputs)?;
-    tell_cautions(&requirements, &histories);
+    report_cautions(&requirements);
+    report_missing(&requirements, &histories);
     let files = format!(
         "{} in {}",
         REQUIREMENT_FILES.join(", "),
         sanitized_path(out)
     );
-    let text = bandwidth_section(&analysis, &requirements)
-        + &summary_section(&requirements)
-        + &mode_section(&requirements)
-        + &history_section(&histories)
-        + &line("", "these numbers are no qualification")
-        + &line("Written", &files);
-    say(&(text + &written))?;
-    records.ended()
+    let mut text = bandwidth_section(&analysis.study, &requirements);
+    text += &summary_section(&requirements);
+    text += &mode_section(&requirements);
+    text += &history_section(&histories);
+    text += &line("", "these numbers are no qualification");
+    text += &line("Written", &files);
+    text += &tolerances;
+    print(&text)?;
+    records.into_outcome()
 }
 
-/// Reports cautions and missing results; missing records are not reported if none were given.
-fn tell_cautions(requirements: &Requirements, histories: &TimeHistories) {
-    for (conditions, words) in by_words(
-        requirements
-            .cautions
-            .iter()
-            .map(|of| (of.condition, of.text.clone())),
-    ) {
-        caution_of(&conditions, &words);
+/// Adds the tolerance file, if requested, and returns a line about it.
+fn tolerance_line(
+    arguments: &RequirementsArguments,
+    study: &Study,
+    outputs: &mut OutputSet,
+) -> Result<String, Failure> {
+    let Some(path) = &arguments.write_tolerances else {
+        return Ok(String::new());
+    };
+    let tolerances = &study.requirements.tolerances;
+    add_tolerances(tolerances, path, outputs)?;
+    let rows = counted(tolerances.rows().len(), "row");
+    let words = format!("{rows} in {}", sanitized_path(path));
+    Ok(line("Tolerances", &words))
+}
+
+fn report_cautions(requirements: &Requirements) {
+    let messages = requirements
+        .cautions
+        .iter()
+        .map(|caution| ConditionMessage::new(caution.condition, caution.text.clone()));
+    for message in shared_messages(messages) {
+        caution_for(&message.conditions, &message.text);
     }
-    let of_records = histories
-        .missing
-        .iter()
-        .filter(|_| !histories.records.is_empty());
+}
+
+/// Reports missing results, first those about the whole. Missing records are not reported if
+/// none were given.
+fn report_missing(requirements: &Requirements, histories: &TimeHistories) {
     // Conditions without a result have already been reported.
-    let missing = requirements
+    let mut missing: Vec<&MissingFinding> = requirements
         .missing
         .iter()
-        .filter(|of| of.what != "all")
-        .chain(of_records);
-    let mut missing: Vec<&MissingFinding> = missing.collect();
-    missing.sort_by_key(|of| of.condition.is_some());
-    for (conditions, words) in by_words(
-        missing
-            .iter()
-            .map(|of| (of.condition, format!("no {}: {}", of.what, of.why))),
-    ) {
-        note(&of_conditions(&conditions, &words));
+        .filter(|finding| finding.what != "all")
+        .collect();
+    if !histories.records.is_empty() {
+        missing.extend(&histories.missing);
+    }
+    missing.sort_by_key(|finding| finding.condition.is_some());
+    let messages = missing.into_iter().map(|finding| {
+        let words = format!("no {}: {}", finding.what, finding.why);
+        ConditionMessage::new(finding.condition, words)
+    });
+    for message in shared_messages(messages) {
+        note(&message.words());
     }
 }
 
 /// Formats a number, or a dash.
 fn cell(value: Option<f64>, digits: usize) -> String {
-    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
+    match value {
+        Some(value) => format!("{value:.digits$}"),
+        None => "-".to_owned(),
+    }
 }
 
-/// Formats "2.13 / 112*": bandwidth \[rad/s\] and phase delay \[ms\] of a response, each marked if
-/// it depends on the response above the band.
-fn both_numbers(finding: &BandwidthFinding) -> String {
-    let mark = |name: &str| if finding.rests_above(name) { "*" } else { "" };
-    format!(
-        "{}{} / {}{}",
-        cell(finding.omega_bw_rad_s, 2),
-        mark("omega_bw_rad_s"),
-        cell(finding.phase_delay_s.map(s_to_ms), 0),
-        mark("phase_delay_s")
-    )
+/// A response's bandwidth results, by role.
+struct ResponseBandwidths<'a> {
+    name: String,
+    findings: &'a [BandwidthFinding],
 }
 
-/// Returns bandwidth and phase delay of every response that has one of them, by role; for the
-/// others the reason, once.
-fn bandwidth_section(analysis: &Analysis, requirements: &Requirements) -> String {
-    let same_response =
-        |a: &BandwidthFinding, b: &BandwidthFinding| (a.condition, a.pair) == (b.condition, b.pair);
-    let has_number =
-        |of: &BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
-    let responses = || requirements.bandwidth.chunk_by(same_response);
-    let name = |of: &[BandwidthFinding]| analysis.study.dataset.pair_name(of[0].pair);
-    let known = responses().filter(|of| of.iter().any(has_number));
-    let table = bandwidth_table(known.map(|of| (name(of), of)));
+impl ResponseBandwidths<'_> {
+    fn has_number(&self) -> bool {
+        self.findings.iter().any(has_number)
+    }
+}
+
+fn has_number(finding: &BandwidthFinding) -> bool {
+    finding.omega_bw_rad_s.is_some() || finding.phase_delay_s.is_some()
+}
+
+/// Returns bandwidth and phase delay of every response with either number, by role; for the others
+/// the reason, once.
+fn bandwidth_section(study: &Study, requirements: &Requirements) -> String {
+    let responses: Vec<ResponseBandwidths> = requirements
+        .bandwidth
+        .chunk_by(|a, b| (a.condition, a.pair) == (b.condition, b.pair))
+        .map(|findings| ResponseBandwidths {
+            name: study.dataset.pair_name(findings[0].pair),
+            findings,
+        })
+        .collect();
+    let table = bandwidth_table(&responses);
     let is_marked = table.rows.iter().flatten().any(|cell| cell.contains('*'));
     let star = if is_marked {
-        "; * rests on the response above the band"
+        "; * depends on the response above the band"
     } else {
         ""
     };
@@ -147,179 +169,227 @@ fn bandwidth_section(analysis: &Analysis, requirements: &Requirements) -> String
     if !table.rows.is_empty() {
         text += &indented(&table, 2);
     }
-    for (label, quantity) in [
-        ("No bandwidth", "omega_bw_rad_s"),
-        ("No delay", "phase_delay_s"),
-    ] {
-        let absent = responses().flat_map(|of| absent_words(&name(of), of, quantity));
-        // A response without any number needs only one reason.
-        let absent = absent.filter(|(of, _)| quantity == "omega_bw_rad_s" || has_number(of));
-        for (conditions, words) in by_words(absent.map(|(of, words)| (of.condition, words))) {
-            text += &line(label, &sanitized(&of_conditions(&conditions, &words)));
-        }
+    text += &absent_lines("No bandwidth", absent_bandwidths(&responses));
+    text + &absent_lines("No delay", absent_delays(&responses))
+}
+
+/// Returns the reasons for missing bandwidths.
+fn absent_bandwidths(responses: &[ResponseBandwidths]) -> Vec<ConditionMessage> {
+    responses
+        .iter()
+        .flat_map(|response| absent_reasons(response, "omega_bw_rad_s"))
+        .map(AbsentReason::into_message)
+        .collect()
+}
+
+/// Returns the reasons for missing phase delays; a response without any number needs only the
+/// reason for its bandwidth.
+fn absent_delays(responses: &[ResponseBandwidths]) -> Vec<ConditionMessage> {
+    responses
+        .iter()
+        .flat_map(|response| absent_reasons(response, "phase_delay_s"))
+        .filter(|reason| has_number(reason.finding))
+        .map(AbsentReason::into_message)
+        .collect()
+}
+
+fn absent_lines(label: &str, messages: Vec<ConditionMessage>) -> String {
+    let mut text = String::new();
+    for message in shared_messages(messages) {
+        text += &line(label, &sanitized(&message.words()));
     }
     text
 }
 
-/// Returns the reasons for missing numbers of a response, each once, with its roles unless it
-/// applies to all: "LON → Q (physics, corrected): …".
-fn absent_words<'a>(
-    name: &str,
-    findings: &'a [BandwidthFinding],
-    quantity: &str,
-) -> Vec<(&'a BandwidthFinding, String)> {
-    let reasons: BTreeSet<&String> = findings
-        .iter()
-        .filter_map(|of| of.absent.get(quantity))
-        .collect();
-    let told = |why: &String| {
-        let of: Vec<&BandwidthFinding> = findings
-            .iter()
-            .filter(|of| of.absent.get(quantity) == Some(why))
-            .collect();
-        let roles = match of.len() == findings.len() {
-            true => String::new(),
-            false => format!(
-                " ({})",
-                of.iter()
-                    .map(|of| of.role.name())
-                    .collect::<Vec<_>>()
-                    .join(", ")
-            ),
-        };
-        (of[0], format!("{name}{roles}: {why}"))
-    };
-    reasons.into_iter().map(told).collect()
+/// Reason why a response's number is missing.
+struct AbsentReason<'a> {
+    /// First result without the number for this reason.
+    finding: &'a BandwidthFinding,
+    /// "LON → Q (physics, corrected): …".
+    words: String,
 }
 
-/// Returns a table with a row for each response: its name and the numbers of each role.
-fn bandwidth_table<'a>(responses: impl Iterator<Item = (String, &'a [BandwidthFinding])>) -> Table {
-    let headings = ["condition", "response"]
-        .into_iter()
-        .chain(RequirementRole::ALL.map(RequirementRole::name));
-    let mut table = Table::new("", headings);
-    for (name, findings) in responses {
-        let numbers = |role| {
-            findings
-                .iter()
-                .find(|of| of.role == role)
-                .map_or_else(|| "-".to_owned(), both_numbers)
+impl AbsentReason<'_> {
+    fn into_message(self) -> ConditionMessage {
+        ConditionMessage::new(self.finding.condition, self.words)
+    }
+}
+
+/// Returns the reasons for a response's missing numbers, each once, with its roles unless it
+/// applies to all.
+fn absent_reasons<'a>(response: &ResponseBandwidths<'a>, quantity: &str) -> Vec<AbsentReason<'a>> {
+    let findings = response.findings;
+    let reasons: BTreeSet<&String> = findings
+        .iter()
+        .filter_map(|finding| finding.absent.get(quantity))
+        .collect();
+    let mut absent = Vec::new();
+    for reason in reasons {
+        let without: Vec<&BandwidthFinding> = findings
+            .iter()
+            .filter(|finding| finding.absent.get(quantity) == Some(reason))
+            .collect();
+        let roles: Vec<&str> = without.iter().map(|finding| finding.role.name()).collect();
+        let roles = if without.len() == findings.len() {
+            String::new()
+        } else {
+            format!(" ({})", roles.join(", "))
         };
-        let cells = [findings[0].condition.to_string(), sanitized(&name)];
-        table.row(cells.into_iter().chain(RequirementRole::ALL.map(numbers)));
+        absent.push(AbsentReason {
+            finding: without[0],
+            words: format!("{}{roles}: {reason}", response.name),
+        });
+    }
+    absent
+}
+
+/// Returns a table with a row for each response with a number: its name and the numbers by role.
+fn bandwidth_table(responses: &[ResponseBandwidths]) -> Table {
+    let mut headings = vec!["condition", "response"];
+    headings.extend(RequirementRole::ALL.map(RequirementRole::name));
+    let mut table = Table::new("", headings);
+    for response in responses {
+        if !response.has_number() {
+            continue;
+        }
+        let findings = response.findings;
+        let mut cells = vec![findings[0].condition.to_string(), sanitized(&response.name)];
+        for role in RequirementRole::ALL {
+            let finding = findings.iter().find(|finding| finding.role == role);
+            cells.push(match finding {
+                Some(finding) => bandwidth_cell(finding),
+                None => "-".to_owned(),
+            });
+        }
+        table.row(cells);
     }
     table
 }
 
-/// Returns mean J and the share of the band inside the envelopes, on-axis, by role.
+/// Formats "2.13 / 112*": bandwidth \[rad/s\] and phase delay \[ms\] of a response, each marked if
+/// it depends on the response above the band.
+fn bandwidth_cell(finding: &BandwidthFinding) -> String {
+    format!(
+        "{}{} / {}{}",
+        cell(finding.omega_bw_rad_s, 2),
+        above_mark(finding, "omega_bw_rad_s"),
+        cell(finding.phase_delay_s.map(s_to_ms), 0),
+        above_mark(finding, "phase_delay_s")
+    )
+}
+
+fn above_mark(finding: &BandwidthFinding, quantity: &str) -> &'static str {
+    if finding.rests_above(quantity) {
+        "*"
+    } else {
+        ""
+    }
+}
+
+/// Returns mean J and the band share inside the envelopes, on-axis, by role.
 fn summary_section(requirements: &Requirements) -> String {
     let roles = [
         RequirementRole::Physics,
         RequirementRole::Corrected,
         RequirementRole::Scheduled,
     ];
-    let of_roles = |quantity: &str| roles.map(|role| format!("{quantity} {}", role.name()));
-    let headings = ["J", "MUAD [%]"].into_iter().flat_map(of_roles);
-    let mut table = Table::new("", std::iter::once("condition".to_owned()).chain(headings));
+    let mut headings = vec!["condition".to_owned()];
+    for quantity in ["J", "MUAD [%]"] {
+        headings.extend(roles.map(|role| format!("{quantity} {}", role.name())));
+    }
+    let mut table = Table::new("", headings);
     for findings in requirements
         .summary
         .chunk_by(|a, b| a.condition == b.condition)
     {
-        let of_role = |role| findings.iter().find(|of| of.role == role);
-        let value = |role, of: fn(&SummaryFinding) -> Option<f64>| of_role(role).and_then(of);
+        let of_roles = roles.map(|role| findings.iter().find(|finding| finding.role == role));
         let mut cells = vec![findings[0].condition.to_string()];
-        cells.extend(roles.map(|role| cell(value(role, |of| of.mean_j_on_axis), 1)));
-        cells.extend(roles.map(|role| {
-            cell(
-                value(role, |of| of.muad_share_on_axis.map(|share| 100.0 * share)),
-                0,
-            )
-        }));
+        for finding in of_roles {
+            let mean_j = finding.and_then(|finding| finding.mean_j_on_axis);
+            cells.push(cell(mean_j, 1));
+        }
+        for finding in of_roles {
+            let share = finding.and_then(|finding| finding.muad_share_on_axis);
+            cells.push(cell(share.map(|share| 100.0 * share), 0));
+        }
         table.row(cells);
     }
-    line(
-        "Summary",
-        "on-axis mean of J, and of the share of the band inside the MUAD envelopes:",
-    ) + &indented(&table, 2)
+    let words = "on-axis mean of J, and of the share of the band inside the MUAD envelopes:";
+    line("Summary", words) + &indented(&table, 2)
 }
 
 /// Returns how many modes are within their tolerances, for the physics models and, where couplings
 /// change the modes, for the corrected models.
 fn mode_section(requirements: &Requirements) -> String {
-    let counted = |model: &str, verdicts: &[ModeVerdict]| {
-        let count = |verdict: ModeVerdict| verdicts.iter().filter(|of| **of == verdict).count();
-        let counts = [
-            (ModeVerdict::Within, "within the tolerance"),
-            (ModeVerdict::Outside, "outside"),
-            (ModeVerdict::NotDetermined, "not determined by flight"),
-            (ModeVerdict::NoTolerance, "without a tolerance"),
-            (ModeVerdict::NotPaired, "unpaired"),
-        ];
-        let counts = counts.map(|(verdict, words)| format!("{} {words}", count(verdict)));
-        format!("of {model} against identified: {}", counts.join(", "))
-    };
-    let physics: Vec<ModeVerdict> = requirements.modes.iter().map(|mode| mode.verdict).collect();
-    let corrected: Vec<ModeVerdict> = requirements
-        .modes
+    let modes = &requirements.modes;
+    let physics: Vec<ModeVerdict> = modes.iter().map(|mode| mode.verdict).collect();
+    let corrected: Vec<ModeVerdict> = modes
         .iter()
         .filter_map(|mode| mode.corrected_verdict)
         .collect();
-    let mut text = line("Modes", &counted("physics", &physics));
+    let mut text = line("Modes", &verdict_counts("physics", &physics));
     if !corrected.is_empty() {
-        text += &line("", &counted("corrected with its couplings", &corrected));
+        let words = verdict_counts("corrected with its couplings", &corrected);
+        text += &line("", &words);
     }
     text
 }
 
-/// Returns the share of time inside the tolerances for models that leave them, by condition, and
+fn verdict_counts(model: &str, verdicts: &[ModeVerdict]) -> String {
+    let labels = [
+        (ModeVerdict::Within, "within the tolerance"),
+        (ModeVerdict::Outside, "outside"),
+        (ModeVerdict::NotDetermined, "not determined by flight"),
+        (ModeVerdict::NoTolerance, "without a tolerance"),
+        (ModeVerdict::NotPaired, "unpaired"),
+    ];
+    let counts = labels.map(|(verdict, label)| {
+        let count = verdicts.iter().filter(|found| **found == verdict).count();
+        format!("{count} {label}")
+    });
+    format!("of {model} against identified: {}", counts.join(", "))
+}
+
+/// Returns the time share inside the tolerances for models that leave them, by condition, and
 /// the rms errors.
 fn history_section(histories: &TimeHistories) -> String {
     const HEADING: &str = "Time history";
     if histories.records.is_empty() {
-        let why = histories
-            .missing
-            .first()
-            .map_or("no record was compared", |of| of.why.as_str());
+        let why = match histories.missing.first() {
+            Some(finding) => finding.why.as_str(),
+            None => "no record was compared",
+        };
         return line(HEADING, &sanitized(why));
     }
     let mut table = share_table(histories);
-    let all = table.rows.len();
-    table.rows.retain(|row| {
-        row[3..]
-            .iter()
-            .any(|share| !matches!(share.as_str(), "100.0" | "-"))
-    });
-    table
-        .rows
-        .iter_mut()
-        .for_each(|row| row[2] = sanitized(&row[2]));
+    let count = table.rows.len();
+    table.rows.retain(|row| leaves_tolerances(row));
+    for row in &mut table.rows {
+        row[2] = sanitized(&row[2]);
+    }
     let source = match histories.tolerance_table.source() {
         "" => String::new(),
         source => format!(" of {}", sanitized(source)),
     };
     let words = format!(
-        "share of time inside the tolerances{source}, over all records of a condition; attitudes are integrals of rates; {} of {all} \
-         rows, in which every model is always inside, are left out:",
-        all - table.rows.len()
+        "share of time inside the tolerances{source}, over all records of a condition; attitudes are integrals of rates; without {} of \
+         {count} rows, in which every model is always inside:",
+        count - table.rows.len()
     );
     let costs = format!(
         "rms error J_rms and Theil's coefficients, over all records of a condition, {}:",
         output_weights_text(histories).replace('\u{b2}', "^2")
     );
-    line(HEADING, &words)
-        + &indented(
-            &Table {
-                title: String::new(),
-                ..table
-            },
-            2,
-        )
-        + &line("", &costs)
-        + &indented(
-            &Table {
-                title: String::new(),
-                ..history_cost_table(histories)
-            },
-            2,
-        )
+    let mut text = line(HEADING, &words);
+    text += &indented_untitled(table);
+    text += &line("", &costs);
+    text + &indented_untitled(history_cost_table(histories))
+}
+
+/// Returns whether a model of the row leaves the tolerances. Condition, record and quantity stand
+/// before the shares in percent.
+fn leaves_tolerances(row: &[String]) -> bool {
+    row[3..]
+        .iter()
+        .any(|share| !matches!(share.as_str(), "100.0" | "-"))
 }

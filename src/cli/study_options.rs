@@ -9,112 +9,147 @@ use gdcm_method::correction;
 use gdcm_model::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
 use gdcm_model::message_text::sanitized;
 use gdcm_study::decisions::requirement_settings::RequirementSettings;
-use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_study::{Analysis, Edit, Engine, Study};
 use gdcm_words::caution::failure_text;
 
-use super::arguments::{ChannelSign, OfChannel, Rejection, StudyArguments};
-use super::identify_arguments::said_twice;
-use super::terminal::{
-    Failure, TerminalProgress, by_words, caution, coded_caution, listed_conditions, of_conditions,
-};
+use super::channel_values::{ChannelSign, ChannelValue, first_duplicate};
+use super::failure::Failure;
+use super::option_values::{PairName, Rejection};
+use super::progress::TerminalProgress;
+use super::study_arguments::{GivenSetting, StudyArguments};
+use super::terminal::{caution, coded_caution};
+use super::text::{ConditionMessage, SharedMessage, listed_conditions, shared_messages};
 use super::{existing, open};
 use crate::executor::Pool;
 
-/// Opens the study and its dataset, and prepares the output files, which never overwrite the
-/// inputs. Reports the file's cautions on standard error.
-pub(super) fn study_of(
-    arguments: &StudyArguments,
-    force: bool,
-) -> Result<(Study, LoadedDataset, OutputSet), Failure> {
-    let (mut study, loaded) = match &arguments.file {
-        Some(file) => {
-            let (study, loaded, _) = open(file, &arguments.opening)?.into_study();
-            (study, loaded)
-        }
-        None => {
-            let loaded = embedded_example()?;
-            (Study::new(loaded.dataset.clone()), loaded)
-        }
-    };
-    for words in &loaded.cautions {
-        caution(&format!("{}: {words}", loaded.origin));
-    }
-    take_options(&mut study, arguments)?;
-    let inputs = [&arguments.file, &arguments.levels, &arguments.tolerances]
-        .into_iter()
-        .flatten()
-        .cloned()
-        .chain(loaded.origin.file())
-        .collect();
-    Ok((study, loaded, OutputSet::new(existing(force), inputs)))
+/// The study of a command.
+pub(super) struct CommandStudy {
+    pub(super) study: Study,
+    /// Its dataset, as loaded.
+    pub(super) loaded: LoadedDataset,
+    /// Output files, which never overwrite the inputs.
+    pub(super) outputs: OutputSet,
 }
 
-/// Analyses a study, after rejecting the suggested outliers if requested; returns the analysis and
-/// its engine. `with_bars` requests error bars. Reports conditions without a result on standard
-/// error.
+impl CommandStudy {
+    /// Opens the study and its dataset and applies the options. Reports the file's cautions on
+    /// standard error.
+    pub(super) fn open(arguments: &StudyArguments, force: bool) -> Result<Self, Failure> {
+        let (mut study, loaded) = match &arguments.file {
+            Some(file) => {
+                let (study, loaded, _) = open(file, &arguments.opening)?.into_study();
+                (study, loaded)
+            }
+            None => {
+                let loaded = embedded_example()?;
+                (Study::new(loaded.dataset.clone()), loaded)
+            }
+        };
+        for words in &loaded.cautions {
+            caution(&format!("{}: {words}", loaded.origin));
+        }
+        apply_options(&mut study, arguments)?;
+        let inputs = [&arguments.file, &arguments.levels, &arguments.tolerances]
+            .into_iter()
+            .flatten()
+            .cloned()
+            .chain(loaded.origin.file())
+            .collect();
+        Ok(Self {
+            study,
+            loaded,
+            outputs: OutputSet::new(existing(force), inputs),
+        })
+    }
+}
+
+/// Whether an analysis computes error bars.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum ErrorBars {
+    Computed,
+    Omitted,
+}
+
+/// An analysis with the engine that made it.
+pub(super) struct StudyAnalysis {
+    pub(super) analysis: Analysis,
+    pub(super) engine: Engine,
+}
+
+/// Analyses a study, after rejecting the suggested outliers if requested. With error bars, the
+/// couplings are assessed too. Reports conditions without a result on standard error.
 ///
 /// # Errors
 /// No condition has a result.
-pub(super) fn analysis_of(
+pub(super) fn analyze_study(
     mut study: Study,
     arguments: &StudyArguments,
-    with_bars: bool,
-) -> Result<(Analysis, Engine), Failure> {
+    bars: ErrorBars,
+) -> Result<StudyAnalysis, Failure> {
     let mut engine = Engine::with_executor(Box::new(Pool));
     let progress = TerminalProgress::new("analysing");
     let mut analysis = engine.analyze(&study, &progress)?;
     if arguments.reject_suggested && reject_suggested(&mut study, &analysis)? {
         analysis = engine.analyze(&study, &progress)?;
     }
-    if with_bars {
+    if bars == ErrorBars::Computed {
         analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));
         let assessed = engine.assess_couplings(&study, study.settings.couplings, &progress)?;
         analysis.coupling_assessment = assessed.and_then(Result::ok);
     }
     drop(progress);
-    let failures = analysis
-        .conditions
-        .iter()
-        .filter_map(|(id, outcome)| Some((*id, outcome.as_ref().err()?)));
-    let failures: Vec<(ConditionId, &ConditionFailure)> = failures.collect();
-    let told = by_words(
-        failures
-            .iter()
-            .map(|(id, failure)| (*id, failure_text(failure, &analysis.study.dataset))),
-    );
-    if let Some((conditions, first)) = told
-        .first()
-        .filter(|_| failures.len() == analysis.conditions.len())
+    report_failed_conditions(&analysis)?;
+    Ok(StudyAnalysis { analysis, engine })
+}
+
+/// Reports conditions without a result on standard error.
+///
+/// # Errors
+/// No condition has a result.
+fn report_failed_conditions(analysis: &Analysis) -> Result<(), Failure> {
+    let mut failures = Vec::new();
+    for (id, outcome) in &analysis.conditions {
+        if let Err(failure) = outcome {
+            failures.push((*id, failure));
+        }
+    }
+    let messages = failures.iter().map(|(id, failure)| {
+        ConditionMessage::new(*id, failure_text(failure, &analysis.study.dataset))
+    });
+    let shared = shared_messages(messages);
+    if let Some(first) = shared.first()
+        && failures.len() == analysis.conditions.len()
     {
         return Err(Failure::NoResult {
-            reason: of_conditions(conditions, first),
+            reason: first.words(),
         });
     }
-    for (conditions, words) in &told {
-        let of_words = failures.iter().find(|(id, _)| conditions.contains(id));
-        coded_caution(
-            of_words.map(|(_, failure)| failure.code()),
-            conditions,
-            words,
-        );
+    for SharedMessage { conditions, text } in &shared {
+        let failure = failures.iter().find(|(id, _)| conditions.contains(id));
+        let code = failure.map(|(_, failure)| failure.code());
+        coded_caution(code, conditions, text);
     }
-    Ok((analysis, engine))
+    Ok(())
 }
 
-/// Returns the condition with the id given by an option.
+/// Returns the condition with an option's id.
 pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Failure> {
-    let found = dataset
-        .condition(ConditionId(id))
-        .map(|condition| condition.id());
-    found.ok_or_else(|| {
-        let reason = format!("the dataset has no condition {id}; it has {}", ids(dataset));
-        Failure::option("--condition", reason)
-    })
+    match dataset.condition(ConditionId(id)) {
+        Some(condition) => Ok(condition.id()),
+        None => {
+            let ids = condition_ids(dataset);
+            let reason = format!("the dataset has no condition {id}; it has {ids}");
+            Err(Failure::coded_option(
+                "--condition",
+                "unknown-condition",
+                reason,
+            ))
+        }
+    }
 }
 
-/// Joins the ids of the conditions with commas.
-pub(super) fn ids(dataset: &Dataset) -> String {
+/// Joins the conditions' ids with commas.
+pub(super) fn condition_ids(dataset: &Dataset) -> String {
     let ids: Vec<String> = dataset
         .conditions()
         .iter()
@@ -131,8 +166,8 @@ fn apply(study: &mut Study, option: &'static str, edit: &Edit) -> Result<(), Fai
 }
 
 /// Applies the options to the study; they override the study's own settings.
-fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
-    for (setting, words) in &arguments.settings.said {
+fn apply_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
+    for GivenSetting { setting, words } in &arguments.settings.given {
         let option = setting.option;
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let value = setting
@@ -140,30 +175,27 @@ fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fai
             .map_err(|reason| Failure::option(option, sanitized(&reason)))?;
         apply(study, option, &setting.to(value))?;
     }
-    turn(study, &arguments.sign)?;
+    apply_signs(study, &arguments.sign)?;
     for &id in &arguments.hold_out {
-        apply(
-            study,
-            "--hold-out",
-            &Edit::SetHeldOut {
-                condition: ConditionId(id),
-                held_out: true,
-            },
-        )?;
+        let edit = Edit::SetHeldOut {
+            condition: ConditionId(id),
+            held_out: true,
+        };
+        apply(study, "--hold-out", &edit)?;
     }
-    require(study, arguments)?;
+    apply_requirements(study, arguments)?;
     check_second_variable(study)?;
     if let Some(list) = &arguments.on {
-        hold(study, list)?;
+        constrain(study, list)?;
     }
-    arguments
-        .reject
-        .iter()
-        .try_for_each(|rejection| reject(study, rejection))
+    for rejection in &arguments.reject {
+        reject(study, rejection)?;
+    }
+    Ok(())
 }
 
 /// Applies the options about requirements, which override the study's own.
-fn require(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
+fn apply_requirements(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
     let mut settings = RequirementSettings::clone(&study.requirements);
     let (_, outputs) = study.dataset.names_of_channels();
     for name in &arguments.attitude_command {
@@ -172,7 +204,11 @@ fn require(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure>
                 "expected one of {}, found {name}",
                 outputs.join(", ")
             ));
-            return Err(Failure::option("--attitude-command", reason));
+            return Err(Failure::coded_option(
+                "--attitude-command",
+                "unknown-channel",
+                reason,
+            ));
         }
         settings.attitude_command.insert(name.clone());
     }
@@ -180,167 +216,165 @@ fn require(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure>
         settings.levels = read_levels(path)?;
         let unknown = settings.levels.unknown_axes(&outputs);
         if !unknown.is_empty() {
-            let unknown = unknown.join(", ");
-            let outputs = outputs.join(", ");
             caution(&sanitized(&format!(
-                "levels of {unknown} are drawn nowhere: outputs are {outputs}"
+                "levels of {} are not drawn: outputs are {}",
+                unknown.join(", "),
+                outputs.join(", ")
             )));
         }
     }
     if let Some(path) = &arguments.tolerances {
         let (tolerances, cautions) = load_tolerances(path)?;
-        cautions
-            .iter()
-            .for_each(|words| caution(&format!("{}: {words}", path.display())));
+        for words in cautions {
+            caution(&format!("{}: {words}", path.display()));
+        }
         settings.tolerances = tolerances;
     }
     if settings != *study.requirements {
-        apply(
-            study,
-            "--levels",
-            &Edit::SetRequirements("options", Arc::new(settings)),
-        )?;
+        let edit = Edit::SetRequirements("options", Arc::new(settings));
+        apply(study, "--levels", &edit)?;
     }
     Ok(())
 }
 
-/// Rejects a second variable that a scheduled condition lacks: the schedule would be missing after
-/// all the work.
+/// Rejects a second variable that a scheduled condition lacks, before the analysis: its schedule
+/// would have no result.
 fn check_second_variable(study: &Study) -> Result<(), Failure> {
     let Some(variable) = study.settings.schedule.second else {
         return Ok(());
     };
-    let is_scheduled = |id| study.choice(id).scheduled && !study.choice(id).held_out;
-    let lacking = study
-        .dataset
-        .conditions()
-        .iter()
-        .filter(|of| variable.value(of.flight_state()).is_none());
-    let lacking: Vec<ConditionId> = lacking
-        .map(|of| of.id())
-        .filter(|id| is_scheduled(*id))
-        .collect();
+    let mut lacking: Vec<ConditionId> = Vec::new();
+    for condition in study.dataset.conditions() {
+        let choice = study.choice(condition.id());
+        let is_scheduled = choice.scheduled && !choice.held_out;
+        if is_scheduled && variable.value(condition.flight_state()).is_none() {
+            lacking.push(condition.id());
+        }
+    }
     if lacking.is_empty() {
         return Ok(());
     }
-    let unit = variable.unit();
-    let of = listed_conditions(&lacking);
     let reason = format!(
-        "a schedule of airspeed and {variable} needs the {variable} [{unit}] of every scheduled condition, and the dataset does not \
-         say that of {of}"
+        "a schedule of airspeed and {variable} needs the {variable} [{}] of every scheduled condition; the dataset lacks it for {}",
+        variable.unit(),
+        listed_conditions(&lacking)
     );
-    Err(Failure::option("--second-variable", reason))
+    Err(Failure::coded_option(
+        "--second-variable",
+        "missing-variable",
+        reason,
+    ))
 }
 
 /// Inverts the channels whose signs an option declares, or restores them.
-pub(super) fn turn(study: &mut Study, signs: &[ChannelSign]) -> Result<(), Failure> {
+pub(super) fn apply_signs(study: &mut Study, signs: &[ChannelSign]) -> Result<(), Failure> {
     const OPTION: &str = "--sign";
-    if let Some(channel) = said_twice(signs) {
-        return Err(Failure::option(
-            OPTION,
-            sanitized(&format!("{channel} stands twice")),
-        ));
+    if let Some(channel) = first_duplicate(signs) {
+        return Err(Failure::given_twice(OPTION, &sanitized(channel)));
     }
-    for OfChannel {
+    for ChannelValue {
         channel: name,
-        said: of,
+        value: role,
     } in signs
     {
         let (inputs, outputs) = study.dataset.names_of_channels();
-        let all = correction::Channel::all(inputs.len(), outputs.len());
-        let named: Vec<correction::Channel> = all
+        let named: Vec<correction::Channel> = correction::Channel::all(inputs.len(), outputs.len())
             .filter(|channel| channel.name(&inputs, &outputs) == *name)
             .collect();
         let [channel] = named[..] else {
-            let found = named.len();
-            let all = [inputs, outputs].concat().join(", ");
+            let count = named.len();
+            let known = [inputs, outputs].concat().join(", ");
             let reason = sanitized(&format!(
-                "expected one of {all}; {found} channels are called {name}"
+                "expected one of {known}; {count} channels are called {name}"
             ));
-            return Err(Failure::option(OPTION, reason));
+            return Err(Failure::coded_option(OPTION, "unknown-channel", reason));
         };
-        apply(study, OPTION, &Edit::SetSign { channel, of: *of })?;
+        apply(study, OPTION, &Edit::SetSign { channel, of: *role })?;
     }
     Ok(())
 }
 
-/// Returns the responses listed in an option.
+/// Returns the responses that an option lists.
 pub(super) fn pairs_of(
     dataset: &Dataset,
-    list: &[(String, String)],
+    list: &[PairName],
     option: &'static str,
 ) -> Result<Vec<Pair>, Failure> {
-    let find = |(output, input): &(String, String)| {
-        dataset.find_pair(output, input).ok_or_else(|| {
+    let mut pairs = Vec::new();
+    for PairName { output, input } in list {
+        let pair = dataset.find_pair(output, input).ok_or_else(|| {
             let reason = format!(
                 "the dataset has no response {output}/{input}; outputs are {}; inputs are {}",
-                names(dataset.outputs()),
-                names(dataset.inputs())
+                channel_names(dataset.outputs()),
+                channel_names(dataset.inputs())
             );
-            Failure::option(option, reason)
-        })
-    };
-    list.iter().map(find).collect()
+            Failure::coded_option(option, "unknown-response", reason)
+        })?;
+        pairs.push(pair);
+    }
+    Ok(pairs)
 }
 
-/// Joins the names of channels with commas.
-pub(super) fn names(channels: &[Channel]) -> String {
-    channels
+/// Joins channel names with commas.
+pub(super) fn channel_names(channels: &[Channel]) -> String {
+    let names: Vec<&str> = channels
         .iter()
         .map(|channel| channel.name.as_str())
-        .collect::<Vec<_>>()
-        .join(", ")
+        .collect();
+    names.join(", ")
 }
 
-fn hold(study: &mut Study, list: &[(String, String)]) -> Result<(), Failure> {
+/// Constrains the listed responses and releases the others.
+fn constrain(study: &mut Study, list: &[PairName]) -> Result<(), Failure> {
     let dataset = study.dataset.clone();
-    let held = pairs_of(&dataset, list, "--on")?;
+    let constrained = pairs_of(&dataset, list, "--on")?;
     for pair in dataset.on_axis().pairs() {
-        apply(study, "--on", &Edit::Hold(pair, held.contains(&pair)))?;
+        let edit = Edit::Hold(pair, constrained.contains(&pair));
+        apply(study, "--on", &edit)?;
     }
     Ok(())
 }
 
 fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
-    let Rejection {
-        condition: id,
-        model: name,
-    } = rejection;
-    let wrong = |reason: String| Failure::option("--reject", reason);
-    let id = ConditionId(*id);
-    let condition = study.dataset.condition(id);
-    let condition = condition.ok_or_else(|| wrong(format!("the dataset has no condition {id}")))?;
-    let find = |bundle| {
-        condition
-            .position(bundle, name)
-            .map(|_| ModelId::new(id, bundle, name))
+    const OPTION: &str = "--reject";
+    let id = ConditionId(rejection.condition);
+    let name = rejection.model.as_str();
+    let Some(condition) = study.dataset.condition(id) else {
+        let reason = format!("the dataset has no condition {id}");
+        return Err(Failure::coded_option(OPTION, "unknown-condition", reason));
     };
-    let model = match (find(BundleKind::Physics), find(BundleKind::Identified)) {
-        (Some(model), None) | (None, Some(model)) => model,
-        (None, None) => return Err(wrong(format!("condition {id} has no model \"{name}\""))),
-        (Some(_), Some(_)) => {
+    let bundles: Vec<BundleKind> = BundleKind::BOTH
+        .into_iter()
+        .filter(|bundle| condition.position(*bundle, name).is_some())
+        .collect();
+    match bundles[..] {
+        [bundle] => {
+            let model = ModelId::new(id, bundle, name);
+            apply(study, OPTION, &Edit::Reject(model))
+        }
+        [] => {
+            let reason = format!("condition {id} has no model \"{name}\"");
+            Err(Failure::coded_option(OPTION, "unknown-model", reason))
+        }
+        _ => {
             let reason = format!(
                 "\"{name}\" is both a physics and an identified model of condition {id}; use a study"
             );
-            return Err(wrong(reason));
+            Err(Failure::coded_option(OPTION, "ambiguous-model", reason))
         }
-    };
-    apply(study, "--reject", &Edit::Reject(model))
+    }
 }
 
 /// Rejects the suggested outliers; returns whether anything changed.
 fn reject_suggested(study: &mut Study, analysis: &Analysis) -> Result<bool, Failure> {
     let before = study.clone();
-    for (&condition, result) in &analysis.conditions {
-        let models = result
-            .as_ref()
-            .map(|result| result.suggested())
-            .unwrap_or_default();
-        apply(
-            study,
-            "--reject-suggested",
-            &Edit::reject_physics(condition, &models),
-        )?;
+    for (&condition, outcome) in &analysis.conditions {
+        let models = match outcome {
+            Ok(result) => result.suggested(),
+            Err(_) => Default::default(),
+        };
+        let edit = Edit::reject_physics(condition, &models);
+        apply(study, "--reject-suggested", &edit)?;
     }
     Ok(*study != before)
 }

@@ -1,4 +1,4 @@
-//! Datasets out of folders of files, by the command line and by the library.
+//! Datasets made from folders, by the command line and by the library.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset, Dynamics, Model, StateSpace};
 use gdcm_model::names::{ChannelRule, RowRole};
 
-use crate::commands::Ended;
+use crate::commands::{Ended, Refusal};
 
 struct Silent;
 
@@ -28,7 +28,7 @@ impl FolderProgress for Silent {
 }
 
 fn run(arguments: &[&str]) -> Ended {
-    Ended::of(
+    Ended::from_output(
         &Command::new(env!("CARGO_BIN_EXE_gdcm"))
             .args(arguments)
             .output()
@@ -86,7 +86,7 @@ fn labels(dataset: &Dataset) -> [(&'static str, Vec<String>); 4] {
     ]
 }
 
-/// Name of a model's file: the nominal model is called so, identified ones say what they are.
+/// Name of a model's file: "nominal", or the kind of an identified model.
 fn stem(kind: BundleKind, model: &Model) -> String {
     match kind {
         BundleKind::Physics if model.is_nominal() => "nominal".to_owned(),
@@ -97,9 +97,12 @@ fn stem(kind: BundleKind, model: &Model) -> String {
 
 /// Writes every model of the example into a folder for each condition, one file a model.
 fn write_folders(root: &Path, dataset: &Dataset, write: impl Fn(&Path, &Model)) {
+    fn class(class: &Option<String>) -> String {
+        class.clone().unwrap()
+    }
+
     for condition in dataset.conditions() {
         let state = condition.flight_state();
-        let class = |class: &Option<String>| class.clone().unwrap();
         let name = format!(
             "c{:02}_{:03.0}kt_{}_{}",
             state.id.0,
@@ -143,7 +146,7 @@ fn write_sys(path: &Path, matrices: [&DMatrix<f64>; 4], labels: [(&'static str, 
     std::fs::write(path.with_file_name(file_name(path, "mat")), bytes).unwrap();
 }
 
-/// The models of the example in a folder of MATLAB files.
+/// The example's models in a folder with MATLAB files.
 pub(crate) fn example_folder(root: &Path) {
     let example = &crate::EXAMPLE.dataset;
     write_folders(root, example, |path, model| {
@@ -151,7 +154,7 @@ pub(crate) fn example_folder(root: &Path) {
     });
 }
 
-/// Per cent of the travel of the longitudinal stick in an inch of it.
+/// Share of the longitudinal stick's travel in an inch \[%\].
 pub(crate) const PERCENT_IN_AN_INCH: f64 = 12.5;
 
 /// Conditions 1 and 3 of the example as files of two programs: in the identified models NZ is positive the other way round, and the
@@ -302,7 +305,7 @@ fn assert_same_numbers(made: &Dataset, example: &Dataset, route: &str) {
     }
 }
 
-/// The name of a format, and what writes a model in it.
+/// Name of a format, with its writer.
 type Route<'w> = (&'static str, &'w dyn Fn(&Path, &Model));
 
 #[test]
@@ -456,7 +459,7 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
 
 /// Two physics models and a measured response of one input and one output, as files.
 pub(crate) fn small_folder(root: &Path) {
-    let model = |gain: f64| {
+    fn model(gain: f64) -> Vec<u8> {
         let values = [
             ("A", vec![-1.0]),
             ("B", vec![gain]),
@@ -478,7 +481,8 @@ pub(crate) fn small_folder(root: &Path) {
             value: text(of),
         });
         write_mat(&[&numbers[..], &texts[..]].concat()).unwrap()
-    };
+    }
+
     let folder = root.join("c1_60kt");
     std::fs::create_dir_all(&folder).unwrap();
     std::fs::write(folder.join("trim.mat"), model(1.0)).unwrap();
@@ -500,6 +504,10 @@ pub(crate) fn small_folder(root: &Path) {
 
 #[test]
 fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
+    fn asked(assembly: &Assembly, wanted: fn(&ProblemKind) -> bool) -> bool {
+        assembly.problems().iter().any(|of| wanted(&of.kind))
+    }
+
     let folder = tempfile::tempdir().unwrap();
     small_folder(folder.path());
     let found = found_in(folder.path());
@@ -514,9 +522,6 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
     );
     let mut rules = proposed_rules("small", &found.models);
     let assembly = Assembly::new(found.models, rules.clone());
-    let asked = |assembly: &Assembly, wanted: fn(&ProblemKind) -> bool| {
-        assembly.problems().iter().any(|of| wanted(&of.kind))
-    };
     assert!(
         asked(&assembly, |kind| matches!(kind, ProblemKind::UnitOfFile(_))),
         "the response has no units: {:?}",
@@ -585,18 +590,19 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
     assert!(response.coherence().is_some());
 }
 
-/// A stack of physics models and one of identified models in a file each, without any names of conditions.
+/// A stack with physics models and a stack with identified models, a file each, without condition names.
 #[test]
 fn stacks_with_airspeeds_become_conditions_and_what_is_not_used_is_noted_once_a_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let stack = |gains: [f64; 3], airspeeds: [f64; 3]| {
+    fn stack(gains: [f64; 3], airspeeds: [f64; 3]) -> serde_json::Value {
         let pages: Vec<serde_json::Value> = gains.iter().map(|gain| json!([[gain]])).collect();
         json!({
             "A": [[[-1.0]], [[-1.0]], [[-1.0]]], "B": pages, "C": [[1.0]], "D": [[0.0]], "airspeed_kt": airspeeds,
             "inputs": [{"name": "LON", "unit": "%"}], "outputs": [{"name": "Q", "unit": "deg/s"}],
             "input_delay_ms": [30.0], "torque": 7.0
         })
-    };
+    }
+
+    let folder = tempfile::tempdir().unwrap();
     for (name, gains, airspeeds) in [
         ("physics.json", [1.0, 2.0, 3.0], [60.0, 80.0, 100.0]),
         ("identified.json", [30.0, 20.0, 10.0], [100.0, 80.0, 60.0]),
@@ -853,6 +859,22 @@ fn measured_responses_of_one_model_at_differing_frequencies_are_a_problem() {
 #[test]
 fn the_flight_records_of_a_dataset_stay_with_its_condition_and_are_found_from_where_the_new_one_lies()
  {
+    fn plain(path: &Path) -> PathBuf {
+        path.components()
+            .filter(|part| part.as_os_str() != ".")
+            .collect::<PathBuf>()
+    }
+
+    fn unplaced(records: &[ConditionRecord]) -> Vec<ConditionRecord> {
+        records
+            .iter()
+            .map(|record| ConditionRecord {
+                file: String::new(),
+                ..record.clone()
+            })
+            .collect()
+    }
+
     let folder = tempfile::tempdir().unwrap();
     let mut text: serde_json::Value =
         serde_json::from_str(include_str!("../data/small-dataset.json")).unwrap();
@@ -882,13 +904,8 @@ fn the_flight_records_of_a_dataset_stay_with_its_condition_and_are_found_from_wh
             .collect();
         let beside = old.parent().unwrap();
         let expected = ["records/lon_1.csv", "all.mat"].map(|file| beside.join(file));
-        let plain = |path: &PathBuf| {
-            path.components()
-                .filter(|part| part.as_os_str() != ".")
-                .collect::<PathBuf>()
-        };
         assert_eq!(
-            files.iter().map(plain).collect::<Vec<_>>(),
+            files.iter().map(|path| plain(path)).collect::<Vec<_>>(),
             expected,
             "from {}",
             source.display()
@@ -902,15 +919,6 @@ fn the_flight_records_of_a_dataset_stay_with_its_condition_and_are_found_from_wh
         let made = made(&source, name);
         let condition = &made.conditions()[0];
         let old = &before.conditions()[0];
-        let unplaced = |records: &[ConditionRecord]| -> Vec<ConditionRecord> {
-            records
-                .iter()
-                .map(|record| ConditionRecord {
-                    file: String::new(),
-                    ..record.clone()
-                })
-                .collect()
-        };
         assert_eq!(unplaced(condition.records()), unplaced(old.records()));
         assert_eq!(
             condition.bundle(BundleKind::Identified)[0]
@@ -982,7 +990,7 @@ fn walk(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// A response of one channel pair, dB and degrees over rad/s, under a name of a file.
+/// A channel pair's response, dB and degrees over rad/s, in a file with this name.
 fn write_response(folder: &Path, name: &str) {
     let mut frf = String::from("omega [rad/s],mag [dB],phase [deg]\n");
     for step in 0..40 {
@@ -997,7 +1005,7 @@ fn write_response(folder: &Path, name: &str) {
     std::fs::write(folder.join(name), frf).unwrap();
 }
 
-/// A model of one state in a file of MATLAB: gain, and names and units of its input and output.
+/// A model with a single state in a MATLAB file: gain, and the names and units of input and output.
 fn write_small(path: &Path, gain: f64, names: [&str; 2], units: [Option<&str>; 2]) {
     let scalar = |value: f64| DMatrix::from_element(1, 1, value);
     let lists = [("InputName", names[0]), ("OutputName", names[1])]
@@ -1023,7 +1031,7 @@ fn write_small(path: &Path, gain: f64, names: [&str; 2], units: [Option<&str>; 2
     std::fs::write(path, write_mat(&variables).unwrap()).unwrap();
 }
 
-/// The gain C B of the first model of a bundle of the first condition, in the dataset's units.
+/// The gain C B for the first model in a bundle at the first condition, in the dataset's units.
 fn gain_of(dataset: &Path, kind: BundleKind) -> f64 {
     let dataset = load_dataset(dataset).unwrap().dataset;
     let [_, b, c, _] = matrices(&dataset.conditions()[0].bundle(kind)[0]);
@@ -1056,7 +1064,7 @@ fn a_response_whose_name_says_no_channels_makes_no_dataset_and_one_that_does_is_
         .concat())
     };
     let units = ["--unit", "LON=%", "--unit", "Q=deg/s"];
-    // It names the pedals, which the dataset does not have; a dataset of zeros was made of it.
+    // It names the pedals, which the dataset lacks; a dataset with zeros was made from it.
     write_response(&models, "frf_r_ped_run2.csv");
     let ended = assemble(&units);
     assert_eq!(ended.status, 2, "{}{}", ended.out, ended.error);
@@ -1102,7 +1110,7 @@ fn a_response_whose_name_says_no_channels_makes_no_dataset_and_one_that_does_is_
 fn units_factors_and_signs_are_said_for_a_role_a_folder_or_a_file_by_the_option_that_is_printed() {
     let folder = tempfile::tempdir().unwrap();
     let root = folder.path().join("models");
-    // The identified file has another unit and says none, another name of the same input, and an output whose sign is open.
+    // The identified file has another unit without stating it, another name for the input, and an output with an unknown sign.
     write_small(
         &root.join("c1_60kt/nominal.mat"),
         1.0,
@@ -1180,28 +1188,26 @@ fn units_factors_and_signs_are_said_for_a_role_a_folder_or_a_file_by_the_option_
         (identified / (2.0 * 9.8 / 8.0) - 1.0).abs() < 1e-12,
         "a factor has its sign: {identified}"
     );
-    for (wrong, words) in [
+    let refused: [(&[&str], &str, &[&str]); 3] = [
         (
-            ["--factor", "PED=8"],
-            "--factor: the dataset has no channel PED",
+            &["--factor", "PED=8", "--json"],
+            "unknown-channel",
+            &["--factor: ", "channel PED"],
         ),
         (
-            ["--sign", "NZ=-1:c7/*"],
-            "--sign: NZ: no model is in \"c7/*\"",
+            &["--sign", "NZ=-1:c7/*", "--json"],
+            "unknown-model",
+            &["--sign: NZ: ", "\"c7/*\""],
         ),
-    ] {
-        let ended = with(&wrong);
-        assert_eq!(ended.status, 2);
-        assert!(ended.error.contains(words), "{}", ended.error);
+        (
+            &["--factor", "LON=8", "--unit", "LON=in", "--json"],
+            "given-twice",
+            &["--factor: LON of identified "],
+        ),
+    ];
+    for (options, code, names) in refused {
+        Refusal::from_json(&with(options)).assert_code(code, names);
     }
-    let ended = with(&["--factor", "LON=8", "--unit", "LON=in"]);
-    assert!(
-        ended
-            .error
-            .contains("LON of identified has a unit or a factor already"),
-        "{}",
-        ended.error
-    );
 }
 
 #[test]

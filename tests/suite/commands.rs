@@ -47,7 +47,24 @@ impl Desk {
 
     pub(crate) fn gdcm(&self, arguments: &[&str]) -> Ended {
         let output = self.command(arguments).output().unwrap();
-        Ended::of(&output)
+        Ended::from_output(&output)
+    }
+
+    /// Runs a command line with further arguments.
+    pub(crate) fn run(&self, line: &[&str], more: &[&str]) -> Ended {
+        self.gdcm(&[line, more].concat())
+    }
+
+    /// Returns the text of a file.
+    #[track_caller]
+    pub(crate) fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    /// Runs a command that fails, with its messages as JSON.
+    #[track_caller]
+    pub(crate) fn refusal(&self, arguments: &[&str]) -> Refusal {
+        Refusal::from_json(&self.gdcm(&[arguments, &["--json"]].concat()))
     }
 
     pub(crate) fn command<S: AsRef<OsStr>>(&self, arguments: &[S]) -> Command {
@@ -55,6 +72,76 @@ impl Desk {
         command.args(arguments).current_dir(self.directory.path());
         command
     }
+}
+
+/// A failed command, read from its JSON object.
+#[derive(Debug)]
+pub(crate) struct Refusal {
+    status: i32,
+    /// Code of each error; `None` without a code.
+    codes: Vec<Option<String>>,
+    errors: Vec<String>,
+    notes: Vec<String>,
+    cautions: Vec<String>,
+}
+
+impl Refusal {
+    pub(crate) fn from_json(ended: &Ended) -> Self {
+        let object: Value =
+            serde_json::from_str(&ended.out).unwrap_or_else(|error| panic!("{error}: {ended:?}"));
+        assert_eq!(ended.error, "", "nothing beside the object: {ended:?}");
+        Self {
+            status: ended.status,
+            codes: entries(&object["error_codes"])
+                .iter()
+                .map(|code| code.as_str().map(str::to_owned))
+                .collect(),
+            errors: texts(&object["errors"]),
+            notes: texts(&object["notes"]),
+            cautions: entries(&object["cautions"])
+                .iter()
+                .map(|caution| caution["text"].as_str().expect("a text").to_owned())
+                .collect(),
+        }
+    }
+
+    /// Asserts status 2, the code of the last error, and that its message contains these options, names and numbers.
+    #[track_caller]
+    pub(crate) fn assert_code(&self, code: &str, names: &[&str]) -> &Self {
+        self.assert_status_and_code(2, code, names)
+    }
+
+    /// Asserts the status, the code of the last error, and that its message contains these options, names and numbers.
+    #[track_caller]
+    pub(crate) fn assert_status_and_code(&self, status: i32, code: &str, names: &[&str]) -> &Self {
+        assert_eq!(self.status, status, "{self:?}");
+        assert_eq!(self.codes.last(), Some(&Some(code.to_owned())), "{self:?}");
+        let message = self.errors.last().expect("an error");
+        assert_eq!(message.lines().count(), 1, "{self:?}");
+        for name in names {
+            assert!(message.contains(name), "expected \"{name}\" in: {message}");
+        }
+        self
+    }
+
+    /// Asserts that an error, a caution or a note holds these words.
+    #[track_caller]
+    pub(crate) fn assert_reported(&self, words: &str) -> &Self {
+        let mut messages = self.errors.iter().chain(&self.cautions).chain(&self.notes);
+        assert!(
+            messages.any(|message| message.contains(words)),
+            "expected \"{words}\": {self:?}"
+        );
+        self
+    }
+}
+
+/// The texts of a list in JSON.
+fn texts(list: &Value) -> Vec<String> {
+    entries(list)
+        .iter()
+        .map(|text| text.as_str().expect("a text").to_owned())
+        .collect()
 }
 
 /// How a command ended.
@@ -66,16 +153,15 @@ pub(crate) struct Ended {
 }
 
 impl Ended {
-    pub(crate) fn of(output: &Output) -> Self {
-        let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+    pub(crate) fn from_output(output: &Output) -> Self {
         Self {
             status: output.status.code().unwrap(),
-            out: text(&output.stdout),
-            error: text(&output.stderr),
+            out: String::from_utf8(output.stdout.clone()).unwrap(),
+            error: String::from_utf8(output.stderr.clone()).unwrap(),
         }
     }
 
-    /// Asserts a failure told in one or two lines of standard error that hold these words, and nothing on standard output.
+    /// Asserts a failure with one or two lines on standard error that contain these words, and no standard output.
     #[track_caller]
     pub(crate) fn assert_failed(&self, status: i32, words: &[&str]) {
         assert_eq!((self.status, self.out.as_str()), (status, ""), "{self:?}");
@@ -158,7 +244,7 @@ fn the_embedded_example_is_analysed_without_a_file() {
     assert!(widest <= 120, "{widest} columns");
 }
 
-/// The result of a condition, of a file of corrections.
+/// A condition's result in a corrections file.
 fn condition_of<'j>(corrections: &'j Value, id: &str) -> &'j Value {
     entries(&corrections["conditions"])
         .iter()
@@ -280,20 +366,18 @@ fn delays_are_scheduled_and_a_tolerance_is_set_by_options() {
 fn the_phase_is_corrected_as_an_option_says() {
     let desk = Desk::new();
     let reference = crate::REFERENCE_DATASET.path().unwrap().to_str().unwrap();
-    let analyze = |more: &[&str]| {
-        desk.gdcm(&[&["analyze", reference, "--out", "out", "--force"][..], more].concat())
-    };
-    let read = || crate::read_json(&desk.path("out/corrections.json"));
-    // Figures of the leads are the same wherever G is taken from, and the text says so.
-    let ended = analyze(&["--phase", "lead", "--gain-from", "mean"]);
+    let analyze = ["analyze", reference, "--out", "out", "--force"];
+    let corrections = desk.path("out/corrections.json");
+    // The leads do not depend on the source of G, and the text reports that.
+    let ended = desk.run(&analyze, &["--phase", "lead", "--gain-from", "mean"]);
     ended.assert_done();
     for words in [
         "G from the mean over all kept pairs, without effect: with leads",
         "Phase",
-        "corrected by a delay or a lead filter a channel: order 2, n 3, R_max 10",
+        "corrected by a delay or a lead filter per channel: order 2, n 3, R_max 10",
         "channel k delay/lead [ms] servo of [rad/s] replaced by dB at 120 rad/s",
-        // What every condition has is said once.
-        "where all want about the same lead (column all [ms]), check first the time alignment",
+        // Remarks common to all conditions are printed once.
+        "a common lead (column all [ms]) is better removed at its source: check first the time alignment",
         "condition PED → NY all gain",
         "conditions 1 to 3, 5 to 11: The leads add 20 states. Do not use the corrected model above 12 rad/s.",
     ] {
@@ -308,7 +392,7 @@ fn the_phase_is_corrected_as_an_option_says() {
             ended.out
         );
     }
-    let led = read();
+    let led = crate::read_json(&corrections);
     assert_eq!(
         (&led["settings"]["phase"], &led["settings"]["delay_from"]),
         (&json!("lead"), &json!("median"))
@@ -348,10 +432,10 @@ fn the_phase_is_corrected_as_an_option_says() {
             .unwrap()
             .contains(",tau_s,lead_s,zero_rad_s,lag_rad_s,gain_at_infinity_db,scheduled_tau_s,")
     );
-    let ended = analyze(&["--phase", "none"]);
+    let ended = desk.run(&analyze, &["--phase", "none"]);
     ended.assert_done();
     assert!(!ended.out.contains("G from"), "{}", ended.out);
-    for of in entries(&read()["conditions"]) {
+    for of in entries(&crate::read_json(&corrections)["conditions"]) {
         assert!(
             of.get("lead").is_none()
                 && members(&of["delays_s"]["outputs"])
@@ -359,13 +443,14 @@ fn the_phase_is_corrected_as_an_option_says() {
                     .all(|delay_s| **delay_s == 0.0)
         );
     }
-    analyze(&["--delay-from", "band"]).assert_done();
-    let settings = &read()["settings"];
+    desk.run(&analyze, &["--delay-from", "band"]).assert_done();
+    let settings = &crate::read_json(&corrections)["settings"];
     assert_eq!(
         (&settings["phase"], &settings["delay_from"]),
         (&json!("delay"), &json!("band"))
     );
-    analyze(&["--phase", "later"]).assert_failed(2, &["expected none, delay or lead, found later"]);
+    desk.run(&analyze, &["--phase", "later"])
+        .assert_failed(2, &["expected none, delay or lead, found later"]);
 }
 
 #[test]
@@ -580,37 +665,77 @@ fn a_wrong_file_is_status_2_with_path_and_place() {
 #[test]
 fn a_wrong_command_line_is_status_2_with_the_option() {
     let desk = Desk::new();
-    let analyze = |options: &[&str]| {
-        let arguments: Vec<&str> = ["analyze", "small.json", "--out", "out"]
-            .iter()
-            .chain(options)
-            .copied()
-            .collect();
-        desk.gdcm(&arguments)
-    };
-    analyze(&["--alpha", "-1"]).assert_failed(2, &["--alpha: ", "from 0", "found -1"]);
-    analyze(&["--alpha", "NaN"]).assert_failed(2, &["--alpha: ", "found NaN"]);
-    analyze(&["--alpha", "much"]).assert_failed(2, &["--alpha: expected a number, found much"]);
-    analyze(&["--alpha-delay", "1e9"]).assert_failed(2, &["--alpha-delay: ", "found 1000000000"]);
-    analyze(&["--band", "8", "1"]).assert_failed(
-        2,
-        &["--band: ", "0.0001 <= min < max <= 100000", "min 8, max 1"],
-    );
-    analyze(&["--band", "8"]).assert_failed(2, &["--band"]);
-    analyze(&["--points", "1"]).assert_failed(2, &["--points: ", "from 2 to 5000"]);
-    analyze(&["--degree", "4"]).assert_failed(
-        2,
-        &["--degree: ", "expected 0, 1, 2, 3 or table", "found 4"],
-    );
-    analyze(&["--on", "P"]).assert_failed(2, &["OUTPUT/INPUT"]);
-    analyze(&["--on", "P/PED"])
-        .assert_failed(2, &["--on: ", "no response P/PED", "inputs are LON, LAT"]);
-    analyze(&["--reject", "nominal"]).assert_failed(2, &["ID:NAME"]);
-    analyze(&["--reject", "8:nominal"]).assert_failed(2, &["--reject: ", "no condition 8"]);
-    analyze(&["--reject", "7:other"])
-        .assert_failed(2, &["--reject: ", "condition 7 has no model \"other\""]);
-    analyze(&["--reject", "10:nominal"]).assert_failed(2, &["--reject: ", "the last model kept"]);
-    analyze(&["--colour"]).assert_failed(2, &["--colour"]);
+    let cases: [(&[&str], &str, &[&str]); 16] = [
+        (
+            &["--alpha", "-1"],
+            "wrong-option",
+            &["--alpha: ", "from 0", "found -1"],
+        ),
+        (
+            &["--alpha", "NaN"],
+            "wrong-option",
+            &["--alpha: ", "found NaN"],
+        ),
+        (
+            &["--alpha", "much"],
+            "wrong-option",
+            &["--alpha: ", "a number, found much"],
+        ),
+        (
+            &["--alpha-delay", "1e9"],
+            "wrong-option",
+            &["--alpha-delay: ", "found 1000000000"],
+        ),
+        (
+            &["--band", "8", "1"],
+            "wrong-option",
+            &["--band: ", "0.0001 <= min < max <= 100000", "min 8, max 1"],
+        ),
+        (&["--band", "8"], "wrong-command-line", &["--band"]),
+        (
+            &["--points", "1"],
+            "wrong-option",
+            &["--points: ", "from 2 to 5000"],
+        ),
+        (
+            &["--degree", "4"],
+            "wrong-option",
+            &["--degree: ", "0, 1, 2, 3 or table", "found 4"],
+        ),
+        (&["--on", "P"], "wrong-command-line", &["OUTPUT/INPUT"]),
+        (
+            &["--on", "P/PED"],
+            "unknown-response",
+            &["--on: ", "P/PED", "inputs are LON, LAT"],
+        ),
+        (&["--reject", "nominal"], "wrong-command-line", &["ID:NAME"]),
+        (
+            &["--reject", "8:nominal"],
+            "unknown-condition",
+            &["--reject: ", "condition 8"],
+        ),
+        (
+            &["--reject", "7:other"],
+            "unknown-model",
+            &["--reject: ", "condition 7", "\"other\""],
+        ),
+        (
+            &["--reject", "10:nominal"],
+            "wrong-option",
+            &["--reject: ", "the last model kept"],
+        ),
+        (&["--colour"], "wrong-command-line", &["--colour"]),
+        (
+            &["--sign", "P=-1", "--sign", "P=1"],
+            "given-twice",
+            &["--sign: ", "P "],
+        ),
+    ];
+    for (options, code, names) in cases {
+        let line = [&["analyze", "small.json", "--out", "out"], options].concat();
+        desk.gdcm(&line).assert_failed(2, names);
+        desk.refusal(&line).assert_code(code, names);
+    }
     desk.gdcm(&["analyze", "small.json"])
         .assert_failed(2, &["--out"]);
     assert!(!desk.path("out").exists());
@@ -736,7 +861,7 @@ fn a_full_disk_behind_standard_output_is_status_1() {
         .stdout(full)
         .output()
         .unwrap();
-    Ended::of(&output).assert_failed(1, &["standard output cannot be written"]);
+    Ended::from_output(&output).assert_failed(1, &["standard output cannot be written"]);
 }
 
 #[test]
@@ -797,9 +922,12 @@ fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_h
     );
     let strict = desk.gdcm(&["check", "a.gdcm-study.json", "--strict"]);
     assert!(
-        strict.status == 2 && strict.error.contains("--strict asks for none"),
+        strict.status == 2 && strict.error.contains("--strict"),
         "{strict:?}"
     );
+    desk.refusal(&["check", "a.gdcm-study.json", "--strict"])
+        .assert_code("different-dataset", &["a.gdcm-study.json", "--strict"])
+        .assert_reported("condition 7 is flown at 61 kt");
     fs::rename(&dataset, desk.path("moved.json")).unwrap();
     desk.gdcm(&["check", "a.gdcm-study.json"]).assert_failed(
         2,
@@ -953,25 +1081,51 @@ fn settings_are_printed_with_six_digits() {
 #[test]
 fn a_figure_that_cannot_be_made_is_status_2_and_says_what_there_is() {
     let desk = Desk::new();
-    let figure = |rest: &[&str]| desk.gdcm(&[&["figure", "small.json"][..], rest].concat());
-    figure(&["--view", "bode", "--out", "a.svg"])
-        .assert_failed(2, &["--condition", "a figure of one condition", "7, 10"]);
-    figure(&["--view", "bode", "--condition", "99", "--out", "a.svg"])
-        .assert_failed(2, &["no condition 99", "7, 10"]);
-    figure(&["--view", "sky", "--out", "a.svg"]).assert_failed(2, &["--view"]);
-    figure(&["--view", "net-gain", "--out", "a.jpg"])
+    let figure = ["figure", "small.json"];
+    let cases: [(&[&str], &str, &[&str]); 5] = [
+        (
+            &["--view", "bode", "--out", "a.svg"],
+            "missing-condition",
+            &["--condition", "bode", "7, 10"],
+        ),
+        (
+            &["--view", "bode", "--condition", "99", "--out", "a.svg"],
+            "unknown-condition",
+            &["--condition", "99", "7, 10"],
+        ),
+        (
+            &["--view", "sky", "--out", "a.svg"],
+            "wrong-command-line",
+            &["--view"],
+        ),
+        (
+            &["--view", "net-gain", "--pair", "X/Y", "--out", "a.svg"],
+            "unknown-response",
+            &["--pair", "X/Y"],
+        ),
+        (
+            &["--view", "channels", "--channel", "X", "--out", "a.svg"],
+            "unknown-channel",
+            &["--channel", "channel X"],
+        ),
+    ];
+    for (options, code, names) in cases {
+        let line = [&figure, options].concat();
+        desk.gdcm(&line).assert_failed(2, names);
+        desk.refusal(&line).assert_code(code, names);
+    }
+    desk.run(&figure, &["--view", "net-gain", "--out", "a.jpg"])
         .assert_failed(2, &["a.jpg: ", ".svg, .png, .pdf or .csv"]);
-    figure(&["--view", "net-gain", "--pair", "X/Y", "--out", "a.svg"])
-        .assert_failed(2, &["--pair", "no response X/Y"]);
-    figure(&["--view", "channels", "--channel", "X", "--out", "a.svg"])
-        .assert_failed(2, &["--channel", "no channel X"]);
-    figure(&["--view", "net-gain", "--out", "small.json"]).assert_failed(2, &["small.json: "]);
+    desk.run(&figure, &["--view", "net-gain", "--out", "small.json"])
+        .assert_failed(2, &["small.json: "]);
     assert!(!desk.path("a.svg").exists());
     fs::write(desk.path("a.svg"), "mine").unwrap();
     let existing = ["--view", "net-gain", "--out", "a.svg"];
-    figure(&existing).assert_failed(2, &["a.svg exists already; --force overwrites"]);
+    desk.run(&figure, &existing)
+        .assert_failed(2, &["a.svg exists already; --force overwrites"]);
     assert_eq!(fs::read_to_string(desk.path("a.svg")).unwrap(), "mine");
-    figure(&[&existing[..], &["--force"]].concat()).assert_done();
+    desk.run(&figure, &[&existing[..], &["--force"]].concat())
+        .assert_done();
     assert!(
         fs::read_to_string(desk.path("a.svg"))
             .unwrap()
@@ -988,7 +1142,7 @@ fn check_finds_a_wrong_structure_without_reading_a_large_file_to_its_end() {
         .write(true)
         .open(desk.path("large.json"))
         .unwrap();
-    // More than is read: what reads it to its end says that.
+    // Longer than the limit: only commands that read the file to its end report that.
     file.set_len(gdcm_model::dataset::limits::LARGEST_TEXT + 1)
         .unwrap();
     desk.gdcm(&["check", "large.json"])
@@ -1080,7 +1234,7 @@ fn conditions_can_be_held_out_and_each_be_left_out_in_turn() {
         .assert_failed(2, &["--hold-out", "no condition 99"]);
 }
 
-/// What the program says of a file in a command, and how it ends.
+/// Output and exit status of a command about a file.
 fn said_of_edge(file: &str, command: &str) -> (i32, String) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/data/edges")

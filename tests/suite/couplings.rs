@@ -1,4 +1,4 @@
-//! Mixing and feedback from the command line: what is printed, and what stands in the files (M16).
+//! Mixing and feedback from the command line: printed text and files (M16).
 
 use std::fs;
 
@@ -10,14 +10,13 @@ use crate::{entries, read_json};
 
 const COUPLED: [&str; 4] = ["--phase", "lead", "--couplings", "feedback"];
 
+fn row_numbers(row: &Value) -> Vec<f64> {
+    let values = entries(row).iter();
+    values.map(|value| value.as_f64().unwrap()).collect()
+}
+
 fn numbers(rows: &Value) -> Vec<Vec<f64>> {
-    let row = |row: &Value| {
-        entries(row)
-            .iter()
-            .map(|value| value.as_f64().unwrap())
-            .collect()
-    };
-    entries(rows).iter().map(row).collect()
+    entries(rows).iter().map(row_numbers).collect()
 }
 
 #[test]
@@ -92,19 +91,7 @@ fn analyze_says_what_couplings_mean_are_worth_and_cost_and_writes_them() {
 #[ignore = "runs another program: 18 s"]
 fn octave_closes_the_loop_of_an_exported_function_as_state_space_has_it() {
     let desk = Desk::new();
-    let export = |format: &str, name: &str, more: &[&str]| {
-        let ended = desk.gdcm(
-            &[
-                &["export", "--as", format, "--out", name, "--phase", "none"],
-                more,
-            ]
-            .concat(),
-        );
-        ended.assert_done();
-        ended.out
-    };
     let feedback = ["--couplings", "feedback"];
-    let text = |name: &str| fs::read_to_string(desk.path(name)).unwrap();
     for (format, name, words) in [
         (
             "m",
@@ -113,25 +100,35 @@ fn octave_closes_the_loop_of_an_exported_function_as_state_space_has_it() {
         ),
         ("table-csv", "t.csv", "mixing of input LAT from LON [-]"),
     ] {
-        export(format, name, &feedback);
-        assert!(text(name).contains(words), "{name}: {}", text(name));
+        exported(&desk, format, name, &feedback);
+        assert!(
+            desk.read(name).contains(words),
+            "{name}: {}",
+            desk.read(name)
+        );
     }
     assert!(
-        text("t.csv").contains("# feedback to input PED: P "),
+        desk.read("t.csv").contains("# feedback to input PED: P "),
         "{}",
-        text("t.csv")
+        desk.read("t.csv")
     );
-    export("table-mat", "t.mat", &feedback);
-    export("mat", "c.mat", &feedback);
+    exported(&desk, "table-mat", "t.mat", &feedback);
+    exported(&desk, "mat", "c.mat", &feedback);
     let one = ["--condition", "7", "--couplings"];
-    let said = export(
+    let said = exported(
+        &desk,
         "state-space",
         "with.mat",
         &[&one[..], &["feedback"]].concat(),
     );
     assert!(said.contains("with mixing and feedback, exact"), "{said}");
-    export("state-space", "plain.mat", &[&one[..], &["none"]].concat());
-    export("m", "plain_gains.m", &["--couplings", "none"]);
+    exported(
+        &desk,
+        "state-space",
+        "plain.mat",
+        &[&one[..], &["none"]].concat(),
+    );
+    exported(&desk, "m", "plain_gains.m", &["--couplings", "none"]);
     // The loop of the exported function, closed through the feed-through around the plain model, beside the exported matrices.
     let program = "load with.mat; w = models; load plain.mat; p = models; w3 = 3i * eye(size(w.A)); p3 = 3i * eye(size(p.A)); \
         [Mi, Mo, ~, ~] = plain_gains(w.airspeed_kt); \
@@ -221,7 +218,7 @@ fn couplings_that_nothing_can_be_fitted_to_are_told_in_words() {
         "{}",
         ended.out
     );
-    // What leaves must not be without couplings where some are asked for.
+    // Exported models must not lack requested couplings.
     let all: Vec<&str> = ids
         .iter()
         .flat_map(|id| ["--hold-out", id.as_str()])
@@ -283,4 +280,12 @@ fn a_figure_shows_the_poles_of_the_condition_that_is_asked_for() {
         .assert_done();
     let text = fs::read_to_string(desk.path("couplings.svg")).unwrap();
     assert!(text.contains("Poles of condition 3") && text.contains("close to ringing"));
+}
+
+/// Exports the example without a correction of the phase, and returns the printed text.
+fn exported(desk: &Desk, format: &str, name: &str, more: &[&str]) -> String {
+    let line = ["export", "--as", format, "--out", name, "--phase", "none"];
+    let ended = desk.run(&line, more);
+    ended.assert_done();
+    ended.out
 }

@@ -80,7 +80,11 @@ fn every_format_is_written_once_and_over_nothing_unasked() {
 
 #[test]
 fn every_export_stands_in_the_documentation() {
-    let text = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/reference/exports.md")).unwrap();
+    let text = fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/docs/reference/exports.md"
+    ))
+    .unwrap();
     for ExportFormat { name, .. } in EXPORTERS {
         assert!(text.contains(&format!("\n| `{name}` |")), "{name}");
     }
@@ -104,32 +108,89 @@ fn json_and_csv_are_those_of_analyze() {
 #[test]
 fn what_cannot_be_exported_is_status_2_before_any_work() {
     let desk = Desk::new();
-    let export = |rest: &[&str]| desk.gdcm(&[&["export", "small.json", "--as"][..], rest].concat());
-    export(&["xls", "--out", "a"]).assert_failed(2, &["--as", "table-csv"]);
-    export(&["state-space", "--out", "a.csv"])
-        .assert_failed(2, &["a.csv: ", ".mat, .json or .npz"]);
-    export(&["m", "--out", "my-study.m"]).assert_failed(2, &["my-study.m: ", "found \"my-study\""]);
-    export(&["json", "--out", "small.json", "--force"])
-        .assert_failed(2, &["small.json: the data are read from this"]);
-    export(&["m", "--out", "a.m", "--pade", "2"])
-        .assert_failed(2, &["--pade: is an option of --as state-space"]);
-    export(&["h", "--out", "a.h", "--breakpoints", "1,2"])
-        .assert_failed(2, &["--breakpoints: ", "table-csv"]);
-    export(&["table-csv", "--out", "a.csv", "--breakpoints", "60,40"])
-        .assert_failed(2, &["airspeeds that rise"]);
-    let models = |rest: &[&str]| export(&[&["state-space", "--out", "a.mat"][..], rest].concat());
-    models(&["--pade", "9"]).assert_failed(2, &["--pade: ", "from 1 to 8"]);
-    models(&["--condition", "8"])
-        .assert_failed(2, &["--condition: ", "no condition 8; it has 7, 10"]);
-    models(&["--correction", "none"]).assert_failed(2, &["--correction"]);
-    models(&["--model", "V+5kt"])
-        .assert_failed(2, &["condition 10 has no physics model \"V+5kt\""]);
+    let export = ["export", "small.json", "--as"];
+    let files: [(&[&str], &[&str]); 4] = [
+        (
+            &["state-space", "--out", "a.csv"],
+            &["a.csv: ", ".mat, .json or .npz"],
+        ),
+        (
+            &["m", "--out", "my-study.m"],
+            &["my-study.m: ", "found \"my-study\""],
+        ),
+        (
+            &["json", "--out", "small.json", "--force"],
+            &["small.json: the data are read from this"],
+        ),
+        (
+            &["state-space", "--out", "a.mat", "--model", "V+5kt"],
+            &["condition 10 has no physics model \"V+5kt\""],
+        ),
+    ];
+    for (options, words) in files {
+        desk.gdcm(&[&export, options].concat())
+            .assert_failed(2, words);
+    }
+    let options: [(&[&str], &str, &[&str]); 7] = [
+        (
+            &["xls", "--out", "a"],
+            "wrong-command-line",
+            &["--as", "table-csv"],
+        ),
+        (
+            &["m", "--out", "a.m", "--pade", "2"],
+            "misplaced-option",
+            &["--pade: ", "--as state-space"],
+        ),
+        (
+            &["h", "--out", "a.h", "--breakpoints", "1,2"],
+            "misplaced-option",
+            &["--breakpoints: ", "table-csv"],
+        ),
+        (
+            &["table-csv", "--out", "a.csv", "--breakpoints", "60,40"],
+            "wrong-command-line",
+            &["--breakpoints", "60,40"],
+        ),
+        (
+            &["state-space", "--out", "a.mat", "--pade", "9"],
+            "wrong-command-line",
+            &["--pade: ", "from 1 to 8"],
+        ),
+        (
+            &["state-space", "--out", "a.mat", "--condition", "8"],
+            "unknown-condition",
+            &["--condition: ", "condition 8", "7, 10"],
+        ),
+        (
+            &["state-space", "--out", "a.mat", "--correction", "none"],
+            "wrong-command-line",
+            &["--correction"],
+        ),
+    ];
+    for (options, code, names) in options {
+        let line = [&export, options].concat();
+        desk.gdcm(&line).assert_failed(2, names);
+        desk.refusal(&line).assert_code(code, names);
+    }
     assert_eq!(
         fs::read_dir(desk.directory.path()).unwrap().count(),
         1,
         "nothing was written"
     );
-    models(&["--model", "V+5kt", "--condition", "7"]).assert_done();
+    desk.gdcm(&[
+        "export",
+        "small.json",
+        "--as",
+        "state-space",
+        "--out",
+        "a.mat",
+        "--model",
+        "V+5kt",
+        "--condition",
+        "7",
+    ])
+    .assert_done();
 }
 
 #[test]
@@ -151,7 +212,7 @@ fn the_options_of_a_study_come_first() {
         !text.contains("delays are not scheduled")
             && !ended.out.contains("delays are not scheduled")
     );
-    // Held responses of this dataset have net delays: they are scheduled unasked, and left out where that is said.
+    // Held responses in this dataset have net delays: they are scheduled by default, and omitted on request.
     let unscheduled = "delays are not scheduled in this study: they are zero here";
     let unasked = desk.gdcm(&["export", "small.json", "--as", "py", "--out", "b.py"]);
     unasked.assert_done();
@@ -331,16 +392,18 @@ fn every_export_states_what_it_contains() {
             ended.out
         );
     }
-    let read = |name: &str| fs::read_to_string(desk.path(name)).unwrap();
     let heading = "Contains: gains scheduled, delays none, leads none, couplings none.";
     for name in ["m.m", "py.py", "h.h", "table_csv.csv"] {
         assert!(
-            read(name).contains(heading) && read(name).contains("Left out: delay of "),
+            desk.read(name).contains(heading) && desk.read(name).contains("Left out: delay of "),
             "{name}"
         );
     }
-    assert!(read("h.h").contains("#define GDCM_CONTAINS_DELAYS \"none\"\n"));
-    let table = read("csv.csv");
+    assert!(
+        desk.read("h.h")
+            .contains("#define GDCM_CONTAINS_DELAYS \"none\"\n")
+    );
+    let table = desk.read("csv.csv");
     let heading = table.lines().next().unwrap();
     assert!(heading.ends_with(",contains"), "{heading}");
     assert!(
@@ -565,16 +628,21 @@ fn corrected_models_are_the_program_s_in_every_format() {
         let physics = condition
             .model(gdcm_model::dataset::BundleKind::Physics, representative)
             .unwrap();
-        let figures = |metric: &str, side: &str| numbers(members(&result[metric][side]));
         let gdcm_model::dataset::Dynamics::StateSpace(plain) = &physics.dynamics else {
             panic!("no matrices")
         };
         let corrected = evaluate(&state_space(model), &omega);
         let plain = evaluate(plain, &omega);
-        for (output, output_gain) in figures("gains", "outputs").into_iter().enumerate() {
-            for (input, input_gain) in figures("gains", "inputs").into_iter().enumerate() {
-                let delay =
-                    figures("delays_s", "outputs")[output] + figures("delays_s", "inputs")[input];
+        for (output, output_gain) in member_numbers(&result["gains"]["outputs"])
+            .into_iter()
+            .enumerate()
+        {
+            for (input, input_gain) in member_numbers(&result["gains"]["inputs"])
+                .into_iter()
+                .enumerate()
+            {
+                let delay = member_numbers(&result["delays_s"]["outputs"])[output]
+                    + member_numbers(&result["delays_s"]["inputs"])[input];
                 delayed += usize::from(delay > 0.0);
                 let corrected = corrected.curve(Pair { output, input });
                 let plain = plain.curve(Pair { output, input });
@@ -583,7 +651,7 @@ fn corrected_models_are_the_program_s_in_every_format() {
                         * output_gain
                         * input_gain;
                     let expected = plain[at] * factor;
-                    // What order 8 misses of these delays is less than rounding.
+                    // The error of order 8 for these delays is below rounding.
                     assert!(
                         (corrected[at] - expected).norm() <= 1e-9 * expected.norm(),
                         "condition {}",
@@ -594,6 +662,17 @@ fn corrected_models_are_the_program_s_in_every_format() {
         }
     }
     assert!(delayed > 0, "some responses are delayed");
+}
+
+/// Value of a lead filter of second order at s: Butterworth polynomials at its zero and its lag (M15).
+fn lead_filter(lead: &Value, s: nalgebra::Complex<f64>) -> nalgebra::Complex<f64> {
+    butterworth(&lead["zero_rad_s"], s) / butterworth(&lead["lag_rad_s"], s)
+}
+
+/// 1 + sqrt(2) x + x^2 with x = s / omega.
+fn butterworth(omega: &Value, s: nalgebra::Complex<f64>) -> nalgebra::Complex<f64> {
+    let x = s / omega.as_f64().unwrap();
+    x * x + x * 2.0_f64.sqrt() + 1.0
 }
 
 /// A corrected model with leads is the model between its channels' filters, exactly; programs give the filters themselves.
@@ -617,13 +696,6 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
         .iter()
         .find(|row| row["airspeed_kt"] == 45.0)
         .unwrap();
-    let filter = |of: &Value, s: nalgebra::Complex<f64>| {
-        let side = |omega: &Value| {
-            let x = s / omega.as_f64().unwrap();
-            x * x + x * 2.0_f64.sqrt() + 1.0
-        };
-        side(&of["zero_rad_s"]) / side(&of["lag_rad_s"])
-    };
     let physics = &crate::FEW.dataset.conditions()[0];
     let nominal = &physics.bundle(gdcm_model::dataset::BundleKind::Physics)[physics.nominal()];
     let gdcm_model::dataset::Dynamics::StateSpace(plain) = &nominal.dynamics else {
@@ -638,9 +710,10 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
             let pair = Pair { output, input };
             for (place, omega) in omega.into_iter().enumerate() {
                 let s = nalgebra::Complex::new(0.0, omega);
-                let filters = filter(output_leads[output], s) * filter(input_leads[input], s);
+                let filters =
+                    lead_filter(output_leads[output], s) * lead_filter(input_leads[input], s);
                 let expected = plain.curve(pair)[place] * filters * output_gain * input_gain;
-                // Responses are evaluated to a part of the greatest one, of order 1; far above the band most are 1e-6 of it.
+                // Responses have a rounding error relative to the largest response, about 1; far above the band most are 1e-6.
                 let allowed = 1e-9 * expected.norm() + 1e-11;
                 assert!(
                     (corrected.curve(pair)[place] - expected).norm() <= allowed,
@@ -709,7 +782,7 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
     }
 }
 
-/// The filter of the header, step by step, against the filter's own gain: 1 at rest, and its gain at a frequency of the band.
+/// The header's filter, step by step, against the analytical gain: 1 at rest, and at a frequency within the band.
 #[test]
 fn the_filter_of_the_c_header_leads_a_sine() {
     let desk = Desk::new();
@@ -799,7 +872,7 @@ fn delays_of_discrete_time_are_exact_or_refused() {
         "{}",
         ended.out
     );
-    // Condition 7 and condition 10; the correction has none, and neither is said to be without.
+    // Conditions 7 and 10; the correction has no delays, and no message reports that.
     assert_eq!(
         ended.out.matches("the model's own delays exact\n").count(),
         2,
@@ -888,19 +961,17 @@ fn octave_reads_the_corrections_as_analyze_writes_them() {
         return;
     };
     let mut expected = Vec::new();
-    let table = |table: &Value| numbers(entries(table).iter().flat_map(entries));
-    let figures = |of: &Value| numbers(members(of));
     for of in entries(&corrections["conditions"]) {
         expected.push(of["id"].as_f64().unwrap());
-        expected.extend([table(&of["G"]), table(&of["D_s"])].concat());
+        expected.extend([table_numbers(&of["G"]), table_numbers(&of["D_s"])].concat());
         expected.extend(
             [
-                figures(&of["gains"]["inputs"]),
-                figures(&of["delays_s"]["outputs"]),
+                member_numbers(&of["gains"]["inputs"]),
+                member_numbers(&of["delays_s"]["outputs"]),
             ]
             .concat(),
         );
-        expected.extend(table(&of["J"]["corrected"]["mag"]));
+        expected.extend(table_numbers(&of["J"]["corrected"]["mag"]));
         expected.extend(numbers(
             entries(&of["net_gains"]).iter().map(|net| &net["gain"]),
         ));
@@ -913,7 +984,7 @@ fn octave_reads_the_corrections_as_analyze_writes_them() {
     expected.extend(
         entries(&schedule["table"])
             .iter()
-            .flat_map(|row| figures(&row["outputs"])),
+            .flat_map(|row| member_numbers(&row["outputs"])),
     );
     assert_eq!(found.len(), expected.len());
     assert!(
@@ -967,7 +1038,7 @@ fn octave_computes_the_response_of_a_corrected_model() {
 #[test]
 fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
     let desk = Desk::with_few();
-    // Of the example's conditions the 10th has the strongest lead on LON: as if a servo of 18 rad/s were one of 36.
+    // Condition 10 has the strongest lead on LON in the example: as if a servo of 36 rad/s replaced a servo of 18 rad/s.
     let limit = "not valid above 12 rad/s: at 120 rad/s the leads add +";
     for ExportFormat {
         name: format,
@@ -993,7 +1064,7 @@ fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
         let text = String::from_utf8_lossy(&bytes);
         let is_said = text.contains(limit) || text.contains("not_valid_above_rad_s");
         assert!(is_said || extension == "mat", "{format}");
-        // What no compiler or old editor shows is spelled by its number: none of it stands in what the program itself says.
+        // Characters that compilers or old editors do not show are spelled by their numbers: the program's own words have none.
         assert!(!text.contains("<U+2212>"), "{format}");
     }
     let without = desk.gdcm(&["export", "few.json", "--as", "py", "--out", "delays.py"]);
@@ -1003,4 +1074,14 @@ fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
         "{}",
         without.out
     );
+}
+
+/// Numbers of a table in JSON, row by row.
+fn table_numbers(table: &Value) -> Vec<f64> {
+    numbers(entries(table).iter().flat_map(entries))
+}
+
+/// Numbers of an object in JSON, in the order of its members.
+fn member_numbers(object: &Value) -> Vec<f64> {
+    numbers(members(object))
 }

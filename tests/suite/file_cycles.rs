@@ -16,7 +16,7 @@ const FILES_IN_CYCLES: &[(&str, usize)] = &[
     ("crates/gdcm-words", 0),
     ("crates/gdcm-plot", 0),
     ("crates/gdcm-io", 14),
-    (".", 6),
+    (".", 0),
 ];
 
 /// A module by its path below the root of its crate.
@@ -47,7 +47,10 @@ fn modules(package: &str) -> BTreeMap<ModulePath, String> {
 
 /// The paths that a module names, from the root of its crate: `super::a::{B, c::D}` in `x::y` gives `x::a::B` and `x::a::c`.
 fn named_paths(module: &ModulePath, code: &str) -> Vec<ModulePath> {
-    let is_path = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == ':';
+    fn is_path(c: char) -> bool {
+        c.is_ascii_alphanumeric() || c == '_' || c == ':'
+    }
+
     let mut paths = Vec::new();
     for start in ["crate::", "super::"] {
         for (at, _) in code.match_indices(start) {

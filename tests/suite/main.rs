@@ -1,5 +1,4 @@
-//! Every test that is not beside the code it tests, as one program: linking the window library is what building tests spends
-//! its time on.
+//! All tests that are not beside their code, as one program, because linking the window library takes most of the build time.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -23,12 +22,12 @@ mod scripts;
 mod structure;
 mod window;
 
-/// What a file of JSON holds.
+/// Parses a JSON file.
 fn read_json(path: &Path) -> serde_json::Value {
     serde_json::from_slice(&std::fs::read(path).expect("it can be read")).expect("it is JSON")
 }
 
-/// The members of an object of JSON, in their order.
+/// Members of a JSON object, in their order.
 fn members(json: &serde_json::Value) -> Vec<&serde_json::Value> {
     json.as_object()
         .expect("it is an object")
@@ -36,16 +35,16 @@ fn members(json: &serde_json::Value) -> Vec<&serde_json::Value> {
         .collect()
 }
 
-/// The entries of a list of JSON.
+/// Entries of a JSON list.
 fn entries(json: &serde_json::Value) -> &[serde_json::Value] {
     json.as_array().expect("it is a list")
 }
 
-/// The embedded example, read once: most tests of the window and of whole studies start from it.
+/// The embedded example, read once for most tests of the window and of whole studies.
 static EXAMPLE: LazyLock<LoadedDataset> =
     LazyLock::new(|| embedded_example().expect("the embedded example is a dataset"));
 
-/// Conditions 3, 7 and 10 of the example alone, as a file: what needs no more of them is computed in a quarter of the time.
+/// Conditions 3, 7 and 10 of the example as a file, for tests that need no more: a quarter of the computing time.
 static FEW_TEXT: LazyLock<Vec<u8>> = LazyLock::new(|| {
     let packed = std::fs::File::open(concat!(
         env!("CARGO_MANIFEST_DIR"),
@@ -65,8 +64,8 @@ static FEW: LazyLock<LoadedDataset> = LazyLock::new(|| {
     load_dataset_bytes(&FEW_TEXT, DatasetOrigin::EmbeddedExample).expect("it is a dataset")
 });
 
-/// The dataset that reference figures were computed from by independent code: the example's physics models, and three identified
-/// models a condition that are not the program's.
+/// Dataset of the reference figures, which independent code computed: the example's physics models, and three identified models
+/// per condition from elsewhere.
 static REFERENCE_DATASET: LazyLock<LoadedDataset> = LazyLock::new(|| {
     let path =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reference/example-dataset.json.gz");

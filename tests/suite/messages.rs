@@ -1,4 +1,4 @@
-//! What messages say, whatever the names, the numbers and the mistakes.
+//! Messages about odd names, numbers and mistakes.
 
 use std::io::Write;
 use std::path::Path;
@@ -234,7 +234,7 @@ fn pointers(value: &Value, at: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Values, each of which is wrong in most places.
+/// Values that are wrong in most places.
 fn wrong_values() -> impl Strategy<Value = Value> {
     prop::sample::select(vec![
         json!(null),
@@ -325,7 +325,10 @@ fn dataset_refusal(text: &str) -> String {
 
 #[test]
 fn lists_beyond_their_limits_are_refused_with_their_place() {
-    let many = |entry: &str, count: usize| vec![entry; count].join(",");
+    fn many(entry: &str, count: usize) -> String {
+        vec![entry; count].join(",")
+    }
+
     let small: Value = serde_json::from_str(SMALL).unwrap();
     let identified = "\"identified_models\": [";
     let numbers = many("0", 1001);
@@ -436,7 +439,7 @@ fn a_file_that_is_refused_for_its_length_takes_memory_for_its_text_only() {
     command
         .args(["-c", line, env!("CARGO_BIN_EXE_gdcm")])
         .current_dir(desk.directory.path());
-    let ended = crate::commands::Ended::of(&command.output().unwrap());
+    let ended = crate::commands::Ended::from_output(&command.output().unwrap());
     ended.assert_failed(
         2,
         &[

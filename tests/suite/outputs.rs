@@ -1,4 +1,4 @@
-//! What is written: nothing over what is there unasked, never over an input, and never the half of anything.
+//! Written files: existing files stay unless replacing is requested, inputs always stay, and no file is written in part.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -37,7 +37,7 @@ fn shell(desk: &Desk, line: &str) -> Ended {
     command
         .args(["-c", &line, env!("CARGO_BIN_EXE_gdcm")])
         .current_dir(desk.directory.path());
-    Ended::of(&command.output().unwrap())
+    Ended::from_output(&command.output().unwrap())
 }
 
 #[test]
@@ -167,7 +167,7 @@ fn a_file_larger_than_the_system_allows_is_status_1_and_leaves_what_was_there() 
     );
 }
 
-/// Runs a command that has to end by itself: one that waits for a pipe is ended after a minute, and fails the test.
+/// Runs a command that has to end by itself: a command that waits for a pipe is killed after a minute, and fails the test.
 #[cfg(unix)]
 fn ends(desk: &Desk, arguments: &[&str]) -> Ended {
     use std::process::Stdio;
@@ -186,7 +186,7 @@ fn ends(desk: &Desk, arguments: &[&str]) -> Ended {
         }
         std::thread::sleep(Duration::from_millis(5));
     }
-    Ended::of(&child.wait_with_output().unwrap())
+    Ended::from_output(&child.wait_with_output().unwrap())
 }
 
 /// Runs a command that is refused, and asserts its status 2 and the code of its only error.
@@ -380,6 +380,10 @@ fn what_a_killed_run_left_is_removed_by_the_next() {
 
 #[test]
 fn an_export_over_existing_files_asks_first() {
+    fn shown(window: &Window, label: &str) -> bool {
+        window.query_by_label(label).is_some()
+    }
+
     let mut window = window();
     let folder = tempfile::tempdir().unwrap();
     export_to(&mut window, folder.path());
@@ -392,7 +396,6 @@ fn an_export_over_existing_files_asks_first() {
         existing.len() == 4 && existing[1].ends_with("corrections.csv"),
         "{existing:?}"
     );
-    let shown = |window: &Window, label: &str| window.query_by_label(label).is_some();
     assert!(shown(&window, "These files exist already") && shown(&window, &existing[1]));
     assert_eq!(fs::read_to_string(&csv).unwrap(), "mine");
 
@@ -442,7 +445,7 @@ fn a_study_saved_to_a_typed_path_asks_before_it_overwrites_a_file_that_is_not_it
 fn a_directory_that_may_not_be_written_to_is_status_1_without_the_name_of_a_temporary_file() {
     // Nobody can make a file here, the superuser included.
     let desk = Desk::new();
-    let ended = Ended::of(
+    let ended = Ended::from_output(
         &desk
             .command(&[OsStr::new("example"), OsStr::new("/proc/self")])
             .output()
@@ -465,6 +468,11 @@ fn a_directory_that_may_not_be_written_to_is_status_1_without_the_name_of_a_temp
 
 #[test]
 fn names_that_are_formulas_or_commands_of_a_terminal_do_no_harm_in_what_is_written() {
+    fn is_formula(cell: &str) -> bool {
+        cell.trim_start_matches('"').starts_with(['=', '@'])
+            || (cell.starts_with(['+', '-']) && cell.parse::<f64>().is_err())
+    }
+
     for file in ["injected-names.json", "escape-in-title.json"] {
         let desk = Desk::new();
         let data = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -511,10 +519,6 @@ fn names_that_are_formulas_or_commands_of_a_terminal_do_no_harm_in_what_is_writt
                 .find(|letter| letter.is_control() && *letter != '\n');
             assert_eq!(control, None, "{file}: {name}");
             for line in text.lines().filter(|_| name.ends_with(".csv")) {
-                let is_formula = |cell: &str| {
-                    cell.trim_start_matches('"').starts_with(['=', '@'])
-                        || (cell.starts_with(['+', '-']) && cell.parse::<f64>().is_err())
-                };
                 assert!(!line.split(',').any(is_formula), "{file}: {name}: {line}");
             }
         }

@@ -14,7 +14,7 @@ use gdcm_model::names::name_pattern::standard_patterns;
 use gdcm_sysid::records::record_guess::RecordGuess;
 use gdcm_sysid::records::{RecordChannels, RecordLayout, TimeWish};
 
-use crate::commands::Desk;
+use crate::commands::{Desk, Refusal};
 use crate::window::records::late_dataset;
 
 /// The 99 records of the example.
@@ -73,15 +73,14 @@ fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() 
     }
 }
 
-/// The units of the records of the late dataset, which their files do not say.
+/// Record units in the late dataset, which the files do not give.
 pub(crate) const LATE_UNITS: [&str; 8] = [
     "--unit", "LON=%", "--unit", "LAT=%", "--unit", "P=deg/s", "--unit", "Q=deg/s",
 ];
 
 /// A desk with two short records of the small dataset's channels, the first in other units and under other names.
 fn desk() -> Desk {
-    let desk = Desk::new();
-    let text = |head: &str, rate: f64| {
+    fn text(head: &str, rate: f64) -> String {
         let row = |k: u32| {
             let at = f64::from(k);
             let stick = 50.0 + 10.0 * (0.3 * at).sin();
@@ -94,7 +93,9 @@ fn desk() -> Desk {
             )
         };
         head.to_owned() + &(0..80).map(row).collect::<String>()
-    };
+    }
+
+    let desk = Desk::new();
     fs::write(
         desk.path("sweep_1.csv"),
         text("t,lon,lateral,roll rate [rad/s],pitch rate [rad/s]\n", 0.2),
@@ -162,7 +163,7 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
         ];
         desk.gdcm(&[&["identify"], records, &of[..], more].concat())
     };
-    // Whichever comes first: rad/s of one file say nothing of the other.
+    // In either order: rad/s in a file implies nothing about the other file.
     for records in [["sweep_1.csv", "bare.csv"], ["bare.csv", "sweep_1.csv"]] {
         let ended = identify(&records, &[]);
         assert_eq!(ended.status, 2, "{ended:?}");
@@ -170,7 +171,7 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
             "error: bare: the file does not give the unit of P (column \"P\"), and its samples can be in rad/s or deg/s; choose it \
              with --unit \"P=rad/s\"",
             "error: bare: the file does not give the unit of Q",
-            "error: 1 of 2 records cannot be taken as they are",
+            "error: 1 of 2 records cannot be used",
         ] {
             assert!(ended.error.contains(words), "{words}: {}", ended.error);
         }
@@ -213,7 +214,7 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
             .contains("P: column \"P\", in deg/s as set for the channel"),
         "{ended:?}"
     );
-    // The records that models are compared with are asked in the same way.
+    // The same holds for records that models are compared with.
     fs::rename(desk.path("bare.csv"), desk.path("cond7_bare.csv")).unwrap();
     let report = [
         "report",
@@ -229,7 +230,7 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
         ended.status == 1
             && ended
                 .error
-                .contains("caution: cond7_bare: left out: the file does not say"),
+                .contains("caution: cond7_bare: left out: the file does not give the unit"),
         "{ended:?}"
     );
     let ended = desk.gdcm(&[&report[..], &["--unit", "P=rad/s", "--unit", "Q=rad/s"]].concat());
@@ -242,41 +243,39 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
 #[test]
 fn what_is_said_twice_of_one_channel_is_refused() {
     let desk = desk();
-    let refused = |more: &[&str], words: &str| {
-        let of = [
-            "--inputs",
-            "LON,LAT",
-            "--outputs",
-            "P,Q",
-            "--band",
-            "0.5",
-            "12",
-            "--out",
-            "out",
-        ];
-        let ended = desk.gdcm(&[&["identify", "sweep_1.csv"], &of[..], more].concat());
-        assert!(
-            ended.status == 2 && ended.error.contains(words),
-            "{words}: {ended:?}"
-        );
-    };
-    refused(
-        &["--topic", "P=roll rate", "--topic", "P=pitch rate"],
-        "--topic: P stands twice",
-    );
-    refused(
-        &["--delay", "sweep_1:P=0.1", "--delay", "sweep_1.csv:P=0.1"],
-        "--delay: P of sweep_1.csv stands twice",
-    );
-    refused(
-        &["--factor", "sweep_1:P=-1", "--factor", "sweep_1:P=-1"],
-        "--factor: P of sweep_1 stands twice",
-    );
-    refused(
-        &["--unit", "P=rad/s", "--unit", "P=deg/s"],
-        "--unit: P has a unit or a factor already",
-    );
-    let ended = desk.gdcm(&[
+    let cases: [(&[&str], &[&str]); 4] = [
+        (
+            &["--topic", "P=roll rate", "--topic", "P=pitch rate"],
+            &["--topic: P "],
+        ),
+        (
+            &["--delay", "sweep_1:P=0.1", "--delay", "sweep_1.csv:P=0.1"],
+            &["--delay: P of sweep_1.csv "],
+        ),
+        (
+            &["--factor", "sweep_1:P=-1", "--factor", "sweep_1:P=-1"],
+            &["--factor: P of sweep_1 "],
+        ),
+        (&["--unit", "P=rad/s", "--unit", "P=deg/s"], &["--unit: P "]),
+    ];
+    let identify = [
+        "identify",
+        "sweep_1.csv",
+        "--inputs",
+        "LON,LAT",
+        "--outputs",
+        "P,Q",
+        "--band",
+        "0.5",
+        "12",
+        "--out",
+        "out",
+    ];
+    for (options, names) in cases {
+        desk.refusal(&[&identify, options].concat())
+            .assert_code("given-twice", names);
+    }
+    let assemble = [
         "assemble",
         ".",
         "--sign",
@@ -285,8 +284,10 @@ fn what_is_said_twice_of_one_channel_is_refused() {
         "NZ=1",
         "--out",
         "made.json",
-    ]);
-    ended.assert_failed(2, &["--sign: NZ of identified stands twice"]);
+    ];
+    let names = ["--sign: NZ of identified "];
+    desk.gdcm(&assemble).assert_failed(2, &names);
+    desk.refusal(&assemble).assert_code("given-twice", &names);
 }
 
 #[test]
@@ -300,138 +301,166 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
             .replace("lateral", "lever"),
     )
     .unwrap();
-    let refused = |arguments: &[&str], words: &[&str]| {
-        let ended = desk.gdcm(&[&["identify"], arguments, &["--out", "out"]].concat());
-        assert_eq!(ended.status, 2, "{ended:?}");
-        words
-            .iter()
-            .for_each(|word| assert!(ended.error.contains(word), "{word}: {ended:?}"));
-        assert!(!desk.path("out").exists());
-    };
-    let names = ["--inputs", "LON,LAT", "--outputs", "P,Q"];
-    let band = ["--band", "0.5", "12"];
-    let all = |record: &'static str, more: &[&'static str]| {
-        [&[record], &names[..], &band[..], more].concat()
-    };
-    refused(&["sweep_1.csv"], &["--inputs"]);
-    refused(&[&["sweep_1.csv"], &names[..]].concat(), &["--band"]);
+    refused(&desk, &["sweep_1.csv"], "wrong-command-line", &["--inputs"]);
     refused(
-        &all("wrong.csv", &[]),
-        &[
-            "wrong: no column for the input LAT; choose a column (columns: t, lon, lever",
-            "1 of 1 record cannot be taken",
-        ],
+        &desk,
+        &["sweep_1.csv", "--inputs", "LON,LAT", "--outputs", "P,Q"],
+        "wrong-command-line",
+        &["--band"],
     );
-    refused(
-        &all("sweep_1.csv", &["--time", "clock"]),
-        &["there is no column \"clock\""],
+    let wrong = refused_sweep(
+        &desk,
+        "wrong.csv",
+        &[],
+        "unclear-records",
+        &["1 of 1 record "],
     );
-    refused(
-        &all("sweep_1.csv", &["--sample-rate", "-50"]),
-        &["the sample time is -0.02 s"],
+    wrong.assert_reported(
+        "wrong: no column for the input LAT; choose a column (columns: t, lon, lever",
     );
-    refused(
-        &all("sweep_1.csv", &["--hold-out", "other.csv"]),
-        &["--hold-out: \"other.csv\" is none of the records"],
-    );
-    refused(
-        &all("sweep_1.csv", &["--hold-out", "sweep_1.csv"]),
-        &["--hold-out: every record is held out"],
-    );
-    refused(
-        &all("sweep_1.csv", &["--delay", "X=0.02"]),
-        &["--delay: X is none of the channels"],
-    );
-    refused(
-        &all(
-            "sweep_1.csv",
+    let sweep = "sweep_1.csv";
+    refused_sweep(&desk, sweep, &["--time", "clock"], "unclear-records", &[])
+        .assert_reported("there is no column \"clock\"");
+    refused_sweep(
+        &desk,
+        sweep,
+        &["--sample-rate", "-50"],
+        "unclear-records",
+        &[],
+    )
+    .assert_reported("the sample time is -0.02 s");
+    let cases: [(&[&str], &str, &[&str]); 8] = [
+        (
+            &["--hold-out", "other.csv"],
+            "unknown-record",
+            &["--hold-out: \"other.csv\""],
+        ),
+        (
+            &["--hold-out", "sweep_1.csv"],
+            "wrong-option",
+            &["--hold-out: every record is held out"],
+        ),
+        (&["--delay", "X=0.02"], "unknown-channel", &["--delay: X "]),
+        (
             &[
                 "--delay", "P=0.02", "--delay", "LON=0.01", "--delay", "X=0.02",
             ],
+            "unknown-channel",
+            &["--delay: X "],
         ),
-        &["--delay: X is none of the channels"],
+        (
+            &["--delay", "P"],
+            "wrong-command-line",
+            &["--delay", "CHANNEL=SECONDS"],
+        ),
+        (&["--factor", "X=2"], "unknown-channel", &["--factor: X "]),
+        (
+            &["--unit", "P=deg/s", "--factor", "P=2"],
+            "given-twice",
+            &["--factor: P "],
+        ),
+        (&["--take", "with-plain"], "wrong-command-line", &["--into"]),
+    ];
+    for (options, code, names) in cases {
+        refused_sweep(&desk, sweep, options, code, names);
+    }
+    let missing = desk.gdcm(&[&identify_line("missing.csv", &[])[..], &["--out", "out"]].concat());
+    assert_eq!(missing.status, 2, "{missing:?}");
+    assert!(
+        missing.error.contains("missing.csv: there is no such file"),
+        "{missing:?}"
+    );
+    let into = ["sweep_1.csv", "--into", "small.json"];
+    refused(
+        &desk,
+        &[&into[..], &["--condition", "5"]].concat(),
+        "unknown-condition",
+        &["--condition: ", "condition 5", "7, 10"],
     );
     refused(
-        &all("sweep_1.csv", &["--delay", "P"]),
-        &["--delay", "expected CHANNEL=SECONDS"],
-    );
-    refused(
-        &all("sweep_1.csv", &["--factor", "X=2"]),
-        &["--factor: X is none of the channels"],
-    );
-    refused(
-        &all("sweep_1.csv", &["--unit", "P=deg/s", "--factor", "P=2"]),
-        &["--factor: P has a unit or a factor already"],
-    );
-    refused(
-        &all("missing.csv", &[]),
-        &["missing.csv: there is no such file"],
-    );
-    refused(
-        &["sweep_1.csv", "--into", "small.json", "--condition", "5"],
-        &["--condition: the dataset has no condition 5; it has 7, 10"],
-    );
-    refused(
-        &["sweep_1.csv", "--into", "small.json"],
+        &desk,
+        &into,
+        "wrong-command-line",
         &["--condition", "--every-condition"],
     );
-    refused(&["sweep_1.csv", "--every-condition"], &["--into"]);
-    refused(&all("sweep_1.csv", &["--take", "with-plain"]), &["--into"]);
     refused(
-        &[
-            "sweep_1.csv",
-            "--into",
-            "small.json",
-            "--condition",
-            "7",
-            "--every-condition",
-        ],
-        &["cannot be used with"],
+        &desk,
+        &["sweep_1.csv", "--every-condition"],
+        "wrong-command-line",
+        &["--into"],
     );
     refused(
-        &["sweep_1.csv", "--into", "small.json", "--every-condition"],
-        &[
-            "sweep_1: left out: its name says no condition of the dataset",
-            "conditions 7, 10: no records; the identified models there stay as they are",
-            "--every-condition: no name says a condition of the dataset (7, 10), as cond03 does",
-        ],
+        &desk,
+        &[&into[..], &["--condition", "7", "--every-condition"]].concat(),
+        "wrong-command-line",
+        &["--condition", "--every-condition"],
     );
+    refused(
+        &desk,
+        &[&into[..], &["--every-condition"]].concat(),
+        "no-records",
+        &["--every-condition: ", "7, 10", "cond03"],
+    )
+    .assert_reported("sweep_1: left out: ")
+    .assert_reported("conditions 7, 10: no records; ");
     fs::rename(
         desk.path("validation.csv"),
         desk.path("cond7_validation.csv"),
     )
     .unwrap();
+    let into = ["cond7_validation.csv", "--into", "small.json"];
     refused(
-        &[
-            "cond7_validation.csv",
-            "--into",
-            "small.json",
-            "--every-condition",
-        ],
+        &desk,
+        &[&into[..], &["--every-condition"]].concat(),
+        "wrong-option",
         &["--hold-out: condition 7: every record is held out"],
     );
     refused(
-        &[
-            "cond7_validation.csv",
-            "--into",
-            "small.json",
-            "--condition",
-            "10",
-        ],
-        &[
-            "caution: 1 of 1 records left out: their names say condition 7, not 10",
-            "--condition: no record is left for condition 10; rename what belongs to it",
-        ],
-    );
+        &desk,
+        &[&into[..], &["--condition", "10"]].concat(),
+        "no-records",
+        &["--condition: ", "condition 10"],
+    )
+    .assert_reported("1 of 1 records left out: their names give condition 7, not 10");
     fs::copy(desk.path("sweep_1.csv"), desk.path("again.csv")).unwrap();
-    refused(
-        &all("sweep_1.csv", &["again.csv", "--hold-out", "sweep_1.csv"]),
-        &[
-            "same samples as ",
-            "left out, because evidence counts once",
-            "--hold-out: every record is held out",
-        ],
-    );
+    refused_sweep(
+        &desk,
+        sweep,
+        &["again.csv", "--hold-out", "sweep_1.csv"],
+        "wrong-option",
+        &["--hold-out: every record is held out"],
+    )
+    .assert_reported("same samples as ")
+    .assert_reported("left out, because evidence counts once");
+}
+
+/// Arguments of an identification of a sweep, without its directory.
+fn identify_line<'a>(record: &'a str, options: &[&'a str]) -> Vec<&'a str> {
+    let channels = ["--inputs", "LON,LAT", "--outputs", "P,Q"];
+    let band = ["--band", "0.5", "12"];
+    [&["identify", record], &channels[..], &band, options].concat()
+}
+
+/// Asserts that an identification of a sweep is refused with this code and writes nothing.
+#[track_caller]
+fn refused_sweep(
+    desk: &Desk,
+    record: &str,
+    options: &[&str],
+    code: &str,
+    names: &[&str],
+) -> Refusal {
+    refused(desk, &identify_line(record, options)[1..], code, names)
+}
+
+/// Asserts that an identification is refused with this code and writes nothing.
+#[track_caller]
+fn refused(desk: &Desk, arguments: &[&str], code: &str, names: &[&str]) -> Refusal {
+    let line = [&["identify"], arguments, &["--out", "out"]].concat();
+    let refusal = desk.refusal(&line);
+    refusal.assert_code(code, names);
+    assert!(!desk.path("out").exists());
+    refusal
 }
 
 #[test]
@@ -494,7 +523,7 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
                 "{}",
                 ended.out
             );
-            // What the window takes, in its order: the refined models, then CT-PBSID (unrefined).
+            // The models taken by the window, in its order: the refined models, then CT-PBSID (unrefined).
             let names: Vec<&str> = new
                 .bundle(BundleKind::Identified)
                 .iter()
@@ -636,16 +665,25 @@ fn units_that_were_said_once_are_kept_by_the_dataset_with_its_records() {
         told.contains("Q: times 57.29") && told.contains("removed, from the dataset"),
         "{told}"
     );
-    // What the command line says stands before it.
+    // The command line overrides it.
     let (anew, told) = identified("said/late.json", &units, "anew");
     assert_eq!(said, anew, "{told}");
 }
 
 #[test]
 fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_puts_it_right() {
+    fn contrast(said: &str) -> f64 {
+        let after = said
+            .split_once("contradict")
+            .and_then(|(_, after)| after.split_once("(F "));
+        after.map_or(0.0, |(_, number)| {
+            number.split_once(';').unwrap().0.parse::<f64>().unwrap()
+        })
+    }
+
     let desk = Desk::new();
     late_dataset(&desk.path("."));
-    // Q of the last flight two samples of 40 ms later than in the others, P of it turned.
+    // In the last flight Q is two samples of 40 ms late, and P has the opposite sign.
     let text = fs::read_to_string(desk.path("flight_3.csv")).unwrap();
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     let place = |name: &str| rows[0].iter().position(|of| of.starts_with(name)).unwrap();
@@ -704,22 +742,14 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
             file.contains(&format!("\"code\": \"{code}\""))
                 || file.contains(&format!("\"code\":\"{code}\""))
         );
-        // Of a pair the options of both stand there, those of the last behind.
+        // For a pair, the options for both records are given, the last record's behind.
         let said = line
             .rsplit_once(&format!("{option} "))
             .unwrap()
             .1
             .trim_end_matches(')');
         let again = identified(&[option, said], &format!("{code}-again"));
-        // A large delay comes out short (M14.16): what is left is asked again.
-        let contrast = |said: &str| {
-            let after = said
-                .split_once("contradict")
-                .and_then(|(_, after)| after.split_once("(F "));
-            after.map_or(0.0, |(_, number)| {
-                number.split_once(';').unwrap().0.parse::<f64>().unwrap()
-            })
-        };
+        // A large delay is underestimated (M14.16): the remainder is proposed again.
         assert!(
             contrast(&again) < 0.5 * contrast(line),
             "{said}: {line}\n{again}"
@@ -730,7 +760,7 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
             "the dataset says what was put right"
         );
     }
-    let ended = desk.gdcm(&[
+    desk.refusal(&[
         "identify",
         "flight_0.csv",
         "--into",
@@ -749,24 +779,22 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
         "LON=%",
         "--unit",
         "LAT=%",
-    ]);
-    assert!(
-        ended.error.contains("\"x\" is none of the records"),
-        "{ended:?}"
-    );
+    ])
+    .assert_code("unknown-record", &["--delay: \"x\""]);
 }
 
-/// Magnitude of the first response of the first model of a file of identified models, at a frequency \[rad/s\].
+/// Magnitude \[dB\] of the first response of the first identified model in a file, at a frequency \[rad/s\].
 fn magnitude_db(identified: &Value, omega: f64) -> f64 {
+    fn row(row: &Value) -> Vec<f64> {
+        row.as_array()
+            .unwrap()
+            .iter()
+            .map(|value| value.as_f64().unwrap())
+            .collect::<Vec<_>>()
+    }
+
     let matrix = |name: &str| {
         let rows = identified["models"][0][name].as_array().unwrap();
-        let row = |row: &Value| {
-            row.as_array()
-                .unwrap()
-                .iter()
-                .map(|value| value.as_f64().unwrap())
-                .collect::<Vec<_>>()
-        };
         let rows: Vec<Vec<f64>> = rows.iter().map(row).collect();
         DMatrix::from_fn(rows.len(), rows[0].len(), |at, column| {
             Complex::from(rows[at][column])
@@ -814,6 +842,10 @@ fn the_quadrotor_is_identified_from_its_log_as_it_was_logged() {
 
 #[test]
 fn parts_of_records_are_records_of_their_own_in_the_dataset_too() {
+    fn entry_of_record(record: &Value) -> (Value, Value) {
+        (record["part_s"].clone(), record["held_out"].clone())
+    }
+
     let desk = Desk::new();
     late_dataset(&desk.path("."));
     let parts = [
@@ -838,17 +870,16 @@ fn parts_of_records_are_records_of_their_own_in_the_dataset_too() {
     );
     assert_eq!(ended.status, 0, "{ended:?}");
     let identified = crate::read_json(&desk.path("out/identified.json"));
-    let said = |record: &Value| (record["part_s"].clone(), record["held_out"].clone());
     let records: Vec<(Value, Value)> = identified["records"]
         .as_array()
         .unwrap()
         .iter()
-        .map(said)
+        .map(entry_of_record)
         .collect();
     let first = (json!([0.0, 20.0]), json!(false));
     let second = (json!([20.0, 40.0]), json!(true));
     assert_eq!(records, [first.clone(), first, second.clone(), second]);
-    // What is used of each lies within it, at 25 Hz.
+    // The used part of each lies within it, at 25 Hz.
     let used = &identified["records"][2]["used_s"][0];
     assert!(
         used[0].as_f64().unwrap() >= 20.0 && used[1].as_f64().unwrap() <= 40.0,
@@ -867,7 +898,7 @@ fn parts_of_records_are_records_of_their_own_in_the_dataset_too() {
         ([20.0, 40.0], true),
     ];
     assert_eq!(parts, expected);
-    // The whole of a record counts no more beside its parts, that of another does.
+    // A whole record no longer counts beside its parts; a whole other record does.
     let wholes: Vec<_> = entries
         .iter()
         .filter(|record| record.part_s.is_none())
@@ -913,6 +944,8 @@ fn desk_of_prbs() -> Desk {
 fn a_part_outside_the_clock_of_a_record_is_refused_with_its_span_and_one_from_its_start_is_taken() {
     let desk = desk_of_prbs();
     let identified = |more: &[&str]| desk.gdcm(&[&PRBS[..], more].concat());
+    desk.refusal(&[&PRBS[..], &["--part", "5:34", "--out", "none"]].concat())
+        .assert_code("no-samples", &["--part", "5:34 s", "42.30 s", "+5:+34"]);
     let ended = identified(&["--part", "5:34", "--out", "none"]);
     assert_eq!(ended.status, 2, "{ended:?}");
     let line = ended
@@ -994,7 +1027,7 @@ fn models_are_identified_into_a_dataset_that_has_none_yet() {
             .remove("identified_models");
     }
     fs::write(desk.path("late.json"), dataset.to_string()).unwrap();
-    // Without any reference there is no result, and it is said what is needed.
+    // Without any reference there is no result, and the message names the missing data.
     let ended = desk.gdcm(&["analyze", "late.json", "--out", "results"]);
     assert_eq!(ended.status, 1, "{ended:?}");
     assert!(
@@ -1035,7 +1068,7 @@ fn models_are_identified_into_a_dataset_that_has_none_yet() {
         panic!("two conditions")
     };
     assert!(filled.has_reference() && !empty.has_reference());
-    // One condition is analysed; of the other it is said that it has no reference.
+    // A single condition is analysed; the other is reported without a reference.
     let ended = desk.gdcm(&["analyze", "out/late.json", "--out", "results", "--json"]);
     assert_eq!(ended.status, 0, "{ended:?}");
     let said: Value = serde_json::from_str(&ended.out).unwrap();

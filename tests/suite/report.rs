@@ -42,7 +42,7 @@ const SECTIONS: [&str; 11] = [
 ];
 const REASON: &str = "steps at 2 rad/s <see the & bode plot>";
 
-/// A few conditions of the example, the nominal model of condition 10 rejected with a reason.
+/// A few conditions in the example, with the nominal model at condition 10 rejected for a reason.
 static ANALYSIS: LazyLock<Analysis> = LazyLock::new(|| {
     let mut study = Study::new(FEW.dataset.clone());
     let model = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
@@ -275,7 +275,7 @@ fn every_link_and_every_name_within_a_report_leads_to_one_place() {
 
 #[test]
 fn the_same_study_makes_the_same_bytes() {
-    let again = || {
+    fn again() -> String {
         let analysis = Engine::default()
             .analyze(&Study::new(FEW.dataset.clone()), &Unobserved)
             .unwrap();
@@ -286,7 +286,8 @@ fn the_same_study_makes_the_same_bytes() {
             &Unobserved,
         )
         .unwrap()
-    };
+    }
+
     assert!(again() == again());
 }
 
@@ -358,7 +359,7 @@ fn names_that_are_markup_stay_names_and_a_condition_without_result_says_why() {
     let ended = desk.gdcm(&["report", "odd.json", "--out", "report.html"]);
     assert_eq!(
         (ended.status, ended.out.as_str()),
-        (0, "report.html: a report on 1 conditions\n"),
+        (0, "report.html: a report on 1 condition\n"),
         "{ended:?}"
     );
     assert!(

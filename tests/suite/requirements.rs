@@ -167,7 +167,7 @@ fn a_dataset_without_a_rate_has_words_in_place_of_bandwidths() {
 #[test]
 fn what_leads_make_above_the_band_is_refused_and_not_given() {
     let desk = Desk::with_few();
-    // In a band that ends below twice the crossings of half a turn; to 12 rad/s nothing of the example rests on more.
+    // The band ends below twice the crossing of -180 deg; up to 12 rad/s no number in the example depends on frequencies above the band.
     let ended = desk.gdcm(&[
         "requirements",
         "few.json",
@@ -397,7 +397,7 @@ fn what_a_stick_commands_is_an_option_and_levels_are_drawn() {
         ruled("P").iter().all(|rule| **rule == "phase"),
         "of attitude command the phase margin alone"
     );
-    // The intervals of a number lie about it, those of swapped models too.
+    // The intervals lie about their number, also for swapped models.
     let mut swapped = 0;
     for of in findings.iter().filter(|of| of["role"] == "physics") {
         let bandwidth = &of["omega_bw_rad_s"];
@@ -495,6 +495,10 @@ fn what_requirements_are_asked_with_comes_back_with_the_study() {
 
 #[test]
 fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
+    fn is_wide(mark: &Mark) -> bool {
+        matches!(mark, Mark::Curve(curve) if curve.name == "physics, outside" && curve.key.is_none())
+    }
+
     use gdcm_model::executor::{Executor, Sequential};
     use gdcm_model::progress::Unobserved;
     use gdcm_plot::figure::Mark;
@@ -567,7 +571,6 @@ fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
             assert!(
                 (low - (middle - width)).abs() < 1e-12 && (high - (middle + width)).abs() < 1e-12
             );
-            let is_wide = |mark: &Mark| matches!(mark, Mark::Curve(curve) if curve.name == "physics, outside" && curve.key.is_none());
             assert_eq!(
                 panel.marks.iter().any(is_wide),
                 physics.share_inside() < 1.0,

@@ -1,4 +1,4 @@
-//! What scripts rely on: the manner in which commands speak, and how they end.
+//! Output formats, messages and exit statuses, on which scripts rely.
 
 use std::fs;
 
@@ -21,7 +21,7 @@ fn desk_with_half() -> Desk {
 
 /// A record of a second and a half, too short to identify anything from.
 fn write_record(desk: &Desk) {
-    let row = |k: u32| {
+    fn row(k: u32) -> String {
         let at = f64::from(k);
         let stick = (0.3 * at).sin();
         let rate = (0.2 * at).cos();
@@ -31,7 +31,8 @@ fn write_record(desk: &Desk) {
             0.5 * rate,
             0.4 * stick
         )
-    };
+    }
+
     fs::write(
         desk.path("a.csv"),
         "t,LON,LAT,P,Q\n".to_owned() + &(0..80).map(row).collect::<String>(),
@@ -101,7 +102,7 @@ fn records_that_identify_no_input_are_status_1() {
         "t,LON,Q\n".to_owned() + &(0..3000).map(&mut row).collect::<String>(),
     )
     .unwrap();
-    let ended = desk.gdcm(&[
+    desk.refusal(&[
         "identify",
         "a.csv",
         "--inputs",
@@ -113,19 +114,14 @@ fn records_that_identify_no_input_are_status_1() {
         "12",
         "--out",
         "out",
-    ]);
-    assert_eq!(ended.status, 1, "{ended:?}");
-    assert!(
-        ended.error.contains(
-            "error: no input is identified in these records: the models say nothing of LON"
-        )
-    );
+    ])
+    .assert_status_and_code(1, "nothing-identified", &["LON"]);
     assert!(
         desk.path("out/identified.json").exists(),
         "what was computed can be looked at"
     );
 
-    // The same record under a second name counts once, and programs are told.
+    // The same record under a second name counts once, with a code for programs.
     fs::copy(desk.path("a.csv"), desk.path("b.csv")).unwrap();
     let more = [
         "--inputs",
@@ -154,27 +150,30 @@ fn records_that_identify_no_input_are_status_1() {
     );
 }
 
+/// Runs a command whose messages are a JSON object, and returns the object.
+#[track_caller]
+fn message_object(desk: &Desk, arguments: &[&str]) -> Value {
+    let ended = desk.gdcm(arguments);
+    assert_eq!(ended.error, "", "{ended:?}");
+    let object: Value = serde_json::from_str(&ended.out).unwrap();
+    assert_eq!(
+        (&object["format"], &object["status"]),
+        (&json!("gdcm-messages"), &json!(ended.status))
+    );
+    object
+}
+
 #[test]
 fn everything_is_one_json_object_where_that_is_asked_for() {
     let desk = desk_with_half();
-    let object = |arguments: &[&str]| {
-        let ended = desk.gdcm(arguments);
-        assert_eq!(ended.error, "", "{ended:?}");
-        let object: Value = serde_json::from_str(&ended.out).unwrap();
-        assert_eq!(
-            (&object["format"], &object["status"]),
-            (&json!("gdcm-messages"), &json!(ended.status))
-        );
-        object
-    };
-    let analysed = object(&["analyze", "half.json", "--out", "out", "--json"]);
+    let analysed = message_object(&desk, &["analyze", "half.json", "--out", "out", "--json"]);
     assert_eq!(analysed["cautions"][0]["conditions"], json!([10]));
     assert!(
         analysed["text"].as_str().unwrap().contains("Condition 7"),
         "{analysed}"
     );
     assert_eq!(analysed["error_codes"], json!([]));
-    let missing = object(&["check", "missing.json", "--json"]);
+    let missing = message_object(&desk, &["check", "missing.json", "--json"]);
     assert_eq!(
         missing["error_codes"],
         json!([null]),
@@ -187,11 +186,38 @@ fn everything_is_one_json_object_where_that_is_asked_for() {
             .starts_with("missing.json: "),
         "{missing}"
     );
-    let wrong = object(&["check", "--json", "--colour", "small.json"]);
+    let wrong = message_object(&desk, &["check", "--json", "--colour", "small.json"]);
     assert!(
         wrong["errors"][0].as_str().unwrap().contains("--colour") && wrong["status"] == json!(2),
         "{wrong}"
     );
+}
+
+#[test]
+fn the_switches_of_every_command_may_stand_before_it() {
+    let desk = desk_with_half();
+    let behind = desk.gdcm(&["analyze", "half.json", "--out", "out", "--json"]);
+    let before = desk.gdcm(&["--json", "analyze", "half.json", "--out", "out", "--force"]);
+    assert_eq!(
+        (before.status, &before.out, before.error.as_str()),
+        (behind.status, &behind.out, ""),
+        "{before:?}"
+    );
+    let object: Value = serde_json::from_str(&before.out).unwrap();
+    assert_eq!((before.status, &object["status"]), (0, &json!(0)));
+    let both = desk.gdcm(&["--quiet", "--json", "check", "missing.json", "--json"]);
+    let object: Value = serde_json::from_str(&both.out).unwrap();
+    assert_eq!((both.status, &object["status"]), (2, &json!(2)), "{both:?}");
+    // The file of the window and a command exclude each other, with or without switches.
+    for line in [
+        &["half.json", "analyze", "--out", "other"][..],
+        &["half.json", "--json", "analyze", "--out", "other"],
+        &["--json", "half.json", "analyze", "--out", "other"],
+    ] {
+        let ended = desk.gdcm(line);
+        assert_eq!(ended.status, 2, "{line:?}: {ended:?}");
+        assert!(!desk.path("other").exists(), "{line:?}: {ended:?}");
+    }
 }
 
 #[test]
@@ -278,7 +304,7 @@ fn a_second_variable_that_the_dataset_does_not_say_is_refused_before_the_work() 
 fn a_second_delay_of_one_channel_is_refused() {
     let desk = Desk::new();
     write_record(&desk);
-    let ended = desk.gdcm(&[
+    let line = [
         "identify",
         "a.csv",
         "--inputs",
@@ -295,11 +321,9 @@ fn a_second_delay_of_one_channel_is_refused() {
         "--out",
         "out",
         "--quiet",
-    ]);
-    assert!(
-        ended.status == 2 && ended.error.contains("error: --delay: P stands twice"),
-        "{ended:?}"
-    );
+    ];
+    desk.refusal(&line)
+        .assert_code("given-twice", &["--delay: P "]);
 }
 
 #[test]
@@ -314,6 +338,8 @@ fn a_file_of_models_points_to_what_makes_a_dataset_of_it() {
     let desk = Desk::new();
     fs::write(desk.path("x.mat"), b"MATLAB 5.0 MAT-file").unwrap();
     let words = ["x.mat: ", "gdcm assemble x.mat --out", "Import models"];
+    desk.refusal(&["check", "x.mat"])
+        .assert_code("model-file", &words);
     desk.gdcm(&["check", "x.mat"]).assert_failed(2, &words);
     desk.gdcm(&["analyze", "x.mat", "--out", "out"])
         .assert_failed(2, &words);
@@ -358,13 +384,13 @@ fn no_thread_to_be_had_is_an_error_in_words() {
     let desk = Desk::new();
     // More than any machine can map.
     let mut command = desk.command(&["check", "small.json"]);
-    let ended = crate::commands::Ended::of(
+    let ended = crate::commands::Ended::from_output(
         &command
             .env("RUST_MIN_STACK", "140737488355328")
             .output()
             .unwrap(),
     );
-    ended.assert_failed(1, &["error: no thread is to be had"]);
+    ended.assert_failed(1, &["error: no thread can be started"]);
 }
 
 #[test]
@@ -383,7 +409,7 @@ fn a_record_named_on_the_command_line_that_cannot_be_read_is_status_1_and_the_ot
     let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], &LATE_UNITS].concat());
     assert_eq!(ended.status, 1, "{ended:?}");
     assert!(
-        ended.error.contains("caution: not taken: ") && ended.error.contains("error: broken.npz: "),
+        ended.error.contains("caution: not read: ") && ended.error.contains("error: broken.npz: "),
         "{ended:?}"
     );
     assert!(desk.path("out/identified.json").exists());
@@ -394,18 +420,21 @@ fn a_record_named_on_the_command_line_that_cannot_be_read_is_status_1_and_the_ot
     );
 }
 
+fn crc_32(bytes: &[u8]) -> u32 {
+    let mut sum = flate2::Crc::new();
+    sum.update(bytes);
+    sum.sum()
+}
+
 /// An archive of files that are not packed (APPNOTE 4.3).
 fn stored_zip(files: &[(&str, &[u8])]) -> Vec<u8> {
-    let sum = |bytes: &[u8]| {
-        let mut sum = flate2::Crc::new();
-        sum.update(bytes);
-        sum.sum()
-    };
     let mut archive = Vec::new();
     let mut directory = Vec::new();
     for (name, bytes) in files {
         let length = bytes.len() as u32;
-        let numbers = [sum(bytes), length, length].map(u32::to_le_bytes).concat();
+        let numbers = [crc_32(bytes), length, length]
+            .map(u32::to_le_bytes)
+            .concat();
         let fields = [
             &[20, 0, 0, 0, 0, 0, 0, 0, 0, 0][..],
             &numbers,
@@ -452,25 +481,16 @@ fn a_file_that_is_broken_is_told_from_a_good_one_of_its_name_and_in_its_archive(
     }
     fs::copy(desk.path("a.csv"), desk.path("two/cond7_a.csv")).unwrap();
     fs::write(desk.path("one/cond7_a.csv"), "no table at all").unwrap();
-    let of_records = |records: [&str; 2]| {
-        let records = ["--records", records[0], "--records", records[1]];
-        let units = [
-            "--unit", "LON=%", "--unit", "LAT=%", "--unit", "P=deg/s", "--unit", "Q=deg/s",
-        ];
-        let report = ["report", "small.json", "--out", "r.html", "--force"];
-        let requirements = ["requirements", "small.json", "--out", "q", "--force"];
-        [report.as_slice(), &requirements].map(|of| desk.gdcm(&[of, &records, &units].concat()))
-    };
-    for ended in of_records(["one/cond7_a.csv", "two/cond7_a.csv"]) {
-        assert_eq!(ended.status, 1, "{ended:?}");
-        assert!(
-            ended
-                .error
-                .contains("error: one/cond7_a.csv: not read, or not all of it"),
-            "{ended:?}"
-        );
+    let commands = [
+        ["report", "small.json", "--out", "r.html", "--force"],
+        ["requirements", "small.json", "--out", "q", "--force"],
+    ];
+    for command in commands {
+        let line = with_records(command, ["one/cond7_a.csv", "two/cond7_a.csv"]);
+        desk.refusal(&line)
+            .assert_status_and_code(1, "not-read", &["one/cond7_a.csv: "]);
     }
-    // A good archive, and one of whose two files one is broken.
+    // A good archive, and an archive with a broken second file.
     let archive = |name: &str, broken: &str| {
         let text = fs::read(desk.path("two/cond7_a.csv")).unwrap();
         let files = [
@@ -484,55 +504,67 @@ fn a_file_that_is_broken_is_told_from_a_good_one_of_its_name_and_in_its_archive(
         "t,LON,LAT,P,Q\n0,1,2,3,4\n1,2,3,4,6\n2,3,4,5,5\n3,4,2,2,1\n4,3,2,1,5\n5,1,1,3,2\n",
     );
     archive("bad.zip", "no table at all");
-    let [good, _] = of_records(["good.zip", "two/cond7_a.csv"]);
+    let good = desk.gdcm(&with_records(commands[0], ["good.zip", "two/cond7_a.csv"]));
     assert_eq!(good.status, 0, "{good:?}");
-    for ended in of_records(["bad.zip", "two/cond7_a.csv"]) {
-        assert!(
-            ended.status == 1
-                && ended
-                    .error
-                    .contains("error: bad.zip: not read, or not all of it"),
-            "{ended:?}"
-        );
+    for command in commands {
+        let line = with_records(command, ["bad.zip", "two/cond7_a.csv"]);
+        desk.refusal(&line)
+            .assert_status_and_code(1, "not-read", &["bad.zip: "]);
     }
+}
+
+/// A command with two files of records, and the units of their channels.
+fn with_records<'a>(command: [&'a str; 5], records: [&'a str; 2]) -> Vec<&'a str> {
+    let records = ["--records", records[0], "--records", records[1]];
+    let units = [
+        "--unit", "LON=%", "--unit", "LAT=%", "--unit", "P=deg/s", "--unit", "Q=deg/s",
+    ];
+    [&command[..], &records, &units].concat()
+}
+
+/// Inverts the signs in a row of numbers.
+fn invert(row: &mut Value) {
+    for value in row.as_array_mut().unwrap() {
+        *value = json!(-value.as_f64().unwrap());
+    }
+}
+
+/// Undoes the wrapping of printed text.
+fn on_one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Conditions in the corrections file of a folder.
+fn corrected_conditions(desk: &Desk, folder: &str) -> Value {
+    let path = desk.path(&format!("{folder}/corrections.json"));
+    crate::read_json(&path)["conditions"].clone()
 }
 
 #[test]
 fn a_turned_channel_is_said_first_by_analyze_and_check_and_turned_by_the_option() {
     let desk = Desk::new();
-    let turn = |rows: &mut Value| {
-        for value in rows.as_array_mut().unwrap() {
-            let turned = -value.as_f64().unwrap();
-            *value = json!(turned);
-        }
-    };
     // Q of the identified models, matrices and the measured response, is positive the other way round.
     desk.write("turned.json", |file| {
         for condition in file["conditions"].as_array_mut().unwrap() {
             for model in condition["identified_models"].as_array_mut().unwrap() {
                 if model["C"].is_array() {
-                    ["C", "D"]
-                        .into_iter()
-                        .for_each(|matrix| turn(&mut model[matrix][1]));
+                    for matrix in ["C", "D"] {
+                        invert(&mut model[matrix][1]);
+                    }
                     continue;
                 }
                 for part in ["re", "im"] {
-                    model["frequency_response"][part][1]
-                        .as_array_mut()
-                        .unwrap()
-                        .iter_mut()
-                        .for_each(turn);
+                    let response = &mut model["frequency_response"][part][1];
+                    for values in response.as_array_mut().unwrap() {
+                        invert(values);
+                    }
                 }
             }
         }
     });
     let words = "LON → Q differs by half a turn at all frequencies";
-    let joined = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let found = |name: &str| {
-        crate::read_json(&desk.path(&format!("{name}/corrections.json")))["conditions"].clone()
-    };
     let said = desk.gdcm(&["analyze", "turned.json", "--out", "turned"]);
-    let out = joined(&said.out);
+    let out = on_one_line(&said.out);
     assert!(
         out.contains(words) && out.contains("has the other sign. Turn it? (--sign Q=-1)"),
         "{out}"
@@ -541,14 +573,23 @@ fn a_turned_channel_is_said_first_by_analyze_and_check_and_turned_by_the_option(
         out.find(words) < out.find("Condition 7"),
         "before anything is blamed for it"
     );
-    assert!(joined(&desk.gdcm(&["check", "turned.json"]).out).contains(words));
-    assert!(!joined(&desk.gdcm(&["check", "turned.json", "--sign", "Q=-1"]).out).contains(words));
+    assert!(on_one_line(&desk.gdcm(&["check", "turned.json"]).out).contains(words));
+    assert!(
+        !on_one_line(&desk.gdcm(&["check", "turned.json", "--sign", "Q=-1"]).out).contains(words)
+    );
     desk.gdcm(&["analyze", "turned.json", "--sign", "Q=-1", "--out", "back"])
         .assert_done();
     desk.gdcm(&["analyze", "small.json", "--out", "right"])
         .assert_done();
-    assert_eq!(found("back"), found("right"), "to the last digit");
-    assert_ne!(found("turned"), found("right"));
+    assert_eq!(
+        corrected_conditions(&desk, "back"),
+        corrected_conditions(&desk, "right"),
+        "to the last digit"
+    );
+    assert_ne!(
+        corrected_conditions(&desk, "turned"),
+        corrected_conditions(&desk, "right")
+    );
 }
 
 #[test]
@@ -557,7 +598,7 @@ fn a_sign_that_is_said_of_files_is_in_the_dataset_that_is_made_of_them() {
     crate::assembling::foreign_tree(&desk.path("models"));
     let assemble = |out: &str, more: &[&str]| {
         let ended = desk.gdcm(&[&["assemble", "models", "--out", out], more].concat());
-        // What an inch is stands in the rules.
+        // The rules define the inch.
         assert_eq!(ended.status, 2, "{ended:?}");
         let rules = out.replace(".json", ".gdcm-rules.json");
         let mut said = crate::read_json(&desk.path(&rules));
@@ -597,7 +638,7 @@ fn what_many_conditions_have_is_one_table_and_one_sentence() {
     let words = ended.out.split_whitespace().collect::<Vec<_>>().join(" ");
     for sentence in [
         "held responses need lead",
-        "what it would be with a delay or lead in each channel",
+        "without and with a delay or lead in each channel",
         "check first the time alignment of the records",
     ] {
         assert_eq!(
@@ -608,25 +649,9 @@ fn what_many_conditions_have_is_one_table_and_one_sentence() {
         );
     }
     let corrections = crate::read_json(&desk.path("out/corrections.json"));
-    let channels = |side: &str| -> Vec<(String, String)> {
-        let of = corrections[side].as_array().unwrap().iter();
-        of.map(|channel| {
-            (
-                channel["name"].as_str().unwrap().to_owned(),
-                channel["unit"].as_str().unwrap().to_owned(),
-            )
-        })
-        .collect()
-    };
-    let expected = |channels: &[(&str, &str)]| -> Vec<(String, String)> {
-        channels
-            .iter()
-            .map(|(name, unit)| ((*name).to_owned(), (*unit).to_owned()))
-            .collect()
-    };
     assert_eq!(
-        channels("inputs"),
-        expected(&[("LON", "%"), ("LAT", "%"), ("PED", "%"), ("COL", "%")])
+        names_and_units(&corrections["inputs"]),
+        [("LON", "%"), ("LAT", "%"), ("PED", "%"), ("COL", "%")]
     );
     let rates = [
         ("P", "deg/s"),
@@ -636,7 +661,17 @@ fn what_many_conditions_have_is_one_table_and_one_sentence() {
         ("NY", "m/s2"),
         ("NZ", "m/s2"),
     ];
-    assert_eq!(channels("outputs"), expected(&rates));
+    assert_eq!(names_and_units(&corrections["outputs"]), rates);
+}
+
+/// Names and units of channels in a corrections file.
+fn names_and_units(channels: &Value) -> Vec<(&str, &str)> {
+    let mut found = Vec::new();
+    for channel in channels.as_array().unwrap() {
+        let name = channel["name"].as_str().unwrap();
+        found.push((name, channel["unit"].as_str().unwrap()));
+    }
+    found
 }
 
 #[test]
@@ -747,7 +782,7 @@ fn command_lines_put_together_at_random_end_with_a_status_and_words() {
     write_record(&desk);
     let mut state = 1_u64;
     let mut below = |bound: usize| {
-        // The generator of Knuth (MMIX), of which the upper bits are used.
+        // Knuth's generator (MMIX), whose upper bits are used.
         state = state
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);

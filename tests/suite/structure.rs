@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Modules of a crate, each with the modules of the same crate that it may name.
+/// Modules in a crate, each with the modules in the same crate that it may name.
 type ModuleTable = &'static [(&'static str, &'static [&'static str])];
 
 /// The crates from the bottom up, each with its modules and, for each module, the modules of the same crate that it may name.
@@ -345,6 +345,10 @@ fn drawing_names_no_files_and_the_commands_no_window() {
 
 #[test]
 fn every_folder_of_the_window_imports_only_folders_before_it() {
+    fn rank(folder: &str) -> Option<usize> {
+        GUI_FOLDERS.iter().position(|known| *known == folder)
+    }
+
     let mut wrong = Vec::new();
     let mut seen = 0;
     for (_, path, code) in modules("") {
@@ -355,7 +359,6 @@ fn every_folder_of_the_window_imports_only_folders_before_it() {
         if parts[0] != "gui" || parts[1] == "mod" {
             continue;
         }
-        let rank = |folder: &str| GUI_FOLDERS.iter().position(|known| *known == folder);
         let own = rank(parts[1]).unwrap_or_else(|| panic!("gui/{} is not listed", parts[1]));
         for (at, prefix) in code.match_indices("crate::gui::") {
             let named: String = code[at + prefix.len()..]
@@ -412,7 +415,7 @@ fn the_front_page_of_a_crate_names_every_module() {
     }
 }
 
-/// Every line of the code of the workspace, with its place.
+/// Every code line in the workspace, with its place.
 fn lines_of_code() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut lines = Vec::new();

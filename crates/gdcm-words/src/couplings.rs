@@ -5,12 +5,16 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Complex, DMatrix};
 
-use gdcm_method::couplings::coupling_effects::{FeedbackShare, MixingShare, cyclic_inputs, feedback_shares, mixing_shares};
+use gdcm_method::couplings::coupling_effects::{
+    FeedbackShare, MixingShare, cyclic_inputs, feedback_shares, mixing_shares,
+};
 use gdcm_method::couplings::{LEAST_CONDITIONS, LoopMargin, PoleShift, Unknown};
 use gdcm_model::dataset::{Channel, ConditionId, Dataset, Pair};
 use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::{number, signed, telling};
-use gdcm_study::results::couplings_assessment::{AxisCost, CouplingCost, CouplingEntry, CouplingsAssessment, UnstablePole};
+use gdcm_study::results::couplings_assessment::{
+    AxisCost, CouplingCost, CouplingEntry, CouplingsAssessment, UnstablePole,
+};
 use gdcm_study::{Analysis, CouplingCorrection};
 
 use crate::remark::{Remark, RemarkKind};

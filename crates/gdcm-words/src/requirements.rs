@@ -488,11 +488,11 @@ fn rounded(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use gdcm_study::Execution;
     use gdcm_study::results::required_modes::KnownPoles;
     use gdcm_study::results::requirements::requirements_of;
 
+    use super::*;
     use crate::example_tests::EXAMPLE;
 
     #[test]

@@ -1,10 +1,10 @@
 //! Reloads a dataset whose file changes on the disk while open.
 
-use gdcm_words::decisions::dataset_difference_text;
 use std::sync::Arc;
 
 use gdcm_io::files::dataset_file::load_dataset_within;
 use gdcm_io::{LoadedDataset, Opened};
+use gdcm_words::decisions::dataset_difference_text;
 
 use super::GdcmApp;
 use super::disk_watch::Seen;

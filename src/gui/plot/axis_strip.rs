@@ -1,7 +1,9 @@
 //! Interactive axes: the wheel zooms, dragging pans, a double click or a secondary click opens the
 //! form for the limits.
 
-use egui::{CursorIcon, Popup, PopupCloseBehavior, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, vec2};
+use egui::{
+    CursorIcon, Popup, PopupCloseBehavior, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, vec2,
+};
 
 use super::bode_view::BodeView;
 use super::limits_form::{FormAnswer, LimitsForm};

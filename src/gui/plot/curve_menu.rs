@@ -1,9 +1,11 @@
 //! Context menus: on a curve, and on the empty ground between curves.
 
-use egui::{Button, Key, Popup, PopupCloseBehavior, Response, RichText, Role as WidgetRole, TextEdit, Ui, WidgetInfo};
+use egui::{
+    Button, Key, Popup, PopupCloseBehavior, Response, RichText, Role as WidgetRole, TextEdit, Ui,
+    WidgetInfo,
+};
 
-use super::bode_event::BodeEvent;
-use super::bode_event::CurveWish;
+use super::bode_event::{BodeEvent, CurveWish};
 use super::bode_scene::BodeScene;
 use super::bode_view::BodeView;
 use super::curve_command::CurveCommand;

@@ -5,22 +5,14 @@ use egui_plot::{PlotPoint, PlotTransform};
 
 use gdcm_plot::figure::{Figure, MarkId, Range};
 
-use super::figure_panel::PanelView;
-use super::figure_panel::PlacedPanel;
-use super::figure_panel::PlacedResponse;
-use super::figure_panel::TITLE_HEIGHT;
-use super::figure_panel::VALUE_AXIS_WIDTH;
-use super::figure_scene::FigureEvent;
-use super::figure_scene::FigureScene;
+use super::figure_panel::{PanelView, PlacedPanel, PlacedResponse, TITLE_HEIGHT, VALUE_AXIS_WIDTH};
+use super::figure_scene::{FigureEvent, FigureScene};
 use super::painter::use_frame_colors;
 use super::panel_text::message_ui;
 use super::picking::PointedMark;
 use super::questions::Questions;
-use super::tiles::TiledArea;
-use super::tiles::Tiles;
-use super::tiles::tiles_ui;
-use crate::gui::widgets::palette::Palette;
-use crate::gui::widgets::palette::SMALL_SIZE;
+use super::tiles::{TiledArea, Tiles, tiles_ui};
+use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Strip at the left with the common vertical label \[pt\].
 const LABEL_STRIP: f32 = 16.0;

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use egui::{Align2, Button, CursorIcon, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2};
+use egui::{
+    Align2, Button, CursorIcon, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, StrokeKind,
+    Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
+};
 use egui_plot::{PlotPoint, PlotTransform};
 
 use gdcm_model::dataset::Pair;

@@ -1,7 +1,7 @@
 //! Bode axes: names and units, and the numbers typed for their limits.
 
-use gdcm_plot::figure::Range;
 use gdcm_model::number_format::compact;
+use gdcm_plot::figure::Range;
 
 use super::bode_scene::BodeScene;
 use super::drawn_curves::Pane;

@@ -1,8 +1,8 @@
 //! Description of the curve under the pointer: its name and its values there.
 
+use gdcm_model::number_format::decimals;
 use gdcm_model::response::wrap;
 use gdcm_plot::figure::axis::FrequencyUnit;
-use gdcm_model::number_format::decimals;
 
 use super::bode_view::BodeView;
 use super::drawn_curves::{BodeCurve, Pane};

@@ -1,7 +1,6 @@
 //! Quantities and units in the two stacked panes.
 
-use gdcm_model::number_format::compact;
-use gdcm_model::number_format::decimals;
+use gdcm_model::number_format::{compact, decimals};
 use gdcm_model::units::db_to_ratio;
 use gdcm_plot::figure::Range;
 pub use gdcm_plot::figure::axis::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};

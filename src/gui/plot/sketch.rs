@@ -3,8 +3,8 @@
 use egui::{Painter, Rect};
 use egui_plot::PlotTransform;
 
-use gdcm_plot::figure::Range;
 use gdcm_model::number_format::decimals;
+use gdcm_plot::figure::Range;
 
 use super::curve_layer::{CurveLooks, DrawnPane, add_curve_lines};
 use super::drawn_curves::{BodeCurve, Pane, VisiblePart};

@@ -6,11 +6,7 @@ use egui_plot::{GridInput, GridMark};
 use gdcm_model::number_format::compact;
 use gdcm_model::units::{db_to_ratio, ratio_to_db};
 use gdcm_plot::figure::Range;
-use gdcm_plot::figure::axis::FrequencyUnit;
-use gdcm_plot::figure::axis::Scale;
-use gdcm_plot::figure::axis::Tick;
-use gdcm_plot::figure::axis::TickGaps;
-use gdcm_plot::figure::axis::ticks_of;
+use gdcm_plot::figure::axis::{FrequencyUnit, Scale, Tick, TickGaps, ticks_of};
 
 /// Least distance between ticks on a vertical axis \[pt\].
 pub(super) const VERTICAL_TICK_GAP: f64 = 27.0;

@@ -10,20 +10,14 @@ use gdcm_plot::figure::assessment::change_table;
 use gdcm_plot::figure::axis::Axis;
 use gdcm_plot::figure::drawing::{Hue, Stroke};
 use gdcm_plot::figure::figure::{Bars, Curve, Note, Place, Plot, Rule, Spans};
-use gdcm_plot::figure::Color;
-use gdcm_plot::figure::Figure;
-use gdcm_plot::figure::MarkId;
-use gdcm_plot::figure::Panel;
-use gdcm_plot::figure::Range;
+use gdcm_plot::figure::{Color, Figure, MarkId, Panel, Range};
 use gdcm_study::results::assessment_table::AssessedModel;
-use gdcm_words::assessment::held_out_verdict;
-use gdcm_study::AssessedCorrection;
-use gdcm_study::AssessmentTable;
-use gdcm_words::derivation::ExplainTarget;
+use gdcm_study::{AssessedCorrection, AssessmentTable};
 use gdcm_words::Table;
-use gdcm_words::assessment::missing_cost_text;
-use gdcm_words::assessment::not_assessed_text;
-use gdcm_words::assessment::summary_text;
+use gdcm_words::assessment::{
+    held_out_verdict, missing_cost_text, not_assessed_text, summary_text,
+};
+use gdcm_words::derivation::ExplainTarget;
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::display::DisplayCommand;

@@ -3,8 +3,7 @@
 use egui::{Align2, FontId, Rect, Ui, pos2, vec2};
 
 use gdcm_plot::figure::gains::{Across, GainQuantity, Measure, channels_figure, quieten};
-use gdcm_plot::figure::MarkId;
-use gdcm_plot::figure::all_channels;
+use gdcm_plot::figure::{MarkId, all_channels};
 
 use super::gain_plots::{GainPlots, LEAST_PLOT, bars_switch_ui, gain_command, shown_uncertainty};
 use crate::gui::commands::command::Command;

@@ -3,7 +3,9 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, Color32, FontId, Grid, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{
+    Align2, Color32, FontId, Grid, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2,
+};
 
 use gdcm_method::schedule::ScheduleKind;
 use gdcm_method::schedule::form_comparison::{FormComparison, FormFit, LeadDegreeFit, LeadFit};
@@ -11,13 +13,12 @@ use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::number_format::with_minus_sign;
 use gdcm_model::units::{s_to_ms, signed};
-use gdcm_words::Table;
 use gdcm_study::decisions::setting;
-use gdcm_words::uncertainty::difference_table;
-use gdcm_words::uncertainty::second_variable_table;
 use gdcm_study::results::uncertainty::Uncertainty;
-use gdcm_words::uncertainty::difference_verdict;
-use gdcm_words::uncertainty::differences_summary;
+use gdcm_words::Table;
+use gdcm_words::uncertainty::{
+    difference_table, difference_verdict, differences_summary, second_variable_table,
+};
 
 use super::gain_plots::net_gain_pairs;
 use crate::gui::commands::command::Command;

@@ -7,8 +7,8 @@ use gdcm_model::dataset::Pair;
 use gdcm_model::units::s_to_ms;
 use gdcm_plot::figure::gains::{Across, GainQuantity};
 use gdcm_plot::figure::{Figure, MarkId};
-use gdcm_study::results::uncertainty::Uncertainty;
 use gdcm_study::Edit;
+use gdcm_study::results::uncertainty::Uncertainty;
 use gdcm_words::derivation::ExplainTarget;
 
 use crate::gui::commands::command::Command;

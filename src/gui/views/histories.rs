@@ -5,8 +5,7 @@ use egui::{CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
 
 use gdcm_method::requirements::{TestInput, TestInputShape};
 use gdcm_model::units::number;
-use gdcm_plot::figure::Figure;
-use gdcm_plot::figure::OverTime;
+use gdcm_plot::figure::{Figure, OverTime};
 use gdcm_study::results::condition_answers::RecordHistory;
 use gdcm_study::results::record_comparison::Trend;
 use gdcm_words::time_histories::record_history_table;

@@ -2,10 +2,13 @@
 //! contents, commands and needs.
 
 use std::sync::Arc;
+
 use egui::Ui;
+
 use gdcm_model::dataset::Pair;
 use gdcm_study::jobs::analysis_jobs::AssessmentJob;
 use gdcm_study::jobs::curve_jobs::ModesJob;
+
 use super::commands::command::Command;
 use super::state::window_state::State;
 use super::widgets::palette::Palette;
@@ -31,12 +34,12 @@ pub mod requirement_limits;
 pub mod requirements;
 pub mod setting_controls;
 
-
-
-
 use crate::gui::state::view::View;
 use assessment::{assessed_pairs, assessment_header_ui, assessment_view_ui};
-use bode::{across_header_ui, across_job, across_view_ui, bode_view_ui, error_header_ui, error_view_ui, overview_view_ui};
+use bode::{
+    across_header_ui, across_job, across_view_ui, bode_view_ui, error_header_ui, error_view_ui,
+    overview_view_ui,
+};
 use channels::{channels_header_ui, channels_view_ui};
 use compare::{compare_view_ui, variant_jobs};
 use couplings::{couplings_header_ui, couplings_view_ui};
@@ -47,7 +50,9 @@ use need::Need;
 use net_gain::{NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_view_ui, net_gain_words};
 use over_time::current;
 use poles::{poles_header_ui, poles_view_ui};
-use requirements::{NO_QUALIFICATION, requirements_header_ui, requirements_needs, requirements_view_ui};
+use requirements::{
+    NO_QUALIFICATION, requirements_header_ui, requirements_needs, requirements_view_ui,
+};
 
 pub use compare::overlay_job;
 pub use couplings::{are_couplings_judged, couplings_job, offered_couplings, used_couplings};

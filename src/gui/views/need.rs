@@ -1,13 +1,11 @@
 //! Background results that a view needs besides the live answer.
 
-use gdcm_study::jobs::analysis_jobs::VariantJob;
+use gdcm_study::jobs::analysis_jobs::{AssessmentJob, CouplingsJob, VariantJob};
 use gdcm_study::jobs::curve_jobs::{AcrossJob, ModesJob};
 use gdcm_study::jobs::identification_jobs::SimulationJob;
-use gdcm_study::jobs::analysis_jobs::AssessmentJob;
-use gdcm_study::jobs::requirement_jobs::{RecordHistoryJob, TestAnswersJob};
-use gdcm_study::jobs::analysis_jobs::CouplingsJob;
-use gdcm_study::jobs::requirement_jobs::RequirementsJob;
-use gdcm_study::jobs::requirement_jobs::TimeHistoriesJob;
+use gdcm_study::jobs::requirement_jobs::{
+    RecordHistoryJob, RequirementsJob, TestAnswersJob, TimeHistoriesJob,
+};
 
 /// Computation needed by a view besides the live answer.
 #[derive(Clone, Debug, PartialEq)]

@@ -14,8 +14,7 @@ use gdcm_plot::figure::figure::Along;
 use gdcm_plot::figure::poles::{damping_grid, poles_figure};
 use gdcm_plot::figure::{Figure, Mark, MarkId, Range, Role};
 use gdcm_study::jobs::curve_jobs::ConditionModes;
-use gdcm_study::ConditionAnalysis;
-use gdcm_study::Edit;
+use gdcm_study::{ConditionAnalysis, Edit};
 use gdcm_words::Table;
 
 use super::frequency::{bode_options, condition_source};

@@ -8,8 +8,7 @@ use egui::{Button, Grid, Ui};
 use gdcm_method::requirements::{ModeToleranceTable, ToleranceTable};
 use gdcm_model::units::number;
 use gdcm_study::Edit;
-use gdcm_study::decisions::requirement_settings::OverviewLimits;
-use gdcm_study::decisions::requirement_settings::RequirementSettings;
+use gdcm_study::decisions::requirement_settings::{OverviewLimits, RequirementSettings};
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::file::FileCommand;

@@ -12,21 +12,16 @@ use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::{s_to_ms, telling};
 use gdcm_plot::figure::drawing::Hue;
 use gdcm_plot::figure::requirements::{bandwidth_pairs, bandwidth_place};
-use gdcm_plot::figure::Color;
-use gdcm_plot::figure::Figure;
-use gdcm_plot::figure::MarkId;
-use gdcm_words::Table;
-use gdcm_study::results::requirement_role::RequirementRole;
+use gdcm_plot::figure::{Color, Figure, MarkId};
 use gdcm_study::decisions::requirement_settings::RequirementSettings;
+use gdcm_study::jobs::requirement_jobs::{RequirementsJob, TimeHistoriesJob};
+use gdcm_study::results::requirement_role::RequirementRole;
 use gdcm_study::results::requirements::Requirements;
-use gdcm_study::jobs::requirement_jobs::RequirementsJob;
-use gdcm_words::requirements::mode_verdict_words;
-use gdcm_study::jobs::requirement_jobs::TimeHistoriesJob;
-use gdcm_words::requirements::RequirementsOverview;
-use gdcm_words::requirements::bandwidth_table;
-use gdcm_words::requirements::mode_table;
-use gdcm_words::requirements::summary_of_row;
-use gdcm_words::requirements::summary_table;
+use gdcm_words::Table;
+use gdcm_words::requirements::{
+    RequirementsOverview, bandwidth_table, mode_table, mode_verdict_words, summary_of_row,
+    summary_table,
+};
 
 use super::figures::figure_of;
 use super::histories::histories_ui;

@@ -14,7 +14,7 @@ pub(super) fn bench(window: &Window) -> &AssemblyState {
         .expect("models are being imported")
 }
 
-/// Types over what a field holds, and leaves it open.
+/// Replaces the text in a field, and leaves the field open.
 pub(super) fn fill_in(window: &mut Window, field: &str, text: &str) {
     window.get_by_label(field).focus();
     window.run_steps(2);
@@ -23,7 +23,7 @@ pub(super) fn fill_in(window: &mut Window, field: &str, text: &str) {
     window.run_steps(2);
 }
 
-/// Types over what a field holds, and enters it; in a form that carries out what is asked for.
+/// Replaces the text in a field and presses Enter, which carries out a form.
 pub(super) fn type_into(window: &mut Window, field: &str, text: &str) {
     fill_in(window, field, text);
     window.key_press(Key::Enter);
@@ -84,6 +84,15 @@ fn a_folder_is_put_together_by_its_labels_and_opened() {
 
 #[test]
 fn what_is_said_of_a_model_is_filled_down_undone_and_shown() {
+    fn altitudes(window: &Window) -> Vec<String> {
+        bench(window)
+            .assembly()
+            .parts()
+            .iter()
+            .map(|part| COLUMNS[4].text(part))
+            .collect()
+    }
+
     let folder = tempfile::tempdir().unwrap();
     crate::assembling::small_folder(folder.path());
     let mut window = window();
@@ -93,14 +102,6 @@ fn what_is_said_of_a_model_is_filled_down_undone_and_shown() {
     );
     wait_for_models(&mut window);
     window.run_steps(2);
-    let altitudes = |window: &Window| -> Vec<String> {
-        bench(window)
-            .assembly()
-            .parts()
-            .iter()
-            .map(|part| COLUMNS[4].text(part))
-            .collect()
-    };
     window
         .get_by_label_contains("Model c1_60kt/V+5kt.mat")
         .click();

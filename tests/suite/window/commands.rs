@@ -1,4 +1,4 @@
-//! The table of commands: the palette, the page of keys, tables and the tour.
+//! The command table: palette, key page, tables and tour.
 
 use gdcm::gui::commands::assembling::AssemblingCommand;
 use gdcm::gui::commands::command_table::{command_table, every_command};
@@ -81,11 +81,14 @@ fn the_palette_finds_commands_by_some_letters() {
 
 #[test]
 fn the_palette_is_worked_with_arrows_and_escape() {
+    fn field(window: &Window) -> egui::Rect {
+        window.get_by_label("Command palette").rect()
+    }
+
     let mut window = window();
     let before = state(&window).study.clone();
     press(&mut window, Modifiers::COMMAND, Key::K);
     assert_eq!(state(&window).forms.shown, Some(FormKind::Palette));
-    let field = |window: &Window| window.get_by_label("Command palette").rect();
     let place = field(&window);
     window.event(Event::Text("theme".to_owned()));
     window.run_steps(4);
@@ -149,13 +152,9 @@ fn menus_show_what_the_table_says() {
 
 #[test]
 fn the_page_of_keys_is_made_from_the_table_and_fits_the_least_window() {
-    let build = |creation: &mut eframe::CreationContext<'static>| {
-        GdcmApp::with(&creation.egui_ctx, example(), Setup::default())
-            .expect("a thread can be started")
-    };
     let mut window = Harness::builder()
         .with_size(vec2(900.0, 560.0))
-        .build_eframe(build);
+        .build_eframe(cold_example);
     settle(&mut window);
     press(&mut window, Modifiers::NONE, Key::F1);
     for entry in command_table(state(&window))
@@ -175,7 +174,7 @@ fn the_page_of_keys_is_made_from_the_table_and_fits_the_least_window() {
     assert!(close.max.y < 560.0, "{close}");
 }
 
-/// What was put on the clipboard in the last frames.
+/// Text put on the clipboard in the last frames.
 fn copied(window: &mut Window) -> String {
     for _ in 0..4 {
         window.step();
@@ -245,23 +244,27 @@ fn a_table_is_saved_as_csv_and_an_existing_file_is_asked_about() {
 
 #[test]
 fn tables_of_the_matrix_and_the_result_have_the_bars_of_their_figures() {
-    let mut window = window();
-    wait_for_bars(&mut window);
-    let uncertainty = state(&window).uncertainty().unwrap();
-    let condition = state(&window).condition().id();
-    let pair = pair(&window, "Q", "LON");
-    let bar = |scalar: Scalar| uncertainty.bar(condition, scalar).unwrap();
-    let percent = |half: Option<f64>| format!("{:?}", 100.0 * half.unwrap());
-    let matrix = table_of(state(&window), TableKind::Matrix);
-    assert!(matrix.title.ends_with(", ± of 90 %"), "{}", matrix.title);
-    let cell = |table: &Table, row: &[String], column: &str| {
+    fn percent(half: Option<f64>) -> String {
+        format!("{:?}", 100.0 * half.unwrap())
+    }
+
+    fn cell(table: &Table, row: &[String], column: &str) -> String {
         row[table
             .columns
             .iter()
             .position(|name| name == column)
             .unwrap()]
         .clone()
-    };
+    }
+
+    let mut window = window();
+    wait_for_bars(&mut window);
+    let uncertainty = state(&window).uncertainty().unwrap();
+    let condition = state(&window).condition().id();
+    let pair = pair(&window, "Q", "LON");
+    let bar = |scalar: Scalar| uncertainty.bar(condition, scalar).unwrap();
+    let matrix = table_of(state(&window), TableKind::Matrix);
+    assert!(matrix.title.ends_with(", ± of 90 %"), "{}", matrix.title);
     let row = matrix
         .rows
         .iter()

@@ -16,7 +16,7 @@ use gdcm_study::{Engine, Study};
 use super::views::show;
 use super::*;
 
-/// Executes as the program does; while it is armed it panics inside one of the tasks, or keeps them waiting.
+/// Executes as the program does; while armed it panics inside a task, or keeps the tasks waiting.
 #[derive(Clone, Default)]
 struct Trap {
     panics: Arc<AtomicBool>,
@@ -47,7 +47,7 @@ impl Trap {
     }
 }
 
-/// Opens the trap when it is dropped, by a test that fails too: what waits holds threads that other tests compute on.
+/// Opens the trap when it is dropped, also by a failing test: waiting work holds threads that other tests need.
 struct Closed<'a>(&'a Trap);
 
 impl Drop for Closed<'_> {
@@ -71,7 +71,7 @@ impl Executor for Trap {
     }
 }
 
-/// Notes where panics are, as the program does, besides what the tests do with them.
+/// Notes the places of panics, as the program does, beside the panic handling of the tests.
 fn note_panics() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -219,7 +219,7 @@ fn quitting_does_not_wait_for_what_is_being_computed() {
     });
     let start = Instant::now();
     drop(window);
-    // What is being computed would never end.
+    // The running computation would never end.
     assert!(start.elapsed() < Duration::from_secs(30));
     drop(closed);
 }
@@ -285,6 +285,21 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
 
 #[test]
 fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
+    fn counts(window: &Window) -> Option<(usize, usize)> {
+        state(window).results.background.bars
+    }
+
+    fn bundles(of: &Condition) -> usize {
+        of.bundle(BundleKind::Physics).len() + of.bundle(BundleKind::Identified).len()
+    }
+
+    fn copied(window: &mut Window) -> String {
+        window
+            .state_mut()
+            .dispatch(OutputCommand::CopyFigure(View::NetGain));
+        state(window).notice.clone().unwrap().text
+    }
+
     let trap = Trap::default();
     let mut window = window_with(example(), trap.setup());
     show(&mut window, View::Evidence);
@@ -294,10 +309,6 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
         .get_by_role_and_label(Role::SpinButton, "Frequencies in the band")
         .set_value_accesskit(1000.0);
     settle(&mut window);
-    let counts = |window: &Window| state(window).results.background.bars;
-    let bundles = |of: &Condition| {
-        of.bundle(BundleKind::Physics).len() + of.bundle(BundleKind::Identified).len()
-    };
     let models: usize = state(&window)
         .dataset()
         .conditions()
@@ -307,7 +318,7 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     wait_until(&mut window, "a part of the error bars", |window| {
         counts(window).is_some_and(|(done, total)| done > 0 && total == 2 * models)
     });
-    // However fast the machine is, no more than what has begun is computed before the click.
+    // However fast the machine is, only computations that have begun are finished before the click.
     let closed = trap.close();
     wait_until(&mut window, "the button", |window| {
         window.query_by_label("Stop").is_some()
@@ -316,12 +327,6 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
         .query_all_by_label_contains(&format!(" of {} steps …", 2 * models))
         .count();
     assert_eq!(told, 2, "in the view that waits for them, and below");
-    let copied = |window: &mut Window| {
-        window
-            .state_mut()
-            .dispatch(OutputCommand::CopyFigure(View::NetGain));
-        state(window).notice.clone().unwrap().text
-    };
     let done = "copied the numbers of Net gain";
     assert_eq!(
         copied(&mut window),
@@ -348,15 +353,18 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
 
 #[test]
 fn couplings_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
+    fn steps(window: &Window) -> Option<(usize, usize)> {
+        state(window).results.background.couplings
+    }
+
     let trap = Trap::default();
     let mut window = window_with(example(), trap.setup());
     settle(&mut window);
     show(&mut window, View::Couplings);
-    let steps = |window: &Window| state(window).results.background.couplings;
     wait_until(&mut window, "a part of the assessment", |window| {
         steps(window).is_some_and(|(done, _)| done > 0)
     });
-    // However fast the machine is, what follows the fits without each condition is not computed before the click.
+    // However fast the machine is, the steps after the fits without each condition are not computed before the click.
     let closed = trap.close();
     wait_until(&mut window, "the button", |window| {
         window.query_by_label("Stop").is_some()
@@ -377,6 +385,10 @@ fn couplings_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
 
 #[test]
 fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
+    fn is_open(outcome: Outcome) -> bool {
+        matches!(outcome, Outcome::NotProven { .. })
+    }
+
     let hasty = ProofBudget {
         work: 0,
         listing: 0,
@@ -385,7 +397,6 @@ fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
     let engine = move || Engine::default().with_proofs_within(hasty);
     let study = Study::new(crate::EXAMPLE.dataset.clone());
     let open = engine().analyze(&study, &Unobserved).unwrap();
-    let is_open = |outcome: Outcome| matches!(outcome, Outcome::NotProven { .. });
     assert!(
         open.conditions
             .values()

@@ -36,7 +36,7 @@ fn every_control_has_a_label_of_its_own() {
     assert!(twice.is_empty(), "{twice:?}");
 }
 
-/// What the program says where there is no display.
+/// Message without a display.
 #[cfg(target_os = "linux")]
 fn without_a_display(arguments: &[&Path]) -> (Option<i32>, String) {
     let output = Command::new(env!("CARGO_BIN_EXE_gdcm"))

@@ -34,6 +34,20 @@ fn texts(window: &Window) -> String {
 
 #[test]
 fn couplings_are_looked_at_used_drawn_and_undone() {
+    fn is_after(mark: &Mark) -> bool {
+        matches!(mark, Mark::Dots(dots) if dots.name == "with couplings" && !dots.dots.is_empty())
+    }
+
+    fn has_alone(window: &Window) -> bool {
+        let display = &state(window).display;
+        let is_there = display
+            .frequency
+            .drawn
+            .iter()
+            .any(|curve| curve.role == CurveRole::Coupled);
+        is_there && !display.curves.hidden_roles.contains(&CurveRole::Coupled)
+    }
+
     let mut window = few_window();
     let before = state(&window).study.clone();
     show(&mut window, View::Couplings);
@@ -63,7 +77,7 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
         CouplingCorrection::MixingAndFeedback
     );
     assert!(!texts(&window).contains("None are used"));
-    // The map beside the conditions has what they did off the axis.
+    // The map beside the conditions shows their effect on off-axis responses.
     window.get_by_label_contains("19 responses not held, condition 3: mean J of magnitude");
     // The poles that move are drawn among those of the models.
     show(&mut window, View::Poles);
@@ -71,20 +85,10 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
         gdcm::gui::views::poles::poles(state(window)).is_some()
     });
     let figure = gdcm::gui::views::poles::poles(state(&window)).unwrap();
-    let is_after = |mark: &Mark| matches!(mark, Mark::Dots(dots) if dots.name == "with couplings" && !dots.dots.is_empty());
     assert!(figure.plots[0].panels[0].marks.iter().any(is_after));
     // In Bode the corrected curve is the whole; couplings alone are there on wish.
     show(&mut window, View::Bode);
     settle(&mut window);
-    let has_alone = |window: &Window| {
-        let display = &state(window).display;
-        let is_there = display
-            .frequency
-            .drawn
-            .iter()
-            .any(|curve| curve.role == CurveRole::Coupled);
-        is_there && !display.curves.hidden_roles.contains(&CurveRole::Coupled)
-    };
     assert!(!has_alone(&window));
     click(&mut window, "Show couplings alone");
     assert!(has_alone(&window));
@@ -115,7 +119,7 @@ fn couplings_are_offered_once_leads_do_what_a_channel_can() {
         CouplingCorrection::MixingAndFeedback
     );
     assert!(offered_couplings(state(&window)).is_none());
-    // What they cost is among the reasons, whatever view is shown.
+    // Their cost is among the reasons in every view.
     assessed(&mut window);
     give(&mut window, LayoutCommand::ShowSheet(Some(Sheet::Reasons)));
     let said = texts(&window);

@@ -9,7 +9,7 @@ use super::plots::{drag_along, place_on_nominal};
 use super::views::show;
 use super::*;
 
-/// The curve of a role in the plot of errors.
+/// A role's curve in the error plot.
 fn error(window: &Window, role: CurveRole) -> BodeCurve {
     let mut curves = state(window).display.frequency.drawn_errors.iter();
     curves
@@ -35,7 +35,7 @@ fn the_plot_of_errors_shows_what_the_fit_sees() {
     let gain = shown.comparison.delta.gain[pair].unwrap();
     let delay_s = shown.comparison.delta.delay_s[pair].unwrap();
     let before = error(&window, CurveRole::Representative);
-    // The medians of M6 on the grid for drawing: it has other points than that of the comparison.
+    // The medians (M6) on the drawing grid, whose points differ from the comparison grid.
     let ratio_db = middle(before.magnitude_db.iter().copied());
     let phase = before.omega.iter().zip(&before.phase_deg[..]);
     assert!(
@@ -48,7 +48,7 @@ fn the_plot_of_errors_shows_what_the_fit_sees() {
     let net_db = 20.0 * shown.correction.net_gain(pair).log10();
     let net_delay_s = shown.correction.net_delay_s(pair);
     for k in [0, before.omega.len() / 2, before.omega.len() - 1] {
-        // A handful of roundings of numbers up to 360.
+        // A few roundings in numbers up to 360.
         assert!((before.magnitude_db[k] - net_db - after.magnitude_db[k]).abs() < 1e-10);
         let taken = (before.omega[k] * net_delay_s).to_degrees();
         assert!((before.phase_deg[k] - taken - after.phase_deg[k]).abs() < 1e-10);
@@ -88,7 +88,7 @@ fn phase_errors_can_be_read_as_delays() {
     );
 }
 
-/// Chooses an entry of the menu of curves.
+/// Chooses an entry in the curve menu.
 fn choose_of_curves(window: &mut Window, entry: &str) {
     click(window, "View");
     click(window, "Curves");
@@ -139,7 +139,7 @@ fn a_click_in_the_plot_of_errors_rejects_a_model_and_its_zoom_is_that_of_the_bod
     assert_eq!(state(&window).display.frequency.bode.omega_range(), zoomed);
 }
 
-/// Clicks a place once, far enough in time from the click before not to make a double click of it.
+/// Clicks a place once, long enough after the previous click to avoid a double click.
 fn click_once(window: &mut Window, place: Pos2) {
     window.hover_at(place);
     window.run_steps(4);

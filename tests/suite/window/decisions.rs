@@ -1,14 +1,21 @@
-//! Decisions, by hand, and what they give.
+//! Decisions by hand, and their results.
 
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm_words::derivation::derivation;
-use gdcm::gui::commands::command::Command as Action;
 
 use super::views::give;
 use super::*;
 
 #[test]
 fn from_the_example_to_exported_corrections() {
+    fn first(window: &Window) -> f64 {
+        channel_plots(state(window)).figure.plots[0].panels[0]
+            .dots()
+            .next()
+            .unwrap()
+            .y
+    }
+
     let mut window = window();
     choose_condition_10(&mut window);
     assert_eq!(drawn(&window, CurveRole::Nominal).label, "nominal");
@@ -45,13 +52,6 @@ fn from_the_example_to_exported_corrections() {
 
     // LAT → P is held and stays; LON → Q is free: hold it again, free PED → R, and let alpha move that one's dots.
     click(&mut window, "Hold LON → Q");
-    let first = |window: &Window| {
-        channel_plots(state(window)).figure.plots[0].panels[0]
-            .dots()
-            .next()
-            .unwrap()
-            .y
-    };
     let before = first(&window);
     slide(&mut window, "α gains", 12.5);
     settle(&mut window);
@@ -84,8 +84,11 @@ fn from_the_example_to_exported_corrections() {
 
 #[test]
 fn freeing_an_on_axis_entry_moves_its_net_gain_dots_with_alpha() {
+    fn gain(window: &Window) -> f64 {
+        net_gain(window, "NY", "PED")
+    }
+
     let mut window = window();
-    let gain = |window: &Window| net_gain(window, "NY", "PED");
     click(&mut window, "Hold PED → NY");
     let before = gain(&window);
     slide(&mut window, "α gains", 100.0);
@@ -150,15 +153,16 @@ fn at_least_one_model_stays_in_each_bundle() {
 
 #[test]
 fn a_pinned_model_represents_its_bundle() {
-    let mut window = window();
-    click(&mut window, "Use physics model V+10kt as representative");
-    let representative = |window: &Window| {
+    fn representative(window: &Window) -> String {
         state(window)
             .shown()
             .unwrap()
             .representative_name(BundleKind::Physics)
             .to_owned()
-    };
+    }
+
+    let mut window = window();
+    click(&mut window, "Use physics model V+10kt as representative");
     assert_eq!(representative(&window), "V+10kt");
     click(&mut window, "Use physics model V+10kt as representative");
     assert_eq!(representative(&window), "nominal", "the medoid again");

@@ -1,4 +1,4 @@
-//! What a view shows, taken away.
+//! Figures of a view as files and on the clipboard.
 
 use std::fs;
 
@@ -142,11 +142,7 @@ fn a_file_that_is_there_is_asked_about_and_a_name_without_a_format_is_refused() 
 
 #[test]
 fn the_numbers_of_a_view_are_copied_as_csv() {
-    let mut window = window();
-    wait_for_bars(&mut window);
-    click(&mut window, "Save or copy Net gain");
-    window.get_by_label("Copy the numbers").click();
-    let copied = |window: &Window| {
+    fn copied(window: &Window) -> Option<String> {
         window
             .output()
             .platform_output
@@ -156,7 +152,12 @@ fn the_numbers_of_a_view_are_copied_as_csv() {
                 egui::OutputCommand::CopyText(text) => Some(text.clone()),
                 _ => None,
             })
-    };
+    }
+
+    let mut window = window();
+    wait_for_bars(&mut window);
+    click(&mut window, "Save or copy Net gain");
+    window.get_by_label("Copy the numbers").click();
     let mut text = None;
     for _ in 0..4 {
         window.run_steps(1);

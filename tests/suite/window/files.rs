@@ -88,7 +88,7 @@ fn decisions_are_saved_first_and_what_they_kept_waiting_is_opened_then() {
         "and it is open"
     );
     assert_eq!(open_study(&path).unwrap().study.choices, decided);
-    // What waited is done once.
+    // Waiting work is done once.
     click(&mut window, "Keep physics model V+5kt");
     save_as(&mut window, &folder.path().join("other.gdcm-study.json"));
     assert_eq!(state(&window).study_name, "other.gdcm-study.json");
@@ -130,7 +130,7 @@ fn a_study_whose_dataset_is_gone_loses_no_decision_before_the_dataset_is_found()
     assert!(!state(&window).unsaved && state(&window).dataset().conditions().len() == 2);
 }
 
-/// The path of a dataset of two conditions.
+/// Path to a dataset with two conditions.
 pub(super) fn small_dataset() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json")
 }

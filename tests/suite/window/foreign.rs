@@ -1,4 +1,4 @@
-//! What a new user does with files of other programs, by the controls alone: what is silent, or turned, is found by the program.
+//! Files of other programs, imported through the controls alone: the program finds missing units and inverted signs.
 
 use gdcm::gui::commands::assembling::AssemblingCommand;
 use gdcm::gui::commands::file::FileCommand;
@@ -6,7 +6,6 @@ use gdcm::gui::commands::form::FormCommand;
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::records::RecordsCommand;
 use gdcm::gui::state::records::RecordsPage;
-use gdcm_words::convention_doubt::doubt_text;
 
 use super::assembling::{bench, type_into};
 use super::views::{give, show};
@@ -14,6 +13,25 @@ use super::*;
 
 #[test]
 fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_models() {
+    fn doubted(window: &Window) -> Vec<String> {
+        let analysis = state(window).analysis().expect("there is a result");
+        analysis
+            .doubts
+            .iter()
+            .map(|doubt| gdcm_words::convention_doubt::doubt_text(doubt, state(window).dataset()))
+            .collect()
+    }
+
+    fn cost(window: &Window) -> f64 {
+        let pair = pair(window, "NZ", "COL");
+        state(window)
+            .shown()
+            .and_then(|shown| shown.cost[pair])
+            .expect("it has a J")
+            .uncorrected
+            .total()
+    }
+
     let folder = tempfile::tempdir().unwrap();
     let root = folder.path().join("models");
     crate::assembling::foreign_tree(&root);
@@ -28,7 +46,7 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
         bench(window).reading.is_none()
     });
     type_into(&mut window, "Unit of input 1", "%");
-    // What an inch is nobody guesses.
+    // An inch of stick has no known size.
     assert!(window.query_by_label_contains("to complete").is_some());
     type_into(
         &mut window,
@@ -52,29 +70,12 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
     settle(&mut window);
 
     // The sign is found by the program, named before anything else, and turned by its button.
-    let doubted = |window: &Window| -> Vec<String> {
-        let analysis = state(window).analysis().expect("there is a result");
-        analysis
-            .doubts
-            .iter()
-            .map(|doubt| doubt_text(doubt, state(window).dataset()))
-            .collect()
-    };
     let words = doubted(&window);
     assert!(
         words.len() == 1 && words[0].starts_with("COL → NZ differs by half a turn"),
         "{words:?}"
     );
     window.get_by_label("its sign seems to be the other one");
-    let cost = |window: &Window| {
-        let pair = pair(window, "NZ", "COL");
-        state(window)
-            .shown()
-            .and_then(|shown| shown.cost[pair])
-            .expect("it has a J")
-            .uncorrected
-            .total()
-    };
     let before = cost(&window);
     click(&mut window, "Turn NZ");
     assert_eq!(doubted(&window), Vec::<String>::new());
@@ -101,10 +102,9 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
 
 #[test]
 fn a_unit_that_neither_a_record_nor_its_samples_say_is_chosen_in_the_page_of_columns() {
-    let folder = tempfile::tempdir().unwrap();
-    let row = |k: u32| {
+    fn row(k: u32) -> String {
         let at = f64::from(k);
-        // A rate of 40 is no radians in a second; one of 0.4 can be either.
+        // A rate of 40 cannot be in rad/s; 0.4 can be in rad/s or deg/s.
         let rate = 40.0 * (0.2 * at).sin();
         let slow = 0.4 * (0.2 * at).cos();
         format!(
@@ -113,7 +113,9 @@ fn a_unit_that_neither_a_record_nor_its_samples_say_is_chosen_in_the_page_of_col
             50.0 + at.sin(),
             50.0 + at.cos()
         )
-    };
+    }
+
+    let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("flight.csv");
     std::fs::write(
         &path,
@@ -167,8 +169,20 @@ fn show_records(window: &mut Window) {
 
 #[test]
 fn reading_is_told_beside_stop_which_ends_it_and_leaves_what_was_open() {
+    fn row(k: u32) -> String {
+        format!("{:.3},{k},1,2,3,4,5,6,7,8,9\n", 0.02 * f64::from(k))
+    }
+
+    fn rows(window: &Window) -> usize {
+        state(window)
+            .records
+            .conditions
+            .values()
+            .map(|of| of.rows.len())
+            .sum()
+    }
+
     let folder = tempfile::tempdir().unwrap();
-    let row = |k: u32| format!("{:.3},{k},1,2,3,4,5,6,7,8,9\n", 0.02 * f64::from(k));
     let text = "time_s,LON,LAT,PED,COL,P,Q,R,NX,NY,NZ\n".to_owned()
         + &(0..400_000).map(row).collect::<String>();
     let path = folder.path().join("long.csv");
@@ -178,14 +192,6 @@ fn reading_is_told_beside_stop_which_ends_it_and_leaves_what_was_open() {
     wait_until(&mut window, "the records looked for", |window| {
         state(window).records.reading.is_none()
     });
-    let rows = |window: &Window| -> usize {
-        state(window)
-            .records
-            .conditions
-            .values()
-            .map(|of| of.rows.len())
-            .sum()
-    };
     let before = rows(&window);
     window.state_mut().dispatch(RecordsCommand::Add(vec![path]));
     window.step();

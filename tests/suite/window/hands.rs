@@ -1,4 +1,4 @@
-//! What can be asked and taken in the plots and tables: derivations, models in the overview, tables as files.
+//! Derivations, models in the overview, and tables as files, requested in plots and tables.
 
 use gdcm::gui::commands::command::Command as Action;
 use gdcm::gui::commands::command_table::every_command;
@@ -7,8 +7,7 @@ use gdcm::gui::commands::output::OutputCommand;
 use gdcm::gui::commands::selection::SelectionCommand;
 use gdcm::gui::commands::study::StudyCommand;
 use gdcm::gui::state::view::View;
-use gdcm_words::derivation::ExplainTarget;
-use gdcm_words::derivation::derivation;
+use gdcm_words::derivation::{ExplainTarget, derivation};
 
 use super::views::{give, show};
 use super::walk::stays_within;

@@ -15,7 +15,7 @@ fn press(window: &mut Window, modifiers: Modifiers, key: Key) {
     window.run_steps(3);
 }
 
-/// The label of what has the focus; empty where nothing has it.
+/// Label of the focused control; empty without focus.
 fn focused(window: &Window) -> String {
     let found = window
         .root()
@@ -51,6 +51,10 @@ fn the_space_bar_holds_and_frees_the_chosen_response() {
 
 #[test]
 fn alt_and_an_arrow_go_through_the_views_of_the_group_and_leave_the_response() {
+    fn view(window: &Window) -> gdcm::gui::state::view::View {
+        state(window).display.layout.arrangement.view()
+    }
+
     let mut window = window();
     let response = pair(&window, "Q", "PED");
     give(&mut window, SelectionCommand::FocusPair(response));
@@ -61,7 +65,6 @@ fn alt_and_an_arrow_go_through_the_views_of_the_group_and_leave_the_response() {
         .group()
         .views()
         .collect();
-    let view = |window: &Window| state(window).display.layout.arrangement.view();
     assert_eq!(view(&window), views[0]);
     for (key, expected) in [
         (Key::ArrowRight, views[1]),
@@ -99,7 +102,7 @@ fn a_space_in_a_text_decides_nothing() {
         "it goes to the field"
     );
     press(&mut window, Modifiers::NONE, Key::Escape);
-    // A list row that has the focus is what the space bar presses.
+    // The space bar presses the focused list row.
     window.get_by_label_contains("Condition 3: ").focus();
     window.run_steps(2);
     window.key_press(Key::Space);
@@ -148,13 +151,9 @@ fn f6_goes_through_the_parts_of_the_window_and_comes_back_to_where_the_focus_was
 
 #[test]
 fn what_the_keyboard_reaches_is_scrolled_into_view() {
-    let build = |creation: &mut eframe::CreationContext<'static>| {
-        GdcmApp::with(&creation.egui_ctx, example(), Setup::default())
-            .expect("a thread can be started")
-    };
     let mut window = Harness::builder()
         .with_size(vec2(900.0, 560.0))
-        .build_eframe(build);
+        .build_eframe(cold_example);
     settle(&mut window);
     window.get_by_label("Response LON → P").focus();
     for _ in 0..40 {
@@ -172,7 +171,10 @@ fn what_the_keyboard_reaches_is_scrolled_into_view() {
 
 /// The rings drawn in the last frame.
 fn rings(window: &Window) -> Vec<egui::Rect> {
-    let is_ring = |color: Color32, width: f32| width == 2.0 && color == Palette::dark().accent;
+    fn is_ring(color: Color32, width: f32) -> bool {
+        width == 2.0 && color == Palette::dark().accent
+    }
+
     let shapes = window.output().shapes.iter();
     shapes
         .filter_map(|clipped| match &clipped.shape {
@@ -307,6 +309,17 @@ fn a_number_typed_in_its_unit_is_taken_once_it_is_complete() {
 
 #[test]
 fn what_is_typed_in_one_frame_goes_to_the_fields_meant() {
+    fn text(text: &str) -> egui::Event {
+        Event::Text(text.to_owned())
+    }
+
+    fn bounds() -> Option<gdcm_method::correction::Bounds> {
+        Some(GainBounds {
+            lower: 0.7,
+            upper: 1.4,
+        })
+    }
+
     let mut window = window();
     unfold_settings(&mut window, true);
     window
@@ -320,7 +333,6 @@ fn what_is_typed_in_one_frame_goes_to_the_fields_meant() {
         repeat: false,
         modifiers,
     };
-    let text = |text: &str| Event::Text(text.to_owned());
     let tab = || key(Key::Tab, Modifiers::NONE);
     window.input_mut().events.extend([
         text("0"),
@@ -333,12 +345,6 @@ fn what_is_typed_in_one_frame_goes_to_the_fields_meant() {
     window.step();
     window.run_steps(12);
     assert_eq!(focused(&window), "Upper gain bound", "back with Shift");
-    let bounds = || {
-        Some(GainBounds {
-            lower: 0.7,
-            upper: 1.4,
-        })
-    };
     assert_eq!(state(&window).study.settings.gain_bounds, bounds());
     let back = key(Key::Tab, Modifiers::SHIFT);
     window.input_mut().events.extend([

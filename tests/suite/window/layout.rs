@@ -11,13 +11,10 @@ use super::*;
 
 /// The window in a screen of so many points, drawn with so many pixels each.
 fn window_of(size: egui::Vec2, pixels_per_point: f32) -> Window {
-    let build = |creation: &mut eframe::CreationContext<'static>| {
-        GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
-    };
     let builder = Harness::builder()
         .with_size(size)
         .with_pixels_per_point(pixels_per_point);
-    let mut window = builder.build_eframe(build);
+    let mut window = builder.build_eframe(warm_example);
     settle(&mut window);
     window
 }
@@ -168,11 +165,12 @@ fn form(window: &Window, kind: FormKind) -> egui::Rect {
 
 #[test]
 fn the_palette_and_the_page_of_keys_keep_sizes_of_their_own() {
-    let mut window = window();
-    let press = |window: &mut Window, modifiers: Modifiers, key: Key| {
+    fn press(window: &mut Window, modifiers: Modifiers, key: Key) {
         window.key_press_modifiers(modifiers, key);
         window.run_steps(4);
-    };
+    }
+
+    let mut window = window();
     press(&mut window, Modifiers::NONE, Key::F1);
     let keys = form(&window, FormKind::Shortcuts);
     press(&mut window, Modifiers::NONE, Key::Escape);

@@ -21,8 +21,7 @@ fn choose(window: &mut Window, list: &str, choice: &str) {
 
 #[test]
 fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_it_says_nothing() {
-    let mut window = window();
-    let last = |window: &Window, role: CurveRole| {
+    fn last(window: &Window, role: CurveRole) -> f64 {
         let curve = drawn(window, role);
         let known = curve
             .omega
@@ -30,7 +29,9 @@ fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_i
             .zip(curve.magnitude_db.iter())
             .filter(|(_, db)| db.is_finite());
         known.map(|(omega, _)| *omega).next_back().unwrap()
-    };
+    }
+
+    let mut window = window();
     // A little beyond the band of 0.5 to 12 rad/s.
     assert!((last(&window, CurveRole::Corrected) - 20.4).abs() < 1e-6);
     let before = state(&window).display.frequency.bode.omega_range().1;
@@ -67,14 +68,14 @@ fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_i
 
 #[test]
 fn nothing_that_leads_say_makes_the_answer_wider_than_its_panel() {
-    let build = |creation: &mut eframe::CreationContext<'static>| {
-        GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
-    };
+    fn last_cell(window: &Window) -> egui::Rect {
+        window.get_by_label("Response COL → NZ").rect()
+    }
+
     let mut window = Harness::builder()
         .with_size(vec2(1280.0, 720.0))
-        .build_eframe(build);
+        .build_eframe(warm_example);
     settle(&mut window);
-    let last_cell = |window: &Window| window.get_by_label("Response COL → NZ").rect();
     let before = last_cell(&window);
     give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));
     window.get_by_label("Find the cause");
@@ -204,10 +205,7 @@ fn channels_show_signed_delays_within_their_bounds() {
 
 #[test]
 fn the_assessment_is_had_without_the_leads_too() {
-    let mut window = window();
-    choose(&mut window, "Phase correction", "delay or lead");
-    show(&mut window, View::Assessment);
-    let mean = |window: &Window| {
+    fn mean(window: &Window) -> f64 {
         let table = state(window).assessment().unwrap();
         let measuring = state(window).dataset().measuring_pairs();
         let changes = table
@@ -216,7 +214,11 @@ fn the_assessment_is_had_without_the_leads_too() {
             .flat_map(|of| measuring.marked().filter_map(|pair| of.changes[pair]));
         let after: Vec<f64> = changes.map(|change| change.corrected.total()).collect();
         after.iter().sum::<f64>() / after.len() as f64
-    };
+    }
+
+    let mut window = window();
+    choose(&mut window, "Phase correction", "delay or lead");
+    show(&mut window, View::Assessment);
     let with = mean(&window);
     choose(&mut window, "Correction assessed", "scheduled, no leads");
     wait_until(&mut window, "the assessment", |window| {

@@ -1,4 +1,4 @@
-//! What the lists say, and that it can be read.
+//! Texts in the lists, and their legibility.
 
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::commands::selection::SelectionCommand;
@@ -10,18 +10,14 @@ use super::*;
 
 /// The window at its least width.
 fn narrow_window(height: f32) -> Window {
-    let build = |creation: &mut eframe::CreationContext<'static>| {
-        GdcmApp::with(&creation.egui_ctx, example(), Setup::default())
-            .expect("a thread can be started")
-    };
     let mut window = Harness::builder()
         .with_size(vec2(900.0, height))
-        .build_eframe(build);
+        .build_eframe(cold_example);
     settle(&mut window);
     window
 }
 
-/// The texts painted in the last frame whose place is inside `area`, each with its place; none of what a sheet covers there.
+/// Texts painted in the last frame inside `area`, each with its rectangle, without those under a sheet.
 pub(super) fn texts_in(window: &Window, area: egui::Rect) -> Vec<(String, egui::Rect)> {
     let shapes = &window.output().shapes;
     let covers = |clipped: &egui::epaint::ClippedShape| match &clipped.shape {

@@ -7,7 +7,7 @@ use super::records::rows_shown;
 use super::views::{give, show};
 use super::*;
 
-/// The window on a log, in the form that asks of which channels a dataset is to be made.
+/// The window on a log, in the form for the channels of a new dataset.
 fn asked(log: &str, bytes: &[u8]) -> (Window, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join(log), bytes).unwrap();
@@ -46,6 +46,12 @@ fn made(window: &mut Window, name: &str) -> Vec<String> {
 
 #[test]
 fn a_log_of_px4_proposes_its_setpoints_and_rates() {
+    fn has(list: &str, names: &[&str]) -> bool {
+        names
+            .iter()
+            .all(|name| list.split(", ").any(|of| of == *name))
+    }
+
     let (mut window, _folder) = asked(
         "quadrotor.ulg",
         include_bytes!("../../data/logs/quadrotor.ulg"),
@@ -53,11 +59,6 @@ fn a_log_of_px4_proposes_its_setpoints_and_rates() {
     let WantedDataset {
         inputs, outputs, ..
     } = wanted(&window);
-    let has = |list: &str, names: &[&str]| {
-        names
-            .iter()
-            .all(|name| list.split(", ").any(|of| of == *name))
-    };
     assert!(
         has(inputs, &["LAT", "LON", "PED"]) && has(outputs, &["P", "Q", "R", "NX", "NY", "NZ"]),
         "{inputs}; {outputs}"
@@ -114,7 +115,7 @@ fn a_log_of_ardupilot_proposes_outputs_of_its_controller_and_rates_of_its_identi
         notes.iter().any(|note| note.contains("P = SIDD.Gx")),
         "{notes:?}"
     );
-    // What the identification mode adds drives the loop from outside.
+    // The signal added by the identification mode drives the loop from outside.
     let row = &state(&window).records.conditions[&ConditionId(1)].rows[0];
     assert!(
         row.possible_references().contains(&("SIDD.Targ", true)),
@@ -125,6 +126,12 @@ fn a_log_of_ardupilot_proposes_outputs_of_its_controller_and_rates_of_its_identi
 
 #[test]
 fn a_log_of_betaflight_proposes_sums_of_its_controller_and_its_gyroscope() {
+    fn sorted(list: &str) -> Vec<String> {
+        let mut names: Vec<String> = list.split(", ").map(str::to_owned).collect();
+        names.sort();
+        names
+    }
+
     let (mut window, _folder) = asked(
         "two-flights.bbl",
         include_bytes!("../../data/logs/two-flights.bbl"),
@@ -132,11 +139,6 @@ fn a_log_of_betaflight_proposes_sums_of_its_controller_and_its_gyroscope() {
     let WantedDataset {
         inputs, outputs, ..
     } = wanted(&window);
-    let sorted = |list: &str| {
-        let mut names: Vec<String> = list.split(", ").map(str::to_owned).collect();
-        names.sort();
-        names
-    };
     assert_eq!(
         (sorted(inputs), sorted(outputs)),
         (sorted("LAT, LON, PED, COL"), sorted("P, Q, R"))

@@ -59,7 +59,7 @@ use gdcm_study::{Engine, Study};
 
 pub(crate) type Window = Harness<'static, GdcmApp>;
 
-/// Far above what the slowest machine needs: only a hang gets there.
+/// Far above the time on the slowest machine: only a hang reaches it.
 const LIMIT: Duration = Duration::from_secs(900);
 
 const CONDITION_10: &str = "Condition 10: 60 kt, low altitude, high weight";
@@ -95,6 +95,16 @@ fn warm() -> Setup {
 /// The window on a few conditions of the example, its first results there.
 pub(crate) fn few_window() -> Window {
     window_with(Opened::Dataset(crate::FEW.clone()), Setup::default())
+}
+
+/// Opens the example without any results.
+fn cold_example(creation: &mut eframe::CreationContext<'static>) -> GdcmApp {
+    GdcmApp::with(&creation.egui_ctx, example(), Setup::default()).expect("a thread can be started")
+}
+
+/// Opens the example with an engine that has analysed it.
+fn warm_example(creation: &mut eframe::CreationContext<'static>) -> GdcmApp {
+    GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
 }
 
 fn window_with(opened: Opened, setup: Setup) -> Window {
@@ -138,7 +148,7 @@ pub(crate) fn settle(window: &mut Window) {
     window.run_steps(2);
 }
 
-/// Draws frames until the values have their error bars, which come after what [`settle`] waits for.
+/// Draws frames until the values have their error bars, which [`settle`] does not wait for.
 pub(crate) fn wait_for_bars(window: &mut Window) {
     wait_until(window, "the error bars", |window| {
         state(window).uncertainty().is_some()
@@ -209,7 +219,7 @@ pub(crate) fn fill(window: &mut Window, field: &str, path: &Path) {
     window.run_steps(2);
 }
 
-/// Exports what the open form says to a file, and what is told of it.
+/// Exports from the open form to a file, and returns the message.
 fn exported(window: &mut Window, path: &Path) -> Notice {
     window.get_by_label("Path of the export").focus();
     window.key_press_modifiers(Modifiers::COMMAND, Key::A);

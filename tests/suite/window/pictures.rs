@@ -32,13 +32,13 @@ struct Format {
     scale: usize,
 }
 
-/// What tests compare.
+/// Size of the compared pictures.
 const COMPARED: Format = Format {
     size: [1280, 720],
     folder: "tests/data/pictures",
     scale: 2,
 };
-/// What the pages show: as large as the renderer allows.
+/// Size of the pictures in the documentation: as large as the renderer allows.
 const SHOWN: Format = Format {
     size: [1280, 720],
     folder: "assets/screenshots",
@@ -58,9 +58,9 @@ impl Format {
     }
 }
 
-/// Difference of a channel from which a pixel is another: below it lie other roundings of the last digit of a curve.
+/// Channel difference from which a pixel counts as different: rounding in the last digit moves a curve by less.
 const OTHER: u8 = 40;
-/// Part of the pixels that may be others: a digit or two. A line of text or a curve that is missing is more.
+/// Share of pixels that may differ: a digit or two. A missing line of text or curve is more.
 const MOST_OTHERS: f64 = 0.002;
 
 /// The textures of a window, as the frames before have left them.
@@ -97,8 +97,12 @@ fn colour(of: egui::Color32) -> Color {
     Color::from_rgba_premultiplied(r, g, b, a)
 }
 
-/// The pixels of what the window shows, red, green and blue, averaged over squares of the format's scale.
+/// Pixels of the window, red, green and blue, averaged over squares of the format's scale.
 fn picture(window: &Window, textures: &Textures, format: Format) -> Vec<u8> {
+    fn corner(at: Pos2) -> [u32; 2] {
+        [at.x.round().max(0.0) as u32, at.y.round().max(0.0) as u32]
+    }
+
     let [width, height] = format.size;
     let scale = format.scale;
     let mut renderer = SoftwareRenderer::default();
@@ -130,7 +134,6 @@ fn picture(window: &Window, textures: &Textures, format: Format) -> Vec<u8> {
         let Primitive::Mesh(mesh) = of.primitive else {
             continue;
         };
-        let corner = |at: Pos2| [at.x.round().max(0.0) as u32, at.y.round().max(0.0) as u32];
         let [min_x, min_y] = corner(of.clip_rect.min);
         let [max_x, max_y] = corner(of.clip_rect.max);
         let vertices: Vec<Vertex> = mesh
@@ -197,7 +200,7 @@ fn read(name: &str, format: Format) -> Vec<u8> {
     pixels
 }
 
-/// What is to be said of a picture that looks otherwise than the one kept; in a run that makes them anew, it is kept.
+/// Returns the difference between a picture and the kept picture; a run that renews the pictures keeps it instead.
 fn miss(name: &str, window: &Window, textures: &Textures, format: Format) -> Option<String> {
     let found = picture(window, textures, format);
     if std::env::var("GDCM_PICTURES").is_ok_and(|what| what == "write") {
@@ -218,14 +221,11 @@ fn others(one: &[u8], other: &[u8]) -> f64 {
 }
 
 fn pictured_window(textures: &Textures, format: Format) -> Window {
-    let build = |creation: &mut eframe::CreationContext<'static>| {
-        GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
-    };
     let size = vec2(format.size[0] as f32, format.size[1] as f32);
     let mut window = Harness::builder()
         .with_size(size)
         .renderer(textures.clone())
-        .build_eframe(build);
+        .build_eframe(warm_example);
     settle(&mut window);
     window
 }
@@ -262,7 +262,7 @@ fn every_view_looks_as_it_did_in_both_themes() {
                     .is_some_and(|of| of.rows.len() == 9),
                 _ => true,
             });
-            // What is under way is told in the status bar.
+            // Running work is shown in the status bar.
             wait_until(&mut window, "rest", |window| {
                 !state(window).results.background.is_busy()
             });

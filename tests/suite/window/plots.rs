@@ -13,7 +13,7 @@ use super::*;
 /// A point of the nominal model's curve.
 pub(super) fn place_on_nominal(window: &Window) -> Pos2 {
     let nominal = drawn(window, CurveRole::Nominal);
-    // At 2 rad/s the nominal model stands 3 dB above the bundle: nothing else is near.
+    // At 2 rad/s the nominal model is 3 dB above the bundle: nothing else is near.
     let at = nominal.omega.iter().position(|&omega| omega > 2.0).unwrap();
     let view = &state(window).display.frequency.bode;
     view.screen_position(Pane::Magnitude, nominal.omega[at], nominal.magnitude_db[at])
@@ -91,7 +91,7 @@ pub(super) fn drag_along(window: &mut Window, from: Pos2, to: Pos2) {
     }
 }
 
-/// Where a frequency stands in the magnitude plot, near its lower edge.
+/// Position of a frequency in the magnitude plot, near its lower edge.
 fn place_of(window: &Window, omega: f64) -> Pos2 {
     let view = &state(window).display.frequency.bode;
     let frame = *view.transform(Pane::Magnitude).unwrap().frame();
@@ -157,6 +157,21 @@ fn a_dragged_end_of_the_band_stays_under_the_pointer_and_the_view_follows_when_i
 
 #[test]
 fn a_zoom_outlives_whatever_is_computed_and_whatever_is_shown() {
+    fn ranges(
+        window: &Window,
+    ) -> (
+        (f64, f64),
+        gdcm_plot::figure::Range,
+        gdcm_plot::figure::Range,
+    ) {
+        let view = &state(window).display.frequency.bode;
+        (
+            view.omega_range(),
+            view.value_range(Pane::Magnitude),
+            view.value_range(Pane::Phase),
+        )
+    }
+
     let mut window = window();
     choose_condition_10(&mut window);
     let area = *state(&window)
@@ -188,14 +203,6 @@ fn a_zoom_outlives_whatever_is_computed_and_whatever_is_shown() {
     }
     window.event(button(false));
     settle(&mut window);
-    let ranges = |window: &Window| {
-        let view = &state(window).display.frequency.bode;
-        (
-            view.omega_range(),
-            view.value_range(Pane::Magnitude),
-            view.value_range(Pane::Phase),
-        )
-    };
     let zoomed = ranges(&window);
     assert!(zoomed.0.0 > 0.5 && zoomed.0.1 < 12.0, "{zoomed:?}");
     click(&mut window, "Keep physics model V+10kt");
@@ -270,7 +277,7 @@ fn an_idle_window_draws_no_frames() {
     assert_asks_for_no_frame(&mut window, "Bode with the pointer on a curve");
 }
 
-/// Draws a few frames without input, none of which may ask for another one.
+/// Draws a few frames without input, which must not request further frames.
 fn assert_asks_for_no_frame(window: &mut Window, what: &str) {
     for _ in 0..5 {
         window.run_steps(1);
@@ -330,7 +337,7 @@ fn assert_little_is_hidden(window: &Window, what: &str) {
     );
 }
 
-/// How many triangles of the frame drawn last lie outside what they are clipped to, and how many there are.
+/// Count of triangles in the last frame outside their clip rectangles, and count of all triangles.
 fn hidden_triangles(window: &Window) -> (usize, usize) {
     let output = window.output();
     let mut hidden = 0;
@@ -374,7 +381,7 @@ fn pointing_at_plots_starts_no_analysis() {
     assert_eq!(same, Some(true));
 }
 
-/// What Airspeeds has to show of magnitude and phase: the values of its curves within the band.
+/// Expected values of the curves in Airspeeds within the band, as magnitude and phase.
 fn across_values(window: &Window) -> [Range; 2] {
     let state = state(window);
     let made_of = (state.dataset(), state.analysis());
@@ -492,7 +499,7 @@ fn the_label_of_airspeeds_lies_inside_its_plot() {
         .transform(Pane::Magnitude)
         .unwrap()
         .frame();
-    // That of the heading stands above it.
+    // The heading's copy is above it.
     let labels = texts_in(&window, frame.expand(30.0))
         .into_iter()
         .filter(|(text, _)| text == "LON → Q");

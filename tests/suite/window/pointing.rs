@@ -1,4 +1,4 @@
-//! What pointing says: in the status line over plots, in small tooltips over lists.
+//! Texts under the pointer: in the status line over plots, in small tooltips over lists.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use super::*;
 
 /// Rests the pointer at a place for longer than any tooltip waits.
 fn rest_at(window: &mut Window, at: Pos2) {
-    // From elsewhere: no tooltip of what was there before is in the way.
+    // The pointer comes from elsewhere, so that no earlier tooltip is in the way.
     window.hover_at(pos2(3.0, 3.0));
     window.run_steps(3);
     window.hover_at(at);
@@ -30,7 +30,7 @@ fn tooltips(window: &Window) -> Vec<egui::Rect> {
         .collect()
 }
 
-/// Asserts that nothing opens where something of a plot is pointed at, and that the status line says what it is.
+/// Asserts that pointing at a mark of a plot opens nothing, and that the status line describes the mark.
 fn assert_told(window: &mut Window, what: &str, at: Pos2) {
     rest_at(window, at);
     let told = state(window).display.selection.told.clone();
@@ -45,6 +45,13 @@ fn assert_told(window: &mut Window, what: &str, at: Pos2) {
 
 #[test]
 fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
+    fn dot(window: &Window, view: View) -> egui::Pos2 {
+        let id = MarkId::Condition(ConditionId(3));
+        state(window).display.figures[&view]
+            .screen_position(0, &id)
+            .expect("its dot is drawn")
+    }
+
     let mut window = window();
     choose_condition_10(&mut window);
     let nominal = super::plots::place_on_nominal(&window);
@@ -55,12 +62,6 @@ fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
         "{told}"
     );
 
-    let dot = |window: &Window, view: View| {
-        let id = MarkId::Condition(ConditionId(3));
-        state(window).display.figures[&view]
-            .screen_position(0, &id)
-            .expect("its dot is drawn")
-    };
     let net_gain = dot(&window, View::NetGain);
     assert_told(&mut window, "Net gain", net_gain);
     assert!(
@@ -123,12 +124,13 @@ fn marked_frequencies_are_named_over_the_plot_and_not_over_its_curves() {
 
 /// In how many lines the texts of the tooltip stand that opens at a place.
 fn lines_of_tooltip(window: &mut Window, at: Pos2) -> usize {
-    let labels = |window: &Window| -> BTreeSet<String> {
+    fn labels(window: &Window) -> BTreeSet<String> {
         let nodes = window.query_all_by_role(Role::Label);
         nodes
             .map(|node| format!("{:?} {}", node.accesskit_node().label(), node.rect()))
             .collect()
-    };
+    }
+
     window.hover_at(pos2(3.0, 3.0));
     window.run_steps(3);
     let before = labels(window);
@@ -137,7 +139,7 @@ fn lines_of_tooltip(window: &mut Window, at: Pos2) -> usize {
     let [place] = open[..] else {
         panic!("one tooltip: {open:?}")
     };
-    // What lies under it was there before.
+    // The marks under it were there before.
     let is_new =
         |label: &Option<String>, rect: egui::Rect| !before.contains(&format!("{label:?} {rect}"));
     let nodes = window.query_all_by_role(Role::Label);
@@ -152,15 +154,18 @@ fn lines_of_tooltip(window: &mut Window, at: Pos2) -> usize {
 
 #[test]
 fn a_tooltip_has_a_name_and_four_rows_at_most() {
+    fn place(window: &Window, label: &str) -> egui::Rect {
+        window.get_by_label(label).rect()
+    }
+
     let mut window = window();
     choose_condition_10(&mut window);
-    // A model that has everything that can be said of one: trim, ratio, distance, and why it is rejected.
+    // A model with every entry: trim, ratio, distance, and the reason for its rejection.
     let reject = gdcm_study::Edit::RejectBecause {
         model: ModelId::new(ConditionId(10), BundleKind::Physics, "V+10kt"),
         reason: "a step near this trim".to_owned(),
     };
     give(&mut window, reject);
-    let place = |window: &Window, label: &str| window.get_by_label(label).rect();
     let model = place(&window, "physics model V+10kt");
     let lines = lines_of_tooltip(&mut window, pos2(model.left() + 60.0, model.center().y));
     assert!((3..=5).contains(&lines), "{lines} lines about a model");
@@ -203,9 +208,7 @@ fn what_a_tooltip_does_not_say_is_behind_the_question() {
 
 #[test]
 fn the_cell_under_the_pointer_keeps_how_sure_its_gain_is() {
-    let mut window = window();
-    wait_for_bars(&mut window);
-    let bars = |window: &Window| {
+    fn bars(window: &Window) -> usize {
         let cell = window.get_by_label("Response LON → Q").rect();
         let texts = window
             .output()
@@ -218,7 +221,10 @@ fn the_cell_under_the_pointer_keeps_how_sure_its_gain_is() {
                 _ => None,
             });
         texts.filter(|text| text.starts_with('±')).count()
-    };
+    }
+
+    let mut window = window();
+    wait_for_bars(&mut window);
     window.run_steps(3);
     let before = bars(&window);
     assert_eq!(before, 2, "of the gain and of the delay");

@@ -1,4 +1,4 @@
-//! What is said of identified models in the Records view: marks at their places, and buttons that act.
+//! Cautions about identified models in the Records view: marks at their places, and buttons with remedies.
 
 use std::fs;
 
@@ -15,10 +15,7 @@ const OF: ConditionId = ConditionId(7);
 /// The window on four flights of which the last is held out and was flown with outputs of another size; the band reaches far beyond
 /// the sweeps.
 fn doubtful() -> (Window, tempfile::TempDir) {
-    let folder = tempfile::tempdir().unwrap();
-    let path = late_dataset(folder.path());
-    let last = folder.path().join("flight_3.csv");
-    let larger = |line: &str| {
+    fn larger(line: &str) -> String {
         let cells = line
             .split(',')
             .enumerate()
@@ -27,7 +24,19 @@ fn doubtful() -> (Window, tempfile::TempDir) {
                 _ => cell.to_owned(),
             });
         cells.collect::<Vec<_>>().join(",") + "\n"
-    };
+    }
+
+    fn records(window: &Window) -> usize {
+        state(window)
+            .records
+            .conditions
+            .get(&OF)
+            .map_or(0, |of| of.rows.len())
+    }
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = late_dataset(folder.path());
+    let last = folder.path().join("flight_3.csv");
     fs::write(
         &last,
         fs::read_to_string(&last)
@@ -43,13 +52,6 @@ fn doubtful() -> (Window, tempfile::TempDir) {
     let mut window = window();
     open_by_path(&mut window, &path);
     show(&mut window, View::Records);
-    let records = |window: &Window| {
-        state(window)
-            .records
-            .conditions
-            .get(&OF)
-            .map_or(0, |of| of.rows.len())
-    };
     wait_until(&mut window, "the records", |window| records(window) == 4);
     window.get_by_label("Identify").click();
     wait_until(&mut window, "the models", |window| {
@@ -59,7 +61,7 @@ fn doubtful() -> (Window, tempfile::TempDir) {
     (window, folder)
 }
 
-/// Presses a button that the list of records may have scrolled out of sight.
+/// Presses a button that the record list may have scrolled out of sight.
 fn press(window: &mut Window, label: &str) {
     window.get_by_label(label).click_accesskit();
     window.run_steps(3);
@@ -83,7 +85,7 @@ fn cautions_stand_as_marks_at_their_places_and_their_buttons_act() {
     // At the record that is not predicted, and at no other.
     window.get_by_label("Cautions of flight 3");
     assert!(window.query_by_label("Cautions of flight 1").is_none());
-    // Beyond what the sweeps show.
+    // Beyond the band of the sweeps.
     click(&mut window, "Page Response");
     window.get_by_label_contains("⚠ shows nothing");
     press(&mut window, "Fit flight 3 too");

@@ -28,7 +28,7 @@ use crate::made_up::{Flight, Gusts, stable_aircraft, tries};
 
 const CONDITION_10_ID: ConditionId = ConditionId(10);
 
-/// The window on the records of condition 10 of the example.
+/// The window on the records at condition 10 in the example.
 fn records_window() -> Window {
     let mut window = window();
     click(&mut window, CONDITION_10);
@@ -158,7 +158,7 @@ fn all_conditions_are_identified_one_after_the_other_and_stand_in_a_table() {
                 .get(&id)
                 .is_some_and(|of| !of.rows.is_empty())
         });
-        // A search of little: what is looked at is that it comes to its end.
+        // A small search: only its end matters here.
         if window.query_by_label("Identification: orders").is_none() {
             click(&mut window, "Advanced");
         }
@@ -221,15 +221,16 @@ fn all_conditions_are_identified_one_after_the_other_and_stand_in_a_table() {
 
 #[test]
 fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_place() {
-    let mut window = records_window();
-    let part = |window: &Window, index: usize| {
+    fn part(window: &Window, index: usize) -> (Option<[f64; 2]>, bool, usize) {
         let row = &state(window).records.conditions[&CONDITION_10_ID].rows[index];
         (
             row.table.part_s,
             row.used,
             row.flight.as_ref().map_or(0, |flight| flight.time_s.len()),
         )
-    };
+    }
+
+    let mut window = records_window();
     assert_eq!(part(&window, 0), (None, true, 3001));
     type_into(&mut window, "Part of the record", "5 25");
     assert_eq!(
@@ -266,7 +267,7 @@ fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_p
         (rows(&window), part(&window, 1).0),
         (10, Some([first, last]))
     );
-    // What is searched is typed too, and what cannot be is refused.
+    // The search space is typed too, and impossible values are refused.
     click(&mut window, "Advanced");
     type_into(&mut window, "Identification: orders", "8 10");
     assert_eq!(
@@ -286,9 +287,12 @@ fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_p
 
 #[test]
 fn records_are_chosen_held_out_and_left_out_and_an_identification_is_stopped() {
+    fn chosen(window: &Window) -> usize {
+        state(window).records.conditions[&CONDITION_10_ID].chosen
+    }
+
     let mut window = records_window();
     click(&mut window, "Record cond10_sweep_LON_1");
-    let chosen = |window: &Window| state(window).records.conditions[&CONDITION_10_ID].chosen;
     assert_eq!(
         state(&window).records.conditions[&CONDITION_10_ID].rows[chosen(&window)]
             .table
@@ -380,13 +384,14 @@ fn the_records_that_a_dataset_names_are_read_out_of_their_archive() {
 
 #[test]
 fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_is_told() {
-    let folder = tempfile::tempdir().unwrap();
-    let text = |columns: &str| {
+    fn text(columns: &str) -> String {
         let rows: String = (0..40)
             .map(|k| format!("{},{k},1,2,3,4,5,6,7,8,{}\n", 0.02 * f64::from(k), k % 3))
             .collect();
         format!("{columns}\n{rows}")
-    };
+    }
+
+    let folder = tempfile::tempdir().unwrap();
     let columns = "time_s,LON,LAT,PED,COL,P,Q,R,NX,NY,NZ";
     std::fs::write(folder.path().join("cond03_sweep_LON_9.csv"), text(columns)).unwrap();
     std::fs::write(
@@ -517,8 +522,11 @@ fn edits_of_records_are_undone_and_redone_in_order_with_decisions_about_the_stud
 
 #[test]
 fn the_record_that_a_part_was_of_is_used_again_once_its_last_part_is_gone_unless_it_was_left_out() {
+    fn used(window: &Window) -> bool {
+        state(window).records.conditions[&CONDITION_10_ID].rows[0].used
+    }
+
     let mut window = records_window();
-    let used = |window: &Window| state(window).records.conditions[&CONDITION_10_ID].rows[0].used;
     type_into(&mut window, "Part of the record", "5 25");
     type_into(&mut window, "Part of the record", "30 50");
     assert!(!used(&window));
@@ -541,14 +549,15 @@ fn the_record_that_a_part_was_of_is_used_again_once_its_last_part_is_gone_unless
 #[test]
 fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_refused_with_the_span()
 {
-    let folder = tempfile::tempdir().unwrap();
-    let row = |k: u32| {
+    fn row(k: u32) -> String {
         let at = 42.3 + 0.02 * f64::from(k);
         format!(
             "{at:.2},{0:.3},{0:.3},{0:.3},{0:.3},1,2,3,4,5,{0:.4}\n",
             (0.1 * f64::from(k)).sin() * 30.0
         )
-    };
+    }
+
+    let folder = tempfile::tempdir().unwrap();
     let text = "time_s,LON [%],LAT [%],PED [%],COL [%],P [deg/s],Q [deg/s],R [deg/s],NX [m/s2],NY [m/s2],NZ [m/s2]\n"
         .to_owned()
         + &(0..=1950).map(row).collect::<String>();
@@ -588,7 +597,7 @@ fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_ref
     );
 }
 
-/// Records of conditions that have used some, and how many of these conditions there are.
+/// Records at conditions with used records, and the count of these conditions.
 fn used_rows(window: &Window) -> (usize, usize) {
     let used = state(window)
         .records
@@ -684,7 +693,7 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
     assert_eq!(state(&window).study.taken_models().count(), 11);
 }
 
-/// A record of the example's channels whose file does not say units, of samples that leave most of them open.
+/// A record of the example's channels without units, with samples that leave most units ambiguous.
 fn without_units(phase: f64) -> String {
     let row = |k: u32| {
         let at = 0.02 * f64::from(k);
@@ -702,6 +711,24 @@ fn without_units(phase: f64) -> String {
 
 #[test]
 fn units_that_no_file_says_are_asked_once_for_the_records_of_all_conditions() {
+    fn open(window: &Window) -> Option<(usize, usize)> {
+        state(window)
+            .records
+            .open_units()
+            .map(|open| (open.records, open.conditions))
+    }
+
+    fn factor(window: &Window, id: i64, output: usize) -> f64 {
+        let rows = &state(window).records.conditions[&ConditionId(id)].rows;
+        rows.iter()
+            .find(|row| row.table.name.ends_with("_flight"))
+            .unwrap()
+            .layout
+            .outputs[output]
+            .unwrap()
+            .factor
+    }
+
     let folder = tempfile::tempdir().unwrap();
     for (file, phase) in [
         ("cond05_flight.csv", 0.3),
@@ -716,12 +743,6 @@ fn units_that_no_file_says_are_asked_once_for_the_records_of_all_conditions() {
         RecordsCommand::Add(vec![folder.path().to_owned()]),
     );
     wait_until(&mut window, "the files", |window| rows(window) == 10);
-    let open = |window: &Window| {
-        state(window)
-            .records
-            .open_units()
-            .map(|open| (open.records, open.conditions))
-    };
     assert_eq!(open(&window), Some((3, 3)));
     let channels: Vec<String> = state(&window)
         .records
@@ -734,20 +755,10 @@ fn units_that_no_file_says_are_asked_once_for_the_records_of_all_conditions() {
     assert_eq!(channels, ["P", "Q", "R", "NX", "NY", "NZ"]);
     click(&mut window, "Take the dataset's units");
     assert_eq!(open(&window), None);
-    let factor = |window: &Window, id: i64, output: usize| {
-        let rows = &state(window).records.conditions[&ConditionId(id)].rows;
-        rows.iter()
-            .find(|row| row.table.name.ends_with("_flight"))
-            .unwrap()
-            .layout
-            .outputs[output]
-            .unwrap()
-            .factor
-    };
     assert_eq!([5, 8, 10].map(|id| factor(&window, id, 0)), [1.0; 3]);
     step(&mut window, UNDO);
     assert_eq!(open(&window), Some((3, 3)));
-    // In another unit: what is said of the columns of one record is said of all that were added.
+    // In another unit: a declaration about the columns of a record applies to all added records.
     click(&mut window, "Say others…");
     assert_eq!(
         (state(&window).condition().id(), state(&window).records.page),
@@ -786,6 +797,26 @@ fn units_that_no_file_says_are_asked_once_for_the_records_of_all_conditions() {
 
 #[test]
 fn a_record_is_added_once_a_changed_file_takes_its_place_and_another_of_its_name_gets_a_number() {
+    fn add(window: &mut Window, path: &Path) -> Vec<String> {
+        give(window, RecordsCommand::Add(vec![path.to_owned()]));
+        wait_until(window, "the file", |window| {
+            state(window).records.reading.is_none()
+        });
+        let rows = &state(window).records.conditions[&CONDITION_10_ID].rows;
+        rows[9..]
+            .iter()
+            .map(|row| row.table.name.clone())
+            .collect::<Vec<_>>()
+    }
+
+    fn sha256(window: &Window, at: usize) -> String {
+        state(window).records.conditions[&CONDITION_10_ID].rows[at]
+            .table
+            .source
+            .sha256
+            .clone()
+    }
+
     let folder = tempfile::tempdir().unwrap();
     let path = |day: &str| {
         std::fs::create_dir_all(folder.path().join(day)).unwrap();
@@ -796,17 +827,6 @@ fn a_record_is_added_once_a_changed_file_takes_its_place_and_another_of_its_name
     std::fs::write(&first, without_units(0.3)).unwrap();
     std::fs::write(&second, without_units(0.7)).unwrap();
     let mut window = records_window();
-    let add = |window: &mut Window, path: &Path| {
-        give(window, RecordsCommand::Add(vec![path.to_owned()]));
-        wait_until(window, "the file", |window| {
-            state(window).records.reading.is_none()
-        });
-        let rows = &state(window).records.conditions[&CONDITION_10_ID].rows;
-        rows[9..]
-            .iter()
-            .map(|row| row.table.name.clone())
-            .collect::<Vec<_>>()
-    };
     assert_eq!(add(&mut window, &first), ["cond10_flight"]);
     let steps = state(&window).history.undo_label().map(str::to_owned);
     assert_eq!(steps.as_deref(), Some("add 1 record"));
@@ -820,13 +840,6 @@ fn a_record_is_added_once_a_changed_file_takes_its_place_and_another_of_its_name
         add(&mut window, &second),
         ["cond10_flight", "cond10_flight (2)"]
     );
-    let sha256 = |window: &Window, at: usize| {
-        state(window).records.conditions[&CONDITION_10_ID].rows[at]
-            .table
-            .source
-            .sha256
-            .clone()
-    };
     let before = sha256(&window, 9);
     std::fs::write(&first, without_units(1.1)).unwrap();
     assert_eq!(
@@ -844,6 +857,19 @@ fn a_record_is_added_once_a_changed_file_takes_its_place_and_another_of_its_name
 
 #[test]
 fn a_condition_without_identified_models_offers_to_identify_them_from_records_in_every_view() {
+    fn failure(window: &Window) -> Option<&str> {
+        state(window)
+            .outcome()
+            .and_then(|of| of.as_ref().err())
+            .map(|why| why.code())
+    }
+
+    fn found(window: &Window) -> bool {
+        state(window).records.conditions[&ConditionId(7)]
+            .identification()
+            .is_some()
+    }
+
     let folder = tempfile::tempdir().unwrap();
     let path = late_dataset(folder.path());
     let mut dataset: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
@@ -853,12 +879,6 @@ fn a_condition_without_identified_models_offers_to_identify_them_from_records_in
     std::fs::write(&path, dataset.to_string()).unwrap();
     let mut window = window();
     open_by_path(&mut window, &path);
-    let failure = |window: &Window| {
-        state(window)
-            .outcome()
-            .and_then(|of| of.as_ref().err())
-            .map(|why| why.code())
-    };
     wait_until(&mut window, "that there is no reference", |window| {
         failure(window) == Some("no-reference")
     });
@@ -882,11 +902,6 @@ fn a_condition_without_identified_models_offers_to_identify_them_from_records_in
     );
     wait_until(&mut window, "its records", |window| rows_shown(window) == 4);
     window.get_by_label("Identify").click();
-    let found = |window: &Window| {
-        state(window).records.conditions[&ConditionId(7)]
-            .identification()
-            .is_some()
-    };
     wait_until(&mut window, "the models", found);
     click(&mut window, "Use these models");
     click(&mut window, "The refined models");
@@ -903,6 +918,13 @@ fn a_condition_without_identified_models_offers_to_identify_them_from_records_in
 /// A dataset of which condition 7 has a known aircraft for its physics model and four flights of it for records, in all of which Q is
 /// logged three samples of 40 ms late; the band reaches far beyond the sweeps, which end at 8 rad/s.
 pub(crate) fn late_dataset(folder: &Path) -> PathBuf {
+    fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+        matrix
+            .row_iter()
+            .map(|row| row.iter().copied().collect())
+            .collect()
+    }
+
     let aircraft = stable_aircraft();
     let mut entries = Vec::new();
     for (number, record) in Flight::of(aircraft.clone(), Gusts::light())
@@ -928,12 +950,6 @@ pub(crate) fn late_dataset(folder: &Path) -> PathBuf {
         std::fs::write(folder.join(&file), format!("time_s,LON,LAT,P,Q\n{rows}")).unwrap();
         entries.push(json!({"name": format!("flight {number}"), "file": file}));
     }
-    let rows = |matrix: &DMatrix<f64>| -> Vec<Vec<f64>> {
-        matrix
-            .row_iter()
-            .map(|row| row.iter().copied().collect())
-            .collect()
-    };
     let mut dataset: Value =
         serde_json::from_str(include_str!("../../data/small-dataset.json")).unwrap();
     dataset["frequency_band"]["max"] = json!(24.0);
@@ -1149,7 +1165,7 @@ pub(super) fn rows_shown(window: &Window) -> usize {
         .map_or(0, |records| records.rows.len())
 }
 
-/// A window that makes a dataset of two records in a folder, of these channels.
+/// A window that makes a dataset from two records in a folder, with these channels.
 fn making_a_dataset(folder: &Path, inputs: &str, outputs: &str) -> Window {
     let mut window = window();
     show(&mut window, View::Records);
@@ -1163,8 +1179,7 @@ fn making_a_dataset(folder: &Path, inputs: &str, outputs: &str) -> Window {
 
 #[test]
 fn a_record_that_a_dataset_of_records_leaves_out_is_named_with_the_reason() {
-    let folder = tempfile::tempdir().unwrap();
-    let rows = |step_s: f64| {
+    fn rows(step_s: f64) -> String {
         let row = |k: u32| {
             format!(
                 "{},{},{}\n",
@@ -1174,7 +1189,9 @@ fn a_record_that_a_dataset_of_records_leaves_out_is_named_with_the_reason() {
             )
         };
         (0..500).map(row).collect::<String>()
-    };
+    }
+
+    let folder = tempfile::tempdir().unwrap();
     for (file, step_s) in [("good.csv", 0.02), ("slow.csv", 20.0)] {
         std::fs::write(
             folder.path().join(file),
@@ -1197,10 +1214,30 @@ fn a_record_that_a_dataset_of_records_leaves_out_is_named_with_the_reason() {
 
 #[test]
 fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
-    let folder = tempfile::tempdir().unwrap();
-    let line = |k: u32, step_s: f64, of: fn(f64) -> f64| {
+    fn line(k: u32, step_s: f64, of: fn(f64) -> f64) -> String {
         format!("{},{}\n", step_s * f64::from(k), of(f64::from(k)))
-    };
+    }
+
+    fn problems(window: &Window) -> String {
+        state(window).records.wanted.problems.join("\n")
+    }
+
+    fn rate_hz(window: &Window) -> f64 {
+        let row = &state(window).records.conditions[&ConditionId(1)].rows[0];
+        row.flight
+            .as_ref()
+            .map_or(0.0, |flight| 1.0 / (flight.time_s[1] - flight.time_s[0]))
+    }
+
+    fn of_band(end: f64) -> f64 {
+        (20.0 * 4.0 / 3.0 * end / std::f64::consts::TAU).min(50.0)
+    }
+
+    fn is_at(window: &Window, end: f64) -> bool {
+        (rate_hz(window) / of_band(end) - 1.0).abs() < 1e-6
+    }
+
+    let folder = tempfile::tempdir().unwrap();
     let stick = (0..2000)
         .map(|k| line(k, 0.01, |k| (0.05 * k).sin()))
         .collect::<String>();
@@ -1218,7 +1255,6 @@ fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
     )
     .unwrap();
     let mut window = making_a_dataset(folder.path(), "M=stick", "q [rad/s]=rate");
-    let problems = |window: &Window| state(window).records.wanted.problems.join("\n");
     wait_until(&mut window, "the dataset", |window| {
         assert_eq!(problems(window), "");
         state(window).dataset().inputs()[0].name == "M"
@@ -1232,14 +1268,6 @@ fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
         row.problems
     );
     // They are on the clock that the band takes which is identified over: 20 4/3 of its end over 2 pi, as far as the rate has 50 Hz.
-    let rate_hz = |window: &Window| {
-        let row = &state(window).records.conditions[&ConditionId(1)].rows[0];
-        row.flight
-            .as_ref()
-            .map_or(0.0, |flight| 1.0 / (flight.time_s[1] - flight.time_s[0]))
-    };
-    let of_band = |end: f64| (20.0 * 4.0 / 3.0 * end / std::f64::consts::TAU).min(50.0);
-    let is_at = |window: &Window, end: f64| (rate_hz(window) / of_band(end) - 1.0).abs() < 1e-6;
     let of_study = state(&window).study.settings.band.max();
     assert!(is_at(&window, of_study), "{} Hz", rate_hz(&window));
     give(&mut window, RecordsCommand::SetBand(Some([0.5, 3.0])));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::*;
 
-/// Keeps what is not saved in a directory of its own, soon.
+/// Keeps unsaved decisions in a directory of its own after a short delay.
 fn setup(directory: &Path) -> Setup {
     Setup {
         directory: Some(directory.to_owned()),
@@ -35,7 +35,7 @@ fn with_decisions(opened: Opened, directory: &Path) -> Window {
     window
 }
 
-/// The window that is opened next, once it offers what was lost.
+/// The next window, once it offers the lost decisions.
 fn next_window(directory: &Path) -> Window {
     // The thread of a window that is gone may hold its file for a moment more.
     let limit = Instant::now() + LIMIT;

@@ -130,7 +130,7 @@ fn a_click_on_a_mark_is_of_that_model() {
     // Without leads the corrected models' marks lie on the physics models'.
     let role = RequirementRole::Identified;
     let of_role = |of: &&BandwidthFinding| of.pair == p_lat && of.role == role;
-    // The one that lies farthest from all other marks: nothing hides it.
+    // The mark farthest from all other marks: nothing hides it.
     let places = |of: &BandwidthFinding| gdcm_plot::figure::requirements::bandwidth_place(of);
     let apart = |of: &BandwidthFinding| -> f64 {
         let Some([x, y]) = places(of) else {
@@ -244,6 +244,14 @@ fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
 
 #[test]
 fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
+    fn answers(window: &mut Window) -> Arc<gdcm_study::results::condition_answers::TestAnswers> {
+        wait_until(window, "the answers", |window| {
+            let decided = state(window).study.requirements.test;
+            matches!(state(window).test_answers(), Some(Ok(found)) if found.test == decided)
+        });
+        state(window).test_answers().unwrap().clone().unwrap()
+    }
+
     let mut window = few_window();
     show(&mut window, View::Requirements);
     give(
@@ -251,13 +259,6 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
         DisplayCommand::ShowRequirements(RequirementsPage::Histories),
     );
     give(&mut window, DisplayCommand::ShowTest(true));
-    let answers = |window: &mut Window| {
-        wait_until(window, "the answers", |window| {
-            let decided = state(window).study.requirements.test;
-            matches!(state(window).test_answers(), Some(Ok(found)) if found.test == decided)
-        });
-        state(window).test_answers().unwrap().clone().unwrap()
-    };
     let step = answers(&mut window);
     assert_eq!(step.input, state(&window).display.selection.pair.input);
     assert!(
@@ -279,14 +280,7 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
 
 #[test]
 fn a_record_stands_within_tolerances_that_are_edited_and_kept_in_a_file() {
-    let mut window = few_window();
-    choose_condition_10(&mut window);
-    show(&mut window, View::Requirements);
-    give(
-        &mut window,
-        DisplayCommand::ShowRequirements(RequirementsPage::Histories),
-    );
-    let shown = |window: &mut Window| {
+    fn shown(window: &mut Window) -> Arc<gdcm_study::results::condition_answers::RecordHistory> {
         wait_until(window, "the record", |window| {
             let decided = &state(window).study.requirements.tolerances;
             let found = state(window).results.record_history.as_ref();
@@ -300,9 +294,9 @@ fn a_record_stands_within_tolerances_that_are_edited_and_kept_in_a_file() {
             .1
             .clone()
             .unwrap()
-    };
-    let by_default = shown(&mut window);
-    let shares = |of: &RecordHistory| -> Vec<f64> {
+    }
+
+    fn shares(of: &RecordHistory) -> Vec<f64> {
         let physics = |(role, check): &(_, RecordCheck)| {
             (*role == RequirementRole::Physics).then(|| check.share_inside())
         };
@@ -310,7 +304,16 @@ fn a_record_stands_within_tolerances_that_are_edited_and_kept_in_a_file() {
             .iter()
             .map(|of| of.models.iter().find_map(physics).unwrap())
             .collect()
-    };
+    }
+
+    let mut window = few_window();
+    choose_condition_10(&mut window);
+    show(&mut window, View::Requirements);
+    give(
+        &mut window,
+        DisplayCommand::ShowRequirements(RequirementsPage::Histories),
+    );
+    let by_default = shown(&mut window);
     let first = shares(&by_default);
     let worst = (0..first.len())
         .min_by(|a, b| first[*a].total_cmp(&first[*b]))
@@ -446,7 +449,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     give(&mut window, StudyCommand::Undo);
     assert_eq!(overview(&window), usual);
 
-    // What is saved is what is shown: both tables, and as numbers.
+    // The saved file holds both displayed tables, with numbers.
     let folder = tempfile::tempdir().unwrap();
     let width = gdcm_plot::figure::ColumnWidth::Double;
     let path = folder.path().join("summary.csv");
@@ -478,6 +481,29 @@ fn the_summary_has_what_the_records_that_are_open_say() {
 
 #[test]
 fn tolerances_are_reached_without_a_record_and_those_of_modes_are_edited() {
+    fn verdicts(window: &Window) -> Vec<ModeVerdict> {
+        state(window)
+            .requirements()
+            .unwrap()
+            .modes
+            .iter()
+            .map(|of| of.verdict)
+            .collect()
+    }
+
+    fn shown(window: &mut Window) -> Vec<ModeVerdict> {
+        wait_until(window, "the modes", |window| {
+            let decided = &state(window).study.requirements.mode_tolerances;
+            let found = state(window).results.requirements.as_ref();
+            found.is_some_and(|(job, _)| job.settings.mode_tolerances == *decided)
+        });
+        verdicts(window)
+    }
+
+    fn outside(of: &[ModeVerdict]) -> usize {
+        of.iter().filter(|of| **of == ModeVerdict::Outside).count()
+    }
+
     let mut window = few_window();
     show(&mut window, View::Requirements);
     give(
@@ -493,23 +519,6 @@ fn tolerances_are_reached_without_a_record_and_those_of_modes_are_edited() {
         &mut window,
         DisplayCommand::ShowRequirements(RequirementsPage::Modes),
     );
-    let verdicts = |window: &Window| -> Vec<_> {
-        state(window)
-            .requirements()
-            .unwrap()
-            .modes
-            .iter()
-            .map(|of| of.verdict)
-            .collect()
-    };
-    let shown = |window: &mut Window| {
-        wait_until(window, "the modes", |window| {
-            let decided = &state(window).study.requirements.mode_tolerances;
-            let found = state(window).results.requirements.as_ref();
-            found.is_some_and(|(job, _)| job.settings.mode_tolerances == *decided)
-        });
-        verdicts(window)
-    };
     let usual = shown(&mut window);
     assert!(usual.contains(&ModeVerdict::Outside), "{usual:?}");
     click(&mut window, "Tolerances of modes");
@@ -527,8 +536,7 @@ fn tolerances_are_reached_without_a_record_and_those_of_modes_are_edited() {
     ] {
         type_into(&mut window, field, "1e4");
     }
-    // What does not oscillate where the flown mode does stays outside, whatever the tolerance.
-    let outside = |of: &[ModeVerdict]| of.iter().filter(|of| **of == ModeVerdict::Outside).count();
+    // A mode without the oscillation of the flown mode stays outside any tolerance.
     assert!(
         outside(&shown(&mut window)) < outside(&usual),
         "nothing is so far from flight"

@@ -1,4 +1,4 @@
-//! Ways in: the line over the example, the start page, and what opens first.
+//! First steps: the line over the example, the start page, and the first view.
 
 use gdcm::gui::commands::layout::LayoutCommand;
 use gdcm::gui::state::opens_with::OpensWith;

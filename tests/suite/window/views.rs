@@ -1,4 +1,4 @@
-//! The views: what each shows, by its controls.
+//! Contents of the views, through their controls.
 
 use gdcm::gui::commands::command::Command as Action;
 use gdcm::gui::commands::display::DisplayCommand;
@@ -134,7 +134,7 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
         );
     }
 
-    // The fastest pole of some perturbed model stands clear of the crowd.
+    // The fastest pole of a perturbed model is clear of the crowd.
     let fastest = marks.iter().min_by(|a, b| a[0].total_cmp(&b[0])).unwrap();
     let at = state(&window).display.figures[&View::Poles]
         .position(0, *fastest)
@@ -157,12 +157,7 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
 
 #[test]
 fn zeros_of_the_response_in_focus_are_shown_on_wish() {
-    let mut window = window();
-    show(&mut window, View::Poles);
-    wait_until(&mut window, "the modes", |window| {
-        state(window).modes().is_some()
-    });
-    let zeros = |window: &Window| {
+    fn zeros(window: &Window) -> usize {
         let figure = poles(state(window)).expect("the modes are known");
         let of = |mark: &Mark| {
             if let Mark::Dots(dots) = mark {
@@ -176,7 +171,13 @@ fn zeros_of_the_response_in_focus_are_shown_on_wish() {
             .iter()
             .map(of)
             .sum::<usize>()
-    };
+    }
+
+    let mut window = window();
+    show(&mut window, View::Poles);
+    wait_until(&mut window, "the modes", |window| {
+        state(window).modes().is_some()
+    });
     assert_eq!(zeros(&window), 0);
     let name = format!(
         "zeros of {}",
@@ -298,26 +299,32 @@ fn the_evidence_answers_which_differences_are_in_earnest() {
 
 #[test]
 fn error_bars_come_beside_the_answer_and_can_be_switched_off() {
-    let mut window = window();
-    show(&mut window, View::NetGain);
-    wait_for_bars(&mut window);
-    let panels = |window: &Window| -> Vec<Panel> {
+    fn panels(window: &Window) -> Vec<Panel> {
         let plots = gdcm::gui::views::net_gain::net_gain_plots(state(window))
             .figure
             .plots;
         plots.into_iter().flat_map(|plot| plot.panels).collect()
-    };
-    let has_bars = |panel: &Panel| {
+    }
+
+    fn has_bars(panel: &Panel) -> bool {
         let of = |mark: &Mark| matches!(mark, Mark::Intervals(bars) if bars.ends.len() == panel.dots().count());
         panel.marks.iter().any(of)
-    };
-    let has_bands = |panel: &Panel| {
+    }
+
+    fn has_bands(panel: &Panel) -> bool {
         panel
             .marks
             .iter()
             .any(|mark| matches!(mark, Mark::Envelope(_)))
-    };
-    let significant = |mark: &Mark| matches!(mark, Mark::Brackets(of) if of.brackets.iter().any(|bracket| !bracket.label.is_empty()));
+    }
+
+    fn significant(mark: &Mark) -> bool {
+        matches!(mark, Mark::Brackets(of) if of.brackets.iter().any(|bracket| !bracket.label.is_empty()))
+    }
+
+    let mut window = window();
+    show(&mut window, View::NetGain);
+    wait_for_bars(&mut window);
     let shown = panels(&window);
     assert!(
         shown
@@ -354,11 +361,9 @@ fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
     );
     show(&mut window, View::Assessment);
     let choice = state(&window).assessment_choice();
-    let words = gdcm_words::assessment::held_out_verdict(
-        state(&window).analysis().unwrap(),
-        choice,
-    )
-    .unwrap();
+    let words =
+        gdcm_words::assessment::held_out_verdict(state(&window).analysis().unwrap(), choice)
+            .unwrap();
     assert!(
         words.starts_with("held out (3): better in ") && words.contains("; the others: better in "),
         "{words}"
@@ -367,13 +372,14 @@ fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
 
 #[test]
 fn an_assessment_can_be_had_for_every_model_correction_and_response() {
-    let mut window = window();
-    show(&mut window, View::Assessment);
-    let wait = |window: &mut Window| {
+    fn wait(window: &mut Window) {
         wait_until(window, "the assessment", |window| {
             state(window).assessment().is_some()
         });
-    };
+    }
+
+    let mut window = window();
+    show(&mut window, View::Assessment);
     wait(&mut window);
     let table = state(&window).assessment().unwrap();
     assert!(assessment_sentences(state(&window), table)[0].starts_with("better in "));
@@ -435,6 +441,22 @@ fn variants_are_kept_compared_taken_and_removed_and_undo_brings_each_back() {
 
 #[test]
 fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
+    fn curve_value(window: &Window, role: CurveRole) -> Option<f64> {
+        let drawn = &state(window).display.frequency.drawn;
+        drawn
+            .iter()
+            .find(|curve| curve.role == role)
+            .map(|curve| curve.magnitude_db[0])
+    }
+
+    fn has_key(window: &Window) -> bool {
+        let figure = gdcm::gui::views::net_gain::net_gain_plots(state(window)).figure;
+        figure.plots[0].panels[0]
+            .marks
+            .iter()
+            .any(|mark| matches!(mark, Mark::Dots(dots) if dots.name == "variant as it was"))
+    }
+
     let mut window = window();
     give(
         &mut window,
@@ -448,15 +470,8 @@ fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
     show(&mut window, View::Bode);
     let lon_q = pair(&window, "Q", "LON");
     give(&mut window, SelectionCommand::FocusPair(lon_q));
-    let of = |window: &Window, role: CurveRole| {
-        let drawn = &state(window).display.frequency.drawn;
-        drawn
-            .iter()
-            .find(|curve| curve.role == role)
-            .map(|curve| curve.magnitude_db[0])
-    };
     wait_until(&mut window, "the variant's curve", |window| {
-        of(window, CurveRole::Variant).is_some()
+        curve_value(window, CurveRole::Variant).is_some()
     });
     let condition = state(&window).condition().id();
     let held = |analysis: &Analysis| {
@@ -468,19 +483,12 @@ fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
     };
     let (_, variant) = &state(&window).results.variants[0];
     let ratio_db = 20.0 * (held(variant) / held(state(&window).analysis().unwrap())).log10();
-    let drawn_db =
-        of(&window, CurveRole::Variant).unwrap() - of(&window, CurveRole::Corrected).unwrap();
+    let drawn_db = curve_value(&window, CurveRole::Variant).unwrap()
+        - curve_value(&window, CurveRole::Corrected).unwrap();
     assert!(
         ratio_db.abs() > 1e-3 && (drawn_db - ratio_db).abs() < 1e-9,
         "{drawn_db} dB drawn, {ratio_db} dB"
     );
-    let has_key = |window: &Window| {
-        let figure = gdcm::gui::views::net_gain::net_gain_plots(state(window)).figure;
-        figure.plots[0].panels[0]
-            .marks
-            .iter()
-            .any(|mark| matches!(mark, Mark::Dots(dots) if dots.name == "variant as it was"))
-    };
     assert!(has_key(&window));
     show(&mut window, View::Compare);
     click(&mut window, "Overlay variant as it was");
@@ -504,15 +512,18 @@ fn a_condition_pointed_at_in_the_list_is_lit_among_the_dots() {
 
 #[test]
 fn a_double_click_on_its_edge_puts_a_panel_back() {
+    fn edge(window: &Window) -> f32 {
+        window.get_by_label("Export corrections…").rect().left()
+    }
+
     let mut window = window();
-    // Frames of a test are a quarter of a second apart.
+    // Test frames are 0.25 s apart.
     window
         .ctx
         .options_mut(|options| options.input_options.max_double_click_delay = 5.0);
-    let edge = |window: &Window| window.get_by_label("Export corrections…").rect().left();
     let before = edge(&window);
     let y = 500.0;
-    // The edge of the answer panel, some points left of what it holds.
+    // The edge of the answer panel, some points left of its content.
     let at = pos2((1600.0_f32 - 352.0).round(), y);
     window.drag_at(at);
     window.run_steps(2);

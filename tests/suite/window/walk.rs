@@ -1,4 +1,4 @@
-//! A long walk through the window at random: nothing panics, and what is shown is what a fresh computation gives.
+//! A long random walk through the window: nothing panics, and the displayed results equal those of a fresh computation.
 
 use gdcm::gui::commands::command::Command as Action;
 use gdcm::gui::commands::command_table::every_command;
@@ -86,7 +86,7 @@ fn assert_fresh(window: &Window, step: usize) {
                     fresh.comparison, shown.comparison,
                     "step {step}, condition {id}"
                 );
-                // What may still be proven is the same optimum, or a better one.
+                // A later proof gives the same optimum or a better value.
                 let same = (fresh.gains.objective - shown.gains.objective).abs()
                     <= 1e-6 * (1.0 + fresh.gains.objective);
                 assert!(

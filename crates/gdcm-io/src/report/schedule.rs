@@ -3,8 +3,7 @@
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::Schedule;
 use gdcm_model::dataset::{ConditionId, Pair};
-use gdcm_model::number_format::compact;
-use gdcm_model::number_format::decimals;
+use gdcm_model::number_format::{compact, decimals};
 use gdcm_model::units::{number, s_to_ms};
 use gdcm_plot::figure::all_channels;
 use gdcm_plot::figure::condition_source::quantity_symbol;

@@ -5,12 +5,11 @@ use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::units::signed;
 use gdcm_study::results::analysis::Analysis;
-use gdcm_study::results::assessment_table::AssessedCorrection;
-use gdcm_study::results::assessment_table::AssessedModel;
-use gdcm_study::results::assessment_table::AssessmentChoice;
-use gdcm_study::results::assessment_table::AssessmentTable;
-use gdcm_words::table::Table;
+use gdcm_study::results::assessment_table::{
+    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable,
+};
 use gdcm_words::assessment::not_assessed_text;
+use gdcm_words::table::Table;
 
 pub use super::evidence::evidence_figure;
 

@@ -6,12 +6,10 @@ use std::sync::Arc;
 use gdcm_model::dataset::{Band as BandOfComparison, Pair};
 use gdcm_model::progress::Unobserved;
 use gdcm_model::units::db_to_ratio;
-use gdcm_study::jobs::curve_jobs::AcrossJob;
-use gdcm_study::jobs::curve_jobs::AcrossRole;
+use gdcm_study::jobs::curve_jobs::{AcrossJob, AcrossRole};
 use gdcm_study::jobs::job::Job;
 use gdcm_study::results::analysis::Analysis;
-use gdcm_study::stages::condition_curves::CURVE_POINTS;
-use gdcm_study::stages::condition_curves::display_band;
+use gdcm_study::stages::condition_curves::{CURVE_POINTS, display_band};
 
 pub use super::bode_options::BodeOptions;
 pub use super::coherence::CoherenceCurve;
@@ -26,7 +24,9 @@ use super::frequency_panels::{FrequencyPanels, figure_of_pairs, side_by_side};
 use super::marks::{Band, Note, Place, Rule};
 use super::muad::muad_about;
 use super::reference_line::ReferenceLine;
-use super::responses::{AirspeedCache, BodeBand, ResponseCache, airspeed_curves, fitted_values, uncertainty_bands};
+use super::responses::{
+    AirspeedCache, BodeBand, ResponseCache, airspeed_curves, fitted_values, uncertainty_bands,
+};
 use super::role::Role;
 
 /// Background for the band of comparison.

@@ -15,8 +15,8 @@ use gdcm_study::decisions::settings::Settings;
 use gdcm_study::stages::condition_curves::ConditionCurves;
 use gdcm_study::{ConditionAnalysis, CouplingCorrection, PhaseCorrection, Study};
 
-pub use super::bode_curve::CurveId;
 use super::bode_curve::BodeCurve;
+pub use super::bode_curve::CurveId;
 use super::bode_options::BodeOptions;
 use super::role::Role;
 

@@ -4,8 +4,8 @@ use nalgebra::Complex;
 
 use gdcm_method::couplings::{LoopMargin, PoleShift};
 use gdcm_model::dataset::ConditionId;
-use gdcm_words::couplings::couplings_heading;
 use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_words::couplings::couplings_heading;
 
 use super::arrow::{arrow, spans};
 use super::axis::{Axis, FrequencyUnit, Range};

@@ -2,9 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::units::rad_s_to_hz;
-
 use gdcm_model::number_format::three_digits;
+use gdcm_model::units::rad_s_to_hz;
 
 /// Unit for displayed frequencies; internally they are always rad/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -2,9 +2,9 @@
 
 use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::Pair;
-use gdcm_words::uncertainty::differences_summary;
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::results::uncertainty::{PairScatter, Uncertainty};
+use gdcm_words::uncertainty::differences_summary;
 
 use super::axis::{Axis, Range};
 use super::condition_source::{schedule_words, settings_words};

@@ -13,7 +13,9 @@ use super::condition_classes::{Classes, class_words};
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::Panel;
 use super::gain_quantity::{Across, GainQuantity, PlacedResult, placed_results};
-use super::marks::{Bracket, Brackets, Curve, Dot, DotShape, Dots, Envelope, Intervals, MarkId, Rule, Spans};
+use super::marks::{
+    Bracket, Brackets, Curve, Dot, DotShape, Dots, Envelope, Intervals, MarkId, Rule, Spans,
+};
 use super::role::Role;
 
 /// Line without correction.

@@ -5,10 +5,9 @@ use gdcm_method::schedule::Schedule;
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::Pair;
 use gdcm_model::dataset::condition::FlightState;
+use gdcm_model::number_format::decimals;
 use gdcm_model::units::s_to_ms;
 use gdcm_study::results::analysis::{Analysis, ConditionAnalysis};
-
-use gdcm_model::number_format::decimals;
 
 /// Number of intervals between the samples of a schedule.
 const SAMPLES: usize = 120;

@@ -1,20 +1,20 @@
 //! Gains and delays against airspeed or over conditions (Figures 3, 4, 6 and 7).
 
+pub use super::condition_classes::Classes;
+pub use super::condition_classes::class_names;
+use super::condition_source::{schedule_words, settings_words};
+use super::figure::{Figure, Panel, Plot};
+use super::gain_panel::{GainPanel, SIGNIFICANT};
+pub use super::gain_quantity::Across;
+pub use super::gain_quantity::GainQuantity;
+pub use super::gain_quantity::Measure;
+use super::gain_quantity::placed_results;
+use super::marks::{Curve, DotShape, Dots, Mark, MarkId};
+use super::role::Role;
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_study::results::analysis::Analysis;
 use gdcm_study::results::uncertainty::Uncertainty;
-pub use super::condition_classes::Classes;
-pub use super::condition_classes::class_names;
-pub use super::gain_quantity::Across;
-pub use super::gain_quantity::GainQuantity;
-pub use super::gain_quantity::Measure;
-use super::condition_source::{schedule_words, settings_words};
-use super::figure::{Figure, Panel, Plot};
-use super::gain_panel::{GainPanel, SIGNIFICANT};
-use super::gain_quantity::placed_results;
-use super::marks::{Curve, DotShape, Dots, Mark, MarkId};
-use super::role::Role;
 
 /// Plot height relative to its width, without and with bars and brackets.
 const ASPECT: f64 = 0.95;

@@ -1,6 +1,7 @@
 //! Ticks on a numeric axis: round values, labelled as densely as their room allows.
 
 use gdcm_model::number_format::compact;
+
 use super::range::Range;
 
 /// Mapping from values to positions along an axis.

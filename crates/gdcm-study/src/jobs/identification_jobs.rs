@@ -8,9 +8,9 @@ use gdcm_model::executor::Executor;
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::simulation::{FlightRecord, Validation, ValidationSettings, validate};
 use gdcm_sysid::identification::identify::identify;
-use gdcm_sysid::spectra::preparation::segments_of;
 use gdcm_sysid::identification::{Identification, IdentificationError, Options, Preparation};
 use gdcm_sysid::records::LaidOutRecord;
+use gdcm_sysid::spectra::preparation::segments_of;
 
 use super::job::Job;
 use crate::shared::Shared;

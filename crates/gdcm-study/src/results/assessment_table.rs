@@ -3,8 +3,8 @@
 
 use gdcm_method::correction::ChannelCorrection;
 use gdcm_method::fidelity::CostAverage;
-use gdcm_method::schedule::{CostChange, ScheduleError};
 use gdcm_method::schedule::assessment::corrected_cost;
+use gdcm_method::schedule::{CostChange, ScheduleError};
 use gdcm_model::dataset::{BundleKind, ConditionId, Pair, PairTable};
 use gdcm_model::response::GainDelay;
 

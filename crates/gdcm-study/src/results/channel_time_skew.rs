@@ -18,14 +18,14 @@
 //! `common`, the delay that all channels share, cannot be assigned to a channel: the leads report it
 //! (M15, section 6).
 
-use gdcm_model::statistics::median;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::{Band, BundleKind, Condition, Dataset, Dynamics, Pair};
 use gdcm_model::response::curve_values::unwrap;
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 use gdcm_model::simulation::Signal;
-use gdcm_sysid::spectra::response_estimate::EstimatePoint;
+use gdcm_model::statistics::median;
 use gdcm_sysid::identification::{ResponseEstimate, TRUSTED_COHERENCE};
+use gdcm_sysid::spectra::response_estimate::EstimatePoint;
 
 /// Least share of the points in the band at which a response must be coherent.
 const LEAST_SHOWN: f64 = 0.5;

@@ -1,8 +1,8 @@
 //! What the schedule loses against the conditions' own corrections: omitted delays, and J.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
-use gdcm_method::schedule::assessment::corrected_cost_on;
 use gdcm_method::schedule::ScheduleCaution;
+use gdcm_method::schedule::assessment::corrected_cost_on;
 use gdcm_method::schedule::caution::ScheduledCost;
 use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
 

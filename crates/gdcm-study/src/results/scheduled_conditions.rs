@@ -1,9 +1,12 @@
 //! The schedule's conditions, and its alternatives: without a condition, in other forms (M11).
 
-use gdcm_method::schedule::form_comparison::{compare_forms, compare_lead_degrees};
-use gdcm_method::schedule::{DelayScheduling, Schedule, ScheduleError, ScheduleSettings, ScheduledPoint};
-use gdcm_method::schedule::form_comparison::{FormComparison, LeadDegreeFit};
+use gdcm_method::schedule::form_comparison::{
+    FormComparison, LeadDegreeFit, compare_forms, compare_lead_degrees,
+};
 use gdcm_method::schedule::settings::NOTABLE_DELAY_S;
+use gdcm_method::schedule::{
+    DelayScheduling, Schedule, ScheduleError, ScheduleSettings, ScheduledPoint,
+};
 use gdcm_model::dataset::ConditionId;
 
 use super::analysis::{Analysis, ConditionAnalysis, Outcomes};

@@ -18,7 +18,9 @@ use gdcm_model::dataset::{BundleKind, Condition, PairTable};
 use gdcm_model::progress::Cancelled;
 
 use super::comparison::ComparisonInput;
-use super::condition_responses::{ConditionModels, ConditionResponses, CoupledResponses, GridKey, Purpose};
+use super::condition_responses::{
+    ConditionModels, ConditionResponses, CoupledResponses, GridKey, Purpose,
+};
 use super::coupling_fit::CouplingSource;
 use super::model_swaps::{SwapInput, SwapMemo, SwapOptimum};
 use super::optima::{NoOptima, Optima, SolveInput, SolvedProblems};

@@ -28,8 +28,13 @@ use crate::decisions::edit::Edit;
 use crate::decisions::settings::CouplingCorrection;
 use crate::decisions::study::Study;
 use crate::results::analysis::{Analysis, ConditionAnalysis};
-use crate::results::assessment_table::{AssessedCorrection, AssessedModel, AssessmentChoice, assessed};
-use crate::results::couplings_assessment::{AssessedCouplings, AxisCost, ConditionCouplings, CouplingCost, CouplingCosts, CouplingsAssessment, UnstablePole};
+use crate::results::assessment_table::{
+    AssessedCorrection, AssessedModel, AssessmentChoice, assessed,
+};
+use crate::results::couplings_assessment::{
+    AssessedCouplings, AxisCost, ConditionCouplings, CouplingCost, CouplingCosts,
+    CouplingsAssessment, UnstablePole,
+};
 use crate::results::fitted_couplings::{CoupledCondition, FittedCouplings};
 
 /// The step's name in progress reports.

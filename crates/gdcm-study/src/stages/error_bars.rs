@@ -11,11 +11,14 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use gdcm_method::schedule::{Schedule, ScheduledQuantity, SecondVariable};
 use gdcm_method::schedule::airspeeds::airspeed_indicators;
+use gdcm_method::schedule::{Schedule, ScheduledQuantity, SecondVariable};
 use gdcm_method::uncertainty::least_squares::SecondVariableError;
 use gdcm_method::uncertainty::spread::{BarSource, bars};
-use gdcm_method::uncertainty::{Bar, Design, Difference, Scalar, ScheduleBand, SecondVariableDesign, VarianceDecomposition, holm};
+use gdcm_method::uncertainty::{
+    Bar, Design, Difference, Scalar, ScheduleBand, SecondVariableDesign, VarianceDecomposition,
+    holm,
+};
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_model::dataset::{Condition, ConditionId, Dataset, Pair, PairTable};
 use gdcm_model::statistics::quantile;
@@ -24,7 +27,10 @@ use super::model_swaps::representative_figures;
 use crate::results::analysis::{Analysis, ConditionAnalysis};
 use crate::results::model_swap::ConditionSubstitutions;
 use crate::results::reported_error::{LN_DB, ReportedErrors};
-use crate::results::uncertainty::{AirspeedDifference, ConditionUncertainty, EQUAL_AIRSPEED_KT, PairScatter, ScheduleBands, SecondVariableTest, Uncertainty};
+use crate::results::uncertainty::{
+    AirspeedDifference, ConditionUncertainty, EQUAL_AIRSPEED_KT, PairScatter, ScheduleBands,
+    SecondVariableTest, Uncertainty,
+};
 
 /// Most differences that are compared.
 const MOST_DIFFERENCES: usize = 20_000;

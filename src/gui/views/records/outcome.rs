@@ -13,7 +13,9 @@ use gdcm_study::decisions::adopted_models::OfferedModels;
 use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
 use gdcm_sysid::diagnostics::model_doubts::HELD_OUT;
 use gdcm_sysid::diagnostics::record_fault::{ContradictingRecord, RecordFault};
-use gdcm_sysid::identification::{ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError};
+use gdcm_sysid::identification::{
+    ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError,
+};
 use gdcm_sysid::records::LaidOutRecord;
 use gdcm_sysid::spectra::record_cautions::RecordCaution;
 use gdcm_words::channel_time_skew::time_skew_text;

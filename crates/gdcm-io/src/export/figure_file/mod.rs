@@ -1,6 +1,6 @@
 //! Figures as files: SVG, PNG, PDF, and their numbers as CSV. The same figure makes the same bytes.
 
-use std::io::{Write, self};
+use std::io::{self, Write};
 use std::iter::once;
 use std::path::Path;
 

@@ -4,14 +4,12 @@ use std::sync::Arc;
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::form_comparison::SCHEDULE_KINDS;
-use gdcm_method::schedule::DelayScheduling;
-use gdcm_method::schedule::ScheduleKind;
-use gdcm_study::jobs::job::Job;
-use gdcm_study::results::assessment_table::AssessedCorrection;
-use gdcm_study::results::assessment_table::AssessedModel;
-use gdcm_study::results::assessment_table::AssessmentChoice;
+use gdcm_method::schedule::{DelayScheduling, ScheduleKind};
 use gdcm_study::jobs::analysis_jobs::AssessmentJob;
-use gdcm_study::results::assessment_table::AssessmentTable;
+use gdcm_study::jobs::job::Job;
+use gdcm_study::results::assessment_table::{
+    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable,
+};
 use gdcm_words::assessment::summary_text;
 
 use super::*;

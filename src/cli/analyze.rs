@@ -1,0 +1,37 @@
+//! `gdcm analyze`: result files and a printed summary.
+
+use gdcm_io::files::corrections_file::{result_paths, write_results};
+use gdcm_io::output_set::make_directory;
+
+use super::failure::Failure;
+use super::result_arguments::AnalyzeArguments;
+use super::schedule_summary::leave_one_out_section;
+use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study};
+use super::summary::summary;
+use super::terminal::print;
+
+/// Analyses, writes the results, and prints a summary.
+pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
+    let CommandStudy {
+        study,
+        loaded,
+        outputs,
+    } = CommandStudy::open(&arguments.study, arguments.force)?;
+    outputs.check(&result_paths(&arguments.out))?;
+    make_directory(&arguments.out)?;
+    let StudyAnalysis { analysis, .. } =
+        analyze_study(study, &arguments.study, ErrorBars::Computed)?;
+    let conditions = analysis.conditions.keys().copied().collect();
+    write_results(
+        &analysis,
+        &loaded.sha256,
+        &conditions,
+        &arguments.out,
+        outputs,
+    )?;
+    print(&summary(&analysis, &loaded, &arguments.out))?;
+    if arguments.leave_one_out {
+        print(&leave_one_out_section(&analysis))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,282 @@
+//! `gdcm assemble`: a dataset made from model files.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use gdcm_io::files::dataset_file::add_dataset;
+use gdcm_io::files::rules_file::{add_rules, load_rules, rules_path};
+use gdcm_io::files::study_file::relative_folder;
+use gdcm_io::formats::sources_folder;
+use gdcm_io::output_set::OutputSet;
+use gdcm_model::assembly::declarations::ChannelDeclarations;
+use gdcm_model::assembly::{Assembly, FileScope, FoundModel, Rules, proposed_rules};
+use gdcm_model::dataset::Dataset;
+use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_model::units::number;
+use gdcm_study::results::analysis::ConditionFailure;
+use gdcm_words::Table;
+
+use super::channel_values::FileValue;
+use super::existing;
+use super::failure::Failure;
+use super::found_models::{found_models, given_headings};
+use super::model_arguments::AssembleArguments;
+use super::terminal::{caution, coded_caution, error, print};
+use super::text::{counted, indented};
+
+/// Makes a dataset from the models in a folder.
+pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
+    check_declared_once(arguments)?;
+    let given_rules = arguments.rules.as_deref();
+    let proposed_path = match given_rules {
+        Some(_) => None,
+        None => Some(rules_path(&arguments.out)),
+    };
+    let inputs = given_rules.iter().map(|path| path.to_path_buf()).collect();
+    let mut outputs = OutputSet::new(existing(arguments.force), inputs);
+    let mut places: Vec<&Path> = vec![&arguments.out];
+    places.extend(proposed_path.as_deref());
+    outputs.check(&places)?;
+    let assembly = assembled_models(arguments)?;
+    print(&model_table(&assembly))?;
+    for caution in assembly.cautions() {
+        coded_caution(Some(caution.code()), &[], &assembly.caution_words(&caution));
+    }
+    if let Some(path) = &proposed_path {
+        add_rules(assembly.rules(), path, &mut outputs)?;
+    }
+    let folder = relative_folder(sources_folder(&arguments.folders), &arguments.out);
+    let dataset = assembly.dataset(&folder);
+    if let Some(dataset) = &dataset {
+        report_missing_references(dataset);
+        add_dataset(dataset, &arguments.out, &mut outputs)?;
+    }
+    outputs.persist()?;
+    if let Some(path) = &proposed_path {
+        print(&format!(
+            "{}: the proposed rules; correct them and pass them with --rules\n",
+            sanitized_path(path)
+        ))?;
+    }
+    match dataset {
+        Some(dataset) => {
+            let conditions = counted(dataset.conditions().len(), "condition");
+            let path = sanitized_path(&arguments.out);
+            print(&format!("{path}: {conditions}\n"))
+        }
+        None => {
+            let problems = assembly.problem_lines();
+            for problem in &problems {
+                error(&problem.text);
+            }
+            let path = given_rules.or(proposed_path.as_deref());
+            Err(Failure::Incomplete {
+                count: problems.len(),
+                rules: sanitized_path(path.unwrap_or(Path::new(""))),
+            })
+        }
+    }
+}
+
+/// Reads the models, and applies the file's rules, or else proposed rules, with the
+/// declarations on the command line.
+fn assembled_models(arguments: &AssembleArguments) -> Result<Assembly, Failure> {
+    let given = match &arguments.rules {
+        Some(path) => Some(rules_of_file(path)?),
+        None => None,
+    };
+    let mut headings = match &given {
+        Some(rules) => rules.headings.clone(),
+        None => Default::default(),
+    };
+    headings.extend(given_headings(&arguments.headings));
+    let found = found_models(&arguments.folders, &headings)?;
+    let mut rules = match given {
+        Some(rules) => rules,
+        None => proposed_rules(&dataset_name(&arguments.folders), &found.models),
+    };
+    rules.headings = headings;
+    if let Some(sample_time_s) = arguments.sample_time {
+        rules.sample_time_s = Some(sample_time_s);
+    }
+    declare(arguments, &found.models, &mut rules)?;
+    Ok(Assembly::new(found.models, rules))
+}
+
+/// Loads the rules from a file; prints their cautions on standard error.
+fn rules_of_file(path: &Path) -> Result<Rules, Failure> {
+    let (rules, cautions) = load_rules(path)?;
+    for words in cautions {
+        caution(&format!("{}: {words}", path.display()));
+    }
+    Ok(rules)
+}
+
+/// Reports the conditions without a reference.
+fn report_missing_references(dataset: &Dataset) {
+    let without = dataset.without_reference();
+    if !without.is_empty() {
+        let failure = ConditionFailure::NoReference;
+        coded_caution(Some(failure.code()), &without, &failure.to_string());
+    }
+}
+
+/// Rejects duplicate declarations for a channel in the same models.
+fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
+    let mut signs = BTreeSet::new();
+    for FileValue { channel, scope, .. } in &arguments.sign {
+        if !signs.insert((channel, scope)) {
+            let subject = format!("{channel} of {scope}");
+            return Err(Failure::given_twice("--sign", &subject));
+        }
+    }
+    let mut conversions = BTreeSet::new();
+    for FileValue { channel, scope, .. } in &arguments.unit {
+        if !conversions.insert((channel, scope)) {
+            return Err(converted_already("--unit", channel, scope));
+        }
+    }
+    for FileValue { channel, scope, .. } in &arguments.factor {
+        if !conversions.insert((channel, scope)) {
+            return Err(converted_already("--factor", channel, scope));
+        }
+    }
+    Ok(())
+}
+
+fn converted_already(option: &'static str, channel: &str, scope: &FileScope) -> Failure {
+    let reason = format!("{channel} of {scope} has a unit or a factor already");
+    Failure::coded_option(option, "given-twice", reason)
+}
+
+/// Adds the units, factors and signs on the command line to the rules.
+fn declare(
+    arguments: &AssembleArguments,
+    models: &[FoundModel],
+    rules: &mut Rules,
+) -> Result<(), Failure> {
+    for unit in &arguments.unit {
+        let declared = ChannelDeclarations {
+            units: [(unit.channel.clone(), unit.value.clone())].into(),
+            ..ChannelDeclarations::default()
+        };
+        check_declared("--unit", unit, models, rules)?;
+        declare_for_scope(&unit.scope, &declared, models, rules);
+    }
+    for factor in &arguments.factor {
+        let declared = ChannelDeclarations {
+            factors: [(factor.channel.clone(), factor.value)].into(),
+            ..ChannelDeclarations::default()
+        };
+        check_declared("--factor", factor, models, rules)?;
+        declare_for_scope(&factor.scope, &declared, models, rules);
+    }
+    for sign in &arguments.sign {
+        let declared = ChannelDeclarations {
+            signs: [(sign.channel.clone(), sign.value)].into(),
+            ..ChannelDeclarations::default()
+        };
+        check_declared("--sign", sign, models, rules)?;
+        declare_for_scope(&sign.scope, &declared, models, rules);
+    }
+    Ok(())
+}
+
+/// Adds a declaration to a single model's rules, or to a scope's.
+fn declare_for_scope(
+    scope: &FileScope,
+    declared: &ChannelDeclarations,
+    models: &[FoundModel],
+    rules: &mut Rules,
+) {
+    match scope {
+        FileScope::Files(key) if models.iter().any(|model| model.key() == *key) => {
+            rules.rows.entry(key.clone()).or_default().declare(declared);
+        }
+        _ => rules.declare(scope.clone(), declared),
+    }
+}
+
+/// Rejects an option for a channel missing from the dataset, or for files that were not read.
+fn check_declared<T>(
+    option: &'static str,
+    declaration: &FileValue<T>,
+    models: &[FoundModel],
+    rules: &Rules,
+) -> Result<(), Failure> {
+    let channel = &declaration.channel;
+    let names: Vec<&str> = rules
+        .inputs
+        .iter()
+        .chain(&rules.outputs)
+        .map(|rule| rule.name.as_str())
+        .collect();
+    if !names.contains(&channel.as_str()) {
+        let reason = format!(
+            "the dataset has no channel {channel}; it has {}",
+            names.join(", ")
+        );
+        return Err(Failure::coded_option(option, "unknown-channel", reason));
+    }
+    let scope = &declaration.scope;
+    if let FileScope::Files(pattern) = scope
+        && !models.iter().any(|model| scope.holds(model, None))
+    {
+        let reason = format!(
+            "{channel}: no model is in \"{pattern}\"; models are named as in the last column, file"
+        );
+        return Err(Failure::coded_option(option, "unknown-model", reason));
+    }
+    Ok(())
+}
+
+/// Returns a dataset's proposed name: the first folder's.
+fn dataset_name(folders: &[PathBuf]) -> String {
+    match folders.first().and_then(|folder| folder.file_name()) {
+        Some(name) => name.to_string_lossy().into_owned(),
+        None => String::new(),
+    }
+}
+
+/// Returns a table with a line for each model and its role in the dataset.
+fn model_table(assembly: &Assembly) -> String {
+    let headings = [
+        "condition",
+        "role",
+        "name",
+        "airspeed",
+        "altitude",
+        "weight",
+        "trim",
+        "file",
+    ];
+    let mut table = Table::new("", headings);
+    for part in assembly.parts() {
+        let row = &part.row;
+        let role = if row.left_out {
+            "left out".to_owned()
+        } else {
+            or_unknown(row.role.map(|role| role.word().to_owned()))
+        };
+        let trim: Vec<String> = row
+            .perturbation
+            .iter()
+            .map(|(coordinate, by)| format!("{coordinate} {}", number(*by)))
+            .collect();
+        table.row([
+            or_unknown(row.condition.map(|condition| condition.to_string())),
+            role,
+            sanitized(&row.name),
+            or_unknown(row.airspeed_words()),
+            row.altitude_words(),
+            row.weight_words(),
+            trim.join(", "),
+            sanitized(&part.found.key()),
+        ]);
+    }
+    indented(&table, 0)
+}
+
+fn or_unknown(text: Option<String>) -> String {
+    text.unwrap_or_else(|| "?".to_owned())
+}

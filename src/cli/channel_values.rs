@@ -1,0 +1,286 @@
+//! Options that declare a value for a channel: its sign, unit, factor, delay or column.
+
+use std::collections::BTreeSet;
+
+use gdcm_model::assembly::FileScope;
+use gdcm_study::decisions::signs::SignRole;
+
+/// A value that an option declares for a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelValue<T> {
+    pub channel: String,
+    pub value: T,
+}
+
+impl<T> ChannelValue<T> {
+    /// Parses `CHANNEL=VALUE`; `None` if the channel is empty or `parse` rejects the value.
+    fn parse(text: &str, parse: impl FnOnce(&str) -> Option<T>) -> Option<Self> {
+        let (channel, value) = text.split_once('=')?;
+        let channel = channel.trim();
+        if channel.is_empty() {
+            return None;
+        }
+        Some(Self {
+            channel: channel.to_owned(),
+            value: parse(value.trim())?,
+        })
+    }
+}
+
+/// Returns the first channel that several declarations name.
+pub(super) fn first_duplicate<'a, T: 'a>(
+    declarations: impl IntoIterator<Item = &'a ChannelValue<T>>,
+) -> Option<&'a str> {
+    let mut seen = BTreeSet::new();
+    declarations
+        .into_iter()
+        .map(|declaration| declaration.channel.as_str())
+        .find(|channel| !seen.insert(*channel))
+}
+
+/// A channel in a single record.
+pub(super) struct RecordChannel<'a> {
+    pub(super) record: &'a str,
+    pub(super) channel: &'a str,
+}
+
+impl<'a> RecordChannel<'a> {
+    /// Parses "sweep.csv:P"; `None` for a channel in all records.
+    pub(super) fn parse(text: &'a str) -> Option<Self> {
+        let (record, channel) = text.rsplit_once(':')?;
+        if record.is_empty() || channel.is_empty() {
+            return None;
+        }
+        Some(Self { record, channel })
+    }
+}
+
+/// Role whose models are inverted in a channel; `None` restores the file's sign.
+pub type ChannelSign = ChannelValue<Option<SignRole>>;
+
+/// Parses a channel's sign: "NZ=-1", "NZ=-1:physics", "NZ=1".
+pub(super) fn channel_sign(text: &str) -> Result<ChannelSign, String> {
+    valid_sign(text).ok_or_else(|| {
+        format!(
+            "expected CHANNEL=-1, with :identified, :physics or :all behind it, or CHANNEL=1; found {text}"
+        )
+    })
+}
+
+fn valid_sign(text: &str) -> Option<ChannelSign> {
+    let (channel, rest) = text.rsplit_once('=')?;
+    let (sign, role) = rest
+        .split_once(':')
+        .unwrap_or((rest, SignRole::Identified.word()));
+    let sign = sign_factor(sign.trim())?;
+    let role = SignRole::EACH
+        .into_iter()
+        .find(|known| known.word() == role.trim())?;
+    Some(ChannelSign {
+        channel: channel.trim().to_owned(),
+        value: if sign < 0.0 { Some(role) } else { None },
+    })
+}
+
+fn sign_factor(text: &str) -> Option<f64> {
+    match text {
+        "-1" | "-" => Some(-1.0),
+        "1" | "+1" | "+" => Some(1.0),
+        _ => None,
+    }
+}
+
+fn factor(text: &str) -> Option<f64> {
+    let factor: f64 = text.parse().ok()?;
+    if factor.is_finite() && factor != 0.0 {
+        Some(factor)
+    } else {
+        None
+    }
+}
+
+fn text_value(text: &str) -> Option<String> {
+    if text.is_empty() {
+        None
+    } else {
+        Some(text.to_owned())
+    }
+}
+
+/// Parses a channel with its samples' unit: "P=rad/s".
+pub(super) fn channel_unit(text: &str) -> Result<ChannelValue<String>, String> {
+    ChannelValue::parse(text, text_value)
+        .ok_or_else(|| format!("expected CHANNEL=UNIT, as P=rad/s, found \"{text}\""))
+}
+
+/// Parses a channel with its samples' factor: "LON=25".
+pub(super) fn channel_factor(text: &str) -> Result<ChannelValue<f64>, String> {
+    ChannelValue::parse(text, factor).ok_or_else(|| {
+        format!(
+            "expected CHANNEL=X with X a number other than 0, as LON=25 or NZ=-1, found \"{text}\""
+        )
+    })
+}
+
+/// Parses a channel's location: topic and field, or a column.
+pub(super) fn channel_topic(text: &str) -> Result<ChannelValue<String>, String> {
+    ChannelValue::parse(text, |column| text_value(column.trim_matches('"'))).ok_or_else(|| {
+        format!(
+            "expected CHANNEL=TOPIC.FIELD, as P=vehicle_angular_velocity.xyz[0], found \"{text}\""
+        )
+    })
+}
+
+/// Parses a channel's known delay \[s\], positive if the channel is logged late.
+pub(super) fn channel_delay(text: &str) -> Result<ChannelValue<f64>, String> {
+    /// Maximum plausible sensor or bus delay \[s\].
+    const MOST_S: f64 = 2.0;
+    let expected = || format!("expected CHANNEL=SECONDS, as P=0.02, found \"{text}\"");
+    let delay = ChannelValue::parse(text, |seconds| seconds.parse().ok()).ok_or_else(expected)?;
+    if (-MOST_S..=MOST_S).contains(&delay.value) {
+        Ok(delay)
+    } else {
+        Err(format!(
+            "{}; a delay is from -{MOST_S} to {MOST_S} s",
+            expected()
+        ))
+    }
+}
+
+/// A value that an option declares for a channel in some of the assembled files.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileValue<T> {
+    pub channel: String,
+    pub value: T,
+    /// By default the identified models' files.
+    pub scope: FileScope,
+}
+
+impl<T> FileValue<T> {
+    /// Parses `CHANNEL=VALUE` or `CHANNEL=VALUE:SCOPE`; `None` if a part is empty or `parse`
+    /// rejects the value.
+    fn parse(text: &str, parse: impl FnOnce(&str) -> Option<T>) -> Option<Self> {
+        let (channel, rest) = text.split_once('=')?;
+        let (value, scope) = rest.split_once(':').unwrap_or((rest, "identified"));
+        let [channel, value, scope] = [channel, value, scope].map(str::trim);
+        if channel.is_empty() || value.is_empty() || scope.is_empty() {
+            return None;
+        }
+        Some(Self {
+            channel: channel.to_owned(),
+            value: parse(value)?,
+            scope: FileScope::from(scope.to_owned()),
+        })
+    }
+}
+
+/// Hint about an option's scope, for its error message.
+const SCOPE_HINT: &str =
+    ":identified, :physics, :all or : and the file of a model or a pattern of folders may follow";
+
+pub(super) fn file_sign(text: &str) -> Result<FileValue<f64>, String> {
+    FileValue::parse(text, sign_factor).ok_or_else(|| {
+        format!("expected a channel with 1 or -1, as NZ=-1; {SCOPE_HINT}; found \"{text}\"")
+    })
+}
+
+pub(super) fn file_unit(text: &str) -> Result<FileValue<String>, String> {
+    FileValue::parse(text, text_value)
+        .ok_or_else(|| format!("expected CHANNEL=UNIT, as LON=in; {SCOPE_HINT}; found \"{text}\""))
+}
+
+pub(super) fn file_factor(text: &str) -> Result<FileValue<f64>, String> {
+    FileValue::parse(text, factor).ok_or_else(|| {
+        format!("expected CHANNEL=X with X a number other than 0, as LON=8 or NZ=-1; {SCOPE_HINT}; found \"{text}\"")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sign_names_its_channel_and_the_inverted_models() {
+        let sign = |channel: &str, value| {
+            Ok(ChannelSign {
+                channel: channel.to_owned(),
+                value,
+            })
+        };
+        assert_eq!(
+            channel_sign("NZ=-1"),
+            sign("NZ", Some(SignRole::Identified))
+        );
+        assert_eq!(
+            channel_sign("az (down)=-1:all"),
+            sign("az (down)", Some(SignRole::All))
+        );
+        assert_eq!(channel_sign("NZ=1"), sign("NZ", None));
+        for wrong in ["NZ", "NZ=-2", "NZ=-1:none"] {
+            assert!(channel_sign(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_unit_or_a_factor_of_files_names_its_channel_and_scope() {
+        let unit = |scope: FileScope| {
+            Ok(FileValue {
+                channel: "P".to_owned(),
+                value: "rad/s".to_owned(),
+                scope,
+            })
+        };
+        assert_eq!(file_unit("P=rad/s"), unit(FileScope::Identified));
+        assert_eq!(file_unit("P=rad/s:physics"), unit(FileScope::Physics));
+        assert_eq!(
+            file_unit("P = rad/s : c1/x=2.mat"),
+            unit(FileScope::Files("c1/x=2.mat".into()))
+        );
+        let scaled = file_factor("NZ=-9.81:all").unwrap();
+        assert_eq!((scaled.value, scaled.scope), (-9.81, FileScope::All));
+        assert_eq!(
+            file_sign("NZ=-1:flight_*").unwrap().scope,
+            FileScope::Files("flight_*".into())
+        );
+        for wrong in ["P", "P=", "=in", "P=in:"] {
+            assert!(file_unit(wrong).is_err(), "{wrong}");
+        }
+        for wrong in ["P=0", "P=x", "P=inf"] {
+            assert!(file_factor(wrong).is_err(), "{wrong}");
+        }
+        assert!(file_sign("P=2").is_err());
+    }
+
+    #[test]
+    fn a_unit_a_factor_or_a_topic_belongs_to_a_channel() {
+        assert_eq!(channel_unit("P = rad/s").unwrap().value, "rad/s");
+        assert_eq!(channel_factor("NZ=-1").unwrap().value, -1.0);
+        for wrong in ["P", "P=", "=1"] {
+            assert!(channel_unit(wrong).is_err(), "{wrong}");
+        }
+        for wrong in ["P", "P=x", "P=0", "P=NaN", "=1"] {
+            assert!(channel_factor(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(
+            channel_topic("P = a.b[0]"),
+            Ok(ChannelValue {
+                channel: "P".into(),
+                value: "a.b[0]".into()
+            })
+        );
+    }
+
+    #[test]
+    fn a_delay_belongs_to_a_channel_and_is_short() {
+        assert_eq!(
+            channel_delay("P=-0.02"),
+            Ok(ChannelValue {
+                channel: "P".into(),
+                value: -0.02
+            })
+        );
+        for wrong in ["P", "P=x", "P=20", "=0.1", "P=NaN"] {
+            assert!(channel_delay(wrong).is_err(), "{wrong}");
+        }
+    }
+}

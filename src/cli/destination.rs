@@ -1,0 +1,212 @@
+//! The dataset that receives identified models (`gdcm identify --into`).
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use gdcm_io::files::study_file::relative_folder;
+use gdcm_io::reading_budget::ReadingBudget;
+use gdcm_io::{Opened, load_any};
+use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_study::decisions::adopted_models::AdoptedModels;
+use gdcm_sysid::records::LaidOutRecord;
+
+use super::failure::Failure;
+use super::identify_arguments::IdentifyArguments;
+use super::study_options::{condition_ids, condition_of};
+use super::terminal::{caution, note};
+use super::text::listed_conditions;
+
+/// Records for a joint identification.
+pub(super) struct RecordGroup {
+    /// Their condition; `None` without a dataset.
+    pub(super) condition: Option<ConditionId>,
+    pub(super) records: Vec<LaidOutRecord>,
+}
+
+/// A dataset that receives models.
+pub(super) struct Destination {
+    pub(super) dataset: Arc<Dataset>,
+    /// Output path.
+    pub(super) path: PathBuf,
+    /// The condition; `None` if each record goes to the condition in its name.
+    condition: Option<ConditionId>,
+}
+
+impl Destination {
+    /// Opens the dataset named on the command line, if any.
+    pub(super) fn open(arguments: &IdentifyArguments) -> Result<Option<Self>, Failure> {
+        let Some(path) = arguments.into.as_deref() else {
+            return Ok(None);
+        };
+        let Opened::Dataset(loaded) = load_any(path, &ReadingBudget::default())? else {
+            let reason = "expected a dataset, found a study; give the study's dataset";
+            return Err(Failure::option("--into", reason));
+        };
+        let condition = match arguments.condition {
+            Some(id) => Some(condition_of(&loaded.dataset, id)?),
+            None => None,
+        };
+        let written = arguments.out.join(path.file_name().unwrap_or_default());
+        let folder = relative_folder(path.parent().unwrap_or(Path::new("")), &written);
+        let dataset = moved_dataset(&loaded.dataset, &folder, arguments.description.as_deref())?;
+        Ok(Some(Self {
+            dataset: Arc::new(dataset),
+            path: written,
+            condition,
+        }))
+    }
+
+    /// Groups the records by condition, in the dataset's order; reports omitted records on
+    /// standard error.
+    pub(super) fn groups(&self, records: Vec<LaidOutRecord>) -> Result<Vec<RecordGroup>, Failure> {
+        match self.condition {
+            Some(condition) => Ok(vec![group_for_condition(condition, records)?]),
+            None => self.groups_by_name(records),
+        }
+    }
+
+    /// Groups the records by the conditions in their names.
+    fn groups_by_name(&self, records: Vec<LaidOutRecord>) -> Result<Vec<RecordGroup>, Failure> {
+        let mut groups: Vec<RecordGroup> = Vec::new();
+        for condition in self.dataset.conditions() {
+            groups.push(RecordGroup {
+                condition: Some(condition.id()),
+                records: Vec::new(),
+            });
+        }
+        for record in records {
+            let condition = record.guess.condition_of(&self.dataset);
+            let group = groups.iter_mut().find(|group| group.condition == condition);
+            match group {
+                Some(group) => group.records.push(record),
+                None => caution(&format!(
+                    "{}: left out: its name gives no condition of the dataset",
+                    record.table.name
+                )),
+            }
+        }
+        let without: Vec<ConditionId> = groups
+            .iter()
+            .filter(|group| group.records.is_empty())
+            .filter_map(|group| group.condition)
+            .collect();
+        if !without.is_empty() {
+            note(&format!(
+                "{}: no records; the identified models there stay unchanged",
+                listed_conditions(&without)
+            ));
+        }
+        groups.retain(|group| !group.records.is_empty());
+        if groups.is_empty() {
+            let reason = format!(
+                "no name gives a condition of the dataset ({}), as cond03 does",
+                condition_ids(&self.dataset)
+            );
+            return Err(Failure::coded_option(
+                "--every-condition",
+                "no-records",
+                reason,
+            ));
+        }
+        Ok(groups)
+    }
+
+    /// Puts models and records into a condition.
+    pub(super) fn adopt(
+        &mut self,
+        condition: ConditionId,
+        models: &AdoptedModels,
+    ) -> Result<(), Failure> {
+        let dataset =
+            models
+                .put_into(&self.dataset, condition)
+                .map_err(|error| Failure::NoModels {
+                    reason: format!("the dataset cannot hold the models: {error}"),
+                })?;
+        self.dataset = Arc::new(dataset);
+        Ok(())
+    }
+}
+
+/// Returns the records for a condition, without those whose names give another condition, which
+/// are reported on standard error.
+fn group_for_condition(
+    condition: ConditionId,
+    records: Vec<LaidOutRecord>,
+) -> Result<RecordGroup, Failure> {
+    let count = records.len();
+    let mut own = Vec::new();
+    let mut others = Vec::new();
+    for record in records {
+        match record.guess.condition {
+            Some(id) if ConditionId(id) != condition => others.push(record),
+            _ => own.push(record),
+        }
+    }
+    if !others.is_empty() {
+        caution(&format!(
+            "{} of {count} records left out: their names give condition {}, not {condition}",
+            others.len(),
+            named_conditions(&others)
+        ));
+    }
+    if own.is_empty() {
+        let reason = format!(
+            "no record is left for condition {condition}; rename the records that belong to it"
+        );
+        return Err(Failure::coded_option("--condition", "no-records", reason));
+    }
+    Ok(RecordGroup {
+        condition: Some(condition),
+        records: own,
+    })
+}
+
+/// Returns the conditions in record names, as "3, 7".
+pub(super) fn named_conditions(records: &[LaidOutRecord]) -> String {
+    let named: BTreeSet<i64> = records
+        .iter()
+        .filter_map(|record| record.guess.condition)
+        .collect();
+    let named: Vec<String> = named.iter().map(i64::to_string).collect();
+    named.join(", ")
+}
+
+/// Returns the dataset for another folder: its records are referenced through `folder`, and its
+/// description is replaced if a new description is given.
+fn moved_dataset(
+    dataset: &Dataset,
+    folder: &str,
+    description: Option<&str>,
+) -> Result<Dataset, Failure> {
+    const OPTION: &str = "--description";
+    let mut header = dataset.header();
+    if let Some(description) = description {
+        header.description = description.to_owned();
+    }
+    let mut conditions = Vec::new();
+    for condition in dataset.conditions() {
+        let mut records: Vec<ConditionRecord> = condition.records().to_vec();
+        for record in &mut records {
+            record.file = moved_file(&record.file, folder);
+        }
+        let condition = condition
+            .as_ref()
+            .clone()
+            .with_records(records)
+            .map_err(|error| Failure::option(OPTION, error))?;
+        conditions.push(condition);
+    }
+    Dataset::new(header, conditions).map_err(|error| Failure::option(OPTION, error))
+}
+
+/// Returns a file's path through another folder; an absolute path stays.
+fn moved_file(file: &str, folder: &str) -> String {
+    if folder.is_empty() || folder == "." || Path::new(file).is_absolute() {
+        file.to_owned()
+    } else {
+        format!("{folder}/{file}")
+    }
+}

@@ -1,0 +1,164 @@
+//! Command failures, with their codes and exit statuses.
+
+use std::path::PathBuf;
+
+use gdcm_io::FileError;
+use gdcm_model::progress::Cancelled;
+
+use super::text::{counted, listed_paths};
+
+/// Exit status without a result.
+pub(super) const NOT_DONE: u8 = 1;
+/// Exit status if the command line or a file is wrong.
+pub(super) const WRONG_INPUT: u8 = 2;
+
+/// Reason why a command was not carried out.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Failure {
+    #[error("{0}{remedy}", remedy = file_remedy(.0))]
+    File(#[from] FileError),
+    #[error("{option}: {reason}")]
+    Option {
+        option: &'static str,
+        code: &'static str,
+        reason: String,
+    },
+    /// The first word is neither a command nor a file, but resembles a command.
+    #[error("{found}: no such command or file; did you mean gdcm {suggestion}?")]
+    UnknownCommand { found: String, suggestion: String },
+    /// The study's dataset differs from the dataset that the study was made with.
+    #[error("{path}: {} from the dataset of the study, refused by --strict", counted(*count, "difference"))]
+    Different { path: String, count: usize },
+    /// Several faults in a dataset, each already reported.
+    #[error("{path}: {count} faults; correct them and check the file again")]
+    Faulty { path: String, count: usize },
+    /// A model file instead of a dataset or a study.
+    #[error(
+        "{path}: neither a dataset nor a study; make a dataset of model files with gdcm assemble \
+         {path} --out dataset.json.gz, or with Import models in the window"
+    )]
+    Models { path: String },
+    /// The rules are incomplete, so the files do not form a dataset yet.
+    #[error("no dataset was written: complete {} in {rules} and pass it with --rules", counted(*count, "item"))]
+    Incomplete { count: usize, rules: String },
+    /// Records with unclear or impossible columns, each already reported.
+    #[error(
+        "{wrong} of {} cannot be used: give their columns (--inputs P=COLUMN, --time) and units \
+         (--unit P=deg/s), or leave them out",
+        counted(*count, "record")
+    )]
+    Records { wrong: usize, count: usize },
+    /// No usable content in the files.
+    #[error("{paths}: no usable {noun}")]
+    Nothing { paths: String, noun: &'static str },
+    /// Named records that could not be read, or not completely; the rest was used.
+    #[error("{paths}: not read, or only in part; the results are without the rest")]
+    Unread { paths: String },
+    /// Identification ran but identified no input.
+    #[error("no input is identified by these records; the models do not describe {inputs}")]
+    NotIdentified { inputs: String },
+    #[error("no thread can be started: {reason}")]
+    NoThreads { reason: String },
+    #[error("no model was identified: {reason}")]
+    NoModels { reason: String },
+    #[error("the analysis has no result: {reason}")]
+    NoResult { reason: String },
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    #[error("standard output cannot be written: {reason}")]
+    StandardOutput { reason: String },
+}
+
+/// Returns the option that helps against a file's error, to follow its message.
+fn file_remedy(error: &FileError) -> &'static str {
+    match error {
+        FileError::Exists { .. } => "; --force overwrites",
+        _ => "",
+    }
+}
+
+impl Failure {
+    /// Returns the failure for files without usable content.
+    pub(super) fn nothing_in(paths: &[PathBuf], noun: &'static str) -> Self {
+        Failure::Nothing {
+            paths: listed_paths(paths),
+            noun,
+        }
+    }
+
+    /// Returns the failure for a wrong option value.
+    pub(super) fn option(option: &'static str, reason: impl ToString) -> Self {
+        Self::coded_option(option, "wrong-option", reason)
+    }
+
+    /// Returns the failure for a wrong option value with a code of its own.
+    pub(super) fn coded_option(
+        option: &'static str,
+        code: &'static str,
+        reason: impl ToString,
+    ) -> Self {
+        Failure::Option {
+            option,
+            code,
+            reason: reason.to_string(),
+        }
+    }
+
+    /// Returns the failure for an option that is given twice for the same subject.
+    pub(super) fn given_twice(option: &'static str, subject: &str) -> Self {
+        Self::coded_option(option, "given-twice", format!("{subject} is given twice"))
+    }
+
+    /// Returns the failure for an option with an unknown record.
+    pub(super) fn unknown_record(option: &'static str, record: &str) -> Self {
+        let reason = format!("\"{record}\" is none of the records");
+        Self::coded_option(option, "unknown-record", reason)
+    }
+
+    /// Returns the stable code for scripts; `None` for a file's error without a code.
+    pub(super) fn code(&self) -> Option<&'static str> {
+        let code = match self {
+            Failure::File(error) => return error.code(),
+            Failure::Option { code, .. } => code,
+            Failure::UnknownCommand { .. } => "unknown-command",
+            Failure::Different { .. } => "different-dataset",
+            Failure::Faulty { .. } => "faulty-dataset",
+            Failure::Models { .. } => "model-file",
+            Failure::Incomplete { .. } => "incomplete-rules",
+            Failure::Records { .. } => "unclear-records",
+            Failure::Nothing { .. } => "nothing-found",
+            Failure::Unread { .. } => "not-read",
+            Failure::NotIdentified { .. } => "nothing-identified",
+            Failure::NoThreads { .. } => "no-threads",
+            Failure::NoModels { .. } => "no-models",
+            Failure::NoResult { .. } => "no-result",
+            Failure::Cancelled(_) => "stopped",
+            Failure::StandardOutput { .. } => "standard-output",
+        };
+        Some(code)
+    }
+
+    /// Returns the exit status.
+    pub(super) fn status(&self) -> u8 {
+        match self {
+            Failure::File(FileError::Unwritable { .. })
+            | Failure::NoResult { .. }
+            | Failure::NoModels { .. }
+            | Failure::Unread { .. }
+            | Failure::NotIdentified { .. }
+            | Failure::NoThreads { .. }
+            | Failure::Cancelled(_)
+            | Failure::StandardOutput { .. } => NOT_DONE,
+            Failure::File(FileError::Export { fault, .. }) if fault.is_of_analysis() => NOT_DONE,
+            Failure::File(_)
+            | Failure::Option { .. }
+            | Failure::UnknownCommand { .. }
+            | Failure::Different { .. }
+            | Failure::Incomplete { .. }
+            | Failure::Records { .. }
+            | Failure::Nothing { .. }
+            | Failure::Models { .. }
+            | Failure::Faulty { .. } => WRONG_INPUT,
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! `gdcm figure`: a figure of the window, or its numbers, as a file.
+
+use std::sync::Arc;
+
+use gdcm_io::export::figure_file::{figure_format, write_figure};
+use gdcm_method::correction::Channel;
+use gdcm_model::dataset::{ConditionId, Dataset, Pair};
+use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_model::progress::Unobserved;
+use gdcm_plot::figure::axis::FrequencyUnit;
+use gdcm_plot::figure::bode::BodeOptions;
+use gdcm_plot::figure::gains::{Across, Measure};
+use gdcm_plot::figure::{ConditionSource, Figure, FigureKind, FigureRequest, Role, all_channels};
+use gdcm_study::results::couplings_assessment::CouplingsAssessment;
+use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::stages::condition_curves::{CURVE_POINTS, curves_band};
+use gdcm_study::{Analysis, CouplingCorrection, Engine, Study};
+use gdcm_words::caution::failure_text;
+
+use super::failure::Failure;
+use super::option_values::PairChoice;
+use super::progress::TerminalProgress;
+use super::result_arguments::FigureArguments;
+use super::study_options::{
+    CommandStudy, ErrorBars, StudyAnalysis, analyze_study, channel_names, condition_ids,
+    condition_of, pairs_of,
+};
+use super::terminal::print;
+
+/// Writes a figure to a file and reports it.
+pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
+    let CommandStudy { study, outputs, .. } =
+        CommandStudy::open(&arguments.study, arguments.force)?;
+    figure_format(&arguments.out)?;
+    outputs.check(&[&arguments.out])?;
+    let mut request = figure_request(&study, arguments)?;
+    let condition = figure_condition(&study, arguments)?;
+    let bars = if arguments.bars || arguments.view.needs_bars() {
+        ErrorBars::Computed
+    } else {
+        ErrorBars::Omitted
+    };
+    let StudyAnalysis {
+        analysis,
+        mut engine,
+    } = analyze_study(study, &arguments.study, bars)?;
+    if arguments.view == FigureKind::Requirements {
+        request.requirements = Some(Arc::new(engine.requirements(
+            &analysis,
+            &KnownPoles::default(),
+            &Unobserved,
+        )?));
+    }
+    if arguments.view == FigureKind::Couplings {
+        request.couplings = Some(assessed_couplings(&analysis.study, &mut engine)?);
+    }
+    let figure = match condition {
+        None => request.figure(Some(&analysis), None),
+        Some(condition) => figure_of_condition(&request, &analysis, condition, &mut engine)?,
+    };
+    let figure = figure.ok_or_else(|| Failure::NoResult {
+        reason: "there is nothing to draw".to_owned(),
+    })?;
+    write_figure(&figure, arguments.width, &arguments.out, outputs)?;
+    print(&format!(
+        "{}: {}\n",
+        sanitized_path(&arguments.out),
+        sanitized(&figure.title)
+    ))
+}
+
+/// Assesses the couplings requested by the study, or else mixing and feedback.
+fn assessed_couplings(
+    study: &Study,
+    engine: &mut Engine,
+) -> Result<Arc<CouplingsAssessment>, Failure> {
+    let couplings = match study.settings.couplings {
+        CouplingCorrection::None => CouplingCorrection::MixingAndFeedback,
+        requested => requested,
+    };
+    let progress = TerminalProgress::new("couplings");
+    let assessed = engine.assess_couplings(study, couplings, &progress)?;
+    match assessed {
+        Some(Ok(assessment)) => Ok(assessment),
+        Some(Err(why)) => Err(Failure::NoResult {
+            reason: why.words(&study.dataset.names_of_channels().0),
+        }),
+        None => Err(Failure::NoResult {
+            reason: "no couplings".to_owned(),
+        }),
+    }
+}
+
+/// Draws a condition's figure from the curves that the window shows.
+fn figure_of_condition(
+    request: &FigureRequest,
+    analysis: &Analysis,
+    condition: ConditionId,
+    engine: &mut Engine,
+) -> Result<Option<Figure>, Failure> {
+    let study = &analysis.study;
+    let result = match analysis.conditions.get(&condition) {
+        Some(Ok(result)) => result,
+        Some(Err(failure)) => {
+            return Err(Failure::NoResult {
+                reason: format!(
+                    "condition {condition}: {}",
+                    failure_text(failure, &study.dataset)
+                ),
+            });
+        }
+        None => return Ok(None),
+    };
+    let grid = (curves_band(&study.settings), CURVE_POINTS);
+    let progress = TerminalProgress::new("drawing");
+    let Some(curves) = engine.curves(&study.dataset, condition, grid, &progress)? else {
+        return Ok(None);
+    };
+    drop(progress);
+    let schedule = analysis.schedule.as_ref().ok();
+    let source = ConditionSource {
+        study,
+        analysis: Some(result),
+        schedule,
+        curves: &curves,
+        variant: None,
+    };
+    Ok(request.figure(Some(analysis), Some(&source)))
+}
+
+/// Builds the figure request from the command line.
+fn figure_request(study: &Study, arguments: &FigureArguments) -> Result<FigureRequest, Failure> {
+    let dataset = &study.dataset;
+    let pairs = match &arguments.pair {
+        Some(choice) => chosen_pairs(dataset, choice)?,
+        None if arguments.view == FigureKind::NetGain => {
+            study.settings.constrained.marked().collect()
+        }
+        None => dataset.measuring_pairs().marked().collect(),
+    };
+    let channels = chosen_channels(dataset, arguments.channel.as_deref())?;
+    let mut request = FigureRequest::new(arguments.view, pairs, channels);
+    request.across_role = arguments.model;
+    request.bode = bode_options(dataset, arguments)?;
+    request.measure = if arguments.delays {
+        Measure::Delay
+    } else {
+        Measure::Gain
+    };
+    request.across = if arguments.over_conditions {
+        Across::Conditions
+    } else {
+        Across::Airspeed
+    };
+    Ok(request)
+}
+
+fn bode_options(dataset: &Dataset, arguments: &FigureArguments) -> Result<BodeOptions, Failure> {
+    let zeros_of = match &arguments.zeros {
+        Some(list) => pairs_of(dataset, list, "--zeros")?.first().copied(),
+        None => None,
+    };
+    // Showing couplings alone is an option of the window only.
+    let mut hidden = vec![Role::Coupled];
+    hidden.extend(arguments.hide.iter().copied());
+    Ok(BodeOptions {
+        unit: if arguments.hertz {
+            FrequencyUnit::Hertz
+        } else {
+            FrequencyUnit::RadPerSecond
+        },
+        hidden: hidden.into_iter().collect(),
+        zeros_of,
+        shows_muad: arguments.muad,
+        ..BodeOptions::default()
+    })
+}
+
+fn chosen_pairs(dataset: &Dataset, choice: &PairChoice) -> Result<Vec<Pair>, Failure> {
+    let measuring = dataset.measuring_pairs();
+    Ok(match choice {
+        PairChoice::OnAxis => measuring.marked().collect(),
+        PairChoice::OffAxis => measuring.pairs().filter(|pair| !measuring[*pair]).collect(),
+        PairChoice::All => measuring.pairs().collect(),
+        PairChoice::Listed(list) => pairs_of(dataset, list, "--pair")?,
+    })
+}
+
+fn chosen_channels(dataset: &Dataset, choice: Option<&str>) -> Result<Vec<Channel>, Failure> {
+    let mut channels = all_channels(dataset);
+    match choice {
+        None => {}
+        Some("inputs") => channels.retain(is_input),
+        Some("outputs") => channels.retain(|channel| !is_input(channel)),
+        Some(list) => {
+            return list
+                .split(',')
+                .map(|name| named_channel(dataset, name.trim()))
+                .collect();
+        }
+    }
+    Ok(channels)
+}
+
+fn is_input(channel: &Channel) -> bool {
+    matches!(channel, Channel::Input(_))
+}
+
+fn named_channel(dataset: &Dataset, name: &str) -> Result<Channel, Failure> {
+    let (inputs, outputs) = dataset.names_of_channels();
+    all_channels(dataset)
+        .into_iter()
+        .find(|channel| channel.name(&inputs, &outputs) == name)
+        .ok_or_else(|| {
+            let reason = format!(
+                "the dataset has no channel {name}; inputs are {}; outputs are {}",
+                channel_names(dataset.inputs()),
+                channel_names(dataset.outputs())
+            );
+            Failure::coded_option("--channel", "unknown-channel", reason)
+        })
+}
+
+/// Returns the condition for a figure that shows a single condition.
+fn figure_condition(
+    study: &Study,
+    arguments: &FigureArguments,
+) -> Result<Option<ConditionId>, Failure> {
+    // Couplings concern all conditions; the poles beside them belong to a single condition.
+    let is_requested = arguments.view == FigureKind::Couplings && arguments.condition.is_some();
+    if !arguments.view.is_of_condition() && !is_requested {
+        return Ok(None);
+    }
+    let Some(id) = arguments.condition else {
+        let reason = format!(
+            "{} is a figure of one condition; the dataset has {}",
+            arguments.view.name(),
+            condition_ids(&study.dataset)
+        );
+        return Err(Failure::coded_option(
+            "--condition",
+            "missing-condition",
+            reason,
+        ));
+    };
+    Ok(Some(condition_of(&study.dataset, id)?))
+}

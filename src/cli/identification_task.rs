@@ -1,0 +1,192 @@
+//! Identifying models from flight records at a condition.
+
+use std::path::{Path, PathBuf};
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dataset};
+use gdcm_model::message_text::sanitized_path;
+use gdcm_model::simulation::Signal;
+use gdcm_study::jobs::identification_jobs::IdentificationRequest;
+use gdcm_study::results::channel_time_skew::ChannelTimeSkew;
+use gdcm_sysid::identification::{
+    CautionNote, Identification, IdentificationCaution, IdentificationError, Preparation,
+};
+use gdcm_sysid::records::LaidOutRecord;
+use gdcm_words::channel_time_skew::time_skew_text;
+
+use super::destination::RecordGroup;
+use super::failure::Failure;
+use super::flight_records::record_table;
+use super::identify_arguments::IdentifyArguments;
+use super::progress::TerminalProgress;
+use super::text::counted;
+use crate::executor::Pool;
+
+/// File of the identified models.
+pub(super) const IDENTIFIED_FILE: &str = "identified.json";
+
+/// Identifying models from a group of records.
+pub(super) struct IdentificationTask {
+    /// The condition in the dataset; `None` without a dataset.
+    pub(super) condition: Option<ConditionId>,
+    pub(super) records: Vec<LaidOutRecord>,
+    request: IdentificationRequest,
+}
+
+impl IdentificationTask {
+    pub(super) fn new(
+        group: RecordGroup,
+        preparation: &Preparation,
+        band: Band,
+        arguments: &IdentifyArguments,
+    ) -> Result<Self, Failure> {
+        let RecordGroup { condition, records } = group;
+        let band_rad_s = [band.min(), band.max()];
+        let mut request =
+            IdentificationRequest::of(records.iter(), preparation.clone(), band_rad_s).map_err(
+                |why| Failure::option("--hold-out", format!("{}{why}", prefix(condition))),
+            )?;
+        arguments.search().set(&mut request.options);
+        request.options.references = arguments.references().len();
+        Ok(Self {
+            request,
+            condition,
+            records,
+        })
+    }
+
+    /// Runs the identification, with progress on a terminal.
+    pub(super) fn run(&self) -> Result<Identification, IdentificationError> {
+        let work = match self.condition {
+            Some(id) => format!("identifying condition {id}"),
+            None => "identifying".to_owned(),
+        };
+        self.request.identify(&Pool, &TerminalProgress::new(&work))
+    }
+
+    /// Returns whether a record with this name takes part.
+    pub(super) fn has_record(&self, name: &str) -> bool {
+        self.records.iter().any(|record| record.table.name == name)
+    }
+
+    /// Returns the cautions with the options that remedy them; with a dataset, also about a channel
+    /// that lags.
+    pub(super) fn cautions(
+        &self,
+        found: &Identification,
+        dataset: Option<&Dataset>,
+    ) -> Vec<CautionNote> {
+        let mut cautions: Vec<CautionNote> = found
+            .cautions
+            .iter()
+            .map(|caution| self.caution_with_remedy(caution))
+            .collect();
+        if let Some(dataset) = dataset {
+            cautions.extend(self.late_channel(found, dataset));
+        }
+        cautions
+    }
+
+    /// Returns a caution for a channel that lags in all records compared with the nominal physics
+    /// model of the condition, with the option that removes its delay.
+    fn late_channel(&self, found: &Identification, dataset: &Dataset) -> Option<CautionNote> {
+        let condition = dataset.condition(self.condition?)?;
+        let options = &self.request.options;
+        let late = ChannelTimeSkew::of_condition(&found.measured, options.band, condition)?;
+        let signal = late.signal(dataset)?;
+        let known_s = options.preparation.channel(&signal)?.delay_s;
+        let physics = condition.bundle(BundleKind::Physics);
+        let nominal = physics.get(condition.nominal())?;
+        let words = time_skew_text(&late, &signal.name, &nominal.name);
+        let delay_s = known_s + late.delay_s;
+        let text = format!("{words} (--delay {}={delay_s:.3})", signal.name);
+        Some(CautionNote {
+            code: "time-skew",
+            channel: Some(signal.name),
+            text,
+            ..CautionNote::default()
+        })
+    }
+
+    /// Returns a caution with the options that remedy it.
+    fn caution_with_remedy(&self, caution: &IdentificationCaution) -> CautionNote {
+        let mut note = caution.note();
+        let IdentificationCaution::Contradiction { records, .. } = caution else {
+            return note;
+        };
+        let outputs = self.outputs();
+        let mut remedies: Vec<String> = Vec::new();
+        for record in records {
+            let Some(fault) = &record.fault else {
+                continue;
+            };
+            let mut options: Vec<String> = Vec::new();
+            for (signal, remedy) in fault.remedies(&outputs) {
+                let name = &record.name;
+                options.push(match remedy.factor {
+                    1.0 => format!("--delay {name}:{signal}={:.3}", remedy.delay_s),
+                    factor => format!("--factor {name}:{signal}={factor:.2}"),
+                });
+            }
+            remedies.push(options.join(" "));
+        }
+        let remedies = remedies.join(" or ");
+        if !remedies.is_empty() {
+            note.text += &format!(" ({remedies})");
+        }
+        note
+    }
+
+    fn outputs(&self) -> Vec<Signal> {
+        let channels = self.request.options.preparation.outputs.iter().enumerate();
+        channels
+            .map(|(index, channel)| Signal {
+                role: ChannelSide::Output,
+                index,
+                name: channel.name.clone(),
+            })
+            .collect()
+    }
+
+    /// Returns a table with a line for each record, below the condition if any.
+    pub(super) fn table(&self) -> String {
+        match self.condition {
+            Some(id) => format!("condition {id}\n{}", record_table(&self.records, 2)),
+            None => record_table(&self.records, 0),
+        }
+    }
+
+    /// Returns the path for the identified models: a file for each condition if there are several.
+    pub(super) fn output_path(&self, arguments: &IdentifyArguments) -> PathBuf {
+        match self.condition {
+            Some(id) if arguments.every_condition => arguments
+                .out
+                .join(format!("identified-condition-{id}.json")),
+            _ => arguments.out.join(IDENTIFIED_FILE),
+        }
+    }
+
+    /// Returns a line about the result and its file.
+    pub(super) fn outcome(&self, file: &Path, found: &Identification) -> String {
+        let held_out = match found.held_out_cost {
+            Some(cost) => format!(", of the held-out records {cost:.2}"),
+            None => String::new(),
+        };
+        format!(
+            "{}{}: {}; order {}, J per degree of freedom {:.2}{held_out}\n",
+            prefix(self.condition),
+            sanitized_path(file),
+            counted(2 + found.bundle.len(), "model"),
+            found.refined.order().unwrap_or_default(),
+            found.cost,
+        )
+    }
+}
+
+/// Returns the prefix of messages about a condition.
+fn prefix(condition: Option<ConditionId>) -> String {
+    match condition {
+        Some(id) => format!("condition {id}: "),
+        None => String::new(),
+    }
+}

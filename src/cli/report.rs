@@ -1,0 +1,77 @@
+//! `gdcm report`: the full report, ready to print.
+
+use std::path::Path;
+
+use gdcm_io::report::{ReportSource, ReportSubject, report as compose_report, save_report};
+use gdcm_model::message_text::sanitized_path;
+use gdcm_study::results::required_modes::KnownPoles;
+
+use super::failure::Failure;
+use super::histories::{read_histories, simulated_histories};
+use super::progress::TerminalProgress;
+use super::result_arguments::ReportArguments;
+use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study};
+use super::terminal::print;
+use super::text::counted;
+
+/// Analyses, and writes the full report.
+pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
+    let CommandStudy {
+        study,
+        loaded,
+        outputs,
+    } = CommandStudy::open(&arguments.study, arguments.force)?;
+    let outputs = outputs.also_reading(arguments.histories.records.iter().cloned());
+    outputs.check(&[&arguments.out])?;
+    check_ending(&arguments.out)?;
+    let records = read_histories(&arguments.histories, &study.dataset, study.settings.band)?;
+    let StudyAnalysis {
+        analysis,
+        mut engine,
+    } = analyze_study(study, &arguments.study, ErrorBars::Omitted)?;
+    let histories = if arguments.histories.records.is_empty() {
+        None
+    } else {
+        Some(simulated_histories(&analysis, &records)?)
+    };
+    let mut study_file = arguments.study.file.as_deref();
+    if study_file == loaded.path() {
+        study_file = None;
+    }
+    let source = ReportSource::of(&loaded, study_file);
+    let progress = TerminalProgress::new("drawing");
+    let known = KnownPoles::default();
+    let subject = ReportSubject {
+        analysis: &analysis,
+        histories: histories.as_ref(),
+        known: &known,
+    };
+    let report = compose_report(subject, &source, &mut engine, &progress)?;
+    drop(progress);
+    save_report(&report, &arguments.out, outputs)?;
+    let outcomes = analysis.conditions.values();
+    let solved = outcomes.filter(|outcome| outcome.is_ok()).count();
+    print(&format!(
+        "{}: a report on {}\n",
+        sanitized_path(&arguments.out),
+        counted(solved, "condition")
+    ))?;
+    records.into_outcome()
+}
+
+/// Rejects a name that does not end in .html or .htm.
+fn check_ending(path: &Path) -> Result<(), Failure> {
+    let ending = path
+        .extension()
+        .map(|ending| ending.to_string_lossy().to_lowercase());
+    match ending.as_deref() {
+        Some("html" | "htm") => Ok(()),
+        _ => Err(Failure::option(
+            "--out",
+            format!(
+                "expected a name that ends in .html, found {}; print the report as PDF from a browser",
+                sanitized_path(path)
+            ),
+        )),
+    }
+}

@@ -1,0 +1,252 @@
+//! Channels that `gdcm identify` requests, with the declarations about their samples.
+
+use gdcm_model::dataset::{Band, Dataset};
+use gdcm_model::names::channel_rule::ChannelRule;
+use gdcm_sysid::identification::{ChannelPreparation, Preparation};
+use gdcm_sysid::records::RecordChannels;
+use gdcm_sysid::records::channel_list::{ChannelList, SaidChannel};
+use gdcm_sysid::records::record_channels::{ResamplingWish, SaidConversion};
+
+use super::channel_values::{ChannelValue, RecordChannel, first_duplicate};
+use super::failure::Failure;
+use super::identify_arguments::IdentifyArguments;
+
+/// Returns the identification band, by default the dataset's.
+pub(super) fn requested_band(
+    arguments: &IdentifyArguments,
+    dataset: Option<&Dataset>,
+) -> Result<Band, Failure> {
+    match (arguments.band.as_deref(), dataset) {
+        (Some(&[min, max]), _) => {
+            Band::new(min, max).map_err(|error| Failure::option("--band", error))
+        }
+        (_, Some(dataset)) => Ok(dataset.band()),
+        _ => Err(Failure::option("--band", "expected two frequencies")),
+    }
+}
+
+/// Returns the requested channels, with the declarations about their samples.
+pub(super) fn requested_channels(
+    arguments: &IdentifyArguments,
+    dataset: Option<&Dataset>,
+    band: Band,
+) -> Result<RecordChannels, Failure> {
+    let mut channels = match dataset {
+        Some(dataset) => channels_of_dataset(arguments, dataset)?,
+        None => named_channels(arguments),
+    };
+    add_references(arguments, &mut channels)?;
+    set_locations(arguments, &mut channels)?;
+    check_held(arguments, &channels)?;
+    channels.resampling = ResamplingWish {
+        band_end: Some(band.max()),
+        rate_hz: arguments.resample,
+        held: arguments.held.iter().cloned().collect(),
+    };
+    declare_conversions(
+        "--unit",
+        &arguments.unit,
+        SaidConversion::Unit,
+        &mut channels,
+    )?;
+    declare_conversions(
+        "--factor",
+        for_all_records(&arguments.factor),
+        SaidConversion::Factor,
+        &mut channels,
+    )?;
+    Ok(channels)
+}
+
+/// Returns the declarations that are not limited to a single record.
+fn for_all_records<T>(declarations: &[ChannelValue<T>]) -> Vec<&ChannelValue<T>> {
+    declarations
+        .iter()
+        .filter(|declaration| RecordChannel::parse(&declaration.channel).is_none())
+        .collect()
+}
+
+fn listed(list: &Option<ChannelList>) -> &[SaidChannel] {
+    match list {
+        Some(list) => &list.channels,
+        None => &[],
+    }
+}
+
+/// Returns the channels on the command line, in the first record's units.
+fn named_channels(arguments: &IdentifyArguments) -> RecordChannels {
+    let inputs = listed(&arguments.inputs).iter();
+    let outputs = listed(&arguments.outputs).iter();
+    RecordChannels {
+        inputs: inputs.map(SaidChannel::rule).collect(),
+        outputs: outputs.map(SaidChannel::rule).collect(),
+        ..RecordChannels::default()
+    }
+}
+
+/// Returns the dataset's channels, in its units, with the columns on the command line.
+fn channels_of_dataset(
+    arguments: &IdentifyArguments,
+    dataset: &Dataset,
+) -> Result<RecordChannels, Failure> {
+    let mut channels = RecordChannels::of_dataset(dataset);
+    for channel in listed(&arguments.inputs) {
+        set_column("--inputs", channel, &mut channels.inputs)?;
+    }
+    for channel in listed(&arguments.outputs) {
+        set_column("--outputs", channel, &mut channels.outputs)?;
+    }
+    Ok(channels)
+}
+
+/// Sets a channel's column in the dataset; rejects another unit.
+fn set_column(
+    option: &'static str,
+    channel: &SaidChannel,
+    rules: &mut [ChannelRule],
+) -> Result<(), Failure> {
+    let SaidChannel { name, unit, column } = channel;
+    let Some(index) = rules.iter().position(|rule| rule.name == *name) else {
+        let names: Vec<&str> = rules.iter().map(|rule| rule.name.as_str()).collect();
+        let reason = format!(
+            "the dataset has no {name} there; it has {}",
+            names.join(", ")
+        );
+        return Err(Failure::coded_option(option, "unknown-channel", reason));
+    };
+    let rule = &mut rules[index];
+    if !unit.is_empty() && *unit != rule.unit {
+        let reason = format!(
+            "{name} has the unit {} in the dataset, not {unit}",
+            rule.unit
+        );
+        return Err(Failure::option(option, reason));
+    }
+    rule.aliases = column.iter().cloned().collect();
+    rule.unit_in_files = if unit.is_empty() {
+        None
+    } else {
+        Some(unit.clone())
+    };
+    Ok(())
+}
+
+/// Adds the references behind the model's inputs, because they are read like inputs.
+fn add_references(
+    arguments: &IdentifyArguments,
+    channels: &mut RecordChannels,
+) -> Result<(), Failure> {
+    for reference in arguments.references() {
+        if has_channel(channels, &reference.name) {
+            let reason = format!(
+                "{} is already an input or an output; a reference is neither",
+                reference.name
+            );
+            return Err(Failure::option("--reference", reason));
+        }
+        channels.inputs.push(reference.rule());
+    }
+    Ok(())
+}
+
+/// Sets the topics or columns given by `--topic`.
+fn set_locations(
+    arguments: &IdentifyArguments,
+    channels: &mut RecordChannels,
+) -> Result<(), Failure> {
+    const OPTION: &str = "--topic";
+    if let Some(channel) = first_duplicate(&arguments.topic) {
+        return Err(Failure::given_twice(OPTION, channel));
+    }
+    for ChannelValue { channel, value } in &arguments.topic {
+        let rule = channels
+            .inputs
+            .iter_mut()
+            .chain(&mut channels.outputs)
+            .find(|rule| rule.name == *channel);
+        let rule = rule.ok_or_else(|| unknown_channel(OPTION, channel))?;
+        rule.aliases = vec![value.clone()];
+    }
+    Ok(())
+}
+
+/// Rejects a channel of `--held` that is no input.
+fn check_held(arguments: &IdentifyArguments, channels: &RecordChannels) -> Result<(), Failure> {
+    for held in &arguments.held {
+        if channels.inputs.iter().all(|rule| rule.name != *held) {
+            let reason = format!("{held} is none of the inputs");
+            return Err(Failure::coded_option("--held", "unknown-channel", reason));
+        }
+    }
+    Ok(())
+}
+
+/// Returns the channel preparation, which removes known delays.
+pub(super) fn requested_preparation(
+    arguments: &IdentifyArguments,
+    channels: &RecordChannels,
+) -> Result<Preparation, Failure> {
+    const OPTION: &str = "--delay";
+    let delays = for_all_records(&arguments.delay);
+    for delay in &delays {
+        if !has_channel(channels, &delay.channel) {
+            return Err(unknown_channel(OPTION, &delay.channel));
+        }
+    }
+    if let Some(channel) = first_duplicate(delays.iter().copied()) {
+        return Err(Failure::given_twice(OPTION, channel));
+    }
+    Ok(Preparation {
+        inputs: without_delays(&channels.inputs, &delays),
+        outputs: without_delays(&channels.outputs, &delays),
+        ..Preparation::of(&[], &[])
+    })
+}
+
+/// Returns the channel preparations that remove known delays.
+fn without_delays(rules: &[ChannelRule], delays: &[&ChannelValue<f64>]) -> Vec<ChannelPreparation> {
+    let mut prepared = Vec::new();
+    for rule in rules {
+        let mut channel = ChannelPreparation::named(rule.name.clone());
+        channel.delay_s = match delays.iter().find(|delay| delay.channel == rule.name) {
+            Some(delay) => delay.value,
+            None => 0.0,
+        };
+        prepared.push(channel);
+    }
+    prepared
+}
+
+/// Returns whether a channel with this name exists.
+pub(super) fn has_channel(channels: &RecordChannels, name: &str) -> bool {
+    let mut rules = channels.inputs.iter().chain(&channels.outputs);
+    rules.any(|rule| rule.name == name)
+}
+
+/// Returns the failure for an option about an unknown channel.
+pub(super) fn unknown_channel(option: &'static str, channel: &str) -> Failure {
+    let reason = format!("{channel} is none of the channels");
+    Failure::coded_option(option, "unknown-channel", reason)
+}
+
+/// Applies an option's declarations to the channels; rejects duplicates.
+pub(super) fn declare_conversions<'a, T: Clone + 'a>(
+    option: &'static str,
+    declarations: impl IntoIterator<Item = &'a ChannelValue<T>>,
+    conversion: fn(T) -> SaidConversion,
+    channels: &mut RecordChannels,
+) -> Result<(), Failure> {
+    for ChannelValue { channel, value } in declarations {
+        if !has_channel(channels, channel) {
+            return Err(unknown_channel(option, channel));
+        }
+        let known = channels
+            .said
+            .insert(channel.clone(), conversion(value.clone()));
+        if known.is_some() {
+            let reason = format!("{channel} has a unit or a factor already");
+            return Err(Failure::coded_option(option, "given-twice", reason));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,234 @@
+//! Cautions of many conditions: a table for the remarks that most conditions share, and a line for
+//! every other caution.
+
+use gdcm_model::dataset::{ConditionId, Dataset, Pair};
+use gdcm_model::message_text::sanitized;
+use gdcm_study::{Analysis, ConditionAnalysis};
+use gdcm_words::Table;
+use gdcm_words::condition_remarks::remarks;
+use gdcm_words::leads::lead_limit_words;
+use gdcm_words::remark::{Remark, RemarkKind, Repeated};
+
+use super::terminal::keep_caution;
+use super::text::{ConditionMessage, indented, line, shared_messages};
+
+/// Repeated remarks about a condition.
+struct RemarkRow {
+    condition: ConditionId,
+    remarks: Vec<Remark>,
+}
+
+impl RemarkRow {
+    /// Returns the facts in the remarks.
+    fn facts(&self) -> impl Iterator<Item = &Repeated> {
+        self.remarks
+            .iter()
+            .filter_map(|remark| remark.repeated.as_ref())
+    }
+}
+
+/// Returns the cautions common to most conditions as a table, and every other caution once with its
+/// conditions; keeps them for the JSON object.
+pub(super) fn cautions_section(analysis: &Analysis) -> String {
+    let mut rows: Vec<RemarkRow> = Vec::new();
+    let mut others: Vec<ConditionMessage> = Vec::new();
+    for condition in analysis.study.dataset.conditions() {
+        let Some(result) = analysis.condition(condition.id()) else {
+            continue;
+        };
+        let mut row = RemarkRow {
+            condition: result.condition.id(),
+            remarks: Vec::new(),
+        };
+        for caution in condition_cautions(analysis, result) {
+            if caution.repeated.is_some() {
+                row.remarks.push(caution);
+            } else {
+                others.push(ConditionMessage::new(row.condition, caution.text));
+            }
+        }
+        if let Some(words) = lead_limit_words(result) {
+            others.push(ConditionMessage::new(row.condition, words));
+        }
+        if !row.remarks.is_empty() {
+            rows.push(row);
+        }
+    }
+    let mut text = String::new();
+    if let [row] = &rows[..]
+        && let [alone] = &row.remarks[..]
+    {
+        // For a single remark of a single condition a sentence suffices.
+        let message = ConditionMessage::new(row.condition, alone.text.clone());
+        others.insert(0, message);
+    } else if !rows.is_empty() {
+        text += &repeated_table(&analysis.study.dataset, &rows);
+    }
+    for message in shared_messages(others) {
+        keep_caution(&message.conditions, &message.text);
+        text += &line("Caution", &sanitized(&message.words()));
+    }
+    text
+}
+
+/// Returns a condition's cautions, without the doubts about signs and units, which are printed
+/// above all conditions.
+fn condition_cautions(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<Remark> {
+    remarks(&analysis.study, result, None)
+        .into_iter()
+        .skip(result.doubts.len())
+        .filter(|remark| remark.kind == RemarkKind::Caution)
+        .collect()
+}
+
+/// Returns a table with a row for each condition, a column for each response that needs lead or
+/// moves away from flight, and columns for other repeated remarks; above it, the meaning of the
+/// columns.
+fn repeated_table(dataset: &Dataset, rows: &[RemarkRow]) -> String {
+    let facts: Vec<&Repeated> = rows.iter().flat_map(RemarkRow::facts).collect();
+    let pairs: Vec<Pair> = dataset
+        .on_axis()
+        .pairs()
+        .filter(|pair| has_entry(&facts, *pair))
+        .collect();
+    let columns: Vec<&RemarkColumn> = COLUMNS
+        .iter()
+        .filter(|column| column.cell(&facts, dataset).is_some())
+        .collect();
+    let mut headings = vec!["condition".to_owned()];
+    headings.extend(pairs.iter().map(|pair| dataset.pair_name(*pair)));
+    headings.extend(columns.iter().map(|column| column.heading.to_owned()));
+    let mut table = Table::new("", headings);
+    for row in rows {
+        let facts: Vec<&Repeated> = row.facts().collect();
+        let mut cells = vec![row.condition.to_string()];
+        cells.extend(pairs.iter().map(|pair| pair_cell(&facts, *pair)));
+        for column in &columns {
+            let cell = column.cell(&facts, dataset);
+            cells.push(cell.unwrap_or_else(|| NO_ENTRY.to_owned()));
+        }
+        table.row(cells);
+    }
+    let mut sentences = pair_sentences(&facts);
+    sentences.extend(columns.iter().map(|column| column.sentence));
+    let sentence = sentences.join("; ");
+    let conditions: Vec<ConditionId> = rows.iter().map(|row| row.condition).collect();
+    keep_caution(&conditions, &sentence);
+    line("Cautions", &format!("{sentence}:")) + &indented(&table, 2)
+}
+
+/// Explains the entries in the columns of responses.
+fn pair_sentences(facts: &[&Repeated]) -> Vec<&'static str> {
+    let mut sentences = Vec::new();
+    if facts
+        .iter()
+        .any(|fact| matches!(fact, Repeated::NeedsLead(_)))
+    {
+        sentences
+            .push("held responses need lead [ms]: the physics model lags, and a delay cannot lead");
+    }
+    if facts
+        .iter()
+        .any(|fact| matches!(fact, Repeated::Farther(_)))
+    {
+        sentences.push("* is farther from flight (larger J) than without a correction");
+    }
+    sentences
+}
+
+/// Returns whether a response needs lead or moves away from flight in any condition.
+fn has_entry(facts: &[&Repeated], pair: Pair) -> bool {
+    needed_lead_ms(facts, pair).is_some() || is_farther(facts, pair)
+}
+
+/// Returns the lead that a response needs \[ms\].
+fn needed_lead_ms<'a>(facts: &[&'a Repeated], pair: Pair) -> Option<&'a str> {
+    for fact in facts {
+        let Repeated::NeedsLead(needed) = fact else {
+            continue;
+        };
+        for (needing, lead_ms) in needed {
+            if *needing == pair {
+                return Some(lead_ms);
+            }
+        }
+    }
+    None
+}
+
+/// Returns whether the correction moves a response away from flight.
+fn is_farther(facts: &[&Repeated], pair: Pair) -> bool {
+    facts
+        .iter()
+        .any(|fact| matches!(fact, Repeated::Farther(pairs) if pairs.contains(&pair)))
+}
+
+/// Formats the lead that a response needs, with a star if it moves away from flight.
+fn pair_cell(facts: &[&Repeated], pair: Pair) -> String {
+    let lead_ms = needed_lead_ms(facts, pair).unwrap_or(NO_ENTRY);
+    if is_farther(facts, pair) {
+        format!("{lead_ms} *")
+    } else {
+        lead_ms.to_owned()
+    }
+}
+
+/// Cell without an entry.
+const NO_ENTRY: &str = "-";
+
+/// A column for a repeated remark.
+struct RemarkColumn {
+    heading: &'static str,
+    sentence: &'static str,
+    /// Returns the cell for a remark that belongs in the column.
+    format: fn(&Repeated, &Dataset) -> Option<String>,
+}
+
+impl RemarkColumn {
+    /// Returns the cell of the first remark that belongs in the column.
+    fn cell(&self, facts: &[&Repeated], dataset: &Dataset) -> Option<String> {
+        facts.iter().find_map(|fact| (self.format)(fact, dataset))
+    }
+}
+
+const COLUMNS: [RemarkColumn; 3] = [
+    RemarkColumn {
+        heading: "all",
+        sentence: "a common lead (column all [ms]) is better removed at its source: check first the time alignment of the records, \
+                   the simulation's integration and sampling delay, then servo and sensor models",
+        format: common_lead,
+    },
+    RemarkColumn {
+        heading: "gain",
+        sentence: "column gain [dB] is the largest gain increase of the lead filters within the band, which the gains compensate",
+        format: raised_gain,
+    },
+    RemarkColumn {
+        heading: "J with leads",
+        sentence: "the last column is the mean J of the held responses, without and with a delay or lead in each channel",
+        format: cost_with_leads,
+    },
+];
+
+fn common_lead(fact: &Repeated, _: &Dataset) -> Option<String> {
+    match fact {
+        Repeated::CommonLead(lead_ms) => Some(lead_ms.clone()),
+        _ => None,
+    }
+}
+
+fn raised_gain(fact: &Repeated, dataset: &Dataset) -> Option<String> {
+    match fact {
+        Repeated::RaisedGain(most_db, pair) => {
+            Some(format!("{most_db} ({})", dataset.pair_name(*pair)))
+        }
+        _ => None,
+    }
+}
+
+fn cost_with_leads(fact: &Repeated, _: &Dataset) -> Option<String> {
+    match fact {
+        Repeated::LeadsOffered([without, with]) => Some(format!("{without} → {with}")),
+        _ => None,
+    }
+}

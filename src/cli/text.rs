@@ -1,0 +1,271 @@
+//! Printed text: labelled lines, lists, tables, and messages shared by several conditions.
+
+use std::path::PathBuf;
+
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::message_text::{sanitized_path, shortened, shortened_message};
+use gdcm_words::Table;
+
+/// Maximum page width in columns.
+const PAGE_WIDTH: usize = 110;
+
+/// Label width in columns.
+const LABEL_WIDTH: usize = 14;
+
+/// Indentation within a section, in columns.
+const DETAIL_INDENT: usize = 2;
+
+/// A label at the left of wrapped text.
+#[derive(Clone, Copy)]
+struct Label<'a> {
+    text: &'a str,
+    /// Columns before the label.
+    indent: usize,
+}
+
+impl<'a> Label<'a> {
+    fn of_section(text: &'a str) -> Self {
+        Self { text, indent: 0 }
+    }
+
+    fn of_detail(text: &'a str) -> Self {
+        Self {
+            text,
+            indent: DETAIL_INDENT,
+        }
+    }
+
+    /// Returns the label with spaces up to the column where the text begins.
+    fn padded(self) -> String {
+        let Self { text, indent } = self;
+        let width = LABEL_WIDTH - indent;
+        format!("{:indent$}{text:<width$}", "")
+    }
+
+    /// Returns the words behind the label, wrapped at [`PAGE_WIDTH`] columns and aligned.
+    fn before(self, words: &str) -> String {
+        self.before_pieces(shortened_message(words).split(' '))
+    }
+
+    /// Returns pieces of text behind the label, wrapped between pieces only.
+    fn before_pieces<'p>(self, pieces: impl Iterator<Item = &'p str>) -> String {
+        let mut text = self.padded();
+        let start = text.chars().count();
+        let mut column = start;
+        for piece in pieces {
+            let length = piece.chars().count();
+            if column > start && column + 1 + length > PAGE_WIDTH {
+                text.push_str(&format!("\n{:start$}", ""));
+                column = start;
+            }
+            if column > start {
+                text.push(' ');
+                column += 1;
+            }
+            text.push_str(piece);
+            column += length;
+        }
+        text.truncate(text.trim_end().len());
+        text.push('\n');
+        text
+    }
+}
+
+/// Returns text behind a section's label.
+pub(super) fn line(label: &str, words: &str) -> String {
+    Label::of_section(label).before(words)
+}
+
+/// Returns an indented line of a section.
+pub(super) fn detail(label: &str, words: &str) -> String {
+    Label::of_detail(label).before(words)
+}
+
+/// Returns a comma-separated list in a section, wrapped between entries; an empty list is "none".
+pub(super) fn detail_list(label: &str, entries: &[String]) -> String {
+    let Some((last, others)) = entries.split_last() else {
+        return detail(label, "none");
+    };
+    let mut pieces: Vec<String> = Vec::with_capacity(entries.len());
+    for entry in others {
+        pieces.push(format!("{},", shortened_message(entry)));
+    }
+    pieces.push(shortened_message(last));
+    Label::of_detail(label).before_pieces(pieces.iter().map(String::as_str))
+}
+
+/// Formats a table as lines indented by `indent` spaces; shortens long cells.
+pub(super) fn indented(table: &Table, indent: usize) -> String {
+    let mut table = table.clone();
+    for cell in table.rows.iter_mut().flatten() {
+        *cell = shortened(cell);
+    }
+    table
+        .text()
+        .lines()
+        .map(|line| format!("{:indent$}{line}\n", ""))
+        .collect()
+}
+
+/// Formats a table without its title, for a place that has a heading.
+pub(super) fn indented_untitled(table: Table) -> String {
+    let table = Table {
+        title: String::new(),
+        ..table
+    };
+    indented(&table, DETAIL_INDENT)
+}
+
+/// Formats a number with fixed digits behind the point, from 1e7 on with an exponent; "-" without a
+/// number.
+pub(super) fn fixed_digits(value: Option<f64>, digits: usize) -> String {
+    let Some(value) = value else {
+        return "-".to_owned();
+    };
+    if value.abs() >= 1e7 || value.is_nan() {
+        return format!("{value:.digits$e}");
+    }
+    // Adding zero turns a rounded minus zero into zero.
+    let scale = 10_f64.powi(digits as i32);
+    let rounded = (value * scale).round() / scale + 0.0;
+    format!("{rounded:.digits$}")
+}
+
+/// Formats "1 model", "3 models".
+pub(super) fn counted(count: usize, noun: &str) -> String {
+    if count == 1 {
+        format!("1 {noun}")
+    } else {
+        format!("{count} {noun}s")
+    }
+}
+
+/// Joins paths with commas.
+pub(super) fn listed_paths(paths: &[PathBuf]) -> String {
+    let paths: Vec<String> = paths.iter().map(|path| sanitized_path(path)).collect();
+    paths.join(", ")
+}
+
+/// Returns "condition 3", "conditions 3, 4, 7", "conditions 1 to 3, 7": three or more in a row by
+/// their ends.
+pub(super) fn listed_conditions(conditions: &[ConditionId]) -> String {
+    let mut entries: Vec<String> = Vec::new();
+    for run in conditions.chunk_by(|id, next| id.0.checked_add(1) == Some(next.0)) {
+        match run {
+            [first, _, .., last] => entries.push(format!("{first} to {last}")),
+            few => entries.extend(few.iter().map(ToString::to_string)),
+        }
+    }
+    let several = if conditions.len() == 1 { "" } else { "s" };
+    format!("condition{several} {}", entries.join(", "))
+}
+
+/// Prefixes words with their conditions; no prefix if they concern the whole.
+pub(super) fn with_conditions(conditions: &[ConditionId], words: &str) -> String {
+    if conditions.is_empty() {
+        words.to_owned()
+    } else {
+        format!("{}: {words}", listed_conditions(conditions))
+    }
+}
+
+/// A message about a condition, or about the whole.
+pub(super) struct ConditionMessage {
+    condition: Option<ConditionId>,
+    text: String,
+}
+
+impl ConditionMessage {
+    pub(super) fn new(condition: impl Into<Option<ConditionId>>, text: String) -> Self {
+        Self {
+            condition: condition.into(),
+            text,
+        }
+    }
+}
+
+/// A message with all its conditions; no conditions if it concerns the whole.
+pub(super) struct SharedMessage {
+    pub(super) conditions: Vec<ConditionId>,
+    pub(super) text: String,
+}
+
+impl SharedMessage {
+    /// Returns the text behind its conditions.
+    pub(super) fn words(&self) -> String {
+        with_conditions(&self.conditions, &self.text)
+    }
+}
+
+/// Merges equal messages, in the order of first occurrence.
+pub(super) fn shared_messages(
+    messages: impl IntoIterator<Item = ConditionMessage>,
+) -> Vec<SharedMessage> {
+    let mut shared: Vec<SharedMessage> = Vec::new();
+    for ConditionMessage { condition, text } in messages {
+        let known = shared.iter().position(|message| message.text == text);
+        let place = known.unwrap_or_else(|| {
+            shared.push(SharedMessage {
+                conditions: Vec::new(),
+                text,
+            });
+            shared.len() - 1
+        });
+        let conditions = &mut shared[place].conditions;
+        if let Some(condition) = condition
+            && !conditions.contains(&condition)
+        {
+            conditions.push(condition);
+        }
+    }
+    shared
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn listed(ids: &[i64]) -> String {
+        let ids: Vec<ConditionId> = ids.iter().copied().map(ConditionId).collect();
+        listed_conditions(&ids)
+    }
+
+    #[test]
+    fn equal_messages_are_printed_once_with_all_their_conditions() {
+        let messages = [(3, "late"), (4, "noisy"), (7, "late"), (7, "late")];
+        let messages =
+            messages.map(|(id, text)| ConditionMessage::new(ConditionId(id), text.to_owned()));
+        let lines: Vec<String> = shared_messages(messages)
+            .iter()
+            .map(SharedMessage::words)
+            .collect();
+        assert_eq!(lines, ["conditions 3, 7: late", "condition 4: noisy"]);
+    }
+
+    #[test]
+    fn conditions_in_a_row_are_listed_by_their_ends() {
+        assert_eq!(listed(&[1, 2, 4, 5, 6, 9]), "conditions 1, 2, 4 to 6, 9");
+        assert_eq!(
+            listed(&[i64::MAX, i64::MIN, 3]),
+            format!("conditions {}, {}, 3", i64::MAX, i64::MIN)
+        );
+    }
+
+    #[test]
+    fn long_words_hang_under_their_start() {
+        let text = detail("rejected", &"model ".repeat(40));
+        assert!(text.lines().all(|line| line.chars().count() <= PAGE_WIDTH));
+        for line in text.lines().skip(1) {
+            assert!(line.starts_with(&" ".repeat(LABEL_WIDTH)), "{line}");
+            assert_eq!(line.chars().nth(LABEL_WIDTH), Some('m'), "{line}");
+        }
+        assert_eq!(text.matches("model").count(), 40);
+    }
+
+    #[test]
+    fn a_list_wraps_between_its_entries() {
+        let entries = ["a b".to_owned(), "c".to_owned()];
+        assert_eq!(detail_list("gains", &entries), "  gains       a b, c\n");
+        assert_eq!(detail_list("gains", &[]), "  gains       none\n");
+    }
+}

@@ -6,14 +6,14 @@ use gdcm_method::correction::Problem;
 use gdcm_method::uncertainty::{Bar as ErrorBar, Scalar};
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::simulation::Validation;
-use gdcm_study::jobs::analysis_jobs::AssessmentJob;
-use gdcm_study::jobs::analysis_jobs::CouplingsJob;
-use gdcm_study::jobs::analysis_jobs::{Toggles, TogglesJob, UncertaintyJob, VariantJob};
+use gdcm_study::jobs::analysis_jobs::{
+    AssessmentJob, CouplingsJob, Toggles, TogglesJob, UncertaintyJob, VariantJob,
+};
 use gdcm_study::jobs::curve_jobs::{AcrossCurves, AcrossJob, ConditionModes, CurvesJob, ModesJob};
 use gdcm_study::jobs::identification_jobs::SimulationJob;
-use gdcm_study::jobs::requirement_jobs::RequirementsJob;
-use gdcm_study::jobs::requirement_jobs::TimeHistoriesJob;
-use gdcm_study::jobs::requirement_jobs::{RecordHistoryJob, TestAnswersJob};
+use gdcm_study::jobs::requirement_jobs::{
+    RecordHistoryJob, RequirementsJob, TestAnswersJob, TimeHistoriesJob,
+};
 use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_study::results::condition_answers::{RecordHistory, TestAnswers};
 use gdcm_study::results::couplings_assessment::AssessedCouplings;

@@ -1,4 +1,4 @@
-//! Requests for results, and the answers of the threads.
+//! Requests for results, and the answers from the threads.
 
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
@@ -12,8 +12,9 @@ use gdcm_study::stages::condition_curves::ConditionCurves;
 use gdcm_study::{Analysis, Study};
 
 use super::GdcmApp;
-use super::background_jobs::{AnalysisJob, BackgroundJobs, Proof};
-use super::outputs::ReportJob;
+use super::analysis_job::{AnalysisJob, Proof};
+use super::background_jobs::BackgroundJobs;
+use super::report_job::ReportJob;
 use super::threads::{Fault, Reply, ReplySender};
 use crate::gui::state::notices::Bar;
 use crate::gui::views::need::Need;
@@ -27,7 +28,7 @@ pub(super) struct Computation {
     pub(super) proven: Vec<Proof>,
     /// Jobs needed by the visible views, beside the live answer.
     pub(super) needs: Vec<Need>,
-    /// Study and condition of the newest request.
+    /// Study and condition in the newest request.
     pub(super) requested: Option<(Study, ConditionId)>,
     /// Report being written.
     pub(super) reporting: Option<ReportJob>,
@@ -47,11 +48,9 @@ impl GdcmApp {
         let now = self.now();
         let study = &self.state.study;
         let condition = self.state.condition().id();
-        if self
-            .work
-            .requested
-            .as_ref()
-            .is_some_and(|(of, at)| *at == condition && asks_the_same(of, study))
+        if let Some((requested, at)) = &self.work.requested
+            && *at == condition
+            && needs_same_results(requested, study)
         {
             return;
         }
@@ -68,17 +67,17 @@ impl GdcmApp {
         let Some((study, condition)) = self.work.requested.clone() else {
             return;
         };
-        let number = self.work.asked.as_ref().map_or(0, |job| job.number + 1);
-        let generation = self.state.results.requested;
-        let proofs = self.work.proven.clone();
-        let replies = self.work.replies.clone();
+        let number = match &self.work.asked {
+            Some(job) => job.number + 1,
+            None => 0,
+        };
         self.work.asked = Some(AnalysisJob {
             number,
-            generation,
+            generation: self.state.results.requested,
             study,
             condition,
-            proofs,
-            replies,
+            proofs: self.work.proven.clone(),
+            replies: self.work.replies.clone(),
         });
     }
 
@@ -99,35 +98,30 @@ impl GdcmApp {
         self.work.jobs.resume();
     }
 
-    /// Applies the replies of the threads.
+    /// Applies the replies from the threads.
     pub(super) fn receive(&mut self) {
         while let Ok(reply) = self.work.received.try_recv() {
             reply(self);
         }
         let now = self.now();
         let results = &mut self.state.results;
-        results.background = self.work.jobs.told();
-        results.background.proofs.extend(
-            self.work
-                .proven
-                .iter()
-                .map(|(problem, _)| Arc::clone(problem)),
-        );
-        results.background_since = results
-            .background
-            .is_busy()
-            .then(|| results.background_since.unwrap_or(now));
+        results.background = self.work.jobs.running_work();
+        for (problem, _) in &self.work.proven {
+            results.background.proofs.push(Arc::clone(problem));
+        }
+        if results.background.is_busy() {
+            results.background_since.get_or_insert(now);
+        } else {
+            results.background_since = None;
+        }
     }
 
     /// Shows an analysis and requests the jobs that it leaves open.
-    pub(super) fn answered(
-        &mut self,
-        job: AnalysisJob,
-        (analysis, elapsed_ms): (Arc<Analysis>, f64),
-    ) {
+    pub(super) fn answered(&mut self, job: AnalysisJob, answer: (Arc<Analysis>, f64)) {
+        let (analysis, elapsed_ms) = answer;
         let now = self.now();
         let results = &mut self.state.results;
-        // A job repeated with a proof has the request number of the original job and took no time.
+        // A job repeated with a proof has the original job's request number and took no time.
         if results.received != job.generation {
             results.elapsed_ms = elapsed_ms;
         }
@@ -135,10 +129,14 @@ impl GdcmApp {
         results.analysis = Some(analysis);
         results.first = None;
         results.stopped &= results.is_behind();
-        results.waiting_since = results.is_waiting().then_some(now);
+        results.waiting_since = if results.is_waiting() {
+            Some(now)
+        } else {
+            None
+        };
         self.work
             .proven
-            .retain(|(of, _)| !job.proofs.iter().any(|(proven, _)| Arc::ptr_eq(of, proven)));
+            .retain(|(problem, _)| !job.has_proof_of(problem));
         self.want_jobs();
     }
 
@@ -151,7 +149,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stores the curves of a condition if they belong to the displayed condition and dataset.
+    /// Stores curves if they belong to the displayed condition and dataset.
     pub(super) fn take_curves(&mut self, job: CurvesJob, curves: Option<Arc<ConditionCurves>>) {
         let Some(curves) = curves else { return };
         let study = &self.state.study;
@@ -161,10 +159,10 @@ impl GdcmApp {
         }
     }
 
-    /// Reports a panic: its effect, the decisions kept, and the details to send.
-    pub(super) fn tell_fault(&mut self, ended: &str, fault: &Fault) {
+    /// Reports a panic: the ended work, the decisions kept, and the details to send.
+    pub(super) fn report_fault(&mut self, work: &str, fault: &Fault) {
         let sentence = format!(
-            "A fault in the program ended {ended}; your decisions are kept and can be saved: please send this message, the \
+            "A fault in the program ended {work}; your decisions are kept and can be saved: please send this message, the \
              saved study and the dataset {} to the program's authors (gdcm {}: {}).",
             self.files.loaded.origin,
             env!("CARGO_PKG_VERSION"),
@@ -178,8 +176,8 @@ impl GdcmApp {
 }
 
 /// Returns whether two studies need the same results for the identical dataset. Datasets are
-/// compared by pointer: comparing values would take time in every frame, and results belong to one
-/// dataset even if another is equal.
-fn asks_the_same(a: &Study, b: &Study) -> bool {
+/// compared by pointer: comparing values would take time in every frame, and results belong to a
+/// single dataset even if another is equal.
+fn needs_same_results(a: &Study, b: &Study) -> bool {
     Arc::ptr_eq(&a.dataset, &b.dataset) && a.settings == b.settings && a.choices == b.choices
 }

@@ -5,7 +5,7 @@ use crate::gui::plot::Pane;
 use crate::gui::plot::curve_command::CurveCommand;
 
 impl GdcmApp {
-    /// Applies a command about curves. A change of unit refits the value axis.
+    /// Applies a command about curves. A change in units refits the value axis.
     pub(super) fn carry_out_curve(&mut self, command: CurveCommand) {
         let display = &mut self.state.display;
         match command {

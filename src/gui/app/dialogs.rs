@@ -1,4 +1,4 @@
-//! Questions that wait for an answer of the engineer.
+//! Questions that wait for an answer.
 
 use gdcm_io::{Existing, Opened};
 
@@ -6,7 +6,7 @@ use super::document_files::ReadFor;
 use crate::gui::commands::command::Command;
 use crate::gui::state::forms::RequirementTable;
 
-/// Purpose of a file dialog.
+/// Purpose for which a file dialog is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DialogPurpose {
     Open,
@@ -27,7 +27,7 @@ pub(super) enum PendingAction {
     Quit,
 }
 
-/// Open dialog of the desktop, and actions that wait for the engineer's answer.
+/// Open desktop dialog, and actions that wait for the engineer's answer.
 pub(super) struct Dialogs {
     pub(super) dialog_open: bool,
     /// Action waiting for the answer whether unsaved decisions may be lost.
@@ -36,7 +36,7 @@ pub(super) struct Dialogs {
     pub(super) goes_on_once_saved: bool,
     /// Command waiting for the answer whether to overwrite files.
     pub(super) overwriting: Option<Command>,
-    /// Treatment of existing files: they are replaced only during the command that the engineer
+    /// Treatment for existing files: they are replaced only during the command that the engineer
     /// confirmed.
     pub(super) existing: Existing,
     pub(super) closing: bool,

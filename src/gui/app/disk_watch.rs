@@ -1,4 +1,4 @@
-//! Thread that detects changes of the open dataset's file.
+//! Thread that detects changes in the open dataset's file.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -8,15 +8,15 @@ use gdcm_io::source::{FileStamp, file_sha256};
 
 use super::threads::ReplySender;
 
-/// New content of a file.
+/// New file content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Seen {
     pub(super) path: PathBuf,
     pub(super) sha256: String,
 }
 
-/// Checks one file every second or two: its time and length, and its bytes if these have changed.
-/// It polls, because network drives send no events.
+/// Checks a file at every interval: its time and length, and its bytes if these have changed. It
+/// polls, because network drives send no events.
 pub(super) struct DiskWatch {
     paths: Sender<Option<PathBuf>>,
     watched: Option<PathBuf>,
@@ -25,11 +25,10 @@ pub(super) struct DiskWatch {
 impl DiskWatch {
     /// Starts the thread, which ends with the window.
     pub(super) fn start(every: Duration, replies: ReplySender) -> std::io::Result<Self> {
-        let (paths, to_watch) = channel();
-        let look = move || look(&to_watch, every, &replies);
+        let (paths, received) = channel();
         std::thread::Builder::new()
             .name("disk".to_owned())
-            .spawn(look)?;
+            .spawn(move || poll(&received, every, &replies))?;
         Ok(Self {
             paths,
             watched: None,
@@ -46,13 +45,13 @@ impl DiskWatch {
     }
 }
 
-/// Known state of the watched file.
+/// Known state for the watched file.
 #[derive(Default)]
 struct Known {
     path: PathBuf,
     /// Stamp at the last check.
     stamp: Option<FileStamp>,
-    /// Stamp at the last read of its bytes.
+    /// Stamp when its bytes were last read.
     read: Option<FileStamp>,
     sha256: Option<String>,
 }
@@ -69,9 +68,9 @@ impl Known {
         }
         // A missing file may be about to appear; until then the open dataset stays.
         let stamp = FileStamp::of(path)?;
-        let rests = self.stamp == Some(stamp);
+        let is_unchanged = self.stamp == Some(stamp);
         self.stamp = Some(stamp);
-        if !rests || self.read == Some(stamp) {
+        if !is_unchanged || self.read == Some(stamp) {
             return None;
         }
         let sha256 = file_sha256(path).ok()?;
@@ -80,20 +79,21 @@ impl Known {
             return None;
         }
         self.read = Some(stamp);
-        let is_new = self.sha256.as_ref() != Some(&sha256);
+        if self.sha256.as_ref() == Some(&sha256) {
+            return None;
+        }
         self.sha256 = Some(sha256.clone());
-        is_new.then(|| Seen {
-            path: path.to_owned(),
-            sha256,
-        })
+        let path = path.to_owned();
+        Some(Seen { path, sha256 })
     }
 }
 
-fn look(to_watch: &Receiver<Option<PathBuf>>, every: Duration, replies: &ReplySender) {
+/// Checks the watched file at every interval until the window ends.
+fn poll(paths: &Receiver<Option<PathBuf>>, every: Duration, replies: &ReplySender) {
     let mut known = Known::default();
     let mut watched = None;
     loop {
-        match to_watch.recv_timeout(every) {
+        match paths.recv_timeout(every) {
             Ok(path) => watched = path,
             Err(RecvTimeoutError::Disconnected) => return,
             Err(RecvTimeoutError::Timeout) => {
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_is_told_once_it_rests_and_again_only_when_its_bytes_are_others() {
+    fn a_file_is_reported_once_it_rests_and_again_only_when_its_bytes_change() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("data.json");
         let mut known = Known::default();
@@ -118,7 +118,7 @@ mod tests {
         std::fs::write(&path, "one").unwrap();
         assert_eq!(known.look(&path), None, "it may be being written");
         let first = known.look(&path).expect("it rests");
-        assert_eq!(known.look(&path), None, "told already");
+        assert_eq!(known.look(&path), None, "reported already");
         std::fs::write(&path, "one, and more").unwrap();
         assert_eq!(known.look(&path), None);
         assert_ne!(known.look(&path).expect("it rests").sha256, first.sha256);

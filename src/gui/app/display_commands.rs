@@ -1,8 +1,7 @@
-//! Carries out changes to the content of the views.
+//! Carries out changes to view contents.
 
 use super::GdcmApp;
 use crate::gui::commands::display::DisplayCommand;
-use crate::gui::plot::FigureView;
 use crate::gui::state::pair_set::PairSet;
 use crate::gui::state::view::View;
 
@@ -28,10 +27,8 @@ impl GdcmApp {
             DisplayCommand::ShowAcross(role) => display.frequency.across_role = role,
             DisplayCommand::Assess(figures) => display.judging.assessed = figures,
             DisplayCommand::ShowRequirements(page) => {
-                (
-                    display.judging.requirements_page,
-                    display.judging.requirements_sorting,
-                ) = (page, Default::default());
+                display.judging.requirements_page = page;
+                display.judging.requirements_sorting = Default::default();
                 // Another page has other plots.
                 display.figures.remove(&View::Requirements);
             }
@@ -39,10 +36,9 @@ impl GdcmApp {
             DisplayCommand::SetLooks(looks) => display.curves.looks = looks,
             DisplayCommand::FitPlots => {
                 display.frequency.fit();
-                display
-                    .figures
-                    .values_mut()
-                    .for_each(FigureView::request_fit);
+                for figure in display.figures.values_mut() {
+                    figure.request_fit();
+                }
             }
             DisplayCommand::ShowTest(shown) => {
                 display.judging.shows_test = shown;

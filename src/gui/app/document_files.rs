@@ -1,4 +1,4 @@
-//! Files of the open study and dataset.
+//! Files behind the open study and dataset.
 
 use std::path::{Path, PathBuf};
 
@@ -13,24 +13,24 @@ use super::disk_watch::DiskWatch;
 /// The study as last saved.
 #[derive(Clone, Debug)]
 pub(super) struct SavedStudy {
-    /// Path of the file; `None` for a new study.
+    /// File path; `None` for a new study.
     pub(super) path: Option<PathBuf>,
-    /// The saved study, or the initial state of a new one; `None` for restored decisions.
+    /// The saved study, or a new study's initial state; `None` for restored decisions.
     pub(super) study: Option<Study>,
 }
 
-/// Purpose of reading a file.
+/// Purpose for which a file is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ReadFor {
     /// Shown instead of the open study.
     Opening,
     /// Replaces the open dataset, which was read from the same file earlier.
     Reloading,
-    /// Continues unsaved decisions; holds the number of the offer.
+    /// Continues unsaved decisions; holds the offer's number.
     Restoring(usize),
 }
 
-/// Files of the open study and dataset.
+/// Files behind the open study and dataset.
 pub(super) struct DocumentFiles {
     pub(super) loaded: LoadedDataset,
     pub(super) saved: SavedStudy,
@@ -39,9 +39,9 @@ pub(super) struct DocumentFiles {
     /// Dataset most recently made from records.
     pub(super) made_of_records: Option<DatasetOfRecords>,
     pub(super) disk: DiskWatch,
-    /// Directory of the list of recent files; without it the list is not kept.
+    /// Directory for the recent-files list; without it the list is not kept.
     pub(super) directory: Option<PathBuf>,
-    /// Expansion of `~` in typed paths.
+    /// Expansion for `~` in typed paths.
     pub(super) home: Option<PathBuf>,
 }
 
@@ -59,16 +59,12 @@ impl DocumentFiles {
         format!("{}.{STUDY_EXTENSION}", self.stem())
     }
 
-    /// Returns the stem of the names of files about the dataset.
+    /// Returns the common stem of file names about the dataset.
     pub(super) fn stem(&self) -> String {
-        let stem = self
-            .loaded
-            .path()
-            .and_then(Path::file_stem)
-            .map(|stem| stem.to_string_lossy().into_owned());
-        stem.unwrap_or_else(|| "example".to_owned())
-            .trim_end_matches(".json")
-            .to_owned()
+        match self.loaded.path().and_then(Path::file_stem) {
+            Some(stem) => stem.to_string_lossy().trim_end_matches(".json").to_owned(),
+            None => "example".to_owned(),
+        }
     }
 
     /// Returns the input files, which results never overwrite.
@@ -85,7 +81,7 @@ impl DocumentFiles {
 /// A dataset made from records.
 pub(super) struct DatasetOfRecords {
     pub(super) path: PathBuf,
-    /// Location of its channels in the records, and their units.
+    /// Channel locations in the records, and units.
     pub(super) channels: RecordChannels,
     /// Omitted records, with reasons.
     pub(super) left_out: Vec<String>,

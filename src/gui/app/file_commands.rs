@@ -1,5 +1,7 @@
 //! Carries out opening, saving and closing files.
 
+use std::path::PathBuf;
+
 use egui::ViewportCommand;
 
 use gdcm_io::Existing;
@@ -43,10 +45,11 @@ impl GdcmApp {
     }
 
     /// Saves the study to a file, like the form once a path is typed.
-    pub fn save_study_as(&mut self, path: std::path::PathBuf) {
+    pub fn save_study_as(&mut self, path: PathBuf) {
         self.save_as(path, Existing::Keep);
     }
 
+    /// Closes the window; nothing is left to recover.
     pub(super) fn quit(&mut self) {
         self.dialogs.closing = true;
         // The decisions are saved, or the engineer has agreed to lose them.

@@ -1,4 +1,4 @@
-//! Opening and saving, the desktop's file dialogs, and the list of recent files. Slow operations
+//! Opening and saving, the desktop's file dialogs, and the recent-files list. Slow operations
 //! run in threads, so the window never blocks.
 
 use std::path::{Path, PathBuf};
@@ -42,13 +42,13 @@ impl GdcmApp {
         state.unsaved = differences
             .iter()
             .any(|difference| matches!(difference, Difference::NotApplied { .. }));
-        state.forms.shown = (!differences.is_empty()).then_some(FormKind::Differences);
+        if !differences.is_empty() {
+            state.forms.shown = Some(FormKind::Differences);
+        }
         state.differences = differences;
         state.is_example = loaded.path().is_none();
-        let saved = SavedStudy {
-            path,
-            study: (!state.unsaved).then_some(study),
-        };
+        let study = if state.unsaved { None } else { Some(study) };
+        let saved = SavedStudy { path, study };
         (state, loaded, saved)
     }
 
@@ -58,7 +58,7 @@ impl GdcmApp {
         let requested = self.state.results.requested;
         let name = loaded.origin.to_string();
         state.recent = std::mem::take(&mut self.state.recent);
-        Preferences::of(&self.state.display).apply(&mut state.display);
+        Preferences::from_display(&self.state.display).apply(&mut state.display);
         // Offers to restore lost decisions stay; the other bars concern the previous study.
         state.bars = std::mem::take(&mut self.state.bars);
         state.bars.retain(|bar| matches!(bar, Bar::Recovery { .. }));
@@ -74,25 +74,20 @@ impl GdcmApp {
         self.done(format!("opened {name}"));
     }
 
-    /// Puts the open study, or else the open dataset, first in the list of recent files.
+    /// Puts the open study, or else the open dataset, first in the recent-files list.
     pub(super) fn look_for_recent(&self) {
-        let dataset = || self.files.loaded.path().map(Path::to_owned);
-        self.read_recent(self.files.saved.path.clone().or_else(dataset));
+        let study = self.files.saved.path.as_deref();
+        let newest = study.or(self.files.loaded.path());
+        self.read_recent(newest.map(Path::to_owned));
     }
 
-    /// Reads the list of recent files and checks which of them exist; puts `newest` first. Runs in
+    /// Reads the recent-files list and checks which files exist; puts `newest` first. Runs in
     /// its own thread, because a network drive may be slow.
     pub(super) fn read_recent(&self, newest: Option<PathBuf>) {
         let Some(directory) = self.files.directory.clone() else {
             return;
         };
-        let read = move || -> Result<Vec<RecentFile>, FileError> {
-            newest.map_or(Ok(()), |newest| add_recent_file(&directory, &newest))?;
-            Ok(recent_files(&directory)
-                .into_iter()
-                .map(recent_file)
-                .collect())
-        };
+        let read = move || read_recent_files(&directory, newest.as_deref());
         self.in_thread("the reading of recent files", read, |app, read| {
             if let Some(files) = read.and_then(|read| app.unless_error(read)) {
                 app.state.recent = files;
@@ -101,32 +96,29 @@ impl GdcmApp {
     }
 
     /// Opens a dataset or a study; the open study stays until the file is read. `moved` is the new
-    /// path of a study's dataset.
+    /// path for a study's dataset.
     pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>) {
         let path = self.files.at_home(path);
         let moved = moved.map(|dataset| self.files.at_home(dataset));
         if path.extension().is_some() && holds_models(&path) {
             let path = sanitized_path(&path);
             return self.notify_error(format!(
-                "{path}: this is neither a dataset nor a study; Import models, in the menu File, makes a dataset of model files"
+                "{path}: neither a dataset nor a study; Import models, in the menu File, makes a dataset from model files"
             ));
         }
-        let lost = self
-            .recovery
-            .offers
-            .iter()
-            .position(|lost| lost.as_ref().is_some_and(|lost| lost.path() == path));
-        let purpose = lost.map_or(ReadFor::Opening, ReadFor::Restoring);
+        let purpose = match self.recovery.offer_of(&path) {
+            Some(offer) => ReadFor::Restoring(offer),
+            None => ReadFor::Opening,
+        };
         self.state.forms.shown = None;
         let name = sanitized_path(&path);
-        let read = move |budget: &ReadingBudget<'_>| match moved {
+        self.read(purpose, name, move |budget| match moved {
             Some(dataset) => open_study_of(&path, &dataset, budget).map(Opened::Study),
             None => load_any(&path, budget),
-        };
-        self.read(purpose, name, read);
+        });
     }
 
-    /// Reads a file in its own thread, within the budget of a file; replaces a reading under way.
+    /// Reads a file in its own thread, within the budget for a file; replaces a reading under way.
     pub(super) fn read(
         &mut self,
         purpose: ReadFor,
@@ -134,19 +126,21 @@ impl GdcmApp {
         read: impl FnOnce(&ReadingBudget<'_>) -> Result<Opened, FileError> + Send + 'static,
     ) {
         self.state.opening = Some(name);
-        let (number, stop) = self.readers.opener.begin();
-        let read = move || read(&ReadingBudget::default().stopped_by(stop));
+        let reading = self.readers.opener.begin();
+        let number = reading.number;
+        let read = move || read(&ReadingBudget::default().stopped_by(reading.stop));
         self.in_thread("the reading of a file", read, move |app, opened| {
             if !app.readers.opener.is_newest(number) {
                 return;
             }
             app.state.opening = None;
-            opened
-                .into_iter()
-                .for_each(|opened| app.answer_opened(purpose, opened));
+            if let Some(opened) = opened {
+                app.answer_opened(purpose, opened);
+            }
         });
     }
 
+    /// Opens the embedded example.
     pub(super) fn open_example(&mut self) {
         self.answer_opened(ReadFor::Opening, embedded_example().map(Opened::Dataset));
     }
@@ -197,7 +191,7 @@ impl GdcmApp {
         self.save();
     }
 
-    /// Carries out the action postponed because of unsaved decisions.
+    /// Carries out the action that unsaved decisions have postponed.
     pub(super) fn go_on(&mut self) {
         self.dialogs.goes_on_once_saved = false;
         match self.dialogs.postponed.take() {
@@ -220,7 +214,7 @@ impl GdcmApp {
         }
     }
 
-    /// Opens a file dialog of the desktop unless one is open; a save dialog proposes `file_name`.
+    /// Opens a desktop file dialog unless a dialog is open; a save dialog proposes `file_name`.
     pub(super) fn ask_path(&mut self, purpose: DialogPurpose, file_name: String) {
         if self.dialogs.dialog_open {
             return;
@@ -242,15 +236,12 @@ impl GdcmApp {
             DialogPurpose::Open => self.open(path, None),
             DialogPurpose::SaveStudy => {
                 // The dialog has asked only about the name as it was chosen.
-                let is_asked = with_study_extension(path.clone()) == path;
-                self.save_as(
-                    path,
-                    if is_asked {
-                        Existing::Replace
-                    } else {
-                        Existing::Keep
-                    },
-                );
+                let existing = if with_study_extension(path.clone()) == path {
+                    Existing::Replace
+                } else {
+                    Existing::Keep
+                };
+                self.save_as(path, existing);
             }
             DialogPurpose::ExportFolder => {
                 *self.state.forms.typed_in(FormKind::Export) = path.display().to_string()
@@ -292,29 +283,9 @@ impl GdcmApp {
     pub(super) fn save_as(&mut self, path: PathBuf, existing: Existing) {
         let path = with_study_extension(self.files.at_home(path));
         let is_own = self.files.saved.path.as_ref() == Some(&path);
-        let place = OutputSet::new(
-            if is_own { Existing::Replace } else { existing },
-            Vec::new(),
-        );
-        match place
-            .check(&[&path])
-            .and_then(|()| save_study(&self.state.study, &self.files.loaded, &path))
-        {
-            Ok(()) => {
-                self.state.forms.shown = None;
-                self.state.study_name = study_name(Some(&path));
-                self.state.unsaved = false;
-                self.done(format!("saved {}", sanitized_path(&path)));
-                self.files.saved = SavedStudy {
-                    path: Some(path),
-                    study: Some(self.state.study.clone()),
-                };
-                self.keep_unsaved();
-                self.look_for_recent();
-                if self.dialogs.goes_on_once_saved {
-                    self.go_on();
-                }
-            }
+        let existing = if is_own { Existing::Replace } else { existing };
+        match self.write_study(&path, existing) {
+            Ok(()) => self.study_saved(path),
             Err(FileError::Exists { paths }) => {
                 *self.state.forms.typed_in(FormKind::Save) = path.display().to_string();
                 self.ask_to_overwrite(
@@ -330,15 +301,53 @@ impl GdcmApp {
             }
         }
     }
+
+    fn write_study(&self, path: &Path, existing: Existing) -> Result<(), FileError> {
+        OutputSet::new(existing, Vec::new()).check(&[path])?;
+        save_study(&self.state.study, &self.files.loaded, path)
+    }
+
+    /// Records that the study is saved; carries out the action that waits for it.
+    fn study_saved(&mut self, path: PathBuf) {
+        self.state.forms.shown = None;
+        self.state.study_name = study_name(Some(&path));
+        self.state.unsaved = false;
+        self.done(format!("saved {}", sanitized_path(&path)));
+        self.files.saved = SavedStudy {
+            path: Some(path),
+            study: Some(self.state.study.clone()),
+        };
+        self.keep_unsaved();
+        self.look_for_recent();
+        if self.dialogs.goes_on_once_saved {
+            self.go_on();
+        }
+    }
 }
 
+/// Puts `newest` first in the recent-files list, and reads the list.
+fn read_recent_files(
+    directory: &Path,
+    newest: Option<&Path>,
+) -> Result<Vec<RecentFile>, FileError> {
+    if let Some(newest) = newest {
+        add_recent_file(directory, newest)?;
+    }
+    Ok(recent_files(directory)
+        .into_iter()
+        .map(recent_file)
+        .collect())
+}
+
+/// Returns a study's file name, or a substitute.
 pub(super) fn study_name(path: Option<&Path>) -> String {
-    let name = path
-        .and_then(|path| path.file_name())
-        .map(|name| sanitized(&name.to_string_lossy()));
-    name.unwrap_or_else(|| "untitled study".to_owned())
+    match path.and_then(Path::file_name) {
+        Some(name) => sanitized(&name.to_string_lossy()),
+        None => "untitled study".to_owned(),
+    }
 }
 
+/// Adds the study extension, unless the name ends in ".json".
 fn with_study_extension(path: PathBuf) -> PathBuf {
     let name = path
         .file_name()
@@ -365,6 +374,7 @@ fn recent_file(path: PathBuf) -> RecentFile {
     }
 }
 
+/// Shows a desktop file dialog; returns `None` if nothing was chosen.
 fn dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
     let dialog = rfd::FileDialog::new();
     match purpose {

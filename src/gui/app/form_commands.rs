@@ -11,12 +11,8 @@ impl GdcmApp {
         match command {
             FormCommand::ShowForm(form) => self.show_form(form),
             FormCommand::AskReason(model) => {
-                let reason = self
-                    .state
-                    .study
-                    .reason(&model)
-                    .unwrap_or_default()
-                    .to_owned();
+                let reason = self.state.study.reason(&model).unwrap_or_default();
+                let reason = reason.to_owned();
                 self.state.forms.typed.insert(FormKind::Reason, reason);
                 self.state.forms.rejected_model = Some(model);
                 self.state.forms.shown = Some(FormKind::Reason);
@@ -40,14 +36,9 @@ impl GdcmApp {
     fn show_form(&mut self, form: Option<FormKind>) {
         match form {
             Some(FormKind::Export) => {
-                let all = self
-                    .state
-                    .study
-                    .dataset
-                    .conditions()
-                    .iter()
-                    .map(|condition| condition.id());
-                self.state.forms.exported = all.collect();
+                let conditions = self.state.study.dataset.conditions();
+                let ids = conditions.iter().map(|condition| condition.id());
+                self.state.forms.exported = ids.collect();
             }
             Some(FormKind::ExportAs) => self.propose_export_name(),
             _ => {}

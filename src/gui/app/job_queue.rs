@@ -1,22 +1,23 @@
-//! Runs the jobs of one kind one after the other, in a thread beside the live answer. Equal jobs
-//! are identical: running, finished and stopped jobs are recognised by equality.
+//! Queue for a kind of job: a lane in the job pool, whose jobs run in sequence. Equal jobs are
+//! identical: running, finished and stopped jobs are recognised by equality.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_study::jobs::job::Job;
 
-use super::threads::{Fault, Mailbox, caught};
+use super::job_pool::{JobPool, Lane, LaneClass, Waker};
+use super::threads::{Fault, caught};
 
-/// Output of a job, or the fault that ended it; a cancelled job has no ending.
+/// A job's output, or the fault that ended it; a cancelled job has no ending.
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
 
 /// How long an unwanted job may continue: during a drag, every output is worth showing.
 const CANCEL_GRACE: Duration = Duration::from_millis(60);
 
-/// Progress of a job, and whether it is still wanted.
+/// Progress, and whether the job is still wanted.
 #[derive(Debug)]
 struct Run {
     started: Instant,
@@ -27,18 +28,17 @@ struct Run {
 }
 
 impl Run {
-    fn start() -> Arc<Self> {
-        let (outdated, stopped, done, total) = Default::default();
-        Arc::new(Self {
+    fn start() -> Self {
+        Self {
             started: Instant::now(),
-            outdated,
-            stopped,
-            done,
-            total,
-        })
+            outdated: AtomicBool::new(false),
+            stopped: AtomicBool::new(false),
+            done: AtomicUsize::new(0),
+            total: AtomicUsize::new(0),
+        }
     }
 
-    /// Returns the number of completed steps and the total.
+    /// Returns completed and total steps.
     fn steps(&self) -> (usize, usize) {
         (
             self.done.load(Ordering::Relaxed),
@@ -60,10 +60,19 @@ impl Progress for Run {
     }
 }
 
+/// A started job.
+#[derive(Clone)]
+struct Running<J> {
+    job: J,
+    run: Arc<Run>,
+}
+
 struct Orders<J> {
     /// Requested jobs, the most urgent first.
     wanted: Vec<J>,
-    running: Option<(J, Arc<Run>)>,
+    running: Option<Running<J>>,
+    /// Whether a thread runs a job or delivers its ending.
+    is_served: bool,
     /// Requested jobs that are complete.
     done: Vec<J>,
     /// Requested jobs that were stopped, by hand or by a fault.
@@ -72,67 +81,164 @@ struct Orders<J> {
 }
 
 impl<J: Job> Orders<J> {
+    fn new() -> Self {
+        Self {
+            wanted: Vec::new(),
+            running: None,
+            is_served: false,
+            done: Vec::new(),
+            stopped: Vec::new(),
+            closed: false,
+        }
+    }
+
     fn unfinished(&self) -> impl Iterator<Item = &J> {
         self.wanted
             .iter()
             .filter(|job| !self.done.contains(job) && !self.stopped.contains(job))
     }
 
+    /// Returns the job to start next, once the last job's ending is delivered.
+    fn next_job(&self) -> Option<&J> {
+        if self.closed || self.is_served {
+            return None;
+        }
+        self.unfinished().next()
+    }
+
     fn stop_running(&self) {
-        if let Some((_, run)) = &self.running {
-            run.stopped.store(true, Ordering::Release);
+        if let Some(running) = &self.running {
+            running.run.stopped.store(true, Ordering::Release);
         }
     }
 }
 
-/// Waits for a job to start; returns `None` once the queue is dropped.
-fn take<J: Job>(orders: &Mailbox<Orders<J>>) -> Option<(J, Arc<Run>)> {
-    orders.wait(|orders| {
-        if orders.closed {
-            return Some(None);
-        }
-        let job = orders.unfinished().next()?.clone();
-        let run = Run::start();
-        orders.running = Some((job.clone(), Arc::clone(&run)));
-        Some(Some((job, run)))
-    })
+/// Orders, tools and delivery for a kind of job.
+struct JobLane<J: Job> {
+    orders: Mutex<Orders<J>>,
+    /// Tools kept between jobs; `None` before the first job and during a job.
+    tools: Mutex<Option<J::Tools>>,
+    make_tools: Box<dyn Fn() -> J::Tools + Send + Sync>,
+    deliver: Box<dyn Fn(J, Ending<J>) + Send + Sync>,
 }
 
-/// Queue for the jobs of one kind. Dropping it cancels the running job without waiting.
+impl<J: Job> JobLane<J> {
+    fn orders(&self) -> MutexGuard<'_, Orders<J>> {
+        // The orders are consistent even after a panic under the lock.
+        self.orders.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn kept_tools(&self) -> MutexGuard<'_, Option<J::Tools>> {
+        // Tools are taken out and put back whole.
+        self.tools.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Runs a started job with the kept tools, or with new ones. A fault may leave the tools
+    /// inconsistent, so they are dropped.
+    fn run_job(&self, running: &Running<J>) -> Result<Result<J::Output, Cancelled>, Fault> {
+        let mut tools = self.kept_tools().take();
+        let outcome = caught(|| {
+            let tools = tools.get_or_insert_with(&self.make_tools);
+            running.job.run(tools, running.run.as_ref())
+        })?;
+        *self.kept_tools() = tools;
+        Ok(outcome)
+    }
+
+    /// Records that the running job has ended: complete, stopped by a fault, or cancelled.
+    fn finish(&self, job: &J, ending: Option<&Ending<J>>) {
+        let mut orders = self.orders();
+        orders.running = None;
+        if !orders.wanted.contains(job) {
+            return;
+        }
+        match ending {
+            Some(Ok(_)) => orders.done.push(job.clone()),
+            Some(Err(_)) => orders.stopped.push(job.clone()),
+            None => {}
+        }
+    }
+}
+
+impl<J: Job> Lane for JobLane<J>
+where
+    J::Tools: Send,
+{
+    fn begin(&self) -> bool {
+        let mut orders = self.orders();
+        let Some(job) = orders.next_job().cloned() else {
+            return false;
+        };
+        let run = Arc::new(Run::start());
+        orders.running = Some(Running { job, run });
+        orders.is_served = true;
+        true
+    }
+
+    fn run(&self) {
+        let Some(running) = self.orders().running.clone() else {
+            return;
+        };
+        let ending = match self.run_job(&running) {
+            Ok(Ok(output)) => Some(Ok(output)),
+            Ok(Err(Cancelled)) => None,
+            Err(fault) => Some(Err(fault)),
+        };
+        self.finish(&running.job, ending.as_ref());
+        if let Some(ending) = ending {
+            (self.deliver)(running.job, ending);
+        }
+        self.orders().is_served = false;
+    }
+}
+
+/// Queue for a kind of job. Dropping it cancels the running job without waiting.
 pub(super) struct JobQueue<J: Job> {
-    orders: Arc<Mailbox<Orders<J>>>,
+    lane: Arc<JobLane<J>>,
+    waker: Waker,
 }
 
 impl<J: Job> JobQueue<J> {
-    /// Starts the thread; each job's ending goes to `deliver`. The tools are made anew after a
-    /// fault, which may leave them in an inconsistent state.
-    pub(super) fn start(
-        name: &str,
-        tools: impl Fn() -> J::Tools + Send + 'static,
-        deliver: impl Fn(J, Ending<J>) + Send + 'static,
-    ) -> std::io::Result<Self> {
-        let none = Orders {
-            wanted: Vec::new(),
-            running: None,
-            done: Vec::new(),
-            stopped: Vec::new(),
-            closed: false,
-        };
-        let orders = Arc::new(Mailbox::new(none));
-        let of_thread = Arc::clone(&orders);
-        std::thread::Builder::new()
-            .name(name.to_owned())
-            .spawn(move || work(&of_thread, &tools, &deliver))?;
-        Ok(Self { orders })
+    /// Adds a lane to the pool, less urgent than the lanes before it; each job's ending goes to
+    /// `deliver`. The tools are made anew after a fault.
+    pub(super) fn open(
+        pool: &JobPool,
+        class: LaneClass,
+        make_tools: impl Fn() -> J::Tools + Send + Sync + 'static,
+        deliver: impl Fn(J, Ending<J>) + Send + Sync + 'static,
+    ) -> Self
+    where
+        J::Tools: Send,
+    {
+        let lane = Arc::new(JobLane {
+            orders: Mutex::new(Orders::new()),
+            tools: Mutex::new(None),
+            make_tools: Box::new(make_tools),
+            deliver: Box::new(deliver),
+        });
+        let pooled: Arc<dyn Lane> = Arc::clone(&lane) as Arc<dyn Lane>;
+        let waker = pool.add_lane(class, pooled);
+        Self { lane, waker }
+    }
+
+    /// Changes the orders; wakes the pool if a job waits then.
+    fn change_orders(&self, change: impl FnOnce(&mut Orders<J>)) {
+        let mut orders = self.lane.orders();
+        change(&mut orders);
+        let is_waiting = orders.next_job().is_some();
+        drop(orders);
+        if is_waiting {
+            self.waker.wake();
+        }
     }
 
     /// Requests exactly these jobs, the most urgent first. A running job continues if it is among
     /// them; a job that is complete or stopped does not start again while it stays requested.
     pub(super) fn want(&self, jobs: Vec<J>) {
-        self.orders.change(|orders| {
+        self.change_orders(|orders| {
             orders.done.retain(|job| jobs.contains(job));
             orders.stopped.retain(|job| jobs.contains(job));
-            if let Some((job, run)) = &orders.running {
+            if let Some(Running { job, run }) = &orders.running {
                 let (done, total) = run.steps();
                 let is_wanted = jobs
                     .iter()
@@ -145,241 +251,289 @@ impl<J: Job> JobQueue<J> {
 
     /// Returns the requested jobs that are neither complete nor stopped.
     pub(super) fn unfinished(&self) -> Vec<J> {
-        self.orders.lock().unfinished().cloned().collect()
+        self.lane.orders().unfinished().cloned().collect()
     }
 
     /// Cancels the running job and the waiting ones.
     pub(super) fn stop(&self) {
-        self.orders.change(|orders| {
-            let left: Vec<J> = orders.unfinished().cloned().collect();
+        self.change_orders(|orders| {
+            let unfinished: Vec<J> = orders.unfinished().cloned().collect();
             orders.stop_running();
-            orders.stopped.extend(left);
+            orders.stopped.extend(unfinished);
         });
     }
 
     /// Allows stopped jobs to start again.
     pub(super) fn resume(&self) {
-        self.orders.change(|orders| orders.stopped.clear());
+        self.change_orders(|orders| orders.stopped.clear());
     }
 
     /// Returns whether a requested job was stopped, by hand or by a fault.
     pub(super) fn is_stopped(&self) -> bool {
-        !self.orders.lock().stopped.is_empty()
+        !self.lane.orders().stopped.is_empty()
     }
 
     /// Returns completed and total steps while a requested job is incomplete.
     pub(super) fn progress(&self) -> Option<(usize, usize)> {
-        let orders = self.orders.lock();
+        let orders = self.lane.orders();
         orders.unfinished().next()?;
-        Some(
-            orders
-                .running
-                .as_ref()
-                .map_or((0, 0), |(_, run)| run.steps()),
-        )
+        let steps = match &orders.running {
+            Some(running) => running.run.steps(),
+            None => (0, 0),
+        };
+        Some(steps)
     }
 }
 
 impl<J: Job> Drop for JobQueue<J> {
     fn drop(&mut self) {
-        self.orders.change(|orders| {
+        self.change_orders(|orders| {
             orders.closed = true;
             orders.stop_running();
         });
     }
 }
 
-fn work<J: Job>(
-    orders: &Mailbox<Orders<J>>,
-    make_tools: &dyn Fn() -> J::Tools,
-    deliver: &dyn Fn(J, Ending<J>),
-) {
-    let mut tools = None;
-    while let Some((job, run)) = take(orders) {
-        let outcome = caught(|| job.run(tools.get_or_insert_with(make_tools), run.as_ref()));
-        let ending = match outcome {
-            Ok(Err(Cancelled)) => None,
-            Ok(Ok(output)) => Some(Ok(output)),
-            Err(fault) => {
-                tools = None;
-                Some(Err(fault))
-            }
-        };
-        let mut orders = orders.lock();
-        orders.running = None;
-        let Some(ending) = ending else { continue };
-        if orders.wanted.contains(&job) {
-            let over = if ending.is_ok() {
-                &mut orders.done
-            } else {
-                &mut orders.stopped
-            };
-            over.push(job.clone());
-        }
-        drop(orders);
-        deliver(job, ending);
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use std::sync::mpsc::{Receiver, Sender, channel};
+    use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 
     use super::*;
 
     /// Far above the time that the slowest machine needs: only a hang reaches it.
     const LIMIT: Duration = Duration::from_secs(60);
 
-    /// Test job that reports its start, then ends at once, ends only when cancelled, or panics.
-    #[derive(Clone)]
-    struct Spoken(&'static str, Sender<String>);
+    #[derive(Clone, Copy, PartialEq, Eq)]
+    enum Course {
+        /// Ends at once.
+        Short,
+        /// Ends when the test releases it, or when cancelled.
+        Long,
+        Panic,
+    }
 
-    impl PartialEq for Spoken {
+    /// Test job that reports its start.
+    #[derive(Clone)]
+    struct TestJob {
+        name: &'static str,
+        course: Course,
+        events: Sender<String>,
+        release: Arc<Mutex<Receiver<()>>>,
+    }
+
+    impl PartialEq for TestJob {
         fn eq(&self, other: &Self) -> bool {
-            self.0 == other.0
+            self.name == other.name
         }
     }
 
-    impl Job for Spoken {
+    impl TestJob {
+        fn report(&self, event: &str) {
+            // A job may outlive its test.
+            let _ = self.events.send(format!("{event} {}", self.name));
+        }
+
+        fn wait_for_release(&self, progress: &dyn Progress) -> Result<(), Cancelled> {
+            let release = self.release.lock().unwrap();
+            while !progress.cancelled() {
+                match release.recv_timeout(Duration::from_millis(1)) {
+                    Ok(()) => return Ok(()),
+                    Err(RecvTimeoutError::Timeout) => {}
+                    Err(RecvTimeoutError::Disconnected) => std::thread::yield_now(),
+                }
+            }
+            self.report("cancelled");
+            Err(Cancelled)
+        }
+    }
+
+    impl Job for TestJob {
         type Tools = usize;
+        /// Number of jobs that the tools have served.
         type Output = usize;
 
         fn run(&self, tools: &mut usize, progress: &dyn Progress) -> Result<usize, Cancelled> {
             *tools += 1;
-            self.1.send(format!("begun {}", self.0)).unwrap();
-            assert!(!self.0.starts_with("broken"), "{} job", self.0);
-            while self.0.starts_with("long") {
-                if progress.cancelled() {
-                    self.1.send(format!("cancelled {}", self.0)).unwrap();
-                    return Err(Cancelled);
-                }
-                std::thread::sleep(Duration::from_millis(1));
+            self.report("begun");
+            match self.course {
+                Course::Short => {}
+                Course::Long => self.wait_for_release(progress)?,
+                Course::Panic => panic!("{} job", self.name),
             }
             Ok(*tools)
         }
     }
 
-    fn queue() -> (
-        JobQueue<Spoken>,
-        impl Fn(&'static str) -> Spoken,
-        Receiver<String>,
-    ) {
-        let (sender, said) = channel();
-        let ended = sender.clone();
-        let deliver = move |job: Spoken, ending: Ending<Spoken>| {
-            let words = match ending {
-                Ok(tools) => format!("ended {} ({tools})", job.0),
-                Err(fault) => format!("fault {}", fault.message),
+    /// Queue with its events.
+    struct TestQueue {
+        queue: JobQueue<TestJob>,
+        events: Receiver<String>,
+        sender: Sender<String>,
+        release: Sender<()>,
+        released: Arc<Mutex<Receiver<()>>>,
+    }
+
+    impl TestQueue {
+        fn open(pool: &JobPool) -> Self {
+            let (sender, events) = channel();
+            let (release, released) = channel();
+            let endings = sender.clone();
+            let deliver = move |job: TestJob, ending: Ending<TestJob>| {
+                let event = match ending {
+                    Ok(tools) => format!("ended {} ({tools})", job.name),
+                    Err(fault) => format!("fault {}", fault.message),
+                };
+                let _ = endings.send(event);
             };
-            ended.send(words).unwrap();
-        };
-        (
-            JobQueue::start("test", || 0, deliver).unwrap(),
-            move |name| Spoken(name, sender.clone()),
-            said,
-        )
+            Self {
+                queue: JobQueue::open(pool, LaneClass::Long, || 0, deliver),
+                events,
+                sender,
+                release,
+                released: Arc::new(Mutex::new(released)),
+            }
+        }
+
+        fn job(&self, name: &'static str, course: Course) -> TestJob {
+            TestJob {
+                name,
+                course,
+                events: self.sender.clone(),
+                release: Arc::clone(&self.released),
+            }
+        }
+
+        fn short(&self) -> TestJob {
+            self.job("short", Course::Short)
+        }
+
+        fn long(&self) -> TestJob {
+            self.job("long", Course::Long)
+        }
+
+        fn next_event(&self) -> String {
+            self.events.recv_timeout(LIMIT).unwrap()
+        }
+
+        fn assert_events(&self, expected: &[&str]) {
+            for event in expected {
+                assert_eq!(self.next_event(), *event);
+            }
+        }
+
+        /// Waits until the last job's ending is delivered.
+        fn wait_until_idle(&self) {
+            while self.queue.lane.orders().is_served {
+                std::thread::yield_now();
+            }
+        }
     }
 
-    fn next(said: &Receiver<String>) -> String {
-        said.recv_timeout(LIMIT).unwrap()
-    }
-
-    #[test]
-    fn a_job_that_is_still_asked_for_goes_on_and_one_that_is_not_is_given_up() {
-        let (queue, job, said) = queue();
-        queue.want(vec![job("long")]);
-        assert_eq!(next(&said), "begun long");
-        queue.want(vec![job("short"), job("long")]);
-        assert!(
-            said.recv_timeout(Duration::from_millis(30)).is_err(),
-            "the long one goes on, the short one waits"
-        );
-        queue.want(vec![job("short")]);
-        assert_eq!(
-            [next(&said), next(&said), next(&said)],
-            ["cancelled long", "begun short", "ended short (2)"]
-        );
-    }
-
-    #[test]
-    fn a_job_is_done_once_as_long_as_it_is_asked_for() {
-        let (queue, job, said) = queue();
-        queue.want(vec![job("short")]);
-        assert_eq!(
-            [next(&said), next(&said)],
-            ["begun short", "ended short (1)"]
-        );
-        queue.want(vec![job("short"), job("other")]);
-        assert_eq!(
-            [next(&said), next(&said)],
-            ["begun other", "ended other (2)"]
-        );
-        assert!(queue.unfinished().is_empty());
-        queue.want(Vec::new());
-        queue.want(vec![job("short")]);
-        assert_eq!(next(&said), "begun short", "nobody asked for it in between");
-    }
-
-    #[test]
-    fn what_was_stopped_is_begun_again_only_when_that_is_said() {
-        let (queue, job, said) = queue();
-        queue.want(vec![job("long"), job("short")]);
-        assert_eq!(next(&said), "begun long");
-        queue.stop();
-        assert!(queue.is_stopped());
-        assert_eq!(next(&said), "cancelled long");
-        queue.want(vec![job("long"), job("short")]);
-        assert!(said.recv_timeout(Duration::from_millis(30)).is_err());
-        queue.resume();
-        assert_eq!(next(&said), "begun long");
+    /// Starts a pool with a single thread for long jobs: a fault that ended it would end the test.
+    fn pool() -> JobPool {
+        JobPool::with_shared_threads(1).unwrap()
     }
 
     #[test]
-    fn what_was_stopped_and_asked_for_no_more_is_begun_again_once_it_is_asked_for_and_nothing_else_is()
-     {
-        let ((queue, job, said), (other, other_job, other_said)) = (queue(), queue());
-        queue.want(vec![job("long")]);
-        other.want(vec![other_job("long")]);
-        assert_eq!(
-            [next(&said), next(&other_said)],
-            ["begun long", "begun long"]
-        );
-        [&queue, &other].into_iter().for_each(JobQueue::stop);
-        assert_eq!(
-            [next(&said), next(&other_said)],
-            ["cancelled long", "cancelled long"]
-        );
-        queue.want(Vec::new());
-        queue.want(vec![job("long")]);
-        other.want(vec![other_job("long")]);
-        assert_eq!(next(&said), "begun long");
-        assert!(other.is_stopped() && other.progress().is_none() && queue.progress().is_some());
+    fn a_running_job_continues_while_it_is_requested() {
+        let pool = pool();
+        let test = TestQueue::open(&pool);
+        test.queue.want(vec![test.long()]);
+        test.assert_events(&["begun long"]);
+        test.queue.want(vec![test.short(), test.long()]);
+        let running = test.queue.lane.orders().running.clone().unwrap();
+        assert!(!running.run.outdated.load(Ordering::Acquire));
+        test.release.send(()).unwrap();
+        test.assert_events(&["ended long (1)", "begun short", "ended short (2)"]);
     }
 
     #[test]
-    fn a_job_that_panics_is_told_its_tools_are_made_anew_and_the_next_is_done() {
-        let (queue, job, said) = queue();
-        queue.want(vec![job("short"), job("broken"), job("other")]);
-        let all: Vec<String> = (0..6).map(|_| next(&said)).collect();
-        assert_eq!(
-            all,
-            [
-                "begun short",
-                "ended short (1)",
-                "begun broken",
-                "fault broken job",
-                "begun other",
-                "ended other (1)"
-            ]
-        );
+    fn a_running_job_that_is_no_longer_requested_is_cancelled() {
+        let pool = pool();
+        let test = TestQueue::open(&pool);
+        test.queue.want(vec![test.long()]);
+        test.assert_events(&["begun long"]);
+        test.queue.want(vec![test.short()]);
+        test.assert_events(&["cancelled long", "begun short", "ended short (2)"]);
     }
 
     #[test]
-    fn dropping_it_gives_up_the_job_and_waits_for_nothing() {
-        let (queue, job, said) = queue();
-        queue.want(vec![job("long")]);
-        assert_eq!(next(&said), "begun long");
-        drop(queue);
-        assert_eq!(next(&said), "cancelled long");
+    fn a_complete_job_starts_again_only_after_a_request_without_it() {
+        let pool = pool();
+        let test = TestQueue::open(&pool);
+        test.queue.want(vec![test.short()]);
+        test.assert_events(&["begun short", "ended short (1)"]);
+        let other = test.job("other", Course::Short);
+        test.queue.want(vec![test.short(), other]);
+        test.assert_events(&["begun other", "ended other (2)"]);
+        assert!(test.queue.unfinished().is_empty());
+        test.queue.want(Vec::new());
+        test.queue.want(vec![test.short()]);
+        test.assert_events(&["begun short"]);
+    }
+
+    #[test]
+    fn a_stopped_job_starts_again_only_when_it_is_resumed() {
+        let pool = pool();
+        let test = TestQueue::open(&pool);
+        test.queue.want(vec![test.long(), test.short()]);
+        test.assert_events(&["begun long"]);
+        test.queue.stop();
+        assert!(test.queue.is_stopped());
+        test.assert_events(&["cancelled long"]);
+        test.queue.want(vec![test.long(), test.short()]);
+        test.wait_until_idle();
+        assert!(test.queue.lane.orders().next_job().is_none());
+        test.queue.resume();
+        test.assert_events(&["begun long"]);
+    }
+
+    #[test]
+    fn a_request_without_a_stopped_job_forgets_the_stop_in_this_queue_alone() {
+        let pool = pool();
+        let test = TestQueue::open(&pool);
+        let other = TestQueue::open(&pool);
+        for stopped in [&test, &other] {
+            stopped.queue.want(vec![stopped.long()]);
+            stopped.assert_events(&["begun long"]);
+            stopped.queue.stop();
+            stopped.assert_events(&["cancelled long"]);
+        }
+        test.queue.want(Vec::new());
+        test.queue.want(vec![test.long()]);
+        other.queue.want(vec![other.long()]);
+        test.assert_events(&["begun long"]);
+        assert!(test.queue.progress().is_some());
+        assert!(other.queue.is_stopped());
+        assert!(other.queue.progress().is_none());
+    }
+
+    #[test]
+    fn after_a_panic_the_next_job_runs_with_new_tools() {
+        let pool = pool();
+        let test = TestQueue::open(&pool);
+        let broken = test.job("broken", Course::Panic);
+        let other = test.job("other", Course::Short);
+        test.queue.want(vec![test.short(), broken, other]);
+        test.assert_events(&[
+            "begun short",
+            "ended short (1)",
+            "begun broken",
+            "fault broken job",
+            "begun other",
+            "ended other (1)",
+        ]);
+        assert!(test.queue.is_stopped());
+    }
+
+    #[test]
+    fn dropping_the_queue_cancels_its_job_without_waiting() {
+        let pool = pool();
+        let test = TestQueue::open(&pool);
+        test.queue.want(vec![test.long()]);
+        test.assert_events(&["begun long"]);
+        drop(test.queue);
+        let event = test.events.recv_timeout(LIMIT).unwrap();
+        assert_eq!(event, "cancelled long");
     }
 }

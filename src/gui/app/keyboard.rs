@@ -1,4 +1,4 @@
-//! Keys: the shortcuts of the command table, and typed text, which reaches the intended field
+//! Keys: the shortcuts in the command table, and typed text, which reaches the intended field
 //! however slow the frames are.
 
 use std::cmp::Reverse;
@@ -7,52 +7,77 @@ use egui::{Context, Event, Key, KeyboardShortcut, Plugin, Popup, RawInput};
 
 use crate::gui::commands::command::Command;
 use crate::gui::commands::command_table::command_table;
-use crate::gui::commands::entry::{Entry, Reach};
+use crate::gui::commands::entry::Reach;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::focus::was_focused;
 
-/// Returns the commands of the keys pressed since the last frame.
+/// Returns the commands for keys pressed since the last frame.
 pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {
-    let focused = ctx.memory(|memory| memory.focused().is_some());
-    let is_key = |event: &Event| matches!(event, Event::Key { pressed: true, .. });
-    if !ctx.input(|input| input.events.iter().any(is_key)) {
+    if !is_any_key_pressed(ctx) {
         return Vec::new();
     }
-    let has_no_focus = !focused && !ctx.egui_wants_keyboard_input();
-    let is_free = has_no_focus && state.forms.shown.is_none() && !Popup::is_any_open(ctx);
-    // Escape has already removed the focus here: if a field had it, the key belonged to the field.
-    let is_left_to_field =
-        |keys: &KeyboardShortcut| was_focused(ctx) && keys.logical_key == Key::Escape;
-    let is_given = |entry: &Entry| {
-        let is_within_reach = entry.reach == Reach::Everywhere || is_free;
-        entry.enabled && is_within_reach && !entry.shortcuts.iter().any(is_left_to_field)
-    };
-    let entries = command_table(state).into_iter().filter(is_given);
-    let mut keys: Vec<(KeyboardShortcut, Command)> = entries
-        .flat_map(|entry| {
-            entry
-                .shortcuts
-                .into_iter()
-                .map(move |shortcut| (shortcut, entry.command.clone()))
-        })
-        .collect();
-    // A shortcut without Shift or Alt also matches the keys of one with them, so shortcuts with
-    // more modifiers come first.
-    keys.sort_by_key(|(shortcut, _)| {
-        Reverse(u8::from(shortcut.modifiers.shift) + u8::from(shortcut.modifiers.alt))
+    let mut shortcuts = active_shortcuts(ctx, state);
+    // A shortcut without Shift or Alt also matches the keys for a shortcut with them, so shortcuts
+    // with more modifiers come first.
+    shortcuts.sort_by_key(|active| {
+        let modifiers = active.keys.modifiers;
+        Reverse(u8::from(modifiers.shift) + u8::from(modifiers.alt))
     });
-    let is_pressed =
-        |shortcut: &KeyboardShortcut| ctx.input_mut(|input| input.consume_shortcut(shortcut));
-    keys.into_iter()
-        .filter(|(shortcut, _)| is_pressed(shortcut))
-        .map(|(_, command)| command)
-        .collect()
+    let mut commands = Vec::new();
+    for active in shortcuts {
+        if ctx.input_mut(|input| input.consume_shortcut(&active.keys)) {
+            commands.push(active.command);
+        }
+    }
+    commands
+}
+
+fn is_any_key_pressed(ctx: &Context) -> bool {
+    ctx.input(|input| {
+        input
+            .events
+            .iter()
+            .any(|event| matches!(event, Event::Key { pressed: true, .. }))
+    })
+}
+
+/// A shortcut that works now, with its command.
+struct ActiveShortcut {
+    keys: KeyboardShortcut,
+    command: Command,
+}
+
+/// Returns the shortcuts of enabled entries that the focus allows.
+fn active_shortcuts(ctx: &Context, state: &State) -> Vec<ActiveShortcut> {
+    let is_focused = ctx.memory(|memory| memory.focused().is_some());
+    let is_free = !is_focused
+        && !ctx.egui_wants_keyboard_input()
+        && state.forms.shown.is_none()
+        && !Popup::is_any_open(ctx);
+    // Escape has already removed the focus here: if a field had it, the key belonged to the field.
+    let is_escape_taken = was_focused(ctx);
+    let mut active = Vec::new();
+    for entry in command_table(state) {
+        let is_within_reach = entry.reach == Reach::Everywhere || is_free;
+        let has_escape = entry
+            .shortcuts
+            .iter()
+            .any(|keys| keys.logical_key == Key::Escape);
+        if !entry.enabled || !is_within_reach || has_escape && is_escape_taken {
+            continue;
+        }
+        for keys in entry.shortcuts {
+            let command = entry.command.clone();
+            active.push(ActiveShortcut { keys, command });
+        }
+    }
+    active
 }
 
 /// Forwards keyboard and pointer events in their original order.
 ///
-/// If a frame takes long, "3", Tab and "4" arrive in one frame, in which only one field has the
-/// focus. Events that move the focus therefore get a frame of their own, and text typed after them
+/// If a frame takes long, "3", Tab and "4" arrive in the same frame, in which a single field has
+/// the focus. Events that move the focus therefore get their own frame, and text typed after them
 /// goes to a later frame. After Tab another frame passes: a widget that receives the focus
 /// backwards learns of it only in the next frame, and selects its text, to be replaced, at the end
 /// of that frame.
@@ -75,7 +100,8 @@ enum Kind {
 }
 
 impl Kind {
-    fn of(event: &Event) -> Option<Self> {
+    /// Returns an event's kind; `None` for events that may come in any frame.
+    fn from_event(event: &Event) -> Option<Self> {
         match event {
             Event::Key {
                 key, pressed: true, ..
@@ -112,14 +138,16 @@ fn is_tab(event: &Event) -> bool {
     )
 }
 
-/// Returns how many of the events belong to one frame.
-fn of_one_frame(events: &[Event]) -> usize {
-    let mut before = None;
+/// Returns how many events, from the first, belong to the same frame.
+fn count_of_frame(events: &[Event]) -> usize {
+    let mut before: Option<Kind> = None;
     for (count, event) in events.iter().enumerate() {
-        let Some(kind) = Kind::of(event) else {
+        let Some(kind) = Kind::from_event(event) else {
             continue;
         };
-        if before.is_some_and(|before: Kind| !before.goes_with(kind)) {
+        if let Some(before) = before
+            && !before.goes_with(kind)
+        {
             return count;
         }
         before = Some(kind);
@@ -137,7 +165,7 @@ impl Plugin for KeyOrder {
         let count = if std::mem::take(&mut self.has_moved) {
             0
         } else {
-            of_one_frame(&self.later)
+            count_of_frame(&self.later)
         };
         let rest = self.later.split_off(count);
         input.events = std::mem::replace(&mut self.later, rest);
@@ -173,18 +201,18 @@ mod tests {
         }
     }
 
-    /// Returns the number of events in each frame.
+    /// Returns the event count of each frame.
     fn frames(mut events: Vec<Event>) -> Vec<usize> {
         let mut counts = Vec::new();
         while !events.is_empty() {
-            counts.push(of_one_frame(&events));
-            events.drain(..of_one_frame(&events));
+            counts.push(count_of_frame(&events));
+            events.drain(..count_of_frame(&events));
         }
         counts
     }
 
     #[test]
-    fn what_moves_the_focus_comes_in_a_frame_of_its_own() {
+    fn an_event_that_moves_the_focus_has_its_own_frame() {
         let text = |text: &str| Event::Text(text.to_owned());
         assert_eq!(
             frames(vec![
@@ -201,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn the_clicks_of_a_double_click_and_what_only_moves_stay_together() {
+    fn the_clicks_of_a_double_click_and_movements_stay_together() {
         let moved = || Event::PointerMoved(Pos2::ZERO);
         let clicks = vec![
             moved(),

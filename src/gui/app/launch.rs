@@ -8,7 +8,7 @@ use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use eframe::{App, NativeOptions};
+use eframe::NativeOptions;
 use egui::ViewportBuilder;
 
 use gdcm_io::files::study_file::holds_models;
@@ -20,7 +20,8 @@ use gdcm_model::message_text::{sanitized, sanitized_path, shortened_message};
 use gdcm_study::Engine;
 use gdcm_study::stages::engine::LIVE_PROOF;
 
-use super::recovery::{Autosave, LAST_WAIT, end_words};
+use super::autosave::Autosave;
+use super::recovery::{LAST_WAIT, end_words};
 use super::threads::{Fault, caught};
 use super::window::PREFERENCES;
 use super::{EngineMaker, GdcmApp, threads};
@@ -30,26 +31,26 @@ use crate::gui::commands::file::FileCommand;
 use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::preferences::Preferences;
 
-/// Application id on the desktop, and name of the data directory.
+/// Application id on the desktop, and data directory.
 pub(super) const APP_ID: &str = "gdcm";
 /// Exit status if the window could not be opened or panicked.
 const NO_WINDOW: u8 = 1;
 /// Exit status for a wrong file.
 const WRONG_FILE: u8 = 2;
 
-/// Setup of a window; tests use other values than the program.
+/// Window setup; tests use other values than the program.
 #[derive(Clone)]
 pub struct Setup {
     pub engine: EngineMaker,
-    /// Directory of the recovery files and of the list of recent files; `None` keeps neither.
+    /// Directory for recovery files and the recent-files list; `None` keeps neither.
     pub directory: Option<PathBuf>,
-    /// Expansion of `~` in typed paths; without it, `~` stays.
+    /// Expansion for `~` in typed paths; without it, `~` stays.
     pub home: Option<PathBuf>,
     /// Whether the first start offers the guided tour.
     pub offers_tour: bool,
     /// Maximum delay between a change and its copy in the recovery file.
     pub keep_after: Duration,
-    /// Interval between checks of the dataset's file.
+    /// Interval between checks on the dataset's file.
     pub look_every: Duration,
     pub preferences: Preferences,
     /// Problem found before the window was opened; shown first.
@@ -74,7 +75,7 @@ impl Default for Setup {
 }
 
 impl Setup {
-    /// Returns the setup of the program, with the directories given by the platform.
+    /// Returns the program's setup, with the directories given by the platform.
     pub(super) fn of_program() -> Self {
         Self {
             directory: eframe::storage_dir(APP_ID),
@@ -91,53 +92,88 @@ impl Setup {
 /// Without a display, or if the window cannot be created, one line on standard error reports it and
 /// names the headless command.
 ///
-/// A folder, or a file of another program, is opened to import its models.
+/// A folder, or a file from another program, is opened to import its models.
 pub fn open(path: Option<PathBuf>) -> ExitCode {
-    let models = path.clone().filter(|path| holds_models(path));
-    let command = headless(path.as_deref(), models.is_some());
-    let dataset = path.filter(|_| models.is_none());
+    let request = Request::new(path);
+    let command = request.headless_command();
+    let Request { dataset, models } = request;
     if let Some(reason) = missing_display() {
-        if told(load(dataset)).1.is_some() {
+        if load_and_report(dataset).trouble.is_some() {
             return ExitCode::from(WRONG_FILE);
         }
-        eprintln!("error: {}", no_window(&reason, &command));
-        return ExitCode::from(NO_WINDOW);
+        return fail(&no_window(&reason, &command));
     }
-    // The file is read while the window is created.
-    let reading = std::thread::Builder::new()
-        .name("file".to_owned())
-        .spawn(|| told(load(dataset)));
-    let reading = match start_threads()
-        .map_err(|error| error.to_string())
-        .and(reading.map_err(|error| error.to_string()))
-    {
+    let reading = match start_reading(dataset) {
         Ok(reading) => reading,
         Err(reason) => {
-            eprintln!(
-                "error: {}",
-                no_window(&format!("no thread is to be had ({reason})"), &command)
-            );
-            return ExitCode::from(NO_WINDOW);
+            let reason = format!("no thread is available ({reason})");
+            return fail(&no_window(&reason, &command));
         }
     };
-    let mended =
-        eframe::storage_dir(APP_ID).and_then(|directory| mend_zoom(&directory.join("app.ron")));
-    mended
-        .iter()
-        .for_each(|words| eprintln!("caution: {words}"));
+    if let Some(directory) = eframe::storage_dir(APP_ID)
+        && let Some(caution) = repair_zoom(&directory.join("app.ron"))
+    {
+        eprintln!("caution: {caution}");
+    }
     std::panic::set_hook(Box::new(threads::note));
     let opening = Arc::new(OnceLock::new());
-    match ending(
-        caught(|| run(reading, models, &opening)),
-        opening.get(),
-        &command,
-    ) {
+    let outcome = caught(|| run(reading, models, &opening));
+    match ending(outcome, opening.get(), &command) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(words) => {
-            eprintln!("error: {words}");
-            ExitCode::from(NO_WINDOW)
+        Err(message) => fail(&message),
+    }
+}
+
+/// Reports that there is no window; returns the exit status.
+fn fail(message: &str) -> ExitCode {
+    eprintln!("error: {message}");
+    ExitCode::from(NO_WINDOW)
+}
+
+/// Path from the command line, by its use.
+struct Request {
+    /// A dataset or a study; `None` opens the example.
+    dataset: Option<PathBuf>,
+    /// A folder, or a file from another program, to import its models.
+    models: Option<PathBuf>,
+}
+
+impl Request {
+    fn new(path: Option<PathBuf>) -> Self {
+        match path {
+            Some(path) if holds_models(&path) => Self {
+                dataset: None,
+                models: Some(path),
+            },
+            dataset => Self {
+                dataset,
+                models: None,
+            },
         }
     }
+
+    /// Returns the headless command that replaces the window; without a file it uses the embedded
+    /// example.
+    fn headless_command(&self) -> String {
+        if let Some(models) = &self.models {
+            let path = sanitized_path(models);
+            format!("gdcm assemble \"{path}\" --out dataset.json.gz")
+        } else if let Some(dataset) = &self.dataset {
+            let path = sanitized_path(dataset);
+            format!("gdcm analyze \"{path}\" --out results")
+        } else {
+            "gdcm analyze --out results".to_owned()
+        }
+    }
+}
+
+/// Starts the thread pool, and a thread that reads the file while the window is created.
+fn start_reading(dataset: Option<PathBuf>) -> Result<JoinHandle<Loaded>, String> {
+    let reading = std::thread::Builder::new()
+        .name("file".to_owned())
+        .spawn(|| load_and_report(dataset));
+    start_threads()?;
+    reading.map_err(|error| error.to_string())
 }
 
 /// Returns the reason why the window ended, unless it was closed. `kept` is the autosave, once a
@@ -160,29 +196,54 @@ fn ending(
     }
 }
 
-/// The study to open, and the fault in the requested file, in which case the window opens the
-/// example.
-type Loaded = (Result<Opened, String>, Option<String>);
+/// The requested study, or else the example.
+struct Loaded {
+    /// The study to open, or the fault in the example.
+    opened: Result<Opened, String>,
+    /// Fault in the requested file, in which case the window opens the example.
+    trouble: Option<String>,
+}
 
 fn load(path: Option<PathBuf>) -> Loaded {
-    let words = |error: FileError| shortened_message(&sanitized(&error.to_string()));
-    let example = || embedded_example().map(Opened::Dataset).map_err(words);
-    match path.map(|path| load_any(&path, &ReadingBudget::default()).map_err(words)) {
-        None => (example(), None),
-        Some(Ok(opened)) => (Ok(opened), None),
-        Some(Err(trouble)) => (example(), Some(trouble)),
+    let Some(path) = path else {
+        return Loaded {
+            opened: load_example(),
+            trouble: None,
+        };
+    };
+    match load_any(&path, &ReadingBudget::default()) {
+        Ok(opened) => Loaded {
+            opened: Ok(opened),
+            trouble: None,
+        },
+        Err(error) => Loaded {
+            opened: load_example(),
+            trouble: Some(short_message(&error)),
+        },
     }
 }
 
-/// Reports a faulty file on the terminal too: without a window that is the only report.
-fn told(loaded: Loaded) -> Loaded {
-    loaded
-        .1
-        .iter()
-        .for_each(|words| eprintln!("error: {words}"));
+fn load_example() -> Result<Opened, String> {
+    match embedded_example() {
+        Ok(example) => Ok(Opened::Dataset(example)),
+        Err(error) => Err(short_message(&error)),
+    }
+}
+
+fn short_message(error: &FileError) -> String {
+    shortened_message(&sanitized(&error.to_string()))
+}
+
+/// Loads a file; reports its fault on the terminal too: without a window that is the only report.
+fn load_and_report(path: Option<PathBuf>) -> Loaded {
+    let loaded = load(path);
+    if let Some(trouble) = &loaded.trouble {
+        eprintln!("error: {trouble}");
+    }
     loaded
 }
 
+/// Runs the window until it is closed; `opening` receives the autosave once a frame is drawn.
 fn run(
     reading: JoinHandle<Loaded>,
     models: Option<PathBuf>,
@@ -201,72 +262,89 @@ fn run(
         ..NativeOptions::default()
     };
     let opening = Arc::clone(opening);
-    let build = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn App>, Box<dyn Error + Send + Sync>> {
-        let (opened, trouble) = reading.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        let opened = opened?;
-        let is_unasked = models.is_none()
-            && trouble.is_none()
-            && matches!(&opened, Opened::Dataset(loaded) if loaded.path().is_none());
-        let kept = creation.storage.and_then(|storage| eframe::get_value(storage, PREFERENCES));
-        let setup = Setup { preferences: kept.unwrap_or_default(), trouble, ..Setup::of_program() };
-        let last = last_opened(&setup).filter(|_| is_unasked);
-        let mut app = GdcmApp::with(&creation.egui_ctx, opened, setup)?;
-        if let Some(path) = last {
-            app.dispatch(FileCommand::Open(path));
-        }
-        if let Some(models) = models {
-            app.dispatch(AssemblingCommand::Add(vec![models]));
-        }
-        app.recovery.drawn = opening;
-        Ok(Box::new(app))
+    eframe::run_native(
+        APP_ID,
+        options,
+        Box::new(move |creation| {
+            let loaded = reading
+                .join()
+                .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            let mut app = create_window(creation, loaded, models)?;
+            app.recovery.drawn = opening;
+            Ok(Box::new(app))
+        }),
+    )
+}
+
+/// Creates the window on the loaded file; afterwards opens the last file, or imports the models.
+fn create_window(
+    creation: &eframe::CreationContext<'_>,
+    loaded: Loaded,
+    models: Option<PathBuf>,
+) -> Result<GdcmApp, Box<dyn Error + Send + Sync>> {
+    let opened = loaded.opened?;
+    let is_example = matches!(&opened, Opened::Dataset(dataset) if dataset.path().is_none());
+    let is_file_requested = models.is_some() || loaded.trouble.is_some() || !is_example;
+    let preferences = creation
+        .storage
+        .and_then(|storage| eframe::get_value(storage, PREFERENCES));
+    let setup = Setup {
+        preferences: preferences.unwrap_or_default(),
+        trouble: loaded.trouble,
+        ..Setup::of_program()
     };
-    eframe::run_native(APP_ID, options, Box::new(build))
+    let last = if is_file_requested {
+        None
+    } else {
+        last_opened(&setup)
+    };
+    let mut app = GdcmApp::with(&creation.egui_ctx, opened, setup)?;
+    if let Some(path) = last {
+        app.dispatch(FileCommand::Open(path));
+    }
+    if let Some(models) = models {
+        app.dispatch(AssemblingCommand::Add(vec![models]));
+    }
+    Ok(app)
 }
 
 /// Returns the file that was open last, if the engineer prefers to start with it and it exists.
 fn last_opened(setup: &Setup) -> Option<PathBuf> {
-    let directory = setup
-        .directory
-        .as_deref()
-        .filter(|_| setup.preferences.opens_with == OpensWith::LastStudy)?;
-    recent_files(directory)
+    if setup.preferences.opens_with != OpensWith::LastStudy {
+        return None;
+    }
+    recent_files(setup.directory.as_deref()?)
         .into_iter()
         .find(|path| file_exists(path))
 }
 
-/// Usable zoom factors of a window.
+/// Usable zoom factors.
 const ZOOM: RangeInclusive<f64> = 0.2..=5.0;
 
-/// Replaces an unusable zoom factor in the preferences with 1; returns a message about it.
-fn mend_zoom(preferences: &Path) -> Option<String> {
+/// Replaces an unusable zoom factor in the preferences with 1; returns a caution about it.
+fn repair_zoom(preferences: &Path) -> Option<String> {
     const KEY: &str = "zoom_factor:";
     let text = std::fs::read_to_string(preferences).ok()?;
     let start = text.find(KEY)? + KEY.len();
     let end = start + text[start..].find([',', ')'])?;
     let stored = &text[start..end];
-    if stored
-        .trim()
-        .parse::<f64>()
-        .is_ok_and(|zoom| ZOOM.contains(&zoom))
+    if let Ok(zoom) = stored.trim().parse::<f64>()
+        && ZOOM.contains(&zoom)
     {
         return None;
     }
-    let path = sanitized_path(preferences);
-    let least = ZOOM.start();
-    let most = ZOOM.end();
-    let why = format!(
-        "{path}: expected a zoom factor from {least} to {most}, found {}",
+    let problem = format!(
+        "{}: expected a zoom factor from {} to {}, found {}",
+        sanitized_path(preferences),
+        ZOOM.start(),
+        ZOOM.end(),
         sanitized(stored)
     );
-    Some(
-        match std::fs::write(
-            preferences,
-            format!("{}1.0{}", &text[..start], &text[end..]),
-        ) {
-            Ok(()) => format!("{why}; it is 1 now"),
-            Err(error) => format!("{why}; it cannot be mended: {error}"),
-        },
-    )
+    let repaired = format!("{}1.0{}", &text[..start], &text[end..]);
+    Some(match std::fs::write(preferences, repaired) {
+        Ok(()) => format!("{problem}; it is 1 now"),
+        Err(error) => format!("{problem}; it cannot be repaired: {error}"),
+    })
 }
 
 /// Returns why no window can be opened, if known beforehand: on Linux, neither Wayland nor X11.
@@ -274,11 +352,15 @@ fn missing_display() -> Option<String> {
     if !cfg!(target_os = "linux") {
         return None;
     }
-    let set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-    let found = set("WAYLAND_DISPLAY") || set("WAYLAND_SOCKET") || set("DISPLAY");
-    (!found).then(|| "there is no display (neither WAYLAND_DISPLAY nor DISPLAY is set)".to_owned())
+    for variable in ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DISPLAY"] {
+        if std::env::var_os(variable).is_some_and(|value| !value.is_empty()) {
+            return None;
+        }
+    }
+    Some("there is no display (neither WAYLAND_DISPLAY nor DISPLAY is set)".to_owned())
 }
 
+/// Returns the message for a window that cannot be opened, with the headless alternative.
 fn no_window(reason: &str, command: &str) -> String {
     let reason = reason
         .lines()
@@ -287,37 +369,29 @@ fn no_window(reason: &str, command: &str) -> String {
         .trim_end_matches('.');
     // winit begins with the location in its own source: "os error at src/linux.rs:788: no
     // connection".
-    let at = reason
-        .split_once("os error at ")
-        .and_then(|(_, at)| at.split_once(": "));
-    let reason = at.map_or(reason, |(_, what)| what);
+    let located = reason.split_once("os error at ");
+    let reason = match located.and_then(|(_, located)| located.split_once(": ")) {
+        Some((_, reason)) => reason,
+        None => reason,
+    };
     format!("the window could not be opened: {reason}. Without a window: {command}")
-}
-
-/// Returns the headless command that replaces the window; without a file it uses the embedded
-/// example.
-fn headless(path: Option<&Path>, holds_models: bool) -> String {
-    match path.map(sanitized_path) {
-        Some(path) if holds_models => format!("gdcm assemble \"{path}\" --out dataset.json.gz"),
-        Some(path) => format!("gdcm analyze \"{path}\" --out results"),
-        None => "gdcm analyze --out results".to_owned(),
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn fault() -> Fault {
+        Fault {
+            message: "no libxkbcommon".to_owned(),
+            place: None,
+        }
+    }
+
     #[test]
-    fn a_panic_before_the_first_frame_is_a_window_that_could_not_be_opened_and_one_after_it_is_not()
-    {
-        let fault = || {
-            Err(Fault {
-                message: "no libxkbcommon".to_owned(),
-                place: None,
-            })
-        };
-        let words = ending(fault(), None, &headless(Some(Path::new("a.json")), false)).unwrap_err();
+    fn a_panic_before_the_first_frame_means_that_no_window_could_be_opened() {
+        let command = Request::new(Some("a.json".into())).headless_command();
+        let words = ending(Err(fault()), None, &command).unwrap_err();
         assert!(
             words.starts_with("the window could not be opened: no libxkbcommon"),
             "{words}"
@@ -334,6 +408,10 @@ mod tests {
             words,
             "the window could not be opened: no connection. Without a window: gdcm analyze"
         );
+    }
+
+    #[test]
+    fn a_panic_after_the_first_frame_reports_the_decisions() {
         let folder = tempfile::tempdir().unwrap();
         let autosave = Autosave::start(
             Some(folder.path()),
@@ -341,7 +419,7 @@ mod tests {
             crate::gui::app::threads::ReplySender::new(&egui::Context::default()).0,
         )
         .unwrap();
-        let words = ending(fault(), Some(&autosave), "").unwrap_err();
+        let words = ending(Err(fault()), Some(&autosave), "").unwrap_err();
         assert!(
             words.starts_with("stopped by a fault in its window: no libxkbcommon"),
             "{words}"
@@ -350,21 +428,23 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_wrong_opens_the_example_and_is_told() {
+    fn a_wrong_file_opens_the_example_and_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("broken.json");
         std::fs::write(&path, "{\"format\": ").unwrap();
-        let (opened, trouble) = load(Some(path));
+        let loaded = load(Some(path));
         assert!(
-            matches!(opened, Ok(Opened::Dataset(loaded)) if loaded.path().is_none()),
+            matches!(loaded.opened, Ok(Opened::Dataset(example)) if example.path().is_none()),
             "the example"
         );
-        assert!(trouble.is_some_and(|words| words.contains("broken.json")));
-        assert!(matches!(load(None), (Ok(_), None)));
+        assert!(loaded.trouble.unwrap().contains("broken.json"));
+        let example = load(None);
+        assert!(example.opened.is_ok());
+        assert_eq!(example.trouble, None);
     }
 
     #[test]
-    fn a_zoom_factor_without_a_window_is_ignored_with_a_word_and_what_else_is_kept_stays() {
+    fn an_unusable_zoom_factor_is_replaced_with_a_message_and_other_preferences_stay() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("app.ron");
         let text = |zoom: &str| {
@@ -380,14 +460,14 @@ mod tests {
             ("1.25", "1.25"),
         ] {
             std::fs::write(&path, text(stored)).unwrap();
-            let said = mend_zoom(&path);
-            assert_eq!(said.is_some(), stored != kept, "{stored}: {said:?}");
-            assert!(
-                said.is_none_or(|words| words.contains(stored) && words.contains("from 0.2 to 5")),
-                "{stored}"
-            );
+            let caution = repair_zoom(&path);
+            assert_eq!(caution.is_some(), stored != kept, "{stored}: {caution:?}");
+            if let Some(caution) = caution {
+                assert!(caution.contains(stored), "{caution}");
+                assert!(caution.contains("from 0.2 to 5"), "{caution}");
+            }
             assert_eq!(std::fs::read_to_string(&path).unwrap(), text(kept));
         }
-        assert_eq!(mend_zoom(&folder.path().join("none.ron")), None);
+        assert_eq!(repair_zoom(&folder.path().join("none.ron")), None);
     }
 }

@@ -1,4 +1,4 @@
-//! Carries out changes to the places of views, panels and the focus.
+//! Carries out changes to the layout and the focus.
 
 use super::GdcmApp;
 use crate::gui::commands::layout::LayoutCommand;
@@ -6,12 +6,12 @@ use crate::gui::state::arrangement::Arrangement;
 use crate::gui::widgets::controls::focus_field;
 use crate::gui::widgets::focus::leave_region;
 
-/// Target of the focus.
+/// Focus target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NextFocus {
     /// The field with this name.
     Field(&'static str),
-    /// The next or the previous region of the window.
+    /// The next or the previous window region.
     Region { forward: bool },
 }
 
@@ -40,7 +40,8 @@ impl GdcmApp {
             LayoutCommand::SetTheme(theme) => self.ctx.set_theme(theme),
             LayoutCommand::FocusField(name) => {
                 // A collapsed field must be open before it can receive the focus.
-                (display.layout.settings_open, display.layout.advanced_open) = (true, true);
+                display.layout.settings_open = true;
+                display.layout.advanced_open = true;
                 self.focus_next(NextFocus::Field(name));
             }
             LayoutCommand::LeaveRegion { forward } => {
@@ -49,7 +50,7 @@ impl GdcmApp {
             LayoutCommand::StartTour => self.state.tour = Some(0),
             LayoutCommand::ShowTourStep(step) => self.state.tour = step,
             LayoutCommand::ShowStart(is_shown) => self.state.on_start_page = is_shown,
-            LayoutCommand::BeginWith(what) => display.layout.opens_with = what,
+            LayoutCommand::BeginWith(choice) => display.layout.opens_with = choice,
         }
     }
 

@@ -1,5 +1,7 @@
 //! The window: the only module that uses eframe, file dialogs and threads.
 
+mod analysis_job;
+mod autosave;
 mod background_jobs;
 mod computation;
 mod computing_commands;
@@ -11,6 +13,8 @@ mod document_files;
 mod file_commands;
 mod files;
 mod form_commands;
+mod job_kind;
+mod job_pool;
 mod job_queue;
 mod keyboard;
 mod launch;
@@ -19,9 +23,15 @@ pub mod model_import;
 mod output_commands;
 mod outputs;
 mod readers;
-pub mod record_import;
+mod record_commands;
+mod record_dataset;
+mod record_identification;
+mod record_import;
+mod record_reading;
 mod recovery;
 mod reload;
+mod report_job;
+mod requirement_files;
 mod selection_commands;
 mod study_commands;
 pub mod threads;

@@ -1,4 +1,4 @@
-//! Importing models from files: reads them in a thread and applies the commands of the assembling
+//! Importing models from files: reads them in a thread and applies the commands from the assembling
 //! view.
 
 use std::cell::Cell;
@@ -22,10 +22,10 @@ use crate::gui::commands::assembling::AssemblingCommand;
 use crate::gui::state::assembling::{AssemblyState, Reading};
 use crate::gui::state::forms::FormKind;
 
-/// Bytes of values between two progress reports while a file is read.
-const TOLD_EVERY: u64 = 16 << 20;
+/// Bytes read between two progress reports.
+const REPORT_EVERY: u64 = 16 << 20;
 
-/// Files to read: additional ones, or all of them again with other headings.
+/// Files to read: additional files, or all files again with other headings.
 #[derive(Clone, Debug)]
 enum Sources {
     More(Vec<PathBuf>),
@@ -40,23 +40,21 @@ impl Sources {
 }
 
 /// Reports to the window which file is being read.
-struct Teller {
+struct ReadingReport {
     number: u64,
     replies: ReplySender,
     stop: Arc<AtomicBool>,
-    /// Bytes of the file's values at the last progress report.
-    told: Cell<u64>,
+    /// Bytes read at the last progress report.
+    reported: Cell<u64>,
 }
 
-impl Teller {
-    fn tell(&self, change: impl FnOnce(&mut Option<Reading>) + Send + 'static) {
+impl ReadingReport {
+    /// Changes the displayed progress, unless a newer reading has begun.
+    fn send(&self, change: impl FnOnce(&mut Option<Reading>) + Send + 'static) {
         let number = self.number;
         self.replies.send(move |app| {
-            if let Some(bench) = app
-                .state
-                .assembling
-                .as_mut()
-                .filter(|_| app.readers.models.is_newest(number))
+            if app.readers.models.is_newest(number)
+                && let Some(bench) = &mut app.state.assembling
             {
                 change(&mut bench.reading);
             }
@@ -64,22 +62,26 @@ impl Teller {
     }
 }
 
-impl FolderProgress for Teller {
+impl FolderProgress for ReadingReport {
     fn reading(&self, number: usize, of: usize, name: &str) {
-        self.told.set(0);
+        self.reported.set(0);
         let reading = Reading {
             number,
             of,
             name: name.to_owned(),
             taken: 0,
         };
-        self.tell(|shown| *shown = Some(reading));
+        self.send(|shown| *shown = Some(reading));
     }
 
     fn taken(&self, taken: u64) {
-        if taken >= self.told.get() + TOLD_EVERY {
-            self.told.set(taken);
-            self.tell(move |shown| shown.iter_mut().for_each(|reading| reading.taken = taken));
+        if taken >= self.reported.get() + REPORT_EVERY {
+            self.reported.set(taken);
+            self.send(move |shown| {
+                if let Some(reading) = shown {
+                    reading.taken = taken;
+                }
+            });
         }
     }
 
@@ -89,7 +91,7 @@ impl FolderProgress for Teller {
 }
 
 impl GdcmApp {
-    /// Carries out a command of the assembling view.
+    /// Carries out a command from the assembling view.
     pub(super) fn assemble(&mut self, command: AssemblingCommand) {
         let bench = self
             .state
@@ -132,28 +134,30 @@ impl GdcmApp {
 
     /// Reads models in a thread; tables are read with the headings given for them.
     fn read_models(&mut self, sources: Sources) {
-        let headings = self.said().map(|rules| rules.headings).unwrap_or_default();
-        let (number, stop) = self.readers.models.begin();
-        let teller = Teller {
+        let headings = match self.import_rules() {
+            Some(rules) => rules.headings,
+            None => Default::default(),
+        };
+        let reading = self.readers.models.begin();
+        let number = reading.number;
+        let report = ReadingReport {
             number,
             replies: self.work.replies.clone(),
-            stop,
-            told: Cell::new(0),
+            stop: reading.stop,
+            reported: Cell::new(0),
         };
         let read = move || {
-            let found = read_models(sources.paths(), &headings, &teller);
+            let found = read_models(sources.paths(), &headings, &report);
             (sources, found)
         };
         if let Some(bench) = &mut self.state.assembling {
             bench.reading = Some(Reading::default());
         }
         self.in_thread("the reading of models", read, move |app, read| {
-            let Some(bench) = app
-                .state
-                .assembling
-                .as_mut()
-                .filter(|_| app.readers.models.is_newest(number))
-            else {
+            if !app.readers.models.is_newest(number) {
+                return;
+            }
+            let Some(bench) = &mut app.state.assembling else {
                 return;
             };
             bench.reading = None;
@@ -164,6 +168,7 @@ impl GdcmApp {
         });
     }
 
+    /// Adds the models read to the import.
     fn take_models(&mut self, sources: Sources, found: FoundModels) {
         let Some(bench) = &mut self.state.assembling else {
             return;
@@ -178,14 +183,14 @@ impl GdcmApp {
                 paths
             }
         };
-        let name = paths
-            .first()
-            .and_then(|path| path.file_name())
-            .map(|name| name.to_string_lossy().into_owned());
+        let name = match paths.first().and_then(|path| path.file_name()) {
+            Some(name) => name.to_string_lossy().into_owned(),
+            None => String::new(),
+        };
         let models = found.models.len();
         let files = found.files;
         bench.unused.extend(found.unused_words());
-        bench.add(&name.unwrap_or_default(), found.models);
+        bench.add(&name, found.models);
         bench.faults.extend(found.faults);
         bench.ignored.extend(found.ignored);
         bench.tables.extend(found.tables);
@@ -198,14 +203,13 @@ impl GdcmApp {
                 .display()
                 .to_string();
         }
-        let new = paths
-            .into_iter()
-            .filter(|path| !bench.sources.contains(path))
-            .collect::<Vec<_>>();
+        let mut new = paths;
+        new.retain(|path| !bench.sources.contains(path));
         bench.sources.extend(new);
         self.done(format!("{models} models in {files} files"));
     }
 
+    /// Reads rules from a file.
     fn take_rules(&mut self, path: PathBuf) {
         let path = self.files.at_home(path);
         let Some((rules, cautions)) = self.unless_error(load_rules(&path)) else {
@@ -214,26 +218,23 @@ impl GdcmApp {
         if let Some(bench) = &mut self.state.assembling {
             bench.change(rules);
         }
-        let cautions: String = cautions
-            .iter()
-            .map(|caution| format!("; {caution}"))
-            .collect();
-        self.done(format!(
-            "took the rules of {}{cautions}",
-            sanitized_path(&path)
-        ));
+        let mut message = format!("took the rules of {}", sanitized_path(&path));
+        for caution in cautions {
+            message.push_str(&format!("; {caution}"));
+        }
+        self.done(message);
     }
 
-    fn said(&self) -> Option<Rules> {
-        self.state
-            .assembling
-            .as_ref()
-            .map(|bench| bench.assembly().rules().clone())
+    fn import_rules(&self) -> Option<Rules> {
+        let bench = self.state.assembling.as_ref()?;
+        Some(bench.assembly().rules().clone())
     }
 
     /// Writes the rules; asks before overwriting a file.
     fn save_rules(&mut self, path: PathBuf) {
-        let Some(rules) = self.said() else { return };
+        let Some(rules) = self.import_rules() else {
+            return;
+        };
         let path = self.files.at_home(path);
         let saved = self.write_all(&[], |outputs| add_rules(&rules, &path, outputs));
         self.saved_to(
@@ -253,7 +254,7 @@ impl GdcmApp {
         let folder = relative_folder(sources_folder(&bench.sources), &path);
         let Some(dataset) = bench.assembly().dataset(&folder) else {
             return self.notify_error(
-                "items are to be completed before the dataset can be made".to_owned(),
+                "complete the marked items before the dataset can be made".to_owned(),
             );
         };
         let rules = bench.assembly().rules().clone();

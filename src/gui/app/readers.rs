@@ -1,34 +1,49 @@
-//! Threads that read files, each replaceable by a newer one.
+//! Threads that read files; a newer reading may replace an older reading.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use gdcm_io::FolderProgress;
 
-/// The newest reading thread for one purpose, or several in parallel.
+/// The newest reading thread for a purpose, or several in parallel.
 #[derive(Default)]
 pub(super) struct Reader {
     newest: u64,
     stop: Arc<AtomicBool>,
 }
 
+/// A reading under way.
+pub(super) struct Reading {
+    /// Reading number; the answer counts while this is the newest.
+    pub(super) number: u64,
+    /// Set once the reading should stop.
+    pub(super) stop: Arc<AtomicBool>,
+}
+
 impl Reader {
-    /// Starts a reading that replaces the current one; returns its number and its stop flag.
-    pub(super) fn begin(&mut self) -> (u64, Arc<AtomicBool>) {
+    /// Starts a reading that replaces the current reading.
+    pub(super) fn begin(&mut self) -> Reading {
         self.give_up();
         self.stop = Arc::default();
-        (self.newest, Arc::clone(&self.stop))
+        self.current()
     }
 
-    /// Starts a reading beside the current one; returns the common number and stop flag.
-    pub(super) fn join(&mut self) -> (u64, Arc<AtomicBool>) {
+    /// Starts a reading beside the current reading; both have the same number and stop together.
+    pub(super) fn join(&mut self) -> Reading {
         if self.is_stopped() {
             return self.begin();
         }
-        (self.newest, Arc::clone(&self.stop))
+        self.current()
     }
 
-    /// Returns whether the answer of this thread still counts.
+    fn current(&self) -> Reading {
+        Reading {
+            number: self.newest,
+            stop: Arc::clone(&self.stop),
+        }
+    }
+
+    /// Returns whether a reading's answer still counts.
     pub(super) fn is_newest(&self, number: u64) -> bool {
         self.newest == number
     }
@@ -56,10 +71,10 @@ impl Drop for Reader {
     }
 }
 
-/// Progress of a reading that can be stopped but reports nothing.
-pub(super) struct Untold(pub(super) Arc<AtomicBool>);
+/// Progress for a reading that can be stopped but reports nothing.
+pub(super) struct SilentProgress(pub(super) Arc<AtomicBool>);
 
-impl FolderProgress for Untold {
+impl FolderProgress for SilentProgress {
     fn reading(&self, _: usize, _: usize, _: &str) {}
 
     fn stop(&self) -> Arc<AtomicBool> {
@@ -67,7 +82,7 @@ impl FolderProgress for Untold {
     }
 }
 
-/// Readers of the window, one for each kind of file.
+/// The window's readers, by kind of file.
 #[derive(Default)]
 pub(super) struct Readers {
     /// Reads imported models.

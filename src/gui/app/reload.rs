@@ -1,4 +1,4 @@
-//! Reload of a dataset whose file changes on the disk while open.
+//! Reloads a dataset whose file changes on the disk while open.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use super::document_files::ReadFor;
 use crate::gui::state::notices::Bar;
 
 impl GdcmApp {
-    /// Watches the file of the open dataset.
+    /// Watches the open dataset's file.
     pub(super) fn watch_disk(&mut self) {
         self.files.disk.watch(self.files.loaded.path());
     }
@@ -39,7 +39,8 @@ impl GdcmApp {
 
     /// Reads the dataset's file again; the open dataset stays until it is read.
     pub(super) fn reload(&mut self) {
-        if let Some(path) = self.files.loaded.path().map(ToOwned::to_owned) {
+        if let Some(path) = self.files.loaded.path() {
+            let path = path.to_owned();
             let name = path.display().to_string();
             self.read(ReadFor::Reloading, name, move |budget| {
                 load_dataset_within(&path, budget).map(Opened::Dataset)
@@ -47,7 +48,7 @@ impl GdcmApp {
         }
     }
 
-    /// Shows the reloaded dataset with every decision that still applies, as one undoable step.
+    /// Shows the reloaded dataset with every decision that still applies, as an undoable step.
     pub(super) fn show_reloaded(&mut self, loaded: LoadedDataset) {
         if loaded.path() != self.files.loaded.path() {
             // Another file was opened in the meantime.
@@ -73,16 +74,17 @@ impl GdcmApp {
         }
     }
 
-    /// Selects the file of the study's dataset, after a reload or an undo or redo across one.
+    /// Selects the file behind the study's dataset, after a reload, or an undo or redo across a
+    /// reload.
     pub(super) fn follow_dataset(&mut self) {
         let dataset = self.state.study.file_dataset();
-        if let Some(index) = self
+        let earlier = self
             .files
             .earlier
-            .iter()
-            .position(|loaded| Arc::ptr_eq(&loaded.dataset, dataset))
-        {
-            std::mem::swap(&mut self.files.loaded, &mut self.files.earlier[index]);
+            .iter_mut()
+            .find(|loaded| Arc::ptr_eq(&loaded.dataset, dataset));
+        if let Some(earlier) = earlier {
+            std::mem::swap(&mut self.files.loaded, earlier);
             self.state
                 .file_cautions
                 .clone_from(&self.files.loaded.cautions);

@@ -23,8 +23,8 @@ impl GdcmApp {
             }
             SelectionCommand::Tell(words) => display.selection.told = Some(words),
             SelectionCommand::Isolate(model) => {
-                display.selection.isolated = if display.selection.isolated.as_ref() == Some(&model)
-                {
+                let isolated = &mut display.selection.isolated;
+                *isolated = if isolated.as_ref() == Some(&model) {
                     None
                 } else {
                     Some(model)

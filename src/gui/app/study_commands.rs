@@ -14,15 +14,16 @@ impl GdcmApp {
             StudyCommand::Edit(edit) => self.decide(&edit),
             StudyCommand::EndEdit => self.state.history.seal(),
             StudyCommand::Undo => self.take_study(|history, study, records| {
-                history.undo(study, |of| records.exchange(of))
+                history.undo(study, |before| records.exchange(before))
             }),
             StudyCommand::Forget(edit) => self.take_study(|history, _, _| history.forget(&edit)),
             StudyCommand::Redo => self.take_study(|history, study, records| {
-                history.redo(study, |of| records.exchange(of))
+                history.redo(study, |before| records.exchange(before))
             }),
         }
     }
 
+    /// Applies a decision to the study and adds it to the history; reports a refusal.
     pub(super) fn decide(&mut self, edit: &Edit) {
         let before = self.state.study.clone();
         match self.state.study.apply(edit) {
@@ -35,8 +36,8 @@ impl GdcmApp {
         }
     }
 
-    /// Restores another state of the study, and of the records beside it, from its history, if
-    /// there is one.
+    /// Restores another state of the study, and of the records beside it, from the history, if
+    /// there is such a state.
     fn take_study(
         &mut self,
         find: impl FnOnce(&mut History<RecordsBefore>, &Study, &mut RecordsState) -> Option<Study>,

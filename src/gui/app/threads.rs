@@ -1,6 +1,5 @@
-//! Tools shared by the window and its threads: mailboxes, replies, and panics, which are caught and
-//! reported as sentences instead of raw traces; also the reading threads, which can be stopped, and
-//! of which only the newest for each purpose counts.
+//! Tools shared by the window and its threads: mailboxes, replies, threads for a single task, and
+//! panics, which are caught and reported as sentences instead of raw traces.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
@@ -19,13 +18,6 @@ pub(super) struct Mailbox<T> {
 }
 
 impl<T> Mailbox<T> {
-    pub(super) fn new(content: T) -> Self {
-        Self {
-            content: Mutex::new(content),
-            changed: Condvar::new(),
-        }
-    }
-
     /// Locks the content for reading.
     pub(super) fn lock(&self) -> MutexGuard<'_, T> {
         // The content is consistent even after a panic under the lock.
@@ -57,7 +49,7 @@ impl<T> Mailbox<T> {
 /// A thread's reply, applied to the window.
 pub(super) type Reply = Box<dyn FnOnce(&mut GdcmApp) + Send>;
 
-/// Sender for the replies of threads; each reply wakes the window.
+/// Sender for replies from threads; each reply wakes the window.
 #[derive(Clone)]
 pub struct ReplySender {
     sender: Sender<Reply>,
@@ -84,11 +76,11 @@ impl ReplySender {
 }
 
 impl GdcmApp {
-    /// Runs `work`, described by `what`, in its own thread, and lets the window take the result:
-    /// `None` after a fault, or if no thread could be started, both of which are reported first.
+    /// Runs `work` in a thread called `name`, and lets the window take the result: `None` after a
+    /// fault, or if no thread could be started. Both are reported first.
     pub(super) fn in_thread<T: Send + 'static, Work, Take>(
         &self,
-        what: &'static str,
+        name: &'static str,
         work: Work,
         take: Take,
     ) where
@@ -102,28 +94,28 @@ impl GdcmApp {
             let Ok((work, take)) = ordered.recv() else {
                 return;
             };
-            let made = caught(work);
-            replies.send(move |app| {
-                made.as_ref()
-                    .err()
-                    .iter()
-                    .for_each(|fault| app.tell_fault(what, fault));
-                take(app, made.ok());
+            let outcome = caught(work);
+            replies.send(move |app| match outcome {
+                Ok(result) => take(app, Some(result)),
+                Err(fault) => {
+                    app.report_fault(name, &fault);
+                    take(app, None);
+                }
             });
         };
-        match std::thread::Builder::new()
-            .name(what.to_owned())
-            .spawn(thread)
-        {
+        let thread = std::thread::Builder::new()
+            .name(name.to_owned())
+            .spawn(thread);
+        match thread {
             Ok(_) => drop(order.send((work, take))),
             Err(error) => self.work.replies.send(move |app| {
-                app.notify_error(format!("{what} cannot begin: {error}"));
+                app.notify_error(format!("{name} could not start: {error}"));
                 take(app, None);
             }),
         }
     }
 
-    /// Stops the work shown next to the Stop button: the reading of files, or else the computation.
+    /// Stops the work shown next to the Stop button: a reading, or else the computation.
     pub(super) fn stop_work(&mut self) {
         let opening = self.state.opening.take();
         let records = self.state.records.reading.take();
@@ -136,14 +128,14 @@ impl GdcmApp {
             // An existing entry prevents another automatic search.
             self.records_of(self.state.condition().id());
         }
-        self.done(format!("stopped reading {name}; what was open stays"));
+        self.done(format!("stopped reading {name}; the open study stays"));
     }
 }
 
 /// A panic: its message and its source location.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// The message, on one line.
+    /// The message, on a single line.
     pub message: String,
     /// "src/study/engine.rs:49"; `None` if the location was not recorded.
     pub place: Option<String>,
@@ -162,10 +154,10 @@ impl Fault {
 /// Recorded faults not reported yet. Only the hook knows a panic's location, and another thread may
 /// catch the panic.
 static NOTED: Mutex<Vec<Fault>> = Mutex::new(Vec::new());
-/// Maximum number of recorded faults; uncaught panics are rare.
+/// Maximum count of recorded faults; uncaught panics are rare.
 const MOST_NOTED: usize = 50;
 
-/// Records the message and the location of a panic; called by the process's panic hook.
+/// Records a panic's message and location; called by the process's panic hook.
 pub fn note(panic: &PanicHookInfo<'_>) {
     let place = panic
         .location()
@@ -196,15 +188,17 @@ pub(super) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
     })
 }
 
+/// Returns a panic's message, on a single line.
 fn message_of(payload: &(dyn Any + Send)) -> String {
-    let text = payload
-        .downcast_ref::<String>()
-        .map(String::as_str)
-        .or_else(|| payload.downcast_ref::<&str>().copied());
-    text.unwrap_or("a fault without a message")
-        .split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ")
+    let text = if let Some(text) = payload.downcast_ref::<String>() {
+        text
+    } else if let Some(text) = payload.downcast_ref::<&str>() {
+        text
+    } else {
+        "a fault without a message"
+    };
+    let words: Vec<&str> = text.split_whitespace().collect();
+    words.join(" ")
 }
 
 #[cfg(test)]
@@ -219,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn the_place_is_told_where_it_is_known() {
+    fn the_place_is_named_if_known() {
         let fault = Fault {
             message: "no".to_owned(),
             place: Some("src/a.rs:3".to_owned()),

@@ -1,44 +1,64 @@
 //! Carries out commands; no other code changes the displayed state.
 
-use std::fmt::Display as InWords;
+use std::fmt::Display;
 
+use gdcm_model::dataset::{ConditionId, ModelId};
 use gdcm_model::message_text::{sanitized, shortened_message};
 
 use super::GdcmApp;
 use crate::gui::commands::command::Command;
 use crate::gui::state::notices::{Notice, NoticeKind};
 
+/// Elements under the pointer.
+struct Pointed {
+    model: Option<ModelId>,
+    condition: Option<ConditionId>,
+    /// Description in the status bar.
+    description: Option<String>,
+    /// Frequency \[rad/s\].
+    cursor: Option<f64>,
+}
+
 impl GdcmApp {
-    /// Carries out one command, like a click or a key.
+    /// Carries out a command, like a click or a key.
     pub fn dispatch(&mut self, command: impl Into<Command>) {
         self.carry_out_one(command.into());
         self.ctx.request_repaint();
     }
 
-    /// Carries out the commands of one frame.
+    /// Carries out the commands from a frame.
     pub(super) fn carry_out(&mut self, commands: Vec<Command>) {
-        let display = &mut self.state.display;
-        let pointed = (
-            display.selection.hovered.take(),
-            display.selection.hovered_condition.take(),
-            display.selection.told.take(),
-        );
-        let before = (pointed, display.curves.cursor.take());
+        let before = self.take_pointed();
         for command in commands {
             self.carry_out_one(command);
         }
-        let display = &self.state.display;
-        let ((hovered, condition, told), cursor) = &before;
-        let is_pointed = (
-            &display.selection.hovered,
-            &display.selection.hovered_condition,
-            &display.selection.told,
-        ) == (hovered, condition, told);
-        if !is_pointed || display.curves.cursor != *cursor {
+        if !self.is_pointed(&before) {
             self.ctx.request_repaint();
         }
     }
 
+    /// Clears the elements under the pointer, which commands set anew in every frame; returns the
+    /// former ones.
+    fn take_pointed(&mut self) -> Pointed {
+        let display = &mut self.state.display;
+        Pointed {
+            model: display.selection.hovered.take(),
+            condition: display.selection.hovered_condition.take(),
+            description: display.selection.told.take(),
+            cursor: display.curves.cursor.take(),
+        }
+    }
+
+    /// Returns whether the same elements are under the pointer.
+    fn is_pointed(&self, before: &Pointed) -> bool {
+        let selection = &self.state.display.selection;
+        selection.hovered == before.model
+            && selection.hovered_condition == before.condition
+            && selection.told == before.description
+            && self.state.display.curves.cursor == before.cursor
+    }
+
+    /// Carries out a command, without a new frame.
     pub(super) fn carry_out_one(&mut self, command: Command) {
         match command {
             Command::Study(command) => self.carry_out_study(command),
@@ -55,7 +75,7 @@ impl GdcmApp {
         }
     }
 
-    /// Notifies the engineer of a completed action.
+    /// Reports a completed action.
     pub(super) fn done(&mut self, text: String) {
         self.state.notice = Some(Notice {
             kind: NoticeKind::Done,
@@ -63,13 +83,18 @@ impl GdcmApp {
         });
     }
 
-    /// Returns the value of a success; reports an error to the engineer.
-    pub(super) fn unless_error<T, E: InWords>(&mut self, made: Result<T, E>) -> Option<T> {
-        made.map_err(|error| self.notify_error(error.to_string()))
-            .ok()
+    /// Returns the value, or reports the error.
+    pub(super) fn unless_error<T, E: Display>(&mut self, made: Result<T, E>) -> Option<T> {
+        match made {
+            Ok(value) => Some(value),
+            Err(error) => {
+                self.notify_error(error.to_string());
+                None
+            }
+        }
     }
 
-    /// Notifies the engineer of a failed action.
+    /// Reports a failed action.
     pub(super) fn notify_error(&mut self, text: String) {
         self.state.notice = Some(Notice {
             kind: NoticeKind::Trouble,

@@ -13,6 +13,7 @@ use gdcm_io::files::study_file::holds_models;
 use gdcm_io::files::user_state::is_first_start;
 use gdcm_model::dataset::BundleKind;
 
+use super::autosave::Autosave;
 use super::background_jobs::BackgroundJobs;
 use super::computation::Computation;
 use super::dialogs::{Dialogs, PendingAction};
@@ -21,7 +22,7 @@ use super::document_files::DocumentFiles;
 use super::keyboard::KeyOrder;
 use super::layout_commands::NextFocus;
 use super::readers::Readers;
-use super::recovery::{Autosave, LAST_WAIT, Recovery};
+use super::recovery::{LAST_WAIT, Recovery};
 use super::threads::ReplySender;
 use super::{Setup, keyboard};
 use crate::gui::commands::assembling::AssemblingCommand;
@@ -54,7 +55,7 @@ pub struct GdcmApp {
     pub(super) readers: Readers,
     pub(super) work: Computation,
     pub(super) recovery: Recovery,
-    /// Target of the focus in the next frame.
+    /// Focus target in the next frame.
     pub(super) next_focus: Option<NextFocus>,
     /// Last window title set.
     title: String,
@@ -114,16 +115,18 @@ impl GdcmApp {
             next_focus: None,
             title: String::new(),
         };
-        let begins_there =
-            app.state.is_example && app.state.display.layout.opens_with == OpensWith::StartPage;
-        app.state.on_start_page = begins_there && setup.trouble.is_none();
-        setup
-            .trouble
-            .into_iter()
-            .for_each(|words| app.notify_error(words));
-        let is_first =
-            setup.offers_tour && app.files.directory.as_deref().is_some_and(is_first_start);
-        app.state.tour = is_first.then_some(0);
+        app.state.on_start_page = app.state.is_example
+            && app.state.display.layout.opens_with == OpensWith::StartPage
+            && setup.trouble.is_none();
+        if let Some(trouble) = setup.trouble {
+            app.notify_error(trouble);
+        }
+        if setup.offers_tour
+            && let Some(directory) = &app.files.directory
+            && is_first_start(directory)
+        {
+            app.state.tour = Some(0);
+        }
         app.look_for_recent();
         Ok(app)
     }
@@ -133,34 +136,31 @@ impl GdcmApp {
         &self.state
     }
 
+    /// Opens or imports the files dropped on the window.
     fn take_dropped_files(&mut self, commands: &mut Vec<Command>) {
         let dropped = self.ctx.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<PathBuf> = dropped
             .iter()
             .map(|file| file.path().to_path_buf())
             .collect();
-        // A single dataset or study is opened; several files, a folder, and files of other programs
-        // are imported as models.
+        // A single dataset or study is opened; several files, a folder, and files from other
+        // programs are imported as models.
+        let is_importing = self.state.assembling.is_some();
+        let arrangement = &self.state.display.layout.arrangement;
         match paths.as_slice() {
             [] => {}
-            [path] if self.state.assembling.is_none() && !holds_models(path) => {
+            [path] if !is_importing && !holds_models(path) => {
                 commands.push(FileCommand::Open(path.clone()).into())
             }
-            // While the records of a condition are shown, dropped files are added to them.
-            _ if self.state.assembling.is_none()
-                && self
-                    .state
-                    .display
-                    .layout
-                    .arrangement
-                    .is_shown(View::Records) =>
-            {
+            // While a condition's records are shown, dropped files are added to them.
+            _ if !is_importing && arrangement.is_shown(View::Records) => {
                 commands.push(RecordsCommand::Add(paths).into());
             }
             _ => commands.push(AssemblingCommand::Add(paths).into()),
         }
     }
 
+    /// Asks before a closing window loses unsaved decisions.
     fn guard_closing(&mut self) {
         if self.ctx.input(|input| input.viewport().close_requested())
             && self.state.unsaved
@@ -181,6 +181,7 @@ impl GdcmApp {
         }
     }
 
+    /// Draws the bars, the side panels and the middle, or the page that covers them.
     fn panels_ui(&mut self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
         let bar = Frame::new()
             .fill(palette.panel)
@@ -208,25 +209,8 @@ impl GdcmApp {
                 .show(ui, |ui| start_page::start_ui(ui, state, palette, commands));
             return;
         }
-        let is_wide = state.display.layout.is_wide;
         left_ui(ui, state, palette, commands);
-        // The panel's name distinguishes the window widths for which its width was dragged.
-        let (name, width) = if is_wide {
-            ("answer", 352.0)
-        } else {
-            ("answer beside the rail", 320.0)
-        };
-        let side = Frame::new().fill(palette.panel);
-        restore_panel_size(ui, name);
-        let panel = Panel::right(name)
-            .frame(side)
-            .default_size(width)
-            .size_range(300.0..=520.0);
-        panel.show(ui, |ui| {
-            steady_ui(ui, |ui| {
-                answer_panel::answer_ui(ui, state, palette, commands)
-            })
-        });
+        right_ui(ui, state, palette, commands);
         let middle = Frame::new();
         let centre = ui.available_rect_before_wrap();
         CentralPanel::default()
@@ -242,12 +226,8 @@ const WIDE: f32 = 1400.0;
 /// Draws conditions and models, in full or as a rail.
 fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let side = Frame::new().fill(palette.panel);
-    if !state
-        .display
-        .layout
-        .left_open
-        .unwrap_or(state.display.layout.is_wide)
-    {
+    let layout = &state.display.layout;
+    if !layout.left_open.unwrap_or(layout.is_wide) {
         let frame = side.inner_margin(Margin {
             left: 4,
             right: 2,
@@ -296,6 +276,26 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
     });
 }
 
+/// Draws the answer.
+fn right_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    // A dragged width applies to windows in the same width class, hence two names.
+    let (name, width) = if state.display.layout.is_wide {
+        ("answer", 352.0)
+    } else {
+        ("answer beside the rail", 320.0)
+    };
+    restore_panel_size(ui, name);
+    let panel = Panel::right(name)
+        .frame(Frame::new().fill(palette.panel))
+        .default_size(width)
+        .size_range(300.0..=520.0);
+    panel.show(ui, |ui| {
+        steady_ui(ui, |ui| {
+            answer_panel::answer_ui(ui, state, palette, commands)
+        })
+    });
+}
+
 /// Draws content that fills the available space without growing it, so that a panel keeps its
 /// dragged width.
 fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
@@ -306,15 +306,13 @@ fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     ui.advance_cursor_after_rect(room);
 }
 
-/// Draws the sheets over the middle of the window.
+/// Draws the sheets over the views.
 fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let asked = state
-        .display
-        .selection
-        .asked
-        .as_ref()
-        .map(|_| Sheet::Derivation);
-    let Some(sheet) = asked.or(state.display.layout.sheet) else {
+    let sheet = if state.display.selection.asked.is_some() {
+        Sheet::Derivation
+    } else if let Some(sheet) = state.display.layout.sheet {
+        sheet
+    } else {
         return;
     };
     let is_closed = sheet_ui(ui, centre, sheet, palette, |ui| match sheet {
@@ -332,11 +330,12 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
         .iter()
         .any(|command| matches!(command, Command::Selection(SelectionCommand::Explain(_))));
     if is_closed && !asks {
-        commands.push(if sheet == Sheet::Derivation {
+        let close = if sheet == Sheet::Derivation {
             Command::Selection(SelectionCommand::Explain(None))
         } else {
             Command::Layout(LayoutCommand::ShowSheet(None))
-        });
+        };
+        commands.push(close);
     }
 }
 
@@ -347,12 +346,16 @@ impl Drop for GdcmApp {
     }
 }
 
-/// Storage key of the preferences.
+/// Storage key for the preferences.
 pub(super) const PREFERENCES: &str = "preferences";
 
 impl eframe::App for GdcmApp {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        eframe::set_value(storage, PREFERENCES, &Preferences::of(&self.state.display));
+        eframe::set_value(
+            storage,
+            PREFERENCES,
+            &Preferences::from_display(&self.state.display),
+        );
     }
 
     fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {

@@ -1,10 +1,10 @@
-//! Commands about the import of models.
+//! Commands for importing models.
 
 use std::path::PathBuf;
 
 use gdcm_model::assembly::Rules;
 
-/// A command of the import view.
+/// A command in the import view.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AssemblingCommand {
     /// Start, or continue.

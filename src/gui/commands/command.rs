@@ -1,4 +1,4 @@
-//! Commands: requests of the engineer to the window.
+//! Commands: requests to the window.
 
 use gdcm_study::Edit;
 
@@ -13,11 +13,12 @@ use super::records::RecordsCommand;
 use super::selection::SelectionCommand;
 use super::study::StudyCommand;
 use crate::gui::plot::curve_command::CurveCommand;
+use crate::gui::state::forms::FormKind;
 use crate::gui::widgets::controls::RefusedEntry;
 use crate::gui::widgets::tables::TableRequest;
 
-/// Action of the engineer: a click, a key or a menu entry, grouped by responsibility. Views push
-/// commands; the window carries them out.
+/// A click, a key or a menu entry, grouped by responsibility. Views push commands; the window
+/// carries them out.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     Study(StudyCommand),
@@ -31,6 +32,13 @@ pub enum Command {
     Curves(CurveCommand),
     Assembling(AssemblingCommand),
     Records(RecordsCommand),
+}
+
+impl Command {
+    /// Returns the command that shows a form.
+    pub(super) fn show_form(form: FormKind) -> Self {
+        Self::Form(FormCommand::ShowForm(Some(form)))
+    }
 }
 
 impl From<StudyCommand> for Command {
@@ -106,8 +114,9 @@ impl From<Edit> for Command {
 }
 
 impl From<RefusedEntry> for Command {
-    fn from(RefusedEntry(why): RefusedEntry) -> Self {
-        FormCommand::Refuse(why).into()
+    fn from(entry: RefusedEntry) -> Self {
+        let RefusedEntry(reason) = entry;
+        FormCommand::Refuse(reason).into()
     }
 }
 

@@ -1,4 +1,4 @@
-//! Command palette: finds every command by a few letters of its name.
+//! Command palette: finds every command by a few letters from its name.
 
 use std::cmp::Reverse;
 
@@ -32,11 +32,9 @@ pub fn command_palette_ui(
     if opens {
         *form = PaletteForm::default();
     }
-    let pressed =
-        |ui: &Ui, key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
-    let down = pressed(ui, Key::ArrowDown);
-    let up = pressed(ui, Key::ArrowUp);
-    let entered = pressed(ui, Key::Enter) > 0;
+    let down = count_presses(ui, Key::ArrowDown);
+    let up = count_presses(ui, Key::ArrowUp);
+    let is_entered = count_presses(ui, Key::Enter) > 0;
     if field_ui(ui, &mut form.query, opens) {
         form.chosen = 0;
     }
@@ -48,7 +46,11 @@ pub fn command_palette_ui(
     let chosen = form.chosen;
     let has_moved = down + up > 0;
     ui.add_space(4.0);
-    let mut taken = found.get(chosen).filter(|_| entered).copied();
+    let mut taken = if is_entered {
+        found.get(chosen).copied()
+    } else {
+        None
+    };
     // The height is fixed, so that the field does not move while letters are typed.
     ScrollArea::vertical()
         .max_height(HEIGHT)
@@ -56,7 +58,7 @@ pub fn command_palette_ui(
         .auto_shrink(false)
         .show(ui, |ui| {
             if found.is_empty() {
-                ui.label(palette.dim("No command has these letters"));
+                ui.label(palette.dim("No matching command"));
             }
             for (row, &place) in found.iter().enumerate() {
                 let response = entry_ui(ui, &entries[place], row == chosen, palette);
@@ -68,13 +70,17 @@ pub fn command_palette_ui(
                 }
             }
         });
-    if let Some(entry) = taken
-        .map(|place| &entries[place])
-        .filter(|entry| entry.enabled)
+    if let Some(place) = taken
+        && entries[place].enabled
     {
         commands.push(FormCommand::ShowForm(None).into());
-        commands.push(entry.command.clone());
+        commands.push(entries[place].command.clone());
     }
+}
+
+/// Returns how often a key was pressed, and consumes these events.
+fn count_presses(ui: &Ui, key: Key) -> usize {
+    ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key))
 }
 
 /// Draws the search field; returns whether its text has changed.
@@ -100,6 +106,7 @@ fn field_ui(ui: &mut Ui, query: &mut String, opens: bool) -> bool {
     response.changed()
 }
 
+/// Draws a row with an entry's name and shortcut.
 fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui::Response {
     let (row, response) = row_ui(ui, palette, chosen, false, &entry.name);
     let color = if entry.enabled {
@@ -107,11 +114,10 @@ fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui
     } else {
         palette.quiet_text
     };
-    let keys = entry
-        .shortcuts
-        .first()
-        .map(|shortcut| ui.ctx().format_shortcut(shortcut))
-        .unwrap_or_default();
+    let keys = match entry.shortcuts.first() {
+        Some(shortcut) => ui.ctx().format_shortcut(shortcut),
+        None => String::new(),
+    };
     let keys = row_text(ui, row, -6.0, &keys, SMALL_SIZE, palette.dim_text);
     let room = Room {
         left: 8.0,
@@ -121,32 +127,53 @@ fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui
     response.on_hover_text(entry.meaning)
 }
 
-/// Scores how well a name answers a query: greater is better; `None` if a word of the query is
-/// missing from it.
-///
-/// Every word of the query must occur in the name, in any order: as a whole word (4), at the
-/// beginning of a word (3), inside a word (2), or at least as letters in the same order (1). Undo
-/// and redo, which are named after the last decision, come last unless the query asks for them.
-/// Equal names are ordered by the score of the command without its arguments, then by length,
-/// shortest first.
-pub fn answer_score(name: &str, query: &str) -> Option<(bool, usize, usize, Reverse<usize>)> {
-    let name = name.to_lowercase();
-    let query = query.to_lowercase();
-    let mut score = 0;
-    let mut of_command = 0;
-    let command = name.split(['(', ':']).next().unwrap_or_default();
-    for word in query.split_whitespace() {
-        score += word_score(&name, word)?;
-        of_command += word_score(command, word).unwrap_or_default();
-    }
-    let goes_back = ["undo", "redo"]
-        .into_iter()
-        .find(|back| words_of(&name).next() == Some(back));
-    let is_asked =
-        goes_back.is_none_or(|back| query.split_whitespace().any(|word| back.starts_with(word)));
-    Some((is_asked, score, of_command, Reverse(name.chars().count())))
+/// How well a name answers a query; a greater score is better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct AnswerScore {
+    /// Whether the name is no undo or redo, or the query asks for these: they are named after the
+    /// last decision, whose words they would otherwise answer.
+    is_asked: bool,
+    /// Sum of the word scores.
+    words: usize,
+    /// The same sum for the command without its arguments.
+    words_of_command: usize,
+    /// Letter count; the shorter name is better.
+    length: Reverse<usize>,
 }
 
+/// Scores how well a name answers a query; `None` if a word of the query is missing from it.
+///
+/// Every word of the query must occur in the name, in any order: as a whole word (4), at the
+/// beginning of a word (3), inside a word (2), or at least as letters in the same order (1).
+pub fn answer_score(name: &str, query: &str) -> Option<AnswerScore> {
+    let name = name.to_lowercase();
+    let query = query.to_lowercase();
+    let command = name.split(['(', ':']).next().unwrap_or_default();
+    let mut words = 0;
+    let mut words_of_command = 0;
+    for word in query.split_whitespace() {
+        words += word_score(&name, word)?;
+        words_of_command += word_score(command, word).unwrap_or_default();
+    }
+    Some(AnswerScore {
+        is_asked: is_asked(&name, &query),
+        words,
+        words_of_command,
+        length: Reverse(name.chars().count()),
+    })
+}
+
+/// Returns whether a name is no undo or redo, or the query asks for it.
+fn is_asked(name: &str, query: &str) -> bool {
+    match words_of(name).next() {
+        Some(first @ ("undo" | "redo")) => {
+            query.split_whitespace().any(|word| first.starts_with(word))
+        }
+        _ => true,
+    }
+}
+
+/// Scores a word of the query; `None` if the name does not even contain its letters.
 fn word_score(name: &str, word: &str) -> Option<usize> {
     if words_of(name).any(|whole| whole == word) {
         Some(4)
@@ -154,18 +181,20 @@ fn word_score(name: &str, word: &str) -> Option<usize> {
         Some(3)
     } else if name.contains(word) {
         Some(2)
+    } else if has_letters(name, word) {
+        Some(1)
     } else {
-        has_letters(name, word).then_some(1)
+        None
     }
 }
 
-/// Returns the indices of the names that answer the query, best first; all of them in their own
+/// Returns the indices of the names that answer the query, best first; all names in their own
 /// order for an empty query.
 pub fn answers<'a>(names: impl Iterator<Item = &'a str>, query: &str) -> Vec<usize> {
-    let scored = names
+    let mut found: Vec<(AnswerScore, usize)> = names
         .enumerate()
-        .filter_map(|(place, name)| Some((answer_score(name, query)?, place)));
-    let mut found: Vec<_> = scored.collect();
+        .filter_map(|(place, name)| Some((answer_score(name, query)?, place)))
+        .collect();
     if !query.trim().is_empty() {
         found.sort_by_key(|(score, _)| Reverse(*score));
     }
@@ -176,16 +205,16 @@ fn words_of(name: &str) -> impl Iterator<Item = &str> {
     name.split(|letter: char| !letter.is_alphanumeric())
 }
 
+/// Returns whether a word in the name begins with `word`.
 fn starts_a_word(name: &str, word: &str) -> bool {
-    let begins = |at: usize| {
-        name[..at]
-            .chars()
-            .next_back()
-            .is_none_or(|before| !before.is_alphanumeric())
-    };
-    name.match_indices(word).any(|(at, _)| begins(at))
+    name.match_indices(word)
+        .any(|(at, _)| match name[..at].chars().next_back() {
+            Some(before) => !before.is_alphanumeric(),
+            None => true,
+        })
 }
 
+/// Returns whether the name contains the letters from `word` in the same order.
 fn has_letters(name: &str, word: &str) -> bool {
     let mut letters = name.chars();
     word.chars()
@@ -230,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn what_undoes_comes_last_unless_it_is_asked_for_and_a_command_comes_before_its_arguments() {
+    fn undo_comes_last_unless_requested_and_a_command_comes_before_its_arguments() {
         let names = [
             "Undo reject 3 suggested (condition 10)",
             "Reject (condition 10)",
@@ -243,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_query_every_name_is_there_in_its_order() {
+    fn without_a_query_every_name_is_found_in_its_order() {
         assert_eq!(found(" "), NAMES);
     }
 }

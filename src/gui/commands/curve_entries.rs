@@ -1,11 +1,10 @@
-//! Entries of the command table for curves: units, read-outs, styles, visibility.
+//! Command-table entries for curves: units, read-outs, styles, visibility.
 
 use egui::Key;
 
-use super::command::Command;
-use super::entry::{Entry, Menu};
-use crate::gui::commands::display::DisplayCommand;
-use crate::gui::commands::selection::SelectionCommand;
+use super::display::DisplayCommand;
+use super::entry::{Entry, Menu, group};
+use super::selection::SelectionCommand;
 use crate::gui::plot::curve_command::CurveCommand;
 use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::state::curve_display::CurveDisplay;
@@ -20,101 +19,112 @@ pub fn curve_entries(state: &State) -> Vec<Entry> {
     entries
 }
 
-/// Returns an entry for each unit with two choices, which switches to the other.
+/// Returns an entry for each option with two choices, which switches to the other.
 fn unit_entries(state: &State) -> Vec<Entry> {
     let curves = &state.display.curves;
-    let entry = |name: &str, meaning, command: CurveCommand| {
-        Entry::new(name, meaning, command).within(Menu::Curves, 0)
-    };
-    vec![
-        match curves.magnitude {
-            MagnitudeUnit::Decibel => entry(
-                "Magnitudes as ratios",
-                "Output by input, in the units of the channels, on a logarithmic axis",
-                CurveCommand::ReadMagnitudes(MagnitudeUnit::Ratio),
-            ),
-            MagnitudeUnit::Ratio => entry(
-                "Magnitudes in decibels",
-                "20 log10 of the ratio of output to input",
-                CurveCommand::ReadMagnitudes(MagnitudeUnit::Decibel),
-            ),
-        },
-        match curves.phase {
-            PhaseUnit::Unwrapped => entry(
-                "Phases wrapped",
-                "Between −180° and 180°, with gaps where they jump",
-                CurveCommand::DrawPhases(PhaseUnit::Wrapped),
-            ),
-            PhaseUnit::Wrapped => entry(
-                "Phases unwrapped",
-                "Continuous over frequency, on the branch nearest to the identified model",
-                CurveCommand::DrawPhases(PhaseUnit::Unwrapped),
-            ),
-        },
-        match curves.phase_error {
-            PhaseErrorUnit::Degree => entry(
-                "Phase errors as delays",
-                "Δφ/ω [ms] in the plot of errors",
-                CurveCommand::DrawPhaseErrors(PhaseErrorUnit::Millisecond),
-            ),
-            PhaseErrorUnit::Millisecond => entry(
-                "Phase errors in degrees",
-                "Δφ in the plot of errors",
-                CurveCommand::DrawPhaseErrors(PhaseErrorUnit::Degree),
-            ),
-        },
-        entry(
+    let entries = [
+        magnitude_entry(curves.magnitude),
+        phase_entry(curves.phase),
+        phase_error_entry(curves.phase_error),
+        Entry::new(
             if curves.lists_values {
                 "List no values at the cursor"
             } else {
                 "List values at the cursor"
             },
-            "What every role has there, and its difference from the identified model",
+            "Value of every role, and its difference from the identified model",
             CurveCommand::ListValues(!curves.lists_values),
         ),
-        entry(
+        Entry::new(
             if curves.shows_bands {
                 "Hide the bands of identified models"
             } else {
                 "Show the bands of identified models"
             },
-            "How far each identified response may lie from its curve, at 95 %",
+            "Confidence band of each identified response, at 95 %",
             CurveCommand::ShowBands(!curves.shows_bands),
         ),
-        entry(
+        Entry::new(
             if curves.shows_muad {
                 "Hide what a pilot does not notice"
             } else {
                 "Show what a pilot does not notice"
             },
-            "Envelopes of maximum unnoticeable added dynamics about the identified response in Bode, and in the plot of errors, with where \
-             the mismatch leaves them",
+            "Envelopes of maximum unnoticeable added dynamics about the identified response in Bode \
+             and in the plot of errors, with the frequencies at which the mismatch leaves them",
             CurveCommand::ShowMuad(!curves.shows_muad),
         ),
-    ]
+    ];
+    group(Menu::Curves, 0, entries).collect()
 }
 
+fn magnitude_entry(unit: MagnitudeUnit) -> Entry {
+    match unit {
+        MagnitudeUnit::Decibel => Entry::new(
+            "Magnitudes as ratios",
+            "Output by input, in the units of the channels, on a logarithmic axis",
+            CurveCommand::ReadMagnitudes(MagnitudeUnit::Ratio),
+        ),
+        MagnitudeUnit::Ratio => Entry::new(
+            "Magnitudes in decibels",
+            "20 log10 of the ratio of output to input",
+            CurveCommand::ReadMagnitudes(MagnitudeUnit::Decibel),
+        ),
+    }
+}
+
+fn phase_entry(unit: PhaseUnit) -> Entry {
+    match unit {
+        PhaseUnit::Unwrapped => Entry::new(
+            "Phases wrapped",
+            "Between −180° and 180°, with gaps where they jump",
+            CurveCommand::DrawPhases(PhaseUnit::Wrapped),
+        ),
+        PhaseUnit::Wrapped => Entry::new(
+            "Phases unwrapped",
+            "Continuous over frequency, on the branch nearest to the identified model",
+            CurveCommand::DrawPhases(PhaseUnit::Unwrapped),
+        ),
+    }
+}
+
+fn phase_error_entry(unit: PhaseErrorUnit) -> Entry {
+    match unit {
+        PhaseErrorUnit::Degree => Entry::new(
+            "Phase errors as delays",
+            "Δφ/ω [ms] in the plot of errors",
+            CurveCommand::DrawPhaseErrors(PhaseErrorUnit::Millisecond),
+        ),
+        PhaseErrorUnit::Millisecond => Entry::new(
+            "Phase errors in degrees",
+            "Δφ in the plot of errors",
+            CurveCommand::DrawPhaseErrors(PhaseErrorUnit::Degree),
+        ),
+    }
+}
+
+/// Returns the entries for the other curve colours and for every line width.
 fn look_entries(looks: PlotStyle) -> Vec<Entry> {
     let mut entries = Vec::new();
-    for curve_colors in CurveColors::ALL
-        .into_iter()
-        .filter(|colors| *colors != looks.curve_colors)
-    {
-        let command = Command::Display(DisplayCommand::SetLooks(PlotStyle {
+    for curve_colors in CurveColors::ALL {
+        if curve_colors == looks.curve_colors {
+            continue;
+        }
+        let command = DisplayCommand::SetLooks(PlotStyle {
             curve_colors,
             ..looks
-        }));
-        let meaning = "For all eyes: colours that stay apart for people who do not see red, green or blue as others do";
+        });
+        let meaning = "For all eyes: colours that are distinct with any colour vision";
         entries.push(Entry::new(curve_colors.name(), meaning, command).within(Menu::Curves, 1));
     }
     for line_width in PlotStyle::LINE_WIDTHS {
-        let command = Command::Display(DisplayCommand::SetLooks(PlotStyle {
+        let command = DisplayCommand::SetLooks(PlotStyle {
             line_width,
             ..looks
-        }));
+        });
         let entry = Entry::new(
             format!("Lines × {line_width}"),
-            "Widths of all curves, by the usual ones",
+            "Widths of all curves, relative to the default",
             command,
         );
         entries.push(
@@ -126,6 +136,7 @@ fn look_entries(looks: PlotStyle) -> Vec<Entry> {
     entries
 }
 
+/// Returns the entries for isolated and hidden curves, and for marked frequencies.
 fn visibility_entries(state: &State) -> Vec<Entry> {
     let display = &state.display;
     let is_isolated = display.selection.isolated.is_some() || !display.curves.selected.is_empty();
@@ -140,7 +151,7 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
         SelectionCommand::EndIsolation,
     );
     vec![
-        // Fields and menus lose the key of an entry whether or not the entry is enabled, so it has
+        // Fields and menus lose an entry's key whether or not the entry is enabled, so it has
         // the key only if there is something to end.
         if is_isolated {
             isolation.free_key(Key::Escape)
@@ -150,14 +161,14 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
         .within(Menu::Curves, 3),
         Entry::new(
             "Show hidden curves",
-            "Draw every model, and the roles that are drawn at first",
+            "Draw every model, and the roles drawn by default",
             CurveCommand::ShowHidden,
         )
         .within(Menu::Curves, 3)
         .enabled(is_hidden),
         Entry::new(
             "Mark the frequency under the pointer",
-            "In every plot over frequency; two marks show what changes between them",
+            "In every plot over frequency; two marks show the difference between them",
             CurveCommand::PinCursor(display.curves.cursor.unwrap_or_default()),
         )
         .free_key(Key::M)

@@ -1,4 +1,4 @@
-//! Commands about the content of the views.
+//! Commands about view contents.
 
 use gdcm_model::dataset::Pair;
 use gdcm_plot::figure::axis::FrequencyUnit;
@@ -20,11 +20,11 @@ pub enum DisplayCommand {
     ShowNetGains(PairSet),
     /// Adds a response to the net-gain plots, or removes it.
     PickPair(Pair),
-    /// Selects gains or delays of the channels, over airspeed or over conditions.
+    /// Selects channel gains or delays, over airspeed or over conditions.
     ShowChannels(Measure, Across),
     /// Shows or hides zeros among the poles.
     ShowZeros(bool),
-    /// Shows or hides error bars and bands in the plots of gains.
+    /// Shows or hides error bars and bands in gain plots.
     ShowBars(bool),
     /// Overlays a variant on the present decisions in Bode and Net gain, or removes the overlay.
     Overlay(Option<String>),
@@ -34,13 +34,13 @@ pub enum DisplayCommand {
     ShowAcross(AcrossRole),
     /// Changes the assessed quantity or its form.
     Assess(AssessedFigures),
-    /// Shows another page of requirements.
+    /// Shows another requirements page.
     ShowRequirements(RequirementsPage),
     /// Selects responses over time to a test input (`true`) or to the records.
     ShowTest(bool),
-    /// Changes the unit of frequencies.
+    /// Changes the frequency unit.
     SetFrequencyUnit(FrequencyUnit),
-    /// Changes the style of curves.
+    /// Changes the curve style.
     SetLooks(PlotStyle),
     /// Fits the plots to their curves.
     FitPlots,

@@ -1,10 +1,10 @@
-//! Entry of the table of commands: name, keys, place in a menu.
+//! Entry in the command table: name, keys, place in a menu.
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::command::Command;
 
-/// Menu of the bar at the top.
+/// Menu in the top bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Menu {
     /// Opening, saving, exporting.
@@ -12,7 +12,7 @@ pub enum Menu {
     Edit,
     /// Displayed content and its form.
     View,
-    /// Style of curves: a submenu of `View`.
+    /// Curve style: a submenu in `View`.
     Curves,
     Help,
 }
@@ -27,7 +27,14 @@ pub enum Reach {
     WithoutFocus,
 }
 
-/// Entry of a menu or of the palette.
+/// Ctrl, or Command on macOS.
+pub(super) const CTRL: Modifiers = Modifiers::COMMAND;
+pub(super) const CTRL_SHIFT: Modifiers = Modifiers {
+    shift: true,
+    ..Modifiers::COMMAND
+};
+
+/// Entry in a menu or in the palette.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     /// Name in menus and in the palette.
@@ -50,19 +57,18 @@ impl Entry {
         meaning: &'static str,
         command: impl Into<Command>,
     ) -> Self {
-        let shortcuts = Vec::new();
-        let reach = Reach::Everywhere;
         Self {
             name: name.into(),
             meaning,
-            shortcuts,
-            reach,
+            shortcuts: Vec::new(),
+            reach: Reach::Everywhere,
             menu: None,
             enabled: true,
             command: command.into(),
         }
     }
 
+    /// Adds a shortcut.
     pub fn keys(mut self, modifiers: Modifiers, key: Key) -> Self {
         self.shortcuts.push(KeyboardShortcut::new(modifiers, key));
         self
@@ -74,6 +80,7 @@ impl Entry {
         self.keys(Modifiers::NONE, key)
     }
 
+    /// Puts the entry into a menu group.
     pub fn within(mut self, menu: Menu, group: u8) -> Self {
         self.menu = Some((menu, group));
         self
@@ -83,4 +90,15 @@ impl Entry {
         self.enabled = enabled;
         self
     }
+}
+
+/// Puts entries into a menu group.
+pub(super) fn group<const N: usize>(
+    menu: Menu,
+    group: u8,
+    entries: [Entry; N],
+) -> impl Iterator<Item = Entry> {
+    entries
+        .into_iter()
+        .map(move |entry| entry.within(menu, group))
 }

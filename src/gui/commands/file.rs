@@ -1,4 +1,4 @@
-//! Commands about studies, datasets and tables of requirements as files.
+//! Commands about studies, datasets and requirement tables as files.
 
 use std::path::PathBuf;
 
@@ -7,19 +7,19 @@ use crate::gui::state::forms::RequirementTable;
 /// Opens, saves, reloads or closes a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FileCommand {
-    /// Opens the desktop's dialog for a file of levels or tolerances.
+    /// Opens the desktop's dialog for levels or tolerances.
     AskRequirementTable(RequirementTable),
-    /// Asks for the path of the tolerances.
+    /// Asks for the path to the tolerances.
     AskWriteTolerances,
     /// Reads levels or tolerances from a file.
     ReadRequirementTable(RequirementTable, PathBuf),
-    /// Writes the tolerances of the study to a file.
+    /// Writes the study's tolerances to a file.
     WriteTolerances(PathBuf),
     /// Opens the desktop's dialog for a file.
     AskOpen,
     /// Opens a dataset or a study.
     Open(PathBuf),
-    /// Opens a study whose dataset has moved: path of the study, path of the dataset.
+    /// Opens a study whose dataset has moved: study path, dataset path.
     OpenStudyOf(PathBuf, PathBuf),
     OpenExample,
     /// Closes the study and shows the start page.
@@ -34,7 +34,7 @@ pub enum FileCommand {
     Reload,
     /// Keeps the open dataset although its file has changed.
     KeepOpen,
-    /// Opens the decisions of a recovery file; the argument is the offer's number.
+    /// Opens decisions from a recovery file; the argument is the offer's number.
     RestoreRecovery(usize),
     /// Removes a recovery file; the argument is the offer's number.
     DiscardRecovery(usize),

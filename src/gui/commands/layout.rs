@@ -1,4 +1,4 @@
-//! Commands about the places of views, panels and sheets.
+//! Commands about the places for views, panels and sheets.
 
 use egui::ThemePreference;
 
@@ -6,7 +6,7 @@ use crate::gui::state::opens_with::OpensWith;
 use crate::gui::state::sheet::Sheet;
 use crate::gui::state::view::{View, ViewGroup};
 
-/// Shows, hides or moves a part of the window, or moves the focus.
+/// Shows, hides or moves a part, or moves the focus.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LayoutCommand {
     /// Brings a plot to the front.
@@ -18,11 +18,11 @@ pub enum LayoutCommand {
     ShowInDock(View),
     /// Unfolds (`true`) or folds the dock.
     OpenDock(bool),
-    /// Restores the default layout of panels and plots.
+    /// Restores the default layout for panels and plots.
     ResetLayout,
     /// Shows the left panel in full (`true`) or as a rail.
     ShowLeft(bool),
-    /// Shows a sheet over the middle of the window, or closes it.
+    /// Shows a sheet over the views, or closes it.
     ShowSheet(Option<Sheet>),
     /// Unfolds or folds the settings.
     ShowSettings(bool),
@@ -38,12 +38,12 @@ pub enum LayoutCommand {
     BeginWith(OpensWith),
     /// Focuses the field with this accessible name.
     FocusField(&'static str),
-    /// Moves the focus to the next or to the previous region of the window.
+    /// Moves the focus to the next or to the previous window region.
     LeaveRegion {
         forward: bool,
     },
-    /// Shows the first step of the guided tour.
+    /// Shows the first step in the guided tour.
     StartTour,
-    /// Shows another step of the guided tour, or ends it.
+    /// Shows another step in the guided tour, or ends it.
     ShowTourStep(Option<usize>),
 }

@@ -1,4 +1,4 @@
-//! Commands of the window: one table for menu, keys and palette.
+//! Commands: a single table for menu, keys and palette.
 
 pub mod assembling;
 pub mod command;
@@ -7,11 +7,14 @@ pub mod command_table;
 pub mod computing;
 pub mod curve_entries;
 pub mod display;
+mod edit_entries;
 pub mod entry;
 pub mod file;
+mod file_entries;
 pub mod form;
 pub mod layout;
 pub mod output;
 pub mod records;
 pub mod selection;
 pub mod study;
+mod view_entries;

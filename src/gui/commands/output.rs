@@ -23,20 +23,20 @@ pub enum OutputCommand {
     CopyText(String),
     /// Copies a table to the clipboard as text.
     CopyTable(TableKind),
-    /// Asks for the path of a table.
+    /// Asks for a table's path.
     AskSaveTable(TableKind),
-    /// Asks for the path of a table shown by a view.
+    /// Asks for a path for a table shown by a view.
     AskSaveShownTable(Arc<Table>),
     /// Saves a table as CSV.
     SaveTable(Arc<Table>, PathBuf),
     /// Copies the numbers shown by a view to the clipboard as CSV.
     CopyFigure(View),
-    /// Asks for the path of a view's figure.
+    /// Asks for a path for a view's figure.
     AskSaveFigure(View, FigureFormat),
-    /// Saves the figure of a view, in the format of the file extension and in the given printed
+    /// Saves a view's figure, in the format given by the file extension and in the given printed
     /// width.
     SaveFigure(View, ColumnWidth, PathBuf),
-    /// Asks for the path of the report.
+    /// Asks for the report's path.
     AskReport,
     /// Writes the report to a file.
     WriteReport(PathBuf),

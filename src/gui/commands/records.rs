@@ -10,14 +10,14 @@ use gdcm_sysid::records::RecordLayout;
 
 use crate::gui::state::records::{RecordsPage, TimeModel};
 
-/// A command of the Records view.
+/// A command in the Records view.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecordsCommand {
     /// Read files, and folders with all their files.
     Add(Vec<PathBuf>),
     /// Choose files with the desktop's dialog.
     AskFiles,
-    /// Ask for the channels of a dataset to be made from the displayed records.
+    /// Ask for the channels in a dataset to be made from the displayed records.
     AskDataset,
     /// Make a dataset with the requested channels, and open it.
     MakeDataset,
@@ -26,15 +26,15 @@ pub enum RecordsCommand {
     SetUsed(usize, bool),
     /// Hold a record out from the fit for validation, or include it.
     SetHeldOut(usize, bool),
-    /// Set the manoeuvre of a record.
+    /// Set a record's manoeuvre.
     SetKind(usize, RecordKind),
     /// Assign columns to channels, for this record and all with the same column names.
     SetLayout(usize, RecordLayout),
-    /// Set the delay of a channel's log \[s\].
+    /// Set the delay in a channel's log \[s\].
     SetDelay(Signal, f64),
     /// Set remedies for channels in a single record (M14.16).
     SetRemedies(usize, Vec<(Signal, ChannelRemedy)>),
-    /// Set the meaning of the steps in a staircase signal.
+    /// Set how steps in a staircase signal are interpreted.
     SetHold(Signal, Hold),
     /// Set the identification band \[rad/s\]; `None` takes the study's.
     SetBand(Option<[f64; 2]>),
@@ -45,25 +45,25 @@ pub enum RecordsCommand {
     SetSearch(SearchSpace),
     /// Expand the search settings and focus the field with this name.
     ShowAdvanced(&'static str),
-    /// Draw the response of a model to the same inputs, or hide it.
+    /// Draw a model's response to the same inputs, or hide it.
     ShowTimeModel(TimeModel, bool),
-    /// Assume the dataset channel's unit wherever a file states none, in the records of all
+    /// Assume the dataset channel's unit wherever a file states none, in the records for all
     /// conditions.
     TakeDatasetUnits,
     /// Show a record with unclear columns, from any condition, on the Columns page.
     ShowUnclear,
-    /// Make the part of a record between two times \[s\] a record that replaces the whole.
+    /// Make the part between two times \[s\] a record that replaces the whole.
     AddPart(usize, [f64; 2]),
     /// Remove a part of a record.
     RemovePart(usize),
     /// Set whether dragging in the time charts selects parts.
     ChooseParts(bool),
-    /// Show the spectrogram of an input beside the records over time, or hide it.
+    /// Show an input's spectrogram beside the records over time, or hide it.
     ShowSpectrogram(Option<usize>),
     Show(RecordsPage),
-    /// Identify models of the displayed condition.
+    /// Identify models for the displayed condition.
     Identify,
-    /// Identify models of every condition with records.
+    /// Identify models for every condition with records.
     IdentifyAll,
     /// Stop the identification.
     Stop,
@@ -71,6 +71,6 @@ pub enum RecordsCommand {
     Take(OfferedModels),
     /// Put the identified models into every condition that has some.
     TakeAll(OfferedModels),
-    /// Restore the models of the dataset's file in the displayed condition.
+    /// Restore the models from the dataset's file in the displayed condition.
     Return,
 }

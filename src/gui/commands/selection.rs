@@ -1,4 +1,4 @@
-//! Commands about the selected and highlighted parts of the study.
+//! Commands about selected and highlighted parts.
 
 use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use gdcm_words::derivation::ExplainTarget;
@@ -18,7 +18,7 @@ pub enum SelectionCommand {
     /// Shows only this model beside the representatives; repeated for the same model, shows all
     /// again.
     Isolate(ModelId),
-    /// Shows the derivation of a value, or closes it.
+    /// Shows a value's derivation, or closes it.
     Explain(Option<ExplainTarget>),
     /// Shows all models again and clears the selection.
     EndIsolation,

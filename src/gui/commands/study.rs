@@ -1,4 +1,4 @@
-//! Commands about the decisions of the study.
+//! Commands about decisions.
 
 use gdcm_study::Edit;
 

@@ -1,32 +1,31 @@
-//! Places of the views in the middle of the window: one at a time in groups, a second view beside
-//! it, and the dock below.
+//! Places of the views between the side panels: the view in front of its group, a second view
+//! beside it, and the dock below.
 
 use serde::{Deserialize, Serialize};
 
 use super::view::{View, ViewGroup};
 
-/// Arrangement of the views in the middle of the window.
+/// Arrangement of the views between the side panels.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Arrangement {
     /// Group in front.
     group: ViewGroup,
-    /// View shown by each group, in the order of the groups.
+    /// View shown by each group, in group order.
     of_groups: [View; 4],
     /// View beside the view in front.
     beside: Option<View>,
     /// View in the dock.
     dock: View,
-    /// Whether the dock is unfolded; `None` follows the height of the window.
+    /// Whether the dock is unfolded; `None` follows the window height.
     dock_open: Option<bool>,
 }
 
 impl Default for Arrangement {
     fn default() -> Self {
-        let of_groups = [View::Bode, View::Poles, View::Channels, View::Assessment];
         Self {
             group: ViewGroup::Response,
-            of_groups,
+            of_groups: [View::Bode, View::Poles, View::Channels, View::Assessment],
             beside: None,
             dock: View::NetGain,
             dock_open: None,
@@ -52,10 +51,11 @@ impl Arrangement {
 
     /// Returns the view in the dock; `None` if the view in front takes its room.
     pub fn dock(&self) -> Option<View> {
-        let is_free = !self.view().facts().takes_dock
-            && self.view() != self.dock
-            && self.beside() != Some(self.dock);
-        is_free.then_some(self.dock)
+        let is_shown_above = self.view() == self.dock || self.beside() == Some(self.dock);
+        if self.view().facts().takes_dock || is_shown_above {
+            return None;
+        }
+        Some(self.dock)
     }
 
     /// Returns whether the dock is unfolded, given whether the window has room for it.
@@ -73,7 +73,7 @@ impl Arrangement {
         self.group = group;
     }
 
-    /// Brings a view to the front; a view of the dock is unfolded there instead, unless it is in
+    /// Brings a view to the front; a docked view is unfolded there instead, unless it is in
     /// front already.
     pub fn show(&mut self, view: View) {
         let group = view.facts().group;
@@ -110,10 +110,14 @@ impl Arrangement {
         self.view() == view || self.beside() == Some(view) || self.dock() == Some(view)
     }
 
-    /// Returns this stored arrangement if every group shows a view of its own.
+    /// Returns this stored arrangement if every group shows its own view.
     pub fn if_whole(self) -> Option<Self> {
-        let is_of_group = |group: ViewGroup| self.of_groups[group as usize].facts().group == group;
-        ViewGroup::ALL.into_iter().all(is_of_group).then_some(self)
+        for group in ViewGroup::ALL {
+            if self.of_groups[group as usize].facts().group != group {
+                return None;
+            }
+        }
+        Some(self)
     }
 }
 
@@ -122,7 +126,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_view_stands_in_one_group_and_every_group_has_views() {
+    fn every_view_belongs_to_one_group_and_every_group_has_views() {
         let views: Vec<View> = ViewGroup::ALL
             .into_iter()
             .flat_map(ViewGroup::views)
@@ -169,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn an_arrangement_is_kept_and_one_that_mixes_the_groups_up_is_not_taken() {
+    fn a_stored_arrangement_is_restored_unless_it_mixes_the_groups_up() {
         let mut arrangement = Arrangement::default();
         arrangement.show(View::Evidence);
         arrangement.show_beside(Some(View::Bode));

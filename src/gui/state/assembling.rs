@@ -1,4 +1,4 @@
-//! State of an import: the models found, their rules, and the displayed parts of both.
+//! Import state: the models found, their rules, and the displayed parts.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -10,19 +10,19 @@ use super::assembly_columns::COLUMNS;
 use crate::gui::plot::{BodeCurve, BodeView};
 use crate::gui::widgets::tables::Sorting;
 
-/// Maximum number of undo steps.
+/// Maximum count of undo steps.
 const MOST_STEPS: usize = 200;
 
 /// Progress of reading files.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Reading {
-    /// Number of the current file, from 1.
+    /// Current file, counted from 1.
     pub number: usize,
-    /// Total number of files.
+    /// Total file count.
     pub of: usize,
     /// Name of the current file.
     pub name: String,
-    /// Bytes of the current file's values read so far.
+    /// Bytes read so far from the values in the current file.
     pub taken: u64,
 }
 
@@ -33,14 +33,14 @@ pub struct AssemblyState {
     earlier: Vec<Rules>,
     later: Vec<Rules>,
     /// Whether the engineer changed the rules; otherwise they are proposed.
-    are_said: bool,
+    are_changed: bool,
     /// The requested files and folders.
     pub sources: Vec<PathBuf>,
     /// Messages about content that could not be read.
     pub faults: Vec<String>,
     /// Messages about content that is no model.
     pub ignored: Vec<String>,
-    /// Unused content of files with models, one line each.
+    /// Unused content of model files, a line each.
     pub unused: Vec<String>,
     /// The tables among the files, with the headings used to read them.
     pub tables: Headings,
@@ -70,17 +70,14 @@ impl AssemblyState {
     /// Adds models; rules that the engineer has not changed are proposed again. A model found
     /// before replaces its earlier version.
     pub fn add(&mut self, name: &str, found: Vec<FoundModel>) {
-        let mut models: Vec<FoundModel> = self
-            .assembly
-            .parts()
-            .iter()
-            .map(|part| part.found.clone())
-            .collect();
+        let known = self.assembly.parts().iter();
+        let mut models: Vec<FoundModel> = known.map(|part| part.found.clone()).collect();
         models.retain(|model| !found.iter().any(|new| new.key() == model.key()));
         models.extend(found);
-        let rules = match self.are_said {
-            true => self.assembly.rules().clone(),
-            false => proposed_rules(name, &models),
+        let rules = if self.are_changed {
+            self.assembly.rules().clone()
+        } else {
+            proposed_rules(name, &models)
         };
         self.assembly = Assembly::new(models, rules);
         self.selected = self
@@ -133,20 +130,24 @@ impl AssemblyState {
     }
 
     fn put(&mut self, rules: Rules) {
-        self.are_said = true;
+        self.are_changed = true;
         self.assembly = self.assembly.with_rules(rules);
     }
 
     /// Returns the tables, including this one, that need the same units under the same headings.
     pub fn tables_alike(&self, file: &str) -> Vec<&String> {
-        let of = |file: &str| (self.tables.get(file), self.unsaid.get(file));
-        self.tables
-            .keys()
-            .filter(|other| of(other.as_str()) == of(file))
-            .collect()
+        let mut alike = Vec::new();
+        for (other, headings) in &self.tables {
+            if Some(headings) == self.tables.get(file)
+                && self.unsaid.get(other) == self.unsaid.get(file)
+            {
+                alike.push(other);
+            }
+        }
+        alike
     }
 
-    /// Returns the indices of the models in table order.
+    /// Returns the model indices in table order.
     pub fn order(&self) -> Vec<usize> {
         let parts = self.assembly.parts();
         self.sorting
@@ -157,7 +158,7 @@ impl AssemblyState {
 /// Displayed response, cached while the model and the selection stay the same.
 #[derive(Debug, Default)]
 pub struct Preview {
-    /// Index of the response: `output * inputs + input`, in the file's own order.
+    /// Response index `output * inputs + input`, in file order.
     pub response: usize,
     pub view: BodeView,
     pub drawn: Option<(String, usize, Vec<BodeCurve>)>,

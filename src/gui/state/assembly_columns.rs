@@ -1,4 +1,4 @@
-//! Columns of the table of imported models.
+//! Table columns of imported models.
 
 use gdcm_model::assembly::part::Part;
 use gdcm_model::units::number;
@@ -8,12 +8,12 @@ pub struct Column {
     pub heading: &'static str,
     /// Share of the table's width.
     pub share: f32,
-    /// Text of a model's cell; `None` if it must be completed.
+    /// Cell text; `None` if it must be completed.
     pub cell: fn(&Part) -> Option<String>,
 }
 
 impl Column {
-    /// Returns the text of a model's cell; "?" if it must be completed.
+    /// Returns the cell text; "?" if it must be completed.
     pub fn text(&self, part: &Part) -> String {
         (self.cell)(part).unwrap_or_else(|| "?".to_owned())
     }
@@ -29,16 +29,7 @@ pub const COLUMNS: [Column; 9] = [
     Column {
         heading: "role",
         share: 0.08,
-        cell: |part| {
-            Some(
-                if part.row.left_out {
-                    "not included"
-                } else {
-                    part.row.role?.word()
-                }
-                .to_owned(),
-            )
-        },
+        cell: role_text,
     },
     Column {
         heading: "name",
@@ -79,14 +70,18 @@ pub const COLUMNS: [Column; 9] = [
 
 /// "roll_deg +5, airspeed_kt -10".
 fn trim_text(part: &Part) -> String {
-    let offset = |(coordinate, by): (&String, &f64)| {
-        let sign = if *by > 0.0 { "+" } else { "" };
-        format!("{coordinate} {sign}{}", number(*by))
-    };
-    part.row
-        .perturbation
-        .iter()
-        .map(offset)
-        .collect::<Vec<_>>()
-        .join(", ")
+    let mut offsets = Vec::new();
+    for (coordinate, offset) in &part.row.perturbation {
+        let sign = if *offset > 0.0 { "+" } else { "" };
+        offsets.push(format!("{coordinate} {sign}{}", number(*offset)));
+    }
+    offsets.join(", ")
+}
+
+/// Returns the role, or "not included" for a model left out.
+fn role_text(part: &Part) -> Option<String> {
+    if part.row.left_out {
+        return Some("not included".to_owned());
+    }
+    Some(part.row.role?.word().to_owned())
 }

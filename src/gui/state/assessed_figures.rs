@@ -18,7 +18,7 @@ pub enum AssessedPairs {
     All,
 }
 
-/// Part of J shown by the table of an assessment.
+/// Part of J in the assessment table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CostPart {
     /// `Delta J`.
@@ -40,7 +40,7 @@ impl CostPart {
         }
     }
 
-    /// Returns the function that takes this part of a change of J.
+    /// Returns the function that extracts this part from a change in J.
     pub fn of(self) -> fn(CostChange) -> f64 {
         match self {
             Self::Total => CostChange::total,
@@ -56,7 +56,7 @@ pub struct AssessedFigures {
     pub model: AssessedModel,
     /// Correction applied to the model.
     pub correction: AssessedCorrection,
-    /// Average of squared errors; `None` follows the settings.
+    /// Average over squared errors; `None` follows the settings.
     pub average: Option<CostAverage>,
     pub pairs: AssessedPairs,
     /// Whether a table is shown instead of bars.

@@ -1,4 +1,4 @@
-//! Display options of the plots over frequency: units, hidden curves, cursors. None of them changes
+//! Display options for plots over frequency: units, hidden curves, cursors. None of them changes
 //! a result.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,7 +11,7 @@ use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::plot::{CurveId, Role};
 use crate::gui::widgets::palette::PlotStyle;
 
-/// Display options of the plots over frequency.
+/// Display options for plots over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveDisplay {
     pub unit: FrequencyUnit,
@@ -32,7 +32,7 @@ pub struct CurveDisplay {
     pub crossings: Vec<(&'static str, f64)>,
     /// Whether the values at the cursor are listed.
     pub lists_values: bool,
-    /// Whether Bode and the plot of errors show the envelopes of maximum unnoticeable added
+    /// Whether the Bode and error plots show the envelopes of maximum unnoticeable added
     /// dynamics.
     pub shows_muad: bool,
     /// Models selected by drawing a box.
@@ -67,7 +67,7 @@ impl Default for CurveDisplay {
 }
 
 impl CurveDisplay {
-    /// Most marked frequencies: of two, the difference is reported.
+    /// Maximum count of marked frequencies; the difference between two is reported.
     const MOST_PINNED: usize = 2;
 
     /// Returns the roles hidden by default: couplings alone are an intermediate step, not a result.
@@ -87,10 +87,8 @@ impl CurveDisplay {
                 }
             }
             CurveCommand::ShowRoleAlone(role) => {
-                let others: BTreeSet<Role> = Role::ALL
-                    .into_iter()
-                    .filter(|other| *other != role)
-                    .collect();
+                let mut others = BTreeSet::from(Role::ALL);
+                others.remove(&role);
                 self.hidden_roles = if self.hidden_roles == others {
                     Self::hidden_at_first()
                 } else {
@@ -98,7 +96,11 @@ impl CurveDisplay {
                 };
             }
             CurveCommand::RaiseRole(role) => {
-                self.raised = (self.raised != Some(role)).then_some(role)
+                self.raised = if self.raised == Some(role) {
+                    None
+                } else {
+                    Some(role)
+                };
             }
             CurveCommand::ShowBands(wanted) => self.shows_bands = wanted,
             CurveCommand::HideModel(model) => {
@@ -130,7 +132,7 @@ impl CurveDisplay {
         }
     }
 
-    /// Drops everything that refers to models of another dataset.
+    /// Drops everything that refers to models in another dataset.
     pub fn forget_models(&mut self) {
         self.hidden_models.clear();
         self.turns.clear();
@@ -154,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_role_can_be_shown_alone_and_in_front_and_again_as_usual() {
+    fn a_role_is_shown_alone_and_in_front_and_a_second_command_restores_the_others() {
         let mut display = CurveDisplay::default();
         for command in [
             CurveCommand::ShowRoleAlone(Role::Corrected),
@@ -177,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_role_is_a_switch_and_everything_hidden_comes_back_at_once() {
+    fn a_role_is_a_switch_and_a_single_command_shows_everything_hidden() {
         let mut display = CurveDisplay::default();
         display.carry_out(CurveCommand::ToggleRole(Role::Perturbed));
         assert!(display.hidden_roles.contains(&Role::Perturbed));

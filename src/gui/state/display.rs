@@ -22,6 +22,6 @@ pub struct Display {
     pub gains: GainDisplay,
     pub poles: PolesDisplay,
     pub judging: JudgingDisplay,
-    /// State of the views' figures between frames.
+    /// Figures of the views, kept between frames.
     pub figures: BTreeMap<View, FigureView>,
 }

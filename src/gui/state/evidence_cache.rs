@@ -1,4 +1,4 @@
-//! Evidence for every form of the schedule, cached between frames.
+//! Evidence for every schedule form, cached between frames.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use gdcm_method::schedule::form_comparison::{FormComparison, LeadDegreeFit};
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::Analysis;
 
-/// Evidence for every form of the schedule, cached as long as the analysis is the same.
+/// Evidence for every schedule form, cached as long as the analysis is the same.
 #[derive(Debug, Default)]
 pub struct CachedEvidence {
     pub analysis: Option<Arc<Analysis>>,

@@ -11,7 +11,7 @@ use gdcm_words::Table;
 
 use super::view::View;
 
-/// Table of requirements that the engineer supplies as a file.
+/// Requirement table that the engineer supplies as a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum RequirementTable {
     Levels,
@@ -21,43 +21,43 @@ pub enum RequirementTable {
 /// Form in front of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum FormKind {
-    /// Path of a file to open.
+    /// Path to open.
     Open,
-    /// New path of a study's dataset.
+    /// New path for a study's dataset.
     FindDataset,
     /// Path for the study.
     Save,
     /// Corrections to export, and the folder.
     Export,
-    /// Format of an export for other tools, and the path.
+    /// Export format for other tools, and the path.
     ExportAs,
-    /// Reason of a rejection, in words.
+    /// Reason for a rejection, in words.
     Reason,
     /// Path for a table.
     SaveTable,
-    /// What to make of imported models.
+    /// Dataset to make from imported models.
     Models,
-    /// Channels of the records that a dataset consists of, and the path.
+    /// Channels and path for a dataset made from records.
     RecordDataset,
-    /// Path and width of a figure.
+    /// Path and width for a figure.
     SaveFigure,
     /// Path for the report.
     Report,
-    /// Path of a table to read.
+    /// Path to a table.
     ReadRequirementTable(RequirementTable),
     /// Path for the tolerances.
     WriteTolerances,
-    /// Palette of all commands, searched by name.
+    /// Command palette, searched by name.
     Palette,
     /// Confirmation before unsaved decisions are lost.
     Unsaved,
-    /// Differences between the dataset and the dataset of the saved study.
+    /// Differences between the dataset and the saved study's dataset.
     Differences,
     Shortcuts,
     About,
 }
 
-/// State of the open palette.
+/// Search in the open palette.
 #[derive(Clone, Debug, Default)]
 pub struct PaletteForm {
     /// Search text as typed.
@@ -74,9 +74,9 @@ pub struct Forms {
     /// Form drawn last, and whether it asked to overwrite files: a change of either counts as a
     /// newly opened form.
     pub drawn: Option<(FormKind, bool)>,
-    /// Path or text in the field of each form, as typed.
+    /// Path or text typed into each form.
     pub typed: BTreeMap<FormKind, String>,
-    /// Study whose dataset was not found, and the message of the attempt to open it.
+    /// Study whose dataset was not found, and the message from the attempt to open it.
     pub lost_dataset: Option<(PathBuf, String)>,
     /// Model whose rejection is given a reason.
     pub rejected_model: Option<ModelId>,
@@ -88,7 +88,7 @@ pub struct Forms {
     pub figure_width: ColumnWidth,
     /// Conditions whose corrections are exported.
     pub exported: BTreeSet<ConditionId>,
-    /// Format of an export for other tools.
+    /// Export format for other tools.
     pub export_format: ExportFormat,
     pub palette: PaletteForm,
     /// Files that the form's action would overwrite; if not empty, the form asks whether to.
@@ -96,7 +96,7 @@ pub struct Forms {
 }
 
 impl Forms {
-    /// Returns the editable text of a form's field.
+    /// Returns the editable text in a form's field.
     pub fn typed_in(&mut self, form: FormKind) -> &mut String {
         self.typed.entry(form).or_default()
     }

@@ -1,4 +1,4 @@
-//! State of the plots over frequency between frames.
+//! Plots over frequency, kept between frames.
 
 use std::collections::BTreeMap;
 
@@ -10,34 +10,34 @@ use gdcm_study::AcrossRole;
 use crate::gui::plot::overview::OverviewView;
 use crate::gui::plot::{BodeCurve, BodeView};
 
-/// Ranges, transforms and cached curves of the plots over frequency.
+/// Ranges, transforms and cached curves for plots over frequency.
 #[derive(Debug, Default)]
 pub struct FrequencyPlots {
-    /// Ranges and transforms of the Bode plot.
+    /// Ranges and transforms for the Bode plot.
     pub bode: BodeView,
-    /// Ranges and transforms of the plot of errors.
+    /// Ranges and transforms for the error plot.
     pub error: BodeView,
-    /// Displayed role of the plot across conditions.
+    /// Role displayed by the plot across conditions.
     pub across_role: AcrossRole,
-    /// Ranges and transforms of the plot across conditions.
+    /// Ranges and transforms for the plot across conditions.
     pub across: BodeView,
-    /// Response, and model of each condition, to which that plot was last fitted.
+    /// Response and role to which that plot was last fitted.
     pub across_fitted: Option<(Pair, AcrossRole)>,
-    /// Shapes of the responses across conditions, cached between frames.
+    /// Response shapes across conditions, cached between frames.
     pub across_shapes: AirspeedCache,
     pub overview: OverviewView,
-    /// Shapes of the drawn responses, cached between frames.
+    /// Response shapes, cached between frames.
     pub shapes: BTreeMap<Pair, ResponseCache>,
     /// Curves shown by the Bode plot.
     pub drawn: Vec<BodeCurve>,
     /// Drawn errors, cached between frames.
     pub errors: ErrorCache,
-    /// Curves shown by the plot of errors.
+    /// Curves shown by the error plot.
     pub drawn_errors: Vec<BodeCurve>,
 }
 
 impl FrequencyPlots {
-    /// Fits the plots to all of their curves.
+    /// Fits the plots to all their curves.
     pub fn fit(&mut self) {
         self.bode.request_fit();
         self.error.request_fit();

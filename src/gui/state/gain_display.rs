@@ -1,4 +1,4 @@
-//! Display of gains and delays over airspeed, and of the evidence for their schedule.
+//! Display options for gains and delays over airspeed, and for the evidence beside them.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use super::evidence_cache::CachedEvidence;
 use super::pair_set::PairSet;
 use crate::gui::widgets::tables::Sorting;
 
-/// Content of the channel and net-gain plots and of the evidence beside them.
+/// Content of channel plots, net-gain plots and evidence.
 #[derive(Debug, Default)]
 pub struct GainDisplay {
     pub net_gain_pairs: PairSet,
@@ -19,15 +19,15 @@ pub struct GainDisplay {
     /// Responses picked by the engineer for the net-gain plots.
     pub picked_pairs: BTreeSet<Pair>,
     pub channel_values: (Measure, Across),
-    /// Transforms of the channel plots.
+    /// Transforms for the channel plots.
     pub channels: ChannelsView,
-    /// Whether the plots of gains omit error bars and bands.
+    /// Whether gain plots omit error bars and bands.
     pub hide_bars: bool,
-    /// Orders of the evidence tables: differences, second variables, forms of the schedule.
+    /// Sorting in the evidence tables: differences, second variables, schedule forms.
     pub evidence_tables: [Sorting; 3],
     /// Whether the evidence for the schedule is shown beside the net gains.
     pub show_evidence: bool,
-    /// Evidence for each form of the schedule, cached between frames.
+    /// Evidence for each schedule form, cached between frames.
     pub evidence: CachedEvidence,
     pub evidence_sorting: Sorting,
 }

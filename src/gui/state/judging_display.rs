@@ -1,11 +1,11 @@
-//! Display of the views that judge the correction: assessment, requirements, variants, costs.
+//! Display options for views that judge the correction: assessment, requirements, variants, costs.
 
 use super::assessed_figures::AssessedFigures;
 use super::mapped_cost::MappedCost;
 use super::requirements_page::RequirementsPage;
 use crate::gui::widgets::tables::Sorting;
 
-/// Content of the views that judge the correction.
+/// Content of assessment, requirements, variants and cost map.
 #[derive(Debug, Default)]
 pub struct JudgingDisplay {
     pub mapped_cost: MappedCost,
@@ -17,8 +17,8 @@ pub struct JudgingDisplay {
     pub requirements_sorting: [Sorting; 2],
     /// Name for the present decisions as a variant, as typed.
     pub variant_name: String,
-    /// Name of the variant whose corrected model and net gains are overlaid.
+    /// Variant whose corrected model and net gains are overlaid.
     pub overlaid: Option<String>,
-    /// Orders of the comparison tables: differences, and their effects.
+    /// Sorting in the comparison tables: differences, and their effects.
     pub compare_sorting: [Sorting; 2],
 }

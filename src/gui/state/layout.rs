@@ -1,4 +1,4 @@
-//! Places of the views, panels and sheets.
+//! Places for views, panels and sheets.
 
 use super::arrangement::Arrangement;
 use super::opens_with::OpensWith;
@@ -10,11 +10,11 @@ pub struct Layout {
     pub arrangement: Arrangement,
     /// Whether the window is wide enough for full names and words.
     pub is_wide: bool,
-    /// What the program opens with.
+    /// Content at the next start.
     pub opens_with: OpensWith,
-    /// Whether the left panel is shown in full; `None` follows the width of the window.
+    /// Whether the left panel is shown in full; `None` follows the window width.
     pub left_open: Option<bool>,
-    /// Sheet over the middle of the window.
+    /// Sheet over the views.
     pub sheet: Option<Sheet>,
     /// Whether the settings are unfolded, over matrix and card.
     pub settings_open: bool,

@@ -1,11 +1,11 @@
-//! Correction whose costs the map of conditions shows.
+//! Correction whose costs the condition map shows.
 
 /// Correction whose costs the map shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MappedCost {
     /// The uncorrected physics representative.
     Before,
-    /// Optimum of each condition.
+    /// Optimum for each condition.
     #[default]
     Own,
     /// The schedule, applied to the nominal model.
@@ -13,10 +13,10 @@ pub enum MappedCost {
 }
 
 impl MappedCost {
-    /// Every choice, in the order of the menu.
+    /// Every choice, in menu order.
     pub const ALL: [Self; 3] = [Self::Before, Self::Own, Self::Scheduled];
 
-    /// Returns the text of the menu entry.
+    /// Returns the menu text.
     pub fn name(self) -> &'static str {
         match self {
             Self::Before => "before any correction",

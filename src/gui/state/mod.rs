@@ -1,10 +1,11 @@
-//! State of the window: document, display, results.
+//! Window state: document, display, results.
 
 pub mod arrangement;
 pub mod assembling;
 pub mod assembly_columns;
 pub mod assessed_figures;
 pub mod channels_view;
+pub mod condition_records;
 pub mod curve_display;
 pub mod display;
 pub mod evidence_cache;
@@ -21,10 +22,12 @@ pub mod pair_set;
 pub mod poles_display;
 pub mod preferences;
 pub mod records;
+pub mod records_page;
 pub mod requirements_page;
 pub mod results;
 pub mod selection;
 pub mod sheet;
 pub mod tables;
 pub mod view;
+pub mod wanted_dataset;
 pub mod window_state;

@@ -1,4 +1,4 @@
-//! Modes and zeros of the displayed condition, cached between frames.
+//! Modes and zeros in the displayed condition, cached between frames.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use gdcm_study::jobs::curve_jobs::ConditionModes;
 use gdcm_study::results::fitted_couplings::FittedCouplings;
 use gdcm_words::Table;
 
-/// Modes of a condition followed from model to model, zeros of a response, and pole shifts by
+/// Modes followed from model to model, zeros in the focused response, and pole shifts by
 /// couplings; cached as long as their inputs are the same.
 #[derive(Debug, Default)]
 pub struct CachedModes {
@@ -19,15 +19,15 @@ pub struct CachedModes {
     /// For each row, the first model that jumps.
     pub jumping: Vec<Option<ModelId>>,
     pub zeros: Vec<(ModelId, Vec<Complex<f64>>)>,
-    /// Shifts of the physics representative's poles by couplings.
+    /// Pole shifts of the physics representative by couplings.
     pub shifts: Vec<PoleShift>,
 }
 
-/// Inputs of the modes, the zeros and the shifts.
+/// Inputs to the modes, the zeros and the shifts.
 #[derive(Debug)]
 pub struct MadeOf {
     pub modes: Arc<ConditionModes>,
-    /// Index of the physics model to whose modes the others' are matched.
+    /// Physics model, by index, to whose modes the others' are matched.
     pub reference: usize,
     pub couplings: Option<Arc<FittedCouplings>>,
     /// Response and models whose zeros are shown.

@@ -5,10 +5,10 @@
 pub enum Bar {
     /// A computation panicked.
     Fault {
-        /// What happened, what was preserved, and what to send to whom.
+        /// The ended work, the kept decisions, and the details to send.
         sentence: String,
     },
-    /// Decisions of an earlier window that ended without saving them.
+    /// Decisions from an earlier window that ended without saving them.
     Recovery {
         offer: usize,
         /// Study and date.
@@ -24,7 +24,7 @@ pub enum Bar {
     },
 }
 
-/// Kind of a message.
+/// Outcome reported by a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoticeKind {
     /// Success.

@@ -1,8 +1,8 @@
-//! Content of the window when the program is started without a file.
+//! Content shown when the program is started without a file.
 
 use serde::{Deserialize, Serialize};
 
-/// Content of the window when the program is started without a file.
+/// Content shown when the program is started without a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OpensWith {
     /// The embedded example.
@@ -15,10 +15,10 @@ pub enum OpensWith {
 }
 
 impl OpensWith {
-    /// Every choice, in the order of the menu.
+    /// Every choice, in menu order.
     pub const ALL: [Self; 3] = [Self::Example, Self::StartPage, Self::LastStudy];
 
-    /// Returns the text of the menu entry.
+    /// Returns the menu text.
     pub fn name(self) -> &'static str {
         match self {
             Self::Example => "Begin with the example",

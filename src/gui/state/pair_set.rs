@@ -1,8 +1,8 @@
-//! Set of responses in the net-gain plots.
+//! Responses in the net-gain plots.
 
 use serde::{Deserialize, Serialize};
 
-/// Set of responses in the net-gain plots.
+/// Responses in the net-gain plots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PairSet {
     /// Responses constrained now or at any time since the window was opened: releasing a response
@@ -11,7 +11,7 @@ pub enum PairSet {
     Held,
     /// Response in focus.
     Focused,
-    /// On-axis responses of the dataset.
+    /// On-axis responses in the dataset.
     OnAxis,
     All,
     /// Responses picked by the engineer.
@@ -19,7 +19,7 @@ pub enum PairSet {
 }
 
 impl PairSet {
-    /// Every set, in the order of the list.
+    /// Every set, in list order.
     pub const ALL: [Self; 5] = [
         Self::Held,
         Self::Focused,
@@ -39,7 +39,7 @@ impl PairSet {
         }
     }
 
-    /// Describes the content of the set in a sentence.
+    /// Describes the set in a sentence.
     pub fn purpose(self) -> &'static str {
         match self {
             Self::Held => "The responses held, and those held before",

@@ -1,12 +1,12 @@
-//! Display of poles, zeros and modes.
+//! Display options for poles, zeros and modes.
 
 use super::modes_cache::CachedModes;
 use crate::gui::widgets::tables::Sorting;
 
-/// Content of the view of the poles.
+/// Content of the pole view.
 #[derive(Debug, Default)]
 pub struct PolesDisplay {
-    /// Whether the zeros of the response in focus are shown among the poles.
+    /// Whether zeros of the focused response are shown among the poles.
     pub show_zeros: bool,
     /// Modes and zeros, cached between frames.
     pub modes: CachedModes,

@@ -1,4 +1,4 @@
-//! Preferences of the engineer that persist between sessions.
+//! Preferences that persist between sessions.
 
 use std::collections::BTreeSet;
 
@@ -14,13 +14,13 @@ use crate::gui::plot::Role;
 use crate::gui::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use crate::gui::widgets::palette::PlotStyle;
 
-/// Preferences of the engineer for the window. Fields missing from the text of an earlier version
-/// get their defaults.
+/// Preferences for the window. Fields missing from the text stored by an earlier version get their
+/// defaults.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
     pub arrangement: Option<Arrangement>,
-    /// What the program opens with.
+    /// Content at the next start.
     pub opens_with: OpensWith,
     /// Whether the left panel is shown in full, if chosen.
     pub left_open: Option<bool>,
@@ -30,7 +30,7 @@ pub struct Preferences {
     pub phase_error: PhaseErrorUnit,
     /// Roles whose visibility differs from the default, which later versions may change.
     pub hidden_roles: BTreeSet<Role>,
-    /// Whether Bode and the plot of errors show the envelopes of maximum unnoticeable added
+    /// Whether the Bode and error plots show the envelopes of maximum unnoticeable added
     /// dynamics.
     pub shows_muad: bool,
     pub shows_bands: bool,
@@ -40,8 +40,8 @@ pub struct Preferences {
 }
 
 impl Preferences {
-    /// Returns the current preferences of a window.
-    pub fn of(display: &Display) -> Self {
+    /// Returns the window's current preferences.
+    pub fn from_display(display: &Display) -> Self {
         Self {
             arrangement: Some(display.layout.arrangement.clone()),
             opens_with: display.layout.opens_with,

@@ -1,16 +1,16 @@
-//! Page of the requirements.
+//! Page in the requirements view.
 
-/// Page of requirements.
+/// Page in the requirements view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RequirementsPage {
-    /// Bandwidth and phase delay of every response, condition and model.
+    /// Bandwidth and phase delay for every response, condition and model.
     #[default]
     Bandwidth,
-    /// Responses of the displayed condition's models over time.
+    /// Model responses over time in the displayed condition.
     Histories,
-    /// Modes of the displayed condition.
+    /// Modes in the displayed condition.
     Modes,
-    /// Corrected model of every condition compared with the identified model; mean J and shares of
-    /// the band of every condition and model.
+    /// Corrected models compared with the identified models; mean J and shares of the band for
+    /// every condition and model.
     Summary,
 }

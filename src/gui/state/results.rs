@@ -23,7 +23,7 @@ use gdcm_study::results::uncertainty::Uncertainty;
 use gdcm_study::stages::condition_curves::ConditionCurves;
 use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis};
 
-/// Uncertainty of the displayed condition's values.
+/// Uncertainty of values in the displayed condition.
 #[derive(Clone, Copy, Debug)]
 pub struct Sureness<'a> {
     pub condition: ConditionId,
@@ -31,30 +31,30 @@ pub struct Sureness<'a> {
 }
 
 impl<'a> Sureness<'a> {
-    /// Returns the error bar of a value, and its confidence level.
+    /// Returns the error bar for a value, and its confidence level.
     pub fn bar(&self, scalar: Scalar) -> Option<(&'a ErrorBar, f64)> {
         let uncertainty = self.uncertainty?;
         Some((uncertainty.bar(self.condition, scalar)?, uncertainty.level))
     }
 
-    /// Returns the half-width of the error bar: relative, for delays in \[s\].
+    /// Returns the error bar's half-width: relative, for delays in \[s\].
     pub fn half(&self, scalar: Scalar) -> Option<f64> {
-        self.bar(scalar)
-            .and_then(|(bar, level)| bar.half_width(level))
+        let (bar, level) = self.bar(scalar)?;
+        bar.half_width(level)
     }
 
-    /// Returns the confidence level of all error bars.
+    /// Returns the confidence level, common to all error bars.
     pub fn level(&self) -> Option<f64> {
-        self.uncertainty.map(|of| of.level)
+        self.uncertainty.map(|uncertainty| uncertainty.level)
     }
 }
 
-/// Result of the displayed condition, available before the others.
+/// Result for the displayed condition, available before the others.
 #[derive(Clone, Debug)]
 pub struct FirstResult {
-    /// Number of the answered request.
+    /// Answered request, by number.
     pub generation: u64,
-    /// Dataset of the result.
+    /// Dataset behind the result.
     pub dataset: Arc<Dataset>,
     pub condition: ConditionId,
     pub outcome: Result<ConditionAnalysis, ConditionFailure>,
@@ -76,15 +76,15 @@ pub struct Background {
     pub bars: Option<(usize, usize)>,
     /// Responses to all records in progress: steps done, total.
     pub time_histories: Option<(usize, usize)>,
-    /// Assessment of couplings in progress: steps done, total.
+    /// Couplings in progress: steps done, total.
     pub couplings: Option<(usize, usize)>,
-    /// Number of jobs that the visible views wait for.
+    /// Count of jobs that the visible views wait for.
     pub views: usize,
     /// Report in progress: conditions done, total.
     pub report: Option<(usize, usize)>,
     /// Identification in progress: parts done, total.
     pub identification: Option<(usize, usize)>,
-    /// Whether some of it was stopped, by hand or by a fault.
+    /// Whether some work was stopped, by hand or by a fault.
     pub stopped: bool,
 }
 
@@ -109,25 +109,26 @@ pub struct Results {
     pub analysis: Option<Arc<Analysis>>,
     /// Displayed condition, if it is ahead of that analysis.
     pub first: Option<FirstResult>,
-    /// Costs of constraining or releasing each response of a condition, with their job; see `State::toggles`.
+    /// Costs of constraining or releasing each response, with their job; see
+    /// `State::toggles`.
     pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
     /// Responses for drawing, with their job; see `State::curves`.
     pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
-    /// Modes of the models of a condition, with their job; see `State::modes`.
+    /// Modes by model, with their job; see `State::modes`.
     pub modes: Option<(ModesJob, Arc<ConditionModes>)>,
     /// Requested assessment, with its job; see `State::assessment`.
     pub assessment: Option<(AssessmentJob, Arc<AssessmentTable>)>,
-    /// Responses of a model of each condition, with their job; see `State::across`.
+    /// Responses across conditions, with their job; see `State::across`.
     pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
-    /// Uncertainty of an analysis, with its job; see `State::uncertainty`.
+    /// Uncertainty, with its job; see `State::uncertainty`.
     pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
-    /// Actual or potential effect of couplings, with its job; see `State::couplings`.
+    /// Actual or potential benefit from couplings, with the job; see `State::couplings`.
     pub couplings: Option<(CouplingsJob, AssessedCouplings)>,
     /// Requirements, with their job; see `State::requirements`.
     pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
     /// Responses to the test input, with their job; see `State::test_answers`.
     pub test_answers: Option<(TestAnswersJob, Result<Arc<TestAnswers>, String>)>,
-    /// Comparison of a record with the tolerances; see `State::record_history`.
+    /// Record compared with the tolerances; see `State::record_history`.
     pub record_history: Option<(RecordHistoryJob, Result<Arc<RecordHistory>, String>)>,
     /// Models' responses to all records, with their job; see `State::time_histories`.
     pub time_histories: Option<(TimeHistoriesJob, Arc<TimeHistories>)>,
@@ -135,26 +136,26 @@ pub struct Results {
     /// Models compared with a record in time, or the reason why not.
     pub simulations: Vec<(SimulationJob, Result<Arc<Validation>, String>)>,
     pub background: Background,
-    /// Start of the background work \[s of the window's clock\].
+    /// Start time for the background work \[s, window clock\].
     pub background_since: Option<f64>,
-    /// Number of the newest request.
+    /// Newest request, by number.
     pub requested: u64,
-    /// Number of the request answered by the analysis.
+    /// Request answered by the analysis, by number.
     pub received: u64,
-    /// Time of the oldest unanswered request \[s of the window's clock\].
+    /// Time at the oldest unanswered request \[s, window clock\].
     pub waiting_since: Option<f64>,
     /// Whether a frame with an analysis has been painted.
     pub is_painted: bool,
-    /// Duration of the newest analysis \[ms\].
+    /// Computing time for the newest analysis \[ms\].
     pub elapsed_ms: f64,
     /// Whether the newest request was stopped, by hand or by a fault; the displayed results then
     /// stay older than the settings.
     pub stopped: bool,
 }
 
-/// Age \[s\] from which displayed results of older settings are marked as stale.
+/// Age \[s\] from which results for older settings are marked as stale.
 const STALE_AFTER_S: f64 = 0.15;
-/// Duration \[s\] from which background work is reported: most of it ends before it could be read.
+/// Duration \[s\] from which background work is reported: most jobs end before it could be read.
 const BACKGROUND_AFTER_S: f64 = 0.5;
 
 impl Results {
@@ -163,7 +164,7 @@ impl Results {
         self.is_behind() && !self.stopped
     }
 
-    /// Returns the message shown instead of a missing result.
+    /// Returns the message for a missing result.
     pub fn absence(&self) -> &'static str {
         if self.stopped {
             "not computed"
@@ -172,12 +173,12 @@ impl Results {
         }
     }
 
-    /// Returns the message shown instead of missing error bars.
+    /// Returns the message for missing error bars.
     pub fn absence_of_bars(&self) -> String {
         match self.background.bars {
             Some(progress) if !self.is_behind() => bar_words(progress),
             None if self.background.stopped => {
-                "Error bars: stopped; Compute, below, goes on with them".to_owned()
+                "Error bars: stopped; Compute, below, continues them".to_owned()
             }
             _ => self.absence().to_owned(),
         }
@@ -188,34 +189,37 @@ impl Results {
         self.requested > self.received
     }
 
-    /// Returns whether the displayed condition's result has newer settings than the analysis of all
-    /// conditions.
+    /// Returns whether the displayed condition's result has newer settings than the analysis across
+    /// all conditions.
     pub fn first_is_ahead(&self) -> bool {
-        self.analysis.is_some()
-            && self
-                .first
-                .as_ref()
-                .is_some_and(|first| first.generation > self.received)
+        match &self.first {
+            Some(first) => self.analysis.is_some() && first.generation > self.received,
+            None => false,
+        }
     }
 
     /// Returns whether background work has lasted long enough at `now` to be reported.
     pub fn is_background_told(&self, now: f64) -> bool {
-        self.background_since
-            .is_some_and(|since| now - since > BACKGROUND_AFTER_S)
+        match self.background_since {
+            Some(since) => now - since > BACKGROUND_AFTER_S,
+            None => false,
+        }
     }
 
     /// Returns whether the displayed results should be marked as stale at `now` \[s of the window's
     /// clock\].
     pub fn is_stale(&self, now: f64) -> bool {
-        self.stopped
-            || self
-                .waiting_since
-                .is_some_and(|since| now - since > STALE_AFTER_S)
+        let is_late = match self.waiting_since {
+            Some(since) => now - since > STALE_AFTER_S,
+            None => false,
+        };
+        self.stopped || is_late
     }
 }
 
-/// Describes the progress of the error bars.
-pub fn bar_words((done, total): (usize, usize)) -> String {
+/// Describes how far the error bars are: completed steps, total.
+pub fn bar_words(progress: (usize, usize)) -> String {
+    let (done, total) = progress;
     if total == 0 {
         "error bars …".to_owned()
     } else {

@@ -1,9 +1,9 @@
-//! Selected and highlighted parts of the study.
+//! Selected and highlighted parts.
 
 use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use gdcm_words::derivation::ExplainTarget;
 
-/// Parts of the study in focus, selected or under the pointer.
+/// Parts in focus, selected or under the pointer.
 #[derive(Debug, Default)]
 pub struct Selection {
     pub condition: ConditionId,
@@ -13,7 +13,7 @@ pub struct Selection {
     pub hovered: Option<ModelId>,
     /// Condition under the pointer, in the list or as a dot.
     pub hovered_condition: Option<ConditionId>,
-    /// Description of the plot element under the pointer, in a single line: nothing floats over
+    /// Description, in a single line, for the plot element under the pointer: nothing floats over
     /// curves.
     pub told: Option<String>,
     /// The only model shown beside the representatives.

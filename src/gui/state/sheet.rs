@@ -1,8 +1,8 @@
-//! Sheets over the middle of the window.
+//! Sheets over the views.
 
 use crate::gui::widgets::controls::QUESTION;
 
-/// Content of a sheet.
+/// Content shown by a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sheet {
     /// Reasons for the result.
@@ -11,7 +11,7 @@ pub enum Sheet {
     Models,
     /// Identified models, beside the rail.
     Identified,
-    /// Derivation of a value.
+    /// Derivation for a value.
     Derivation,
 }
 

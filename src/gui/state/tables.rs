@@ -1,6 +1,4 @@
-//! Tables of the window as text, to be copied and saved.
-
-use std::sync::Arc;
+//! Tables as text, to be copied and saved.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::SUGGESTION_RATIO;
@@ -8,29 +6,28 @@ use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, Model, Pair};
 use gdcm_model::units::s_to_ms;
 use gdcm_plot::figure::all_channels;
-use gdcm_study::ConditionAnalysis;
 use gdcm_words::Table;
 
 use super::results::Sureness;
 use super::window_state::State;
 
-/// Table of the window.
+/// Table that can be copied and saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableKind {
     /// Every condition with its flight state and its open tasks.
     Conditions,
-    /// Physics models of the displayed condition.
+    /// Physics models in the displayed condition.
     PhysicsModels,
-    /// Identified models of the displayed condition.
+    /// Identified models in the displayed condition.
     IdentifiedModels,
-    /// G, D and J of every response.
+    /// G, D and J for every response.
     Matrix,
-    /// Gain and delay of every channel.
+    /// Gain and delay for every channel.
     Channels,
 }
 
 impl TableKind {
-    /// Every table, in the order of the window.
+    /// Every table, in display order.
     pub const ALL: [TableKind; 5] = [
         Self::Conditions,
         Self::PhysicsModels,
@@ -39,7 +36,7 @@ impl TableKind {
         Self::Channels,
     ];
 
-    /// Returns the title of the table.
+    /// Returns the title.
     pub fn name(self) -> &'static str {
         match self {
             Self::Conditions => "conditions",
@@ -50,7 +47,7 @@ impl TableKind {
         }
     }
 
-    /// Returns the table of a bundle's models.
+    /// Returns the table for a bundle.
     pub fn of_bundle(bundle: BundleKind) -> Self {
         match bundle {
             BundleKind::Physics => Self::PhysicsModels,
@@ -72,231 +69,252 @@ pub fn table_of(state: &State, kind: TableKind) -> Table {
 
 /// Formats a number with full precision; empty for `None`.
 fn digits(value: Option<f64>) -> String {
-    // Debug writes an exponent where Display would write hundreds of zeros.
-    value
-        .filter(|value| value.is_finite())
-        .map_or(String::new(), |value| format!("{value:?}"))
+    match value {
+        // Debug writes an exponent where Display would write hundreds of zeros.
+        Some(value) if value.is_finite() => format!("{value:?}"),
+        _ => String::new(),
+    }
 }
 
-fn yes(is_so: bool) -> String {
-    if is_so { "yes" } else { "no" }.to_owned()
+fn yes_or_no(value: bool) -> String {
+    if value { "yes" } else { "no" }.to_owned()
 }
 
-pub fn title(state: &State, what: &str) -> String {
+/// Returns the title for a table about the displayed condition.
+pub fn title(state: &State, subject: &str) -> String {
     let condition = state.condition();
     format!(
-        "{}, condition {} ({}): {what}",
+        "{}, condition {} ({}): {subject}",
         state.dataset().name(),
         condition.id(),
         condition.flight_state().name
     )
 }
 
-/// Row of a table: headings with their cells.
+/// Table row: headings with their cells.
 type Row = Vec<(&'static str, String)>;
 
 /// Builds a table from rows with the same headings.
 fn table_of_rows(title: String, rows: Vec<Row>) -> Table {
-    let headings = rows
-        .first()
-        .map(|row| row.iter().map(|(heading, _)| *heading).collect::<Vec<_>>());
-    let mut table = Table::new(title, headings.unwrap_or_default());
+    let headings: Vec<&'static str> = match rows.first() {
+        Some(row) => row.iter().map(|(heading, _)| *heading).collect(),
+        None => Vec::new(),
+    };
+    let mut table = Table::new(title, headings);
     for row in rows {
         table.row(row.into_iter().map(|(_, cell)| cell));
     }
     table
 }
 
+/// Builds the condition table: flight state, and counts of open tasks.
 fn conditions(state: &State) -> Table {
-    let row = |condition: &Arc<Condition>| {
-        let id = condition.id();
-        let flight = condition.flight_state();
-        let result = state.analysis().and_then(|analysis| analysis.condition(id));
-        let count = |of: &dyn Fn(&ConditionAnalysis) -> usize| {
-            result.map_or(String::new(), |result| of(result).to_string())
-        };
-        vec![
-            ("condition", id.to_string()),
-            ("name", flight.name.clone()),
-            ("airspeed [kt]", digits(Some(flight.airspeed_kt))),
-            ("altitude", flight.altitude.clone().unwrap_or_default()),
-            ("altitude [ft]", digits(flight.altitude_ft)),
-            ("weight", flight.weight.clone().unwrap_or_default()),
-            ("mass [kg]", digits(flight.mass_kg)),
-            ("scheduled", yes(state.study.choice(id).scheduled)),
-            (
-                "suggested outliers not rejected",
-                count(&|result| state.open_suggestions(result).len()),
-            ),
-            (
-                "held gains not matched",
-                count(&|result| result.gains.unmatched.len()),
-            ),
-            (
-                "held delays not matched",
-                count(&|result| result.delays.unmatched.len()),
-            ),
-        ]
-    };
-    let rows = state.dataset().conditions().iter().map(row).collect();
+    let mut rows = Vec::new();
+    for condition in state.dataset().conditions() {
+        rows.push(condition_row(state, condition));
+    }
     table_of_rows(format!("{}: conditions", state.dataset().name()), rows)
 }
 
+fn condition_row(state: &State, condition: &Condition) -> Row {
+    let id = condition.id();
+    let flight = condition.flight_state();
+    let mut suggested = String::new();
+    let mut unmatched_gains = String::new();
+    let mut unmatched_delays = String::new();
+    if let Some(result) = state.analysis().and_then(|analysis| analysis.condition(id)) {
+        suggested = state.open_suggestions(result).len().to_string();
+        unmatched_gains = result.gains.unmatched.len().to_string();
+        unmatched_delays = result.delays.unmatched.len().to_string();
+    }
+    vec![
+        ("condition", id.to_string()),
+        ("name", flight.name.clone()),
+        ("airspeed [kt]", digits(Some(flight.airspeed_kt))),
+        ("altitude", flight.altitude.clone().unwrap_or_default()),
+        ("altitude [ft]", digits(flight.altitude_ft)),
+        ("weight", flight.weight.clone().unwrap_or_default()),
+        ("mass [kg]", digits(flight.mass_kg)),
+        ("scheduled", yes_or_no(state.study.choice(id).scheduled)),
+        ("suggested outliers not rejected", suggested),
+        ("held gains not matched", unmatched_gains),
+        ("held delays not matched", unmatched_delays),
+    ]
+}
+
+/// Builds the table with a bundle's models in the displayed condition.
 fn models(state: &State, bundle: BundleKind) -> Table {
-    let condition = state.condition();
-    let shown = state.shown();
-    let choice = state.study.choice(condition.id()).bundle(bundle);
-    let row = |model: &Model| {
-        let ratio = shown.filter(|_| bundle == BundleKind::Physics);
-        let ratio = ratio.and_then(|shown| shown.discontinuity_ratio(&model.name));
-        let is_representative =
-            shown.is_some_and(|shown| shown.representative_name(bundle) == model.name);
-        vec![
-            ("model", model.name.clone()),
-            ("kept", yes(!choice.rejected.contains(&model.name))),
-            (
-                "chosen as representative",
-                yes(choice.pinned.as_ref() == Some(&model.name)),
-            ),
-            ("representative", yes(is_representative)),
-            (
-                "states",
-                model
-                    .order()
-                    .map_or(String::new(), |order| order.to_string()),
-            ),
-            (
-                "mean distance [√J]",
-                digits(shown.and_then(|shown| shown.score(bundle, &model.name))),
-            ),
-            ("discontinuity ratio", digits(ratio)),
-            (
-                "suggested",
-                ratio.map_or(String::new(), |ratio| yes(ratio > SUGGESTION_RATIO)),
-            ),
-        ]
-    };
-    let rows = condition.bundle(bundle).iter().map(row).collect();
+    let mut rows = Vec::new();
+    for model in state.condition().bundle(bundle) {
+        rows.push(model_row(state, bundle, model));
+    }
     table_of_rows(title(state, TableKind::of_bundle(bundle).name()), rows)
+}
+
+fn model_row(state: &State, bundle: BundleKind, model: &Model) -> Row {
+    let choice = state.study.choice(state.condition().id()).bundle(bundle);
+    let mut is_representative = false;
+    let mut distance = None;
+    let mut ratio = None;
+    if let Some(shown) = state.shown() {
+        is_representative = shown.representative_name(bundle) == model.name;
+        distance = shown.score(bundle, &model.name);
+        if bundle == BundleKind::Physics {
+            ratio = shown.discontinuity_ratio(&model.name);
+        }
+    }
+    let suggested = match ratio {
+        Some(ratio) => yes_or_no(ratio > SUGGESTION_RATIO),
+        None => String::new(),
+    };
+    let states = match model.order() {
+        Some(order) => order.to_string(),
+        None => String::new(),
+    };
+    let is_pinned = choice.pinned.as_ref() == Some(&model.name);
+    vec![
+        ("model", model.name.clone()),
+        ("kept", yes_or_no(!choice.rejected.contains(&model.name))),
+        ("chosen as representative", yes_or_no(is_pinned)),
+        ("representative", yes_or_no(is_representative)),
+        ("states", states),
+        ("mean distance [√J]", digits(distance)),
+        ("discontinuity ratio", digits(ratio)),
+        ("suggested", suggested),
+    ]
 }
 
 /// Returns the title with the condition and the confidence level.
 fn title_with_bars(state: &State, kind: TableKind) -> String {
-    let level = state
-        .sureness()
-        .level()
-        .map(|level| format!(", ± of {:.0} %", 100.0 * level));
-    title(
-        state,
-        &format!("{}{}", kind.name(), level.unwrap_or_default()),
-    )
+    let mut subject = kind.name().to_owned();
+    if let Some(level) = state.sureness().level() {
+        subject.push_str(&format!(", ± of {:.0} %", 100.0 * level));
+    }
+    title(state, &subject)
 }
 
-/// Returns the half-widths of a value's error bar and of its inner bar, "for this physics model":
-/// \[%\], for delays \[ms\].
-fn halves(sure: &Sureness<'_>, scalar: Scalar) -> [Option<f64>; 2] {
-    let Some((bar, level)) = sure.bar(scalar) else {
-        return [None; 2];
-    };
-    let shown = |half: f64| {
-        if scalar.is_delay() {
-            s_to_ms(half)
-        } else {
-            100.0 * half
+/// Half-widths of a value's error bar: relative \[%\], for delays \[ms\].
+#[derive(Clone, Copy, Default)]
+struct HalfWidths {
+    whole: Option<f64>,
+    /// Share from the identification: the inner bar, "for this physics model".
+    inner: Option<f64>,
+}
+
+impl HalfWidths {
+    fn new(sure: &Sureness<'_>, scalar: Scalar) -> Self {
+        let Some((bar, level)) = sure.bar(scalar) else {
+            return Self::default();
+        };
+        Self {
+            whole: displayed_half(scalar, bar.half_width(level)),
+            inner: displayed_half(scalar, bar.inner_half_width(level)),
         }
-    };
-    [bar.half_width(level), bar.inner_half_width(level)].map(|half| half.map(shown))
+    }
 }
 
-/// Builds the table of G, D, net gain, each with error bars, net delay, and J, J_mag and J_phase
+/// Converts a half-width from \[s\] or a ratio to \[ms\] or \[%\].
+fn displayed_half(scalar: Scalar, half: Option<f64>) -> Option<f64> {
+    let half = half?;
+    if scalar.is_delay() {
+        Some(s_to_ms(half))
+    } else {
+        Some(100.0 * half)
+    }
+}
+
+/// Builds the table with G, D, net gain, each with error bars, net delay, and J, J_mag and J_phase
 /// before and after.
 fn matrix(state: &State) -> Table {
+    let pairs = state.dataset().on_axis().pairs();
+    let rows = pairs.map(|pair| response_row(state, pair)).collect();
+    table_of_rows(title_with_bars(state, TableKind::Matrix), rows)
+}
+
+fn response_row(state: &State, pair: Pair) -> Row {
     let sure = state.sureness();
     let shown = state.shown();
     let settings = &state.study.settings;
-    let row = |pair: Pair| {
-        let (output, input) = state.dataset().channel_names(pair);
-        let cost = shown.and_then(|shown| shown.cost[pair]);
-        let before = cost.map(|cost| cost.uncorrected);
-        let after = cost.map(|cost| cost.corrected);
-        let [gain, gain_inner] = halves(&sure, Scalar::Gain(pair));
-        let [delay, delay_inner] =
-            shown.map_or([None; 2], |shown| halves(&sure, shown.wanted_delay(pair)));
-        let [net, net_inner] = halves(&sure, Scalar::NetGain(pair));
-        let net_delay = shown.map(|shown| s_to_ms(shown.correction.net_delay_s(pair)));
-        let words = [
-            ("output", output.to_owned()),
-            ("input", input.to_owned()),
-            ("on-axis", yes(state.dataset().on_axis()[pair])),
-            ("held", yes(settings.constrained[pair])),
-            ("fitted", yes(!settings.ignored[pair])),
-        ];
-        let values = [
-            ("G [-]", shown.and_then(|shown| shown.wanted_gain(pair))),
-            ("G ± [%]", gain),
-            ("G ± of identification [%]", gain_inner),
-            (
-                "D [ms]",
-                shown
-                    .and_then(|shown| shown.wanted_delay_s(pair))
-                    .map(s_to_ms),
-            ),
-            ("D ± [ms]", delay),
-            ("D ± of identification [ms]", delay_inner),
-            (
-                "net gain [-]",
-                shown.map(|shown| shown.correction.net_gain(pair)),
-            ),
-            ("net gain ± [%]", net),
-            ("net gain ± of identification [%]", net_inner),
-            ("net delay [ms]", net_delay),
-            ("J before", before.map(|cost| cost.total())),
-            ("J after", after.map(|cost| cost.total())),
-            ("J_mag before", before.map(|cost| cost.magnitude)),
-            ("J_mag after", after.map(|cost| cost.magnitude)),
-            ("J_phase before", before.map(|cost| cost.phase)),
-            ("J_phase after", after.map(|cost| cost.phase)),
-        ];
-        words
-            .into_iter()
-            .chain(values.map(|(heading, value)| (heading, digits(value))))
-            .collect()
+    let (output, input) = state.dataset().channel_names(pair);
+    let cost = shown.and_then(|shown| shown.cost[pair]);
+    let before = cost.map(|cost| cost.uncorrected);
+    let after = cost.map(|cost| cost.corrected);
+    let gain = HalfWidths::new(&sure, Scalar::Gain(pair));
+    let delay = match shown {
+        Some(shown) => HalfWidths::new(&sure, shown.wanted_delay(pair)),
+        None => HalfWidths::default(),
     };
-    table_of_rows(
-        title_with_bars(state, TableKind::Matrix),
-        state.dataset().on_axis().pairs().map(row).collect(),
-    )
+    let net_gain = HalfWidths::new(&sure, Scalar::NetGain(pair));
+    let wanted_delay_s = shown.and_then(|shown| shown.wanted_delay_s(pair));
+    let values = [
+        ("G [-]", shown.and_then(|shown| shown.wanted_gain(pair))),
+        ("G ± [%]", gain.whole),
+        ("G ± of identification [%]", gain.inner),
+        ("D [ms]", wanted_delay_s.map(s_to_ms)),
+        ("D ± [ms]", delay.whole),
+        ("D ± of identification [ms]", delay.inner),
+        (
+            "net gain [-]",
+            shown.map(|shown| shown.correction.net_gain(pair)),
+        ),
+        ("net gain ± [%]", net_gain.whole),
+        ("net gain ± of identification [%]", net_gain.inner),
+        (
+            "net delay [ms]",
+            shown.map(|shown| s_to_ms(shown.correction.net_delay_s(pair))),
+        ),
+        ("J before", before.map(|cost| cost.total())),
+        ("J after", after.map(|cost| cost.total())),
+        ("J_mag before", before.map(|cost| cost.magnitude)),
+        ("J_mag after", after.map(|cost| cost.magnitude)),
+        ("J_phase before", before.map(|cost| cost.phase)),
+        ("J_phase after", after.map(|cost| cost.phase)),
+    ];
+    let mut row = vec![
+        ("output", output.to_owned()),
+        ("input", input.to_owned()),
+        ("on-axis", yes_or_no(state.dataset().on_axis()[pair])),
+        ("held", yes_or_no(settings.constrained[pair])),
+        ("fitted", yes_or_no(!settings.ignored[pair])),
+    ];
+    row.extend(values.map(|(heading, value)| (heading, digits(value))));
+    row
 }
 
+/// Builds the table with channel gains, delays and their error bars.
 fn channels(state: &State) -> Table {
+    let channels = all_channels(state.dataset()).into_iter();
+    let rows = channels
+        .map(|channel| channel_row(state, channel))
+        .collect();
+    table_of_rows(title_with_bars(state, TableKind::Channels), rows)
+}
+
+fn channel_row(state: &State, channel: Channel) -> Row {
     let sure = state.sureness();
     let correction = state.shown().map(|shown| &shown.correction);
     let (inputs, outputs) = state.dataset().names_of_channels();
-    let row = |channel: Channel| {
-        let side = if matches!(channel, Channel::Input(_)) {
-            "input"
-        } else {
-            "output"
-        };
-        let [half, inner] = halves(&sure, Scalar::ChannelGain(channel));
-        let [delay_half, delay_inner] = halves(&sure, Scalar::ChannelDelay(channel));
-        let values = [
-            ("k [-]", correction.map(|of| of.gain(channel))),
-            ("k ± [%]", half),
-            ("k ± of identification [%]", inner),
-            ("τ [ms]", correction.map(|of| s_to_ms(of.delay_s(channel)))),
-            ("τ ± [ms]", delay_half),
-            ("τ ± of identification [ms]", delay_inner),
-        ];
-        let words = [
-            ("side", side.to_owned()),
-            ("channel", channel.name(&inputs, &outputs)),
-        ];
-        words
-            .into_iter()
-            .chain(values.map(|(heading, value)| (heading, digits(value))))
-            .collect()
+    let side = match channel {
+        Channel::Input(_) => "input",
+        Channel::Output(_) => "output",
     };
-    let rows = all_channels(state.dataset()).into_iter().map(row).collect();
-    table_of_rows(title_with_bars(state, TableKind::Channels), rows)
+    let gain = HalfWidths::new(&sure, Scalar::ChannelGain(channel));
+    let delay = HalfWidths::new(&sure, Scalar::ChannelDelay(channel));
+    let values = [
+        ("k [-]", correction.map(|found| found.gain(channel))),
+        ("k ± [%]", gain.whole),
+        ("k ± of identification [%]", gain.inner),
+        (
+            "τ [ms]",
+            correction.map(|found| s_to_ms(found.delay_s(channel))),
+        ),
+        ("τ ± [ms]", delay.whole),
+        ("τ ± of identification [ms]", delay.inner),
+    ];
+    let mut row = vec![
+        ("side", side.to_owned()),
+        ("channel", channel.name(&inputs, &outputs)),
+    ];
+    row.extend(values.map(|(heading, value)| (heading, digits(value))));
+    row
 }

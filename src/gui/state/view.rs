@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use gdcm_plot::figure::FigureKind;
 use gdcm_study::PhaseCorrection;
 
-/// Group of views by subject.
+/// Views grouped by subject.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ViewGroup {
     /// Responses over frequency.
@@ -15,7 +15,7 @@ pub enum ViewGroup {
     Models,
     /// Quantities over airspeed.
     Schedule,
-    /// Value of the correction.
+    /// Benefit from the correction.
     Judge,
 }
 
@@ -23,7 +23,7 @@ impl ViewGroup {
     /// Every group, from left to right.
     pub const ALL: [Self; 4] = [Self::Response, Self::Models, Self::Schedule, Self::Judge];
 
-    /// Returns the text of the group's button.
+    /// Returns the button text.
     pub fn name(self) -> &'static str {
         match self {
             Self::Response => "Response",
@@ -33,7 +33,7 @@ impl ViewGroup {
         }
     }
 
-    /// Returns the views of the group, from left to right.
+    /// Returns the group's views, from left to right.
     pub fn views(self) -> impl Iterator<Item = View> {
         View::ALL
             .into_iter()
@@ -52,30 +52,30 @@ pub enum View {
     Overview,
     /// A response in every condition.
     Across,
-    /// Poles and modes of every model of the condition.
+    /// Poles and modes for every model in the condition.
     Poles,
     /// Input mixing and output feedback (M16).
     Couplings,
     /// Channel gains over airspeed (Figures 3 and 4).
     Channels,
-    /// Benefit of the correction (Figures 8 to 19).
+    /// Benefit from the correction (Figures 8 to 19).
     Assessment,
-    /// Sources of the scatter of the gains, and the evidence for the schedule.
+    /// Sources of scatter in the gains, and the evidence for the schedule.
     Evidence,
     /// Variants, compared with the present decisions.
     Compare,
-    /// Questions of a qualification: bandwidth, modes, summary (M17).
+    /// Qualification requirements: bandwidth, modes, summary (M17).
     Requirements,
     /// Net gains over airspeed (Figures 6 and 7).
     NetGain,
-    /// Effect of delay or lead in each channel, up to ten times the band, and its price.
+    /// Effect and price of delay or lead in each channel, up to ten times the band.
     Leads,
-    /// Flight records of the condition, and models identified from them.
+    /// Flight records in the condition, and models identified from them.
     Records,
 }
 
 impl View {
-    /// Every view, in the order of the menu.
+    /// Every view, in menu order.
     pub const ALL: [Self; 14] = [
         Self::Bode,
         Self::Error,
@@ -101,17 +101,17 @@ impl View {
             .filter(move |view| view.facts().is_docked && (*view != Self::Leads || has_leads))
     }
 
-    /// Returns the text of the tab.
+    /// Returns the tab text.
     pub fn name(self) -> &'static str {
         self.facts().name
     }
 
-    /// Returns the kind of the figure on paper, if there is one.
+    /// Returns the figure kind on paper, if there is a figure.
     pub fn figure(self) -> Option<FigureKind> {
         self.facts().figure
     }
 
-    /// Returns the properties of the view: the source of tabs, menus and the palette.
+    /// Returns the view's properties, the source for tabs, menus and the palette.
     pub fn facts(self) -> ViewFacts {
         match self {
             Self::Bode => ViewFacts {
@@ -122,7 +122,7 @@ impl View {
             },
             Self::Error => ViewFacts {
                 name: "Error",
-                purpose: "What the fit sees: the ratio and the phase difference of the response in focus, and G, D and bounds",
+                purpose: "Data of the fit: magnitude ratio and phase difference of the response in focus, with G, D and bounds",
                 figure: Some(FigureKind::Error),
                 ..ViewFacts::PLAIN
             },
@@ -147,7 +147,7 @@ impl View {
             },
             Self::Couplings => ViewFacts {
                 name: "Couplings",
-                purpose: "What mixes the inputs and feeds outputs back, what that is worth, and what it does to the loop",
+                purpose: "Input mixing and output feedback, their benefit, and their effect on the loop",
                 group: ViewGroup::Models,
                 takes_dock: true,
                 is_of_all_conditions: true,
@@ -171,7 +171,7 @@ impl View {
             },
             Self::Assessment => ViewFacts {
                 name: "Assessment",
-                purpose: "What the correction is worth, condition by condition",
+                purpose: "Benefit of the correction, condition by condition",
                 group: ViewGroup::Judge,
                 is_of_all_conditions: true,
                 figure: Some(FigureKind::Assessment),
@@ -179,7 +179,7 @@ impl View {
             },
             Self::Evidence => ViewFacts {
                 name: "Evidence",
-                purpose: "What the scatter of the net gains is made of, which differences are significant, and what the schedule needs",
+                purpose: "Sources of the scatter of the net gains, significant differences, and variables of the schedule",
                 group: ViewGroup::Schedule,
                 takes_dock: true,
                 is_of_all_conditions: true,
@@ -188,13 +188,13 @@ impl View {
             },
             Self::Compare => ViewFacts {
                 name: "Compare",
-                purpose: "Variants: decisions kept under names, beside the present ones",
+                purpose: "Variants: decisions kept under names, beside the present decisions",
                 group: ViewGroup::Judge,
                 ..ViewFacts::PLAIN
             },
             Self::Requirements => ViewFacts {
                 name: "Requirements",
-                purpose: "What a qualification asks of the models: bandwidth and phase delay, modes, summary costs",
+                purpose: "Requirements of a qualification: bandwidth and phase delay, modes, summary costs",
                 group: ViewGroup::Judge,
                 takes_dock: true,
                 is_of_all_conditions: true,
@@ -203,7 +203,7 @@ impl View {
             },
             Self::Leads => ViewFacts {
                 name: "Leads",
-                purpose: "What leads do in each channel, and their price above the band",
+                purpose: "Effect of the leads in each channel, and their price above the band",
                 group: ViewGroup::Schedule,
                 is_docked: true,
                 figure: Some(FigureKind::Leads),
@@ -223,21 +223,21 @@ impl View {
     }
 }
 
-/// Properties of a view that do not depend on the study.
+/// View properties that do not depend on the study.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewFacts {
-    /// Text of the tab.
+    /// Tab text.
     pub name: &'static str,
     /// Purpose, in a sentence.
     pub purpose: &'static str,
-    /// Whether the view shows results of every condition; it then reports results of older
+    /// Whether the view shows results from every condition; it then reports results for older
     /// settings.
     pub is_of_all_conditions: bool,
     pub group: ViewGroup,
     pub is_docked: bool,
-    /// Whether it takes the room of the dock.
+    /// Whether it takes the dock's room.
     pub takes_dock: bool,
-    /// Heading in the dock, if longer than the text of the tab.
+    /// Heading in the dock, if longer than the tab text.
     pub long_name: Option<&'static str>,
     /// Figure on paper. Variants are tables and are saved as such; for records, the identified
     /// models are saved.
@@ -245,7 +245,7 @@ pub struct ViewFacts {
 }
 
 impl ViewFacts {
-    /// View of the first group without name and figure.
+    /// View in the first group without name and figure.
     const PLAIN: Self = Self {
         name: "",
         purpose: "",

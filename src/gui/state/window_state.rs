@@ -1,4 +1,4 @@
-//! State of the window: the study, finished and running computations, messages and forms.
+//! Window state: the study, finished and running computations, messages and forms.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -20,12 +20,11 @@ use gdcm_study::stages::condition_curves::ConditionCurves;
 use gdcm_study::{Analysis, AssessmentTable, ConditionAnalysis, CouplingCorrection, Study};
 
 use super::assembling::AssemblyState;
-use super::assessed_figures::AssessedFigures;
 use super::display::Display;
 use super::forms::Forms;
 use super::notices::{Bar, Notice};
 use super::records::{RecordsBefore, RecordsState};
-use super::results::{FirstResult, Results, Sureness};
+use super::results::{Results, Sureness};
 
 /// Recently opened or saved file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,7 +39,7 @@ pub struct RecentFile {
     pub missing: bool,
 }
 
-/// State of the window.
+/// Window state.
 #[derive(Debug)]
 pub struct State {
     /// The study, the only saved part.
@@ -49,29 +48,28 @@ pub struct State {
     pub is_example: bool,
     /// Whether the start page covers everything else.
     pub on_start_page: bool,
-    /// Dataset of the displayed results.
+    /// Dataset behind the displayed results.
     followed: Arc<Dataset>,
     /// Undo history.
     pub history: History<RecordsBefore>,
-    /// Name of the study's file, or a substitute.
+    /// File name of the study, or a substitute.
     pub study_name: String,
     /// Whether there are unsaved decisions.
     pub unsaved: bool,
     pub display: Display,
     pub results: Results,
     pub file_cautions: Vec<String>,
-    /// Differences between the dataset and the dataset of the saved study.
+    /// Differences between the dataset and the saved study's dataset.
     pub differences: Vec<Difference>,
-    /// Message shown.
     pub notice: Option<Notice>,
     /// Persistent messages, in bars below the menu.
     pub bars: Vec<Bar>,
     /// Recently opened and saved files, newest first.
     pub recent: Vec<RecentFile>,
-    /// Name of a file being read.
+    /// File being read.
     pub opening: Option<String>,
     pub forms: Forms,
-    /// Current step of the guided tour.
+    /// Current step in the guided tour.
     pub tour: Option<usize>,
     /// Flight records, and models identified from them.
     pub records: RecordsState,
@@ -80,7 +78,7 @@ pub struct State {
 }
 
 impl State {
-    /// Creates the state of a window that shows `study` for the first time.
+    /// Creates the state for a window that shows `study` for the first time.
     pub fn new(study: Study, study_name: String, file_cautions: Vec<String>) -> Self {
         let pair = study
             .dataset
@@ -127,7 +125,6 @@ impl State {
         )
     }
 
-    /// Returns the dataset.
     pub fn dataset(&self) -> &Dataset {
         &self.study.dataset
     }
@@ -141,7 +138,7 @@ impl State {
         found.unwrap_or(&self.study.dataset.conditions()[0])
     }
 
-    /// Returns the result of the displayed condition, if there is a result of this dataset.
+    /// Returns the displayed condition's result, if it belongs to this dataset.
     pub fn shown(&self) -> Option<&ConditionAnalysis> {
         self.outcome()?.as_ref().ok()
     }
@@ -156,105 +153,131 @@ impl State {
             .collect()
     }
 
-    /// Returns the newest outcome of the displayed condition for this dataset.
+    /// Returns the displayed condition's newest outcome for this dataset.
     pub fn outcome(&self) -> Option<&Result<ConditionAnalysis, ConditionFailure>> {
         let condition = self.condition().id();
-        let first = self.results.first.as_ref().filter(|first| {
-            first.condition == condition && Arc::ptr_eq(&first.dataset, &self.study.dataset)
-        });
-        first
-            .map(|first| &first.outcome)
-            .or_else(|| self.analysis()?.conditions.get(&condition))
+        if let Some(first) = &self.results.first
+            && first.condition == condition
+            && self.is_shown_dataset(&first.dataset)
+        {
+            return Some(&first.outcome);
+        }
+        self.analysis()?.conditions.get(&condition)
     }
 
-    /// Returns whether the results of the other conditions, and everything derived from them,
-    /// belong to older settings than the displayed condition's; this is reported beside each of
-    /// them.
+    /// Returns whether the other conditions' results, and everything derived from them, belong to
+    /// older settings than the displayed condition's; this is reported beside each of them.
     pub fn others_are_older(&self) -> bool {
-        let of_this_dataset =
-            |first: &FirstResult| Arc::ptr_eq(&first.dataset, &self.study.dataset);
-        self.results.first_is_ahead()
-            && self.results.first.as_ref().is_some_and(of_this_dataset)
-            && self.analysis().is_some()
+        match &self.results.first {
+            Some(first) => {
+                self.results.first_is_ahead()
+                    && self.is_shown_dataset(&first.dataset)
+                    && self.analysis().is_some()
+            }
+            None => false,
+        }
+    }
+
+    /// Returns whether a result belongs to the displayed dataset. Datasets are compared by pointer:
+    /// results belong to a single dataset even if another is equal.
+    fn is_shown_dataset(&self, dataset: &Arc<Dataset>) -> bool {
+        Arc::ptr_eq(dataset, &self.study.dataset)
     }
 
     /// Returns the costs of constraining or releasing each response, if they belong to the
     /// displayed result.
     pub fn toggles(&self) -> Option<&Toggles> {
         let (job, toggles) = self.results.toggles.as_ref()?;
-        job.is_of(self.shown()?).then_some(toggles)
+        if !job.is_of(self.shown()?) {
+            return None;
+        }
+        Some(toggles)
     }
 
-    /// Returns the responses of the displayed condition, for drawing.
+    /// Returns the displayed condition's responses, for drawing.
     pub fn curves(&self) -> Option<&Arc<ConditionCurves>> {
         let (job, curves) = self.results.curves.as_ref()?;
-        let fits = job.condition == self.condition().id()
-            && Arc::ptr_eq(&job.dataset, &self.study.dataset);
-        fits.then_some(curves)
+        if job.condition != self.condition().id() || !self.is_shown_dataset(&job.dataset) {
+            return None;
+        }
+        Some(curves)
     }
 
-    /// Returns the modes of every model of the displayed condition.
+    /// Returns the modes of every model in the displayed condition.
     pub fn modes(&self) -> Option<&Arc<ConditionModes>> {
         let (job, modes) = self.results.modes.as_ref()?;
-        Arc::ptr_eq(&job.condition, self.condition()).then_some(modes)
+        if !Arc::ptr_eq(&job.condition, self.condition()) {
+            return None;
+        }
+        Some(modes)
     }
 
-    /// Returns the requested assessment; until it is ready, an assessment of an older analysis of
-    /// the same dataset.
+    /// Returns the requested assessment; until it is ready, the assessment from an older analysis
+    /// of the same dataset.
     pub fn assessment(&self) -> Option<&Arc<AssessmentTable>> {
         let (job, table) = self.results.assessment.as_ref()?;
-        let of_this = Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset);
-        (of_this && job.choice == self.assessment_choice()).then_some(table)
+        if !self.is_shown_dataset(&job.analysis.study.dataset)
+            || job.choice != self.assessment_choice()
+        {
+            return None;
+        }
+        Some(table)
     }
 
     /// Returns the assessment to compute.
     pub fn assessment_choice(&self) -> AssessmentChoice {
-        let AssessedFigures {
-            model,
-            correction,
-            average,
-            ..
-        } = self.display.judging.assessed;
+        let assessed = &self.display.judging.assessed;
         AssessmentChoice {
-            model,
-            correction,
-            average: average.unwrap_or(self.study.settings.cost_average),
+            model: assessed.model,
+            correction: assessed.correction,
+            average: assessed.average.unwrap_or(self.study.settings.cost_average),
         }
     }
 
-    /// Returns the requirements; until they are ready, those of an older analysis of the same
+    /// Returns the requirements; until they are ready, those from an older analysis of the same
     /// dataset.
     pub fn requirements(&self) -> Option<&Arc<Requirements>> {
-        let (job, found) = self.results.requirements.as_ref()?;
-        Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset).then_some(found)
+        let (job, requirements) = self.results.requirements.as_ref()?;
+        if !self.is_shown_dataset(&job.analysis.study.dataset) {
+            return None;
+        }
+        Some(requirements)
     }
 
-    /// Returns the responses of the displayed condition's models to the test input, or the reason
-    /// for their absence; until they are ready, those of an older analysis of the same condition.
+    /// Returns the model responses to the test input in the displayed condition, or the reason
+    /// for their absence; until they are ready, those from an older analysis in the same condition.
     pub fn test_answers(&self) -> Option<&Result<Arc<TestAnswers>, String>> {
-        let (job, found) = self.results.test_answers.as_ref()?;
-        let of_this = Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset);
-        (of_this
-            && (job.condition, job.input)
-                == (self.condition().id(), self.display.selection.pair.input))
-            .then_some(found)
+        let (job, answers) = self.results.test_answers.as_ref()?;
+        if !self.is_shown_dataset(&job.analysis.study.dataset)
+            || job.condition != self.condition().id()
+            || job.input != self.display.selection.pair.input
+        {
+            return None;
+        }
+        Some(answers)
     }
 
-    /// Returns the comparison of a job's record with the tolerances, or the reason for its absence;
-    /// until it is ready, the comparison of an older analysis.
+    /// Returns the comparison between a job's record and the tolerances, or the reason for its
+    /// absence; until it is ready, the comparison from an older analysis.
     pub fn record_history(
         &self,
         job: &RecordHistoryJob,
     ) -> Option<&Result<Arc<RecordHistory>, String>> {
-        let (known, found) = self.results.record_history.as_ref()?;
-        (known.condition == job.condition && known.record == job.record).then_some(found)
+        let (known, history) = self.results.record_history.as_ref()?;
+        if known.condition != job.condition || known.record != job.record {
+            return None;
+        }
+        Some(history)
     }
 
-    /// Returns the models' responses to all records; until they are ready, those of an older
-    /// analysis of the same records.
+    /// Returns the models' responses to all records; until they are ready, those from an older
+    /// analysis with the same records.
     pub fn time_histories(&self) -> Option<&Arc<TimeHistories>> {
-        let (job, found) = self.results.time_histories.as_ref()?;
-        (job.records == self.records.history_records()).then_some(found)
+        let (job, histories) = self.results.time_histories.as_ref()?;
+        if job.records != self.records.history_records() {
+            return None;
+        }
+        Some(histories)
     }
 
     /// Returns the couplings requested by the study; if there are none, mixing and feedback, which
@@ -262,33 +285,43 @@ impl State {
     pub fn assessed_couplings(&self) -> CouplingCorrection {
         match self.study.settings.couplings {
             CouplingCorrection::None => CouplingCorrection::MixingAndFeedback,
-            asked => asked,
+            requested => requested,
         }
     }
 
-    /// Returns the actual or potential effect of couplings on the study; until it is ready, the
-    /// effect under older settings.
+    /// Returns the actual or potential benefit from couplings; until it is ready, the effect under
+    /// older settings.
     pub fn couplings(&self) -> Option<&AssessedCouplings> {
         let (known, assessed) = self.results.couplings.as_ref()?;
-        let of_this = Arc::ptr_eq(&known.study.dataset, &self.study.dataset);
-        (of_this && known.couplings == self.assessed_couplings()).then_some(assessed)
+        if !self.is_shown_dataset(&known.study.dataset)
+            || known.couplings != self.assessed_couplings()
+        {
+            return None;
+        }
+        Some(assessed)
     }
 
-    /// Returns the responses of a model of each condition; until they are ready, those of older
+    /// Returns a model's responses in each condition; until they are ready, those for older
     /// settings.
     pub fn across(&self) -> Option<&Arc<AcrossCurves>> {
         let (job, curves) = self.results.across.as_ref()?;
-        Arc::ptr_eq(&job.dataset, &self.study.dataset).then_some(curves)
+        if !self.is_shown_dataset(&job.dataset) {
+            return None;
+        }
+        Some(curves)
     }
 
-    /// Returns the message shown instead of missing curves, or while curves are being renewed.
+    /// Returns the message for missing curves, or while curves are being renewed.
     pub fn curves_message(&self) -> Option<&'static str> {
         let results = &self.results;
-        match self.curves() {
-            _ if results.is_behind() => Some(results.absence()),
-            Some(_) => None,
-            None if results.background.stopped => Some("not computed"),
-            None => Some("computing …"),
+        if results.is_behind() {
+            Some(results.absence())
+        } else if self.curves().is_some() {
+            None
+        } else if results.background.stopped {
+            Some("not computed")
+        } else {
+            Some("computing …")
         }
     }
 
@@ -300,7 +333,10 @@ impl State {
     /// Returns the newest analysis, if it belongs to the displayed dataset.
     pub fn analysis(&self) -> Option<&Analysis> {
         let analysis = self.results.analysis.as_deref()?;
-        Arc::ptr_eq(&analysis.study.dataset, &self.study.dataset).then_some(analysis)
+        if !self.is_shown_dataset(&analysis.study.dataset) {
+            return None;
+        }
+        Some(analysis)
     }
 
     /// Returns the uncertainty of the newest analysis; `None` until it is computed, besides the
@@ -308,21 +344,28 @@ impl State {
     pub fn uncertainty(&self) -> Option<&Arc<Uncertainty>> {
         let (job, uncertainty) = self.results.uncertainty.as_ref()?;
         self.analysis()?;
-        Arc::ptr_eq(&job.analysis, self.results.analysis.as_ref()?).then_some(uncertainty)
+        if !Arc::ptr_eq(&job.analysis, self.results.analysis.as_ref()?) {
+            return None;
+        }
+        Some(uncertainty)
     }
 
-    /// Returns the uncertainty of the displayed condition's values; empty until it is computed, or
-    /// if it belongs to older settings.
+    /// Returns the uncertainty for values in the displayed condition; empty until it is computed,
+    /// or if it belongs to older settings.
     pub fn sureness(&self) -> Sureness<'_> {
-        let uncertainty = self.uncertainty().filter(|_| !self.others_are_older());
+        let uncertainty = if self.others_are_older() {
+            None
+        } else {
+            self.uncertainty()
+        };
         Sureness {
             condition: self.condition().id(),
             uncertainty: uncertainty.map(AsRef::as_ref),
         }
     }
 
-    /// Returns the newest analysis with its uncertainty, as far as computed: the basis of files and
-    /// derivations.
+    /// Returns the newest analysis with its uncertainty, as far as computed: the basis for files
+    /// and derivations.
     pub fn analysis_with_bars(&self) -> Option<Analysis> {
         let analysis = self.analysis()?.clone();
         Some(Analysis {
@@ -362,19 +405,15 @@ impl State {
         self.display.frequency.fit();
     }
 
-    /// Returns the number of kept models in a bundle of the displayed condition: "14 of 19".
+    /// Counts the kept models in a bundle: "14 of 19".
     pub fn kept_words(&self, kind: BundleKind) -> String {
         let count = self.condition().bundle(kind).len();
-        let rejected = self
-            .study
-            .choice(self.condition().id())
-            .bundle(kind)
-            .rejected
-            .len();
+        let choice = self.study.choice(self.condition().id());
+        let rejected = choice.bundle(kind).rejected.len();
         format!("{} of {count}", count - rejected)
     }
 
-    /// Returns the id of a model of the displayed condition.
+    /// Returns the id of a model in the displayed condition.
     pub fn model_id(&self, bundle: BundleKind, name: &str) -> ModelId {
         ModelId::new(self.condition().id(), bundle, name)
     }
@@ -389,7 +428,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stop_before_the_first_result_leaves_none_and_one_after_it_leaves_that() {
+    fn after_a_stop_the_results_of_this_dataset_stay() {
         let study = Study::new(embedded_example().unwrap().dataset);
         let mut state = State::new(study.clone(), String::new(), Vec::new());
         assert_eq!(state.after_stop(), "there are no results yet");
@@ -405,7 +444,7 @@ mod tests {
         assert_eq!(
             state.after_stop(),
             "there are no results yet",
-            "of the dataset that is shown now"
+            "no results of the displayed dataset"
         );
     }
 }

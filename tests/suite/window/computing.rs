@@ -337,10 +337,10 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     assert!(state(&window).uncertainty().is_none() && counts(&window).is_none());
     assert_eq!(
         copied(&mut window),
-        format!("{done}; without error bars, for computing them was stopped")
+        format!("{done}; without error bars: their computation was stopped")
     );
     drop(closed);
-    window.get_by_label("Error bars: stopped; Compute, below, goes on with them");
+    window.get_by_label("Error bars: stopped; Compute, below, continues them");
     click(&mut window, "Compute");
     wait_for_bars(&mut window);
     assert!(

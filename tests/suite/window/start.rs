@@ -103,7 +103,7 @@ fn what_opens_first_is_a_preference() {
         .state_mut()
         .dispatch(LayoutCommand::BeginWith(OpensWith::LastStudy));
     assert_eq!(
-        Preferences::of(&state(&window).display).opens_with,
+        Preferences::from_display(&state(&window).display).opens_with,
         OpensWith::LastStudy,
         "and is kept"
     );

@@ -77,7 +77,7 @@ fn controls_of_plots_side_by_side_have_names_of_their_own() {
 fn an_arrangement_is_remembered_and_one_command_resets_it() {
     let mut window = window();
     give(&mut window, LayoutCommand::ShowBeside(Some(View::Poles)));
-    let kept = Preferences::of(&state(&window).display);
+    let kept = Preferences::from_display(&state(&window).display);
     let mut other = window_with(
         example(),
         Setup {

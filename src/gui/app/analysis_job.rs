@@ -1,0 +1,103 @@
+//! The live answer as a job.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use gdcm_method::correction::{Problem, Solution};
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_study::jobs::job::Job;
+use gdcm_study::results::analysis::ConditionFailure;
+use gdcm_study::stages::engine::WantedFirst;
+use gdcm_study::{Analysis, ConditionAnalysis, Engine, Study};
+
+use super::threads::ReplySender;
+use crate::gui::state::results::FirstResult;
+
+/// A problem with its gains, proven optimal by another job.
+pub(super) type Proof = (Arc<Problem>, Arc<Solution>);
+
+/// Live answer to the current study and condition. All parts are shared, so a request is cheap.
+#[derive(Clone)]
+pub(super) struct AnalysisJob {
+    /// Job number: a proof that arrives later creates another job for the same request.
+    pub(super) number: u64,
+    /// Request number; the newest is the greatest.
+    pub(super) generation: u64,
+    pub(super) study: Study,
+    /// The displayed condition, whose result and curves come first.
+    pub(super) condition: ConditionId,
+    /// Problems proven since the last answer.
+    pub(super) proofs: Vec<Proof>,
+    /// Receives the displayed condition's result, ahead of the others.
+    pub(super) replies: ReplySender,
+}
+
+impl AnalysisJob {
+    /// Returns whether the request contains a proof for this very problem.
+    pub(super) fn has_proof_of(&self, problem: &Arc<Problem>) -> bool {
+        self.proofs
+            .iter()
+            .any(|(proven, _)| Arc::ptr_eq(problem, proven))
+    }
+
+    /// Shows the displayed condition's result before the whole analysis is complete.
+    fn send_first(&self, outcome: &Result<ConditionAnalysis, ConditionFailure>) {
+        let first = FirstResult {
+            generation: self.generation,
+            dataset: Arc::clone(&self.study.dataset),
+            condition: self.condition,
+            outcome: outcome.clone(),
+        };
+        self.replies
+            .send(move |app| app.state.results.first = Some(first));
+    }
+
+    /// Returns whether both jobs compare the models at the same frequencies in the same condition.
+    fn compares_the_same(&self, other: &Self) -> bool {
+        let settings = &self.study.settings;
+        let others = &other.study.settings;
+        Arc::ptr_eq(&self.study.dataset, &other.study.dataset)
+            && self.condition == other.condition
+            && settings.band == others.band
+            && settings.points == others.points
+    }
+}
+
+impl PartialEq for AnalysisJob {
+    fn eq(&self, other: &Self) -> bool {
+        self.number == other.number
+    }
+}
+
+impl Job for AnalysisJob {
+    type Tools = Engine;
+    /// The analysis and its computing time \[ms\].
+    type Output = (Arc<Analysis>, f64);
+
+    fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let started = Instant::now();
+        for (problem, solution) in &self.proofs {
+            engine.take_gains(problem, solution);
+        }
+        let first = WantedFirst {
+            condition: self.condition,
+            tell: &|outcome| self.send_first(outcome),
+        };
+        let analysis = engine.analyze_first(&self.study, Some(first), progress)?;
+        Ok((Arc::new(analysis), 1e3 * started.elapsed().as_secs_f64()))
+    }
+
+    /// Returns whether this job should continue although a newer one waits. A job with the same
+    /// request number does. So does a job whose responses and distances are still being computed if
+    /// the newer job needs the same; otherwise only the displayed condition would keep up with a
+    /// steady drag.
+    fn serves(&self, newer: &Self, done: usize, total: usize) -> bool {
+        if self.generation == newer.generation {
+            return true;
+        }
+        // The last step in each condition is its optimum, which depends on other settings too.
+        let is_compared = total > 0 && done + self.study.dataset.conditions().len() >= total;
+        !is_compared && self.compares_the_same(newer)
+    }
+}

@@ -1,0 +1,141 @@
+//! A kind of job: its trigger, the destination for its output, and its queue.
+
+use gdcm_study::jobs::job::Job;
+
+use super::GdcmApp;
+use super::job_pool::{JobPool, LaneClass};
+use super::job_queue::{Ending, JobQueue};
+use super::threads::ReplySender;
+use crate::gui::state::results::Background;
+
+/// A kind of job.
+pub(super) struct JobKind<J: Job> {
+    /// Returns the jobs needed by the current display, the most urgent first; jobs no longer needed
+    /// are cancelled.
+    pub(super) wanted: fn(&mut GdcmApp) -> Vec<J>,
+    /// Stores a job's output.
+    pub(super) store: fn(&mut GdcmApp, J, J::Output),
+    /// Reports running work.
+    pub(super) report: fn(&JobQueue<J>, &mut Background),
+    /// Withdraws a request with its own trigger after a stop or a fault; that trigger, not
+    /// "Compute", starts it again.
+    pub(super) withdraw: Option<fn(&mut GdcmApp)>,
+}
+
+impl<J: Job> JobKind<J> {
+    /// Creates a kind that "Compute" restarts after a stop, and whose jobs count among those that
+    /// views wait for.
+    pub(super) fn new(
+        wanted: fn(&mut GdcmApp) -> Vec<J>,
+        store: fn(&mut GdcmApp, J, J::Output),
+    ) -> Self {
+        Self {
+            wanted,
+            store,
+            report: |queue, background| background.views += queue.unfinished().len(),
+            withdraw: None,
+        }
+    }
+
+    /// Replaces the report about running work.
+    pub(super) fn with_report(mut self, report: fn(&JobQueue<J>, &mut Background)) -> Self {
+        self.report = report;
+        self
+    }
+
+    /// Gives the jobs their own trigger, which `withdraw` resets.
+    pub(super) fn with_withdrawal(mut self, withdraw: fn(&mut GdcmApp)) -> Self {
+        self.withdraw = Some(withdraw);
+        self
+    }
+}
+
+/// Interface common to all kinds of jobs.
+pub(super) trait AnyJobKind {
+    /// Requests exactly the jobs that the display needs.
+    fn want(&self, app: &mut GdcmApp);
+    /// Cancels the running job and the waiting ones.
+    fn stop(&self, app: &mut GdcmApp);
+    /// Allows stopped jobs to start again.
+    fn resume(&self);
+    /// Adds the running work to `background`.
+    fn report(&self, background: &mut Background);
+}
+
+/// A kind of job with its queue.
+struct QueuedKind<J: Job> {
+    kind: JobKind<J>,
+    queue: JobQueue<J>,
+}
+
+impl<J: Job> AnyJobKind for QueuedKind<J> {
+    fn want(&self, app: &mut GdcmApp) {
+        self.queue.want((self.kind.wanted)(app));
+    }
+
+    fn stop(&self, app: &mut GdcmApp) {
+        self.queue.stop();
+        if let Some(withdraw) = self.kind.withdraw {
+            withdraw(app);
+        }
+    }
+
+    fn resume(&self) {
+        self.queue.resume();
+    }
+
+    fn report(&self, background: &mut Background) {
+        (self.kind.report)(&self.queue, background);
+        background.stopped |= self.kind.withdraw.is_none() && self.queue.is_stopped();
+    }
+}
+
+/// The kinds of jobs in a pool, the most urgent first.
+pub(super) struct JobKinds<'a> {
+    pool: &'a JobPool,
+    replies: &'a ReplySender,
+    kinds: Vec<Box<dyn AnyJobKind>>,
+}
+
+impl<'a> JobKinds<'a> {
+    pub(super) fn new(pool: &'a JobPool, replies: &'a ReplySender) -> Self {
+        Self {
+            pool,
+            replies,
+            kinds: Vec::new(),
+        }
+    }
+
+    /// Adds a kind that is less urgent than all before. `make_tools` creates the tools for its
+    /// jobs.
+    pub(super) fn add<J: Job>(
+        &mut self,
+        class: LaneClass,
+        make_tools: impl Fn() -> J::Tools + Send + Sync + 'static,
+        kind: JobKind<J>,
+    ) where
+        J::Tools: Send,
+    {
+        let replies = self.replies.clone();
+        let JobKind {
+            store, withdraw, ..
+        } = kind;
+        let deliver = move |job: J, ending: Ending<J>| {
+            replies.send(move |app| match ending {
+                Ok(output) => store(app, job, output),
+                Err(fault) => {
+                    if let Some(withdraw) = withdraw {
+                        withdraw(app);
+                    }
+                    app.report_fault("the computation", &fault);
+                }
+            });
+        };
+        let queue = JobQueue::open(self.pool, class, make_tools, deliver);
+        self.kinds.push(Box::new(QueuedKind { kind, queue }));
+    }
+
+    pub(super) fn into_kinds(self) -> Vec<Box<dyn AnyJobKind>> {
+        self.kinds
+    }
+}

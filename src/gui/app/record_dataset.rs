@@ -1,0 +1,169 @@
+//! Makes a dataset from flight records, in a thread.
+
+use std::path::{Path, PathBuf};
+
+use gdcm_io::files::dataset_file::add_dataset;
+use gdcm_io::import::record_files::{read_records, relative_entry};
+use gdcm_model::dataset::{Band, Dataset};
+use gdcm_sysid::records::dataset_of_records::dataset_of_records;
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish, with_topics_joined};
+
+use super::GdcmApp;
+use super::document_files::DatasetOfRecords;
+use super::readers::SilentProgress;
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::wanted_dataset::WantedDataset;
+
+/// Maximum count of reported problems.
+const MOST_PROBLEMS: usize = 6;
+
+/// Sources and settings for a dataset to be made from records.
+struct DatasetRequest {
+    sources: Vec<PathBuf>,
+    channels: RecordChannels,
+    band: Band,
+    /// Path to the dataset's file.
+    path: PathBuf,
+}
+
+/// A dataset with its origin.
+struct MadeDataset {
+    dataset: Dataset,
+    origin: DatasetOfRecords,
+}
+
+impl GdcmApp {
+    /// Returns how the displayed dataset was made from records, if it was.
+    pub(super) fn made_of_records(&self) -> Option<&DatasetOfRecords> {
+        self.files
+            .made_of_records
+            .as_ref()
+            .filter(|made| self.files.loaded.path() == Some(&made.path))
+    }
+
+    /// Asks for a new dataset's channels, with a proposal based on the displayed record.
+    pub(super) fn ask_record_dataset(&mut self) {
+        let condition = self.state.condition().id();
+        let Some(records) = self.state.records.conditions.get(&condition) else {
+            return;
+        };
+        let path = match self.state.records.sources.first() {
+            Some(source) => source.with_extension("json.gz").display().to_string(),
+            None => String::new(),
+        };
+        self.state.records.wanted =
+            WantedDataset::proposed(records, self.state.study.settings.band, path);
+        self.state.forms.shown = Some(FormKind::RecordDataset);
+    }
+
+    /// Makes a dataset with the requested channels from the added files, in a thread; writes and
+    /// opens it.
+    pub(super) fn make_record_dataset(&mut self) {
+        let records = &mut self.state.records;
+        records.wanted.problems.clear();
+        let (channels, band) = match records.wanted.channels() {
+            Ok(parsed) => parsed,
+            Err(problem) => return records.wanted.problems.push(problem),
+        };
+        let typed = PathBuf::from(records.wanted.path.trim());
+        let request = DatasetRequest {
+            sources: records.sources.clone(),
+            channels,
+            band,
+            path: self.files.at_home(typed),
+        };
+        let reading = self.readers.record_reader.join();
+        let number = reading.number;
+        self.state.records.reading = Some("records".to_owned());
+        let make = move || request.make(&SilentProgress(reading.stop));
+        self.in_thread("a dataset of records", make, move |app, made| {
+            if !app.readers.record_reader.is_newest(number) {
+                return;
+            }
+            app.state.records.reading = None;
+            match made {
+                Some(Ok(made)) => app.write_record_dataset(made),
+                Some(Err(problems)) => app.state.records.wanted.problems = problems,
+                None => {}
+            }
+        });
+    }
+
+    /// Writes a dataset and opens it.
+    fn write_record_dataset(&mut self, made: MadeDataset) {
+        let MadeDataset { dataset, origin } = made;
+        let written = self.write_all(&[&origin.path], |outputs| {
+            add_dataset(&dataset, &origin.path, outputs)
+        });
+        match written {
+            Ok(()) => {
+                self.state.forms.shown = None;
+                self.open(origin.path.clone(), None);
+                self.files.made_of_records = Some(origin);
+            }
+            Err(error) => self.written(
+                Err(error),
+                FormKind::RecordDataset,
+                RecordsCommand::MakeDataset.into(),
+            ),
+        }
+    }
+}
+
+impl DatasetRequest {
+    /// Builds a dataset from the records that contain the requested channels; fills in the units
+    /// for the channels.
+    ///
+    /// # Errors
+    /// Problems in the records, if no record is suitable, or the dataset's fault.
+    fn make(self, progress: &SilentProgress) -> Result<MadeDataset, Vec<String>> {
+        let Self {
+            sources,
+            mut channels,
+            band,
+            path,
+        } = self;
+        let read = read_records(&sources, progress).map_err(|error| vec![error.to_string()])?;
+        let mut problems: Vec<String> = read.faults;
+        let mut entries = Vec::new();
+        for table in with_topics_joined(read.tables, &channels, &TimeWish::default()) {
+            let (row, _) = LaidOutRecord::proposed(table, &channels, &TimeWish::default());
+            for problem in &row.problems {
+                problems.push(format!("{}: {problem}", row.table.name));
+            }
+            if row.problems.is_empty() {
+                channels.take_units(&row.layout, &row.table);
+                let entry = row
+                    .layout
+                    .condition_record(&row.table, &row.guess, &channels);
+                entries.push(relative_entry(entry, &sources, &path));
+            }
+        }
+        if entries.is_empty() {
+            problems.truncate(MOST_PROBLEMS);
+            return Err(problems);
+        }
+        let dataset = dataset_of_records(&dataset_name(&path), &channels, band, entries)
+            .map_err(|error| vec![error.to_string()])?;
+        let left_out = problems
+            .into_iter()
+            .map(|problem| format!("left out of the dataset: {problem}"))
+            .collect();
+        let origin = DatasetOfRecords {
+            path,
+            channels,
+            left_out,
+        };
+        Ok(MadeDataset { dataset, origin })
+    }
+}
+
+/// Returns the file name up to its first dot.
+fn dataset_name(path: &Path) -> String {
+    let Some(name) = path.file_name() else {
+        return String::new();
+    };
+    let name = name.to_string_lossy();
+    name.split('.').next().unwrap_or_default().to_owned()
+}

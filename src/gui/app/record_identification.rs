@@ -1,0 +1,130 @@
+//! Model identification from flight records: starts and stops the jobs, and takes the models
+//! into the study.
+
+use std::sync::Arc;
+
+use gdcm_model::dataset::ConditionId;
+use gdcm_study::Edit;
+use gdcm_study::decisions::adopted_models::{AdoptedModels, OfferedModels};
+use gdcm_study::jobs::identification_jobs::IdentifyJob;
+use gdcm_sysid::identification::{Identification, IdentificationError};
+
+use super::GdcmApp;
+use crate::gui::state::records_page::RecordsPage;
+
+impl GdcmApp {
+    /// Returns a condition's identification band \[rad/s\]: its own, or the study's.
+    pub(super) fn identified_band(&self, condition: ConditionId) -> [f64; 2] {
+        let records = self.state.records.conditions.get(&condition);
+        if let Some(own) = records.and_then(|records| records.band) {
+            return own;
+        }
+        let band = self.state.study.settings.band;
+        [band.min(), band.max()]
+    }
+
+    /// Requests identification in these conditions; a waiting job for the same condition is
+    /// replaced.
+    pub(super) fn identify_conditions(&mut self, conditions: &[ConditionId]) {
+        if self.state.records.running.is_empty() {
+            self.state.records.asked = 0;
+        }
+        let mut refusal = None;
+        for id in conditions {
+            self.follow_band(*id);
+            let band = self.identified_band(*id);
+            let channels = self.record_channels(*id);
+            let Some(records) = self.state.records.conditions.get(id) else {
+                continue;
+            };
+            match records.job(*id, band, &channels) {
+                Ok(job) => self.state.records.request_job(job),
+                Err(problem) => refusal = Some(format!("condition {id}: {problem}")),
+            }
+        }
+        let page = &mut self.state.records.page;
+        if let RecordsPage::Histories | RecordsPage::Columns | RecordsPage::Inputs = page {
+            *page = RecordsPage::Response;
+        }
+        if let Some(refusal) = refusal {
+            self.notify_error(refusal);
+        }
+    }
+
+    /// Stops running and waiting identification jobs; they can be started again.
+    pub(super) fn stop_identifying(&mut self) {
+        let unfinished = std::mem::take(&mut self.state.records.running).len();
+        let requested = self.state.records.asked;
+        if requested > 1 && unfinished > 0 {
+            self.done(format!(
+                "stopped identifying after {} of {requested} conditions",
+                requested.saturating_sub(unfinished)
+            ));
+        }
+    }
+
+    /// Stores an identification's outcome, unless it was stopped in the meantime.
+    pub(super) fn identified(
+        &mut self,
+        job: IdentifyJob,
+        outcome: Result<Arc<Identification>, IdentificationError>,
+    ) {
+        if !self.state.records.running.contains(&job) {
+            return;
+        }
+        self.state.records.running.retain(|other| *other != job);
+        let requested = self.state.records.asked;
+        if self.state.records.running.is_empty() && requested > 1 {
+            self.done(format!(
+                "finished: models of {requested} conditions identified"
+            ));
+            self.state.records.page = RecordsPage::Conditions;
+        }
+        if let Some(records) = self.state.records.conditions.get_mut(&job.condition) {
+            records.changed = false;
+            records.found = Some((job, outcome));
+        }
+    }
+
+    /// Takes these conditions' identified models into the study.
+    pub(super) fn take_identified(&mut self, conditions: &[ConditionId], offered: OfferedModels) {
+        let adopted = self.adopted_models(conditions, offered);
+        if adopted.is_empty() {
+            return self.notify_error("nothing was identified yet".to_owned());
+        }
+        let models: usize = adopted
+            .iter()
+            .map(|(_, adopted)| adopted.models.len())
+            .sum();
+        let names: Vec<String> = adopted.iter().map(|(id, _)| id.to_string()).collect();
+        let before = self.state.study.clone();
+        self.decide(&Edit::TakeModels(adopted));
+        if self.state.study != before {
+            let conditions = if names.len() == 1 {
+                "condition"
+            } else {
+                "conditions"
+            };
+            let names = names.join(", ");
+            self.done(format!("took {models} models into {conditions} {names}"));
+        }
+    }
+
+    /// Returns the identified models by condition, without conditions that have none.
+    fn adopted_models(
+        &self,
+        conditions: &[ConditionId],
+        offered: OfferedModels,
+    ) -> Vec<(ConditionId, Arc<AdoptedModels>)> {
+        let mut adopted = Vec::new();
+        for id in conditions {
+            let Some(records) = self.state.records.conditions.get(id) else {
+                continue;
+            };
+            if let Some(models) = records.adopted(offered, &self.record_channels(*id)) {
+                adopted.push((*id, models));
+            }
+        }
+        adopted
+    }
+}

@@ -1,0 +1,227 @@
+//! Reads flight records from files; runs in a reading thread.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use gdcm_io::import::record_files::{example_records, load_records, read_records};
+use gdcm_io::reading_budget::ReadingBudget;
+use gdcm_io::{DatasetOrigin, FileError, FolderProgress};
+use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_sysid::records::{
+    LaidOutRecord, RecordChannels, RecordTable, TimeWish, with_topics_joined,
+};
+
+use super::readers::SilentProgress;
+
+/// Records read, by condition, and the faults found.
+#[derive(Default)]
+pub(super) struct ReadRecords {
+    /// Records that belong to conditions without loaded records.
+    pub(super) own: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
+    /// Records from the added files.
+    pub(super) added: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
+    pub(super) faults: Vec<String>,
+    /// File paths, by SHA-256.
+    pub(super) read_from: BTreeMap<String, PathBuf>,
+}
+
+/// Source for records that belong to conditions.
+#[derive(Clone)]
+pub(super) struct OwnRecords {
+    pub(super) dataset: Arc<Dataset>,
+    pub(super) origin: DatasetOrigin,
+}
+
+/// A record named by the dataset, and its condition.
+struct NamedRecord<'a> {
+    condition: ConditionId,
+    entry: &'a ConditionRecord,
+}
+
+impl OwnRecords {
+    /// Returns whether a condition may have its own records.
+    pub(super) fn has_some(&self, id: ConditionId) -> bool {
+        match &self.origin {
+            DatasetOrigin::EmbeddedExample => true,
+            DatasetOrigin::File(_) => !self.entries(id).is_empty(),
+        }
+    }
+
+    fn entries(&self, id: ConditionId) -> &[ConditionRecord] {
+        match self.dataset.condition(id) {
+            Some(condition) => condition.records(),
+            None => &[],
+        }
+    }
+
+    /// Reads the conditions' records: those named by the dataset, or the records embedded in the
+    /// example. Every condition gets an entry, even an empty one.
+    ///
+    /// # Errors
+    /// The fault in an embedded record; faults in files are collected in `found`.
+    pub(super) fn read(
+        &self,
+        ids: &[ConditionId],
+        channels: &RecordChannels,
+        stop: &Arc<AtomicBool>,
+        found: &mut ReadRecords,
+    ) -> Result<(), FileError> {
+        let channels = channels.clone().of_named_records();
+        for id in ids {
+            let rows = found.own.entry(*id).or_default();
+            if self.origin == DatasetOrigin::EmbeddedExample {
+                for table in example_records(id.0)? {
+                    rows.push(laid_out(table, &channels, None));
+                }
+            }
+        }
+        if let DatasetOrigin::File(path) = &self.origin {
+            let folder = path.parent().unwrap_or(Path::new(""));
+            for (file, records) in self.records_by_file(ids) {
+                read_named_records(&folder.join(file), &records, &channels, stop, found);
+            }
+        }
+        Ok(())
+    }
+
+    /// Groups named records by file, so that a file with several records is read once.
+    fn records_by_file(&self, ids: &[ConditionId]) -> BTreeMap<&str, Vec<NamedRecord<'_>>> {
+        let mut by_file: BTreeMap<&str, Vec<NamedRecord<'_>>> = BTreeMap::new();
+        for id in ids {
+            for entry in self.entries(*id) {
+                let named = NamedRecord {
+                    condition: *id,
+                    entry,
+                };
+                by_file.entry(&entry.file).or_default().push(named);
+            }
+        }
+        by_file
+    }
+}
+
+/// Reads the named records in a single file into `found`.
+fn read_named_records(
+    path: &Path,
+    records: &[NamedRecord<'_>],
+    channels: &RecordChannels,
+    stop: &Arc<AtomicBool>,
+    found: &mut ReadRecords,
+) {
+    let variables: Vec<Option<&str>> = records
+        .iter()
+        .map(|named| named.entry.variable.as_deref())
+        .collect();
+    let budget = ReadingBudget::default().stopped_by(Arc::clone(stop));
+    let tables = match load_records(path, &variables, &budget) {
+        Ok(tables) => tables,
+        Err(error) => {
+            found.faults.push(error.to_string());
+            return;
+        }
+    };
+    for (NamedRecord { condition, entry }, table) in records.iter().zip(tables) {
+        let table = match table {
+            Ok(table) => table,
+            Err(error) => {
+                found.faults.push(error.to_string());
+                continue;
+            }
+        };
+        let sha256 = table.source.sha256.clone();
+        found.read_from.insert(sha256, canonical_path(path));
+        let table = RecordTable {
+            name: entry.name.clone(),
+            part_s: entry.part_s,
+            ..table
+        };
+        let row = laid_out(table, channels, None).as_said(entry, channels);
+        found.own.entry(*condition).or_default().push(row);
+    }
+}
+
+/// Files added by the engineer, with the conditions that their records may belong to.
+pub(super) struct AddedFiles {
+    pub(super) paths: Vec<PathBuf>,
+    pub(super) own: OwnRecords,
+    /// The displayed condition, for records whose names match no condition.
+    pub(super) shown: ConditionId,
+    /// Conditions whose records are loaded.
+    pub(super) loaded: BTreeSet<ConditionId>,
+}
+
+impl AddedFiles {
+    /// Reads the records in the files and assigns each to the condition in its name, or else to the
+    /// displayed condition. Also reads these conditions' own records if they are not loaded yet.
+    ///
+    /// # Errors
+    /// The fault in a path; faults in single files are collected.
+    pub(super) fn read(
+        &self,
+        channels: &RecordChannels,
+        progress: &SilentProgress,
+    ) -> Result<ReadRecords, FileError> {
+        let read = read_records(&self.paths, progress)?;
+        let mut found = ReadRecords {
+            faults: read.faults,
+            ..ReadRecords::default()
+        };
+        for words in read.ignored {
+            found.faults.push(format!("no record: {words}"));
+        }
+        for table in with_topics_joined(read.tables, channels, &TimeWish::default()) {
+            if let Some(path) = find_file(&table.source.file, &self.paths) {
+                found.read_from.insert(table.source.sha256.clone(), path);
+            }
+            let row = laid_out(table, channels, Some(&self.own.dataset));
+            let own_condition = row.guess.condition_of(&self.own.dataset);
+            let id = own_condition.unwrap_or(self.shown);
+            found.added.entry(id).or_default().push(row);
+        }
+        let mut unloaded: Vec<ConditionId> = found.added.keys().copied().collect();
+        unloaded.retain(|id| !self.loaded.contains(id));
+        self.own
+            .read(&unloaded, channels, &progress.stop(), &mut found)?;
+        Ok(found)
+    }
+}
+
+/// Lays out a record, following the dataset's entry for it if there is such a state.
+fn laid_out(
+    table: RecordTable,
+    channels: &RecordChannels,
+    dataset: Option<&Dataset>,
+) -> LaidOutRecord {
+    let time = TimeWish::default();
+    let (mut row, notes) = match dataset {
+        Some(dataset) => LaidOutRecord::as_dataset_says(table, channels, dataset, &time),
+        None => LaidOutRecord::proposed(table, channels, &time),
+    };
+    if row.layout.is_resampled(&row.table, channels) {
+        Arc::make_mut(&mut row.table).notes.extend(notes);
+    }
+    row
+}
+
+/// Returns the canonical path, or the path as given if the file system cannot resolve it.
+fn canonical_path(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+}
+
+/// Finds a record's file among the added paths: a path itself, or a file inside an added folder.
+fn find_file(name: &str, paths: &[PathBuf]) -> Option<PathBuf> {
+    for path in paths {
+        let own_name = path.file_name().map(|name| name.to_string_lossy());
+        if own_name.is_some_and(|own_name| own_name == name) {
+            return Some(canonical_path(path));
+        }
+        let inside = path.join(name);
+        if inside.is_file() {
+            return Some(canonical_path(&inside));
+        }
+    }
+    None
+}

@@ -1,0 +1,163 @@
+//! The report: asks for its path, and writes it in a job.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use gdcm_io::output_set::OutputSet;
+use gdcm_io::report::{ReportSource, ReportSubject, report, save_report};
+use gdcm_io::{Existing, FileError};
+use gdcm_model::message_text::sanitized_path;
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_study::jobs::job::Job;
+use gdcm_study::results::required_modes::KnownPoles;
+use gdcm_study::results::time_histories::HistoryRecords;
+use gdcm_study::{Analysis, Engine};
+
+use super::GdcmApp;
+use super::files::study_name;
+use crate::gui::commands::command::Command;
+use crate::gui::commands::output::OutputCommand;
+use crate::gui::state::forms::FormKind;
+
+impl GdcmApp {
+    /// Asks where to write the report, unless there are no results yet.
+    pub(super) fn ask_report(&mut self) {
+        let analysis = self.analysis_to_write("write the report");
+        if self.unless_error(analysis).is_none() {
+            return;
+        }
+        let study = self.files.saved.path.as_deref();
+        let name = report_name(study.or(self.files.loaded.path()));
+        let path = self.state.forms.typed_in(FormKind::Report);
+        *path = Path::new(path.trim())
+            .with_file_name(name)
+            .display()
+            .to_string();
+        self.state.forms.shown = Some(FormKind::Report);
+    }
+
+    /// Starts writing the report; asks before overwriting a file.
+    pub(super) fn write_report(&mut self, path: PathBuf) {
+        let Some(analysis) = self.unless_error(self.analysis_to_write("write the report")) else {
+            return;
+        };
+        let path = self.files.at_home(path);
+        if let Err(error) = self.outputs().check(&[&path]) {
+            return self.report_failed(error, path);
+        }
+        self.state.forms.shown = None;
+        self.work.reporting = Some(ReportJob {
+            // The live answer does not depend on the requirements and may have older ones.
+            analysis: Arc::new(analysis.asked_with(&self.state.study.requirements)),
+            records: self.state.records.history_records(),
+            known: self.state.records.known_poles(),
+            source: ReportSource::of(&self.files.loaded, self.files.saved.path.as_deref()),
+            path,
+            existing: self.dialogs.existing,
+            inputs: self.files.inputs(),
+        });
+    }
+
+    /// Reports that a report is written, or its fault.
+    pub(super) fn report_written(&mut self, job: ReportJob, outcome: Result<(), FileError>) {
+        self.work.reporting = None;
+        match outcome {
+            Ok(()) => self.done(format!("wrote the report {}", sanitized_path(&job.path))),
+            Err(error) => self.report_failed(error, job.path),
+        }
+    }
+
+    /// Asks whether the report may overwrite a file, or reports the fault.
+    fn report_failed(&mut self, error: FileError, path: PathBuf) {
+        let again = Command::Output(OutputCommand::WriteReport(path));
+        self.written(Err(error), FormKind::Report, again);
+    }
+
+    /// Reports that a running report was stopped, by hand or by a fault.
+    pub(super) fn give_up_report(&mut self) {
+        if let Some(job) = self.work.reporting.take() {
+            let path = sanitized_path(&job.path);
+            self.notify_error(format!("{path} was not written: it was stopped"));
+        }
+    }
+}
+
+/// Job that builds and writes a report; takes seconds, because it draws every plot.
+#[derive(Clone, Debug)]
+pub struct ReportJob {
+    pub analysis: Arc<Analysis>,
+    /// Open flight records for the time-history comparison.
+    pub records: Vec<HistoryRecords>,
+    pub known: KnownPoles,
+    pub source: ReportSource,
+    pub path: PathBuf,
+    /// Treatment for an existing file.
+    pub existing: Existing,
+    /// Input files, which are never replaced.
+    pub inputs: Vec<PathBuf>,
+}
+
+impl PartialEq for ReportJob {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.analysis, &other.analysis)
+            && self.source == other.source
+            && self.path == other.path
+            && self.existing == other.existing
+            && self.records == other.records
+            && self.known == other.known
+    }
+}
+
+impl Job for ReportJob {
+    /// The engine that caches the responses to draw.
+    type Tools = Engine;
+    type Output = Result<(), FileError>;
+
+    fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let histories = match self.records.as_slice() {
+            [] => None,
+            records => Some(engine.time_histories(&self.analysis, records, progress)?),
+        };
+        let subject = ReportSubject {
+            analysis: &self.analysis,
+            histories: histories.as_ref(),
+            known: &self.known,
+        };
+        let report = report(subject, &self.source, engine, progress)?;
+        // After a stop the file is no longer wanted.
+        if progress.cancelled() {
+            return Err(Cancelled);
+        }
+        let outputs = OutputSet::new(self.existing, self.inputs.clone());
+        Ok(save_report(&report, &self.path, outputs))
+    }
+}
+
+/// Returns a report name for a study or a dataset: `flight-7-report.html`.
+fn report_name(file: Option<&Path>) -> String {
+    let name = match file {
+        Some(file) => study_name(Some(file)),
+        None => "example".to_owned(),
+    };
+    let stem = name.split(".gdcm-study").next().unwrap_or(&name);
+    let stem = stem.trim_end_matches(".gz").trim_end_matches(".json");
+    format!("{stem}-report.html")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_report_is_named_after_its_study_or_else_after_its_dataset() {
+        assert_eq!(report_name(None), "example-report.html");
+        assert_eq!(
+            report_name(Some(Path::new("/a/flight 7.gdcm-study.json"))),
+            "flight 7-report.html"
+        );
+        assert_eq!(
+            report_name(Some(Path::new("data.json.gz"))),
+            "data-report.html"
+        );
+    }
+}

@@ -1,0 +1,81 @@
+//! Requirement tables: reads levels and tolerances into the study, and writes tolerances.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use gdcm_io::FileError;
+use gdcm_io::files::requirements_file::{add_tolerances, load_tolerances, read_levels};
+use gdcm_model::message_text::sanitized_path;
+use gdcm_study::Edit;
+use gdcm_study::decisions::requirement_settings::RequirementSettings;
+
+use super::GdcmApp;
+use crate::gui::commands::command::Command;
+use crate::gui::commands::file::FileCommand;
+use crate::gui::state::forms::{FormKind, RequirementTable};
+
+impl GdcmApp {
+    /// Reads a requirement table into the study.
+    pub(super) fn read_requirement_table(&mut self, table: RequirementTable, path: PathBuf) {
+        let path = self.files.at_home(path);
+        let mut settings = RequirementSettings::clone(&self.state.study.requirements);
+        let read = read_table_into(&mut settings, table, &path);
+        let Some(cautions) = self.unless_error(read) else {
+            return;
+        };
+        self.state.forms.shown = None;
+        let name = match table {
+            RequirementTable::Levels => "levels",
+            RequirementTable::Tolerances => "tolerances",
+        };
+        self.decide(&Edit::SetRequirements(name, Arc::new(settings)));
+        if !cautions.is_empty() {
+            self.notify_error(format!(
+                "taken, but {}: {}",
+                sanitized_path(&path),
+                cautions.join("; ")
+            ));
+        }
+    }
+
+    /// Asks where to write the tolerances.
+    pub(super) fn ask_write_tolerances(&mut self) {
+        let field = self.state.forms.typed_in(FormKind::WriteTolerances);
+        if field.is_empty() {
+            "tolerances.json".clone_into(field);
+        }
+        self.state.forms.shown = Some(FormKind::WriteTolerances);
+    }
+
+    /// Writes the study's tolerances; asks before overwriting a file.
+    pub(super) fn write_tolerances(&mut self, path: PathBuf) {
+        let path = self.files.at_home(path);
+        let tolerances = &self.state.study.requirements.tolerances;
+        let written = self.write_all(&[], |outputs| add_tolerances(tolerances, &path, outputs));
+        self.saved_to(
+            written,
+            &path,
+            FormKind::WriteTolerances,
+            Command::File(FileCommand::WriteTolerances(path.clone())),
+        );
+    }
+}
+
+/// Reads a table into the settings; returns cautions.
+fn read_table_into(
+    settings: &mut RequirementSettings,
+    table: RequirementTable,
+    path: &Path,
+) -> Result<Vec<String>, FileError> {
+    match table {
+        RequirementTable::Levels => {
+            settings.levels = read_levels(path)?;
+            Ok(Vec::new())
+        }
+        RequirementTable::Tolerances => {
+            let (tolerances, cautions) = load_tolerances(path)?;
+            settings.tolerances = tolerances;
+            Ok(cautions)
+        }
+    }
+}

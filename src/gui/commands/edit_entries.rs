@@ -1,0 +1,189 @@
+//! Command-table entries for decisions: history, rejections, held responses, models.
+
+use egui::Key;
+
+use gdcm_model::dataset::{BundleKind, ModelId, Pair};
+use gdcm_study::Edit;
+
+use super::command::Command;
+use super::entry::{CTRL, CTRL_SHIFT, Entry, Menu, group};
+use super::form::FormCommand;
+use super::study::StudyCommand;
+use crate::gui::state::window_state::State;
+
+/// Returns the Edit menu.
+pub(super) fn edit_entries(state: &State) -> Vec<Entry> {
+    let condition = state.condition().id();
+    let scheduled = state.study.choice(condition).scheduled;
+    let schedule = if scheduled {
+        "Leave this condition out of the schedule"
+    } else {
+        "Include this condition in the schedule"
+    };
+    let schedule = Entry::new(
+        schedule,
+        "Whether its gains enter the regression over airspeed",
+        Edit::SetScheduled {
+            condition,
+            scheduled: !scheduled,
+        },
+    );
+    let held = [
+        hold_entry(state, state.display.selection.pair).free_key(Key::Space),
+        Entry::new(
+            "Hold exactly the on-axis responses",
+            "The on-axis responses of the dataset, and no others",
+            Edit::ConstrainOnAxis,
+        ),
+    ];
+    group(Menu::Edit, 0, history_entries(state))
+        .chain(group(Menu::Edit, 1, rejection_entries(state)))
+        .chain(group(Menu::Edit, 2, held))
+        .chain(group(Menu::Edit, 3, [schedule]))
+        .collect()
+}
+
+fn history_entries(state: &State) -> [Entry; 2] {
+    let undo = state.history.undo_label();
+    let redo = state.history.redo_label();
+    [
+        Entry::new(
+            step_name("Undo", undo),
+            "Undo the last decision",
+            StudyCommand::Undo,
+        )
+        .keys(CTRL, Key::Z)
+        .enabled(undo.is_some()),
+        Entry::new(
+            step_name("Redo", redo),
+            "Redo the last undone decision",
+            StudyCommand::Redo,
+        )
+        .keys(CTRL_SHIFT, Key::Z)
+        .keys(CTRL, Key::Y)
+        .enabled(redo.is_some()),
+    ]
+}
+
+/// "Undo reject physics model 7".
+fn step_name(verb: &str, label: Option<&str>) -> String {
+    match label {
+        Some(label) => format!("{verb} {label}"),
+        None => verb.to_owned(),
+    }
+}
+
+/// Returns the entries that reject the displayed condition's suggested models, and restore all
+/// of them.
+fn rejection_entries(state: &State) -> [Entry; 2] {
+    let condition = state.condition().id();
+    let choice = state.study.choice(condition);
+    let suggested = match state.shown() {
+        Some(shown) => state.open_suggestions(shown),
+        None => Vec::new(),
+    };
+    let reject = match suggested.len() {
+        0 => "Reject suggested".to_owned(),
+        count => format!("Reject {count} suggested"),
+    };
+    let is_any_rejected =
+        !choice.physics.rejected.is_empty() || !choice.identified.rejected.is_empty();
+    [
+        Entry::new(
+            reject,
+            "Reject the suggested outliers of this condition",
+            Edit::reject_physics(condition, &suggested),
+        )
+        .keys(CTRL, Key::R)
+        .enabled(!suggested.is_empty()),
+        Entry::new(
+            "Restore all models of this condition",
+            "Put every rejected model of this condition back",
+            Edit::RestoreAll { condition },
+        )
+        .enabled(is_any_rejected),
+    ]
+}
+
+/// Returns "Hold LON → Q exactly" or "Release LON → Q"; a response without G cannot be constrained.
+pub(super) fn hold_entry(state: &State, pair: Pair) -> Entry {
+    let held = state.study.settings.constrained[pair];
+    let name = state.dataset().pair_name(pair);
+    let is_undefined = match state.shown() {
+        Some(shown) => shown.comparison.undefined[pair].is_some(),
+        None => false,
+    };
+    let text = if held {
+        format!("Release {name}")
+    } else {
+        format!("Hold {name} exactly")
+    };
+    Entry::new(
+        text,
+        "Hold its net gain exactly, and its delay where possible, or leave both to the fit",
+        Edit::Hold(pair, !held),
+    )
+    .enabled(held || !is_undefined)
+}
+
+/// Returns the actions on each model in the displayed condition.
+pub(super) fn model_entries(state: &State) -> Vec<Entry> {
+    let condition = state.condition();
+    let mut entries = Vec::new();
+    for bundle in [BundleKind::Physics, BundleKind::Identified] {
+        let choice = state.study.choice(condition.id()).bundle(bundle);
+        for model in condition.bundle(bundle) {
+            let id = ModelId::new(condition.id(), bundle, &model.name);
+            if choice.rejected.contains(&model.name) {
+                entries.extend(rejected_model_entries(id));
+            } else {
+                let is_pinned = choice.pinned.as_ref() == Some(&model.name);
+                entries.extend(kept_model_entries(id, is_pinned));
+            }
+        }
+    }
+    entries
+}
+
+/// Tooltip for entries that ask for a reason.
+const REASON: &str = "In words, kept in the study";
+
+fn rejected_model_entries(id: ModelId) -> [Entry; 2] {
+    let name = format!("{} model {}", id.bundle, id.name);
+    let ask = Command::Form(FormCommand::AskReason(id.clone()));
+    [
+        Entry::new(format!("Restore {name}"), "Put it back", Edit::Restore(id)),
+        Entry::new(format!("Say why {name} is rejected…"), REASON, ask),
+    ]
+}
+
+fn kept_model_entries(id: ModelId, is_pinned: bool) -> [Entry; 3] {
+    let name = format!("{} model {}", id.bundle, id.name);
+    let ask = Command::Form(FormCommand::AskReason(id.clone()));
+    let reject = Edit::Reject(id.clone());
+    let (representative, edit) = if is_pinned {
+        let edit = Edit::Unpin {
+            condition: id.condition,
+            bundle: id.bundle,
+        };
+        (
+            format!("Use the medoid as representative, not {name}"),
+            edit,
+        )
+    } else {
+        (format!("Use {name} as representative"), Edit::Pin(id))
+    };
+    [
+        Entry::new(
+            format!("Reject {name}"),
+            "Take it out of its bundle",
+            reject,
+        ),
+        Entry::new(format!("Reject {name} with a reason…"), REASON, ask),
+        Entry::new(
+            representative,
+            "A chosen representative replaces the medoid",
+            edit,
+        ),
+    ]
+}

@@ -1,0 +1,104 @@
+//! Command-table entries for files: opening, saving, exporting.
+
+use egui::Key;
+
+use super::assembling::AssemblingCommand;
+use super::command::Command;
+use super::entry::{CTRL, CTRL_SHIFT, Entry, Menu, group};
+use super::file::FileCommand;
+use super::layout::LayoutCommand;
+use super::output::OutputCommand;
+use super::records::RecordsCommand;
+use crate::gui::state::forms::FormKind;
+use crate::gui::state::opens_with::OpensWith;
+use crate::gui::state::window_state::State;
+
+/// Returns the File menu.
+pub(super) fn file_entries(state: &State) -> Vec<Entry> {
+    let open = [
+        Entry::new(
+            "Open…",
+            "A dataset or a study, with the desktop's dialog",
+            FileCommand::AskOpen,
+        )
+        .keys(CTRL, Key::O),
+        Entry::new(
+            "Open by path…",
+            "A dataset or a study, by its path; ~ is the home directory",
+            Command::show_form(FormKind::Open),
+        )
+        .keys(CTRL_SHIFT, Key::O),
+        Entry::new(
+            "Open the example",
+            "The simulated dataset that comes with the program",
+            FileCommand::OpenExample,
+        ),
+        Entry::new(
+            "Import models…",
+            "Makes a dataset from model files: MATLAB, NumPy, JSON, text",
+            AssemblingCommand::Open,
+        ),
+        Entry::new(
+            "Add flight records…",
+            "To the condition in their names, or to the displayed condition",
+            RecordsCommand::AskFiles,
+        ),
+    ];
+    let save = [
+        Entry::new("Save study", "To its file", FileCommand::SaveStudy).keys(CTRL, Key::S),
+        Entry::new(
+            "Save study as…",
+            "With the desktop's dialog",
+            FileCommand::AskSaveStudy,
+        )
+        .keys(CTRL_SHIFT, Key::S),
+    ];
+    let export = [
+        Entry::new(
+            "Export corrections…",
+            "Write corrections.json, corrections.csv and assessment.csv",
+            Command::show_form(FormKind::Export),
+        )
+        .keys(CTRL, Key::E),
+        Entry::new(
+            "Write report…",
+            "Full report with every plot, ready to print",
+            OutputCommand::AskReport,
+        ),
+        Entry::new(
+            "Export as…",
+            "For MATLAB, Python, C or a lookup table; corrected models as state-space",
+            Command::show_form(FormKind::ExportAs),
+        ),
+    ];
+    let export = export.map(|entry| entry.enabled(state.analysis().is_some()));
+    let pages = [
+        Entry::new(
+            "Close",
+            "Close the study and show the start page",
+            FileCommand::CloseStudy,
+        )
+        .keys(CTRL, Key::W),
+        Entry::new(
+            "Start page",
+            "Three ways to begin, and recent files",
+            LayoutCommand::ShowStart(true),
+        ),
+    ];
+    let begin = OpensWith::ALL.map(|choice| {
+        Entry::new(
+            choice.name(),
+            "When the program is started without a file",
+            LayoutCommand::BeginWith(choice),
+        )
+        .enabled(state.display.layout.opens_with != choice)
+    });
+    let quit = [Entry::new("Quit", "Close the window", FileCommand::Quit).keys(CTRL, Key::Q)];
+    group(Menu::File, 0, open)
+        .chain(group(Menu::File, 1, save))
+        .chain(group(Menu::File, 2, export))
+        .chain(group(Menu::File, 3, pages))
+        .chain(group(Menu::File, 4, begin))
+        .chain(group(Menu::File, 5, quit))
+        .collect()
+}

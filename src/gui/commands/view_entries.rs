@@ -1,0 +1,227 @@
+//! Command-table entries for the layout of the window: views, panels, steps, themes.
+
+use std::sync::Arc;
+
+use egui::{Key, Modifiers, ThemePreference};
+
+use gdcm_model::dataset::{Condition, ConditionId, Pair};
+use gdcm_plot::figure::axis::FrequencyUnit;
+
+use super::display::DisplayCommand;
+use super::entry::{CTRL, Entry, Menu, group};
+use super::layout::LayoutCommand;
+use super::selection::SelectionCommand;
+use crate::gui::state::sheet::Sheet;
+use crate::gui::state::view::{View, ViewGroup};
+use crate::gui::state::window_state::State;
+
+/// Returns the View menu.
+pub(super) fn view_entries(state: &State) -> Vec<Entry> {
+    let (unit_name, unit) = match state.display.curves.unit {
+        FrequencyUnit::RadPerSecond => ("Frequencies in Hz", FrequencyUnit::Hertz),
+        FrequencyUnit::Hertz => ("Frequencies in rad/s", FrequencyUnit::RadPerSecond),
+    };
+    let plots = [
+        Entry::new(
+            "Fit the plots",
+            "Bring every curve back into view",
+            DisplayCommand::FitPlots,
+        )
+        .free_key(Key::F),
+        Entry::new(
+            unit_name,
+            "In every plot over frequency",
+            DisplayCommand::SetFrequencyUnit(unit),
+        ),
+    ];
+    let show = View::ALL.map(|view| {
+        Entry::new(
+            format!("Show {}", view.name()),
+            view.facts().purpose,
+            LayoutCommand::ShowView(view),
+        )
+    });
+    group(Menu::View, 0, plots)
+        .chain(group(Menu::View, 1, steps(state)))
+        .chain(show)
+        .chain(layout_entries(state))
+        .chain(group(Menu::View, 4, region_entries()))
+        .chain(group(Menu::View, 5, theme_entries()))
+        .collect()
+}
+
+/// Tooltip for the steps from region to region.
+const PARTS: &str =
+    "Plots, dock, verdict, result, matrix, settings, conditions, models; each remembers its focus";
+
+fn region_entries() -> [Entry; 2] {
+    [
+        Entry::new(
+            "Next part of the window",
+            PARTS,
+            LayoutCommand::LeaveRegion { forward: true },
+        )
+        .keys(Modifiers::NONE, Key::F6),
+        Entry::new(
+            "Previous part of the window",
+            PARTS,
+            LayoutCommand::LeaveRegion { forward: false },
+        )
+        .keys(Modifiers::SHIFT, Key::F6),
+    ]
+}
+
+fn theme_entries() -> [Entry; 3] {
+    [
+        Entry::new(
+            "Theme of the desktop",
+            "Light or dark, like the desktop",
+            LayoutCommand::SetTheme(ThemePreference::System),
+        ),
+        Entry::new(
+            "Dark theme",
+            "Light text on a dark background",
+            LayoutCommand::SetTheme(ThemePreference::Dark),
+        ),
+        Entry::new(
+            "Light theme",
+            "Dark text on a light background",
+            LayoutCommand::SetTheme(ThemePreference::Light),
+        ),
+    ]
+}
+
+/// Returns the entries for view groups, neighbours, panels and folds.
+fn layout_entries(state: &State) -> impl Iterator<Item = Entry> {
+    view_group_entries()
+        .into_iter()
+        .chain(neighbour_entries(state))
+        .chain(fold_entries(state))
+        .map(|entry| entry.within(Menu::View, 3))
+}
+
+fn view_group_entries() -> Vec<Entry> {
+    let keys = [Key::Num1, Key::Num2, Key::Num3, Key::Num4];
+    let mut entries = Vec::new();
+    for (group, key) in ViewGroup::ALL.into_iter().zip(keys) {
+        let entry = Entry::new(
+            format!("Views: {}", group.name()),
+            "The group, with its last view",
+            LayoutCommand::ShowGroup(group),
+        );
+        entries.push(entry.keys(Modifiers::ALT, key));
+    }
+    entries
+}
+
+fn neighbour_entries(state: &State) -> [Entry; 2] {
+    let arrangement = &state.display.layout.arrangement;
+    let meaning = "Of the group in front";
+    [
+        Entry::new(
+            "Next view",
+            meaning,
+            LayoutCommand::ShowView(arrangement.neighbour(1)),
+        )
+        .keys(Modifiers::ALT, Key::ArrowRight),
+        Entry::new(
+            "Previous view",
+            meaning,
+            LayoutCommand::ShowView(arrangement.neighbour(-1)),
+        )
+        .keys(Modifiers::ALT, Key::ArrowLeft),
+    ]
+}
+
+/// Returns the entries for the left side, the settings, the dock, the reasons and the layout.
+fn fold_entries(state: &State) -> [Entry; 5] {
+    let display = &state.display;
+    let is_left_open = display.layout.left_open.unwrap_or(display.layout.is_wide);
+    let is_dock_open = display.layout.arrangement.is_dock_open(true);
+    [
+        Entry::new(
+            if is_left_open {
+                "Conditions as a rail"
+            } else {
+                "Conditions and models in full"
+            },
+            "The left side of the window",
+            LayoutCommand::ShowLeft(!is_left_open),
+        )
+        .keys(CTRL, Key::B),
+        Entry::new(
+            if display.layout.settings_open {
+                "Fold the settings"
+            } else {
+                "Unfold the settings"
+            },
+            "Instead of matrix and card",
+            LayoutCommand::ShowSettings(!display.layout.settings_open),
+        )
+        .keys(CTRL, Key::Comma),
+        Entry::new(
+            if is_dock_open {
+                "Fold the dock"
+            } else {
+                "Unfold the dock"
+            },
+            "The plots below the view in front",
+            LayoutCommand::OpenDock(!is_dock_open),
+        ),
+        Entry::new(
+            "Why the result is so",
+            "Cautions, possible causes of a lag, the proof",
+            LayoutCommand::ShowSheet(Some(Sheet::Reasons)),
+        ),
+        Entry::new(
+            "Reset the layout",
+            "Every panel and plot goes back to its place",
+            LayoutCommand::ResetLayout,
+        ),
+    ]
+}
+
+/// Returns the steps from the displayed condition and response to their neighbours.
+fn steps(state: &State) -> [Entry; 4] {
+    let conditions = state.dataset().conditions();
+    let shown = state.condition().id();
+    let here = conditions
+        .iter()
+        .position(|condition| condition.id() == shown)
+        .unwrap_or(0);
+    let next = conditions.get(here + 1);
+    let previous = here.checked_sub(1).map(|place| &conditions[place]);
+    let inputs = state.dataset().inputs().len();
+    let responses = inputs * state.dataset().outputs().len();
+    let pair = state.display.selection.pair;
+    let at = pair.output * inputs + pair.input;
+    let next_response = if at + 1 < responses {
+        Some(at + 1)
+    } else {
+        None
+    };
+    [
+        condition_step("Next condition", next, shown).free_key(Key::ArrowDown),
+        condition_step("Previous condition", previous, shown).free_key(Key::ArrowUp),
+        response_step("Next response", next_response, at, inputs).free_key(Key::ArrowRight),
+        response_step("Previous response", at.checked_sub(1), at, inputs).free_key(Key::ArrowLeft),
+    ]
+}
+
+/// Returns a step to another condition; disabled at the end of the list.
+fn condition_step(name: &str, other: Option<&Arc<Condition>>, shown: ConditionId) -> Entry {
+    let target = match other {
+        Some(condition) => condition.id(),
+        None => shown,
+    };
+    let command = SelectionCommand::SelectCondition(target);
+    Entry::new(name, "In the order of the list", command).enabled(other.is_some())
+}
+
+/// Returns a step to another response, numbered row by row; disabled at the end of the matrix.
+fn response_step(name: &str, other: Option<usize>, shown: usize, inputs: usize) -> Entry {
+    let place = other.unwrap_or(shown);
+    let pair = Pair::new(place / inputs, place % inputs);
+    let command = SelectionCommand::FocusPair(pair);
+    Entry::new(name, "Row by row of the matrix", command).enabled(other.is_some())
+}

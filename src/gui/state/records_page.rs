@@ -1,0 +1,121 @@
+//! Pages of the Records view, and the models compared there.
+
+use egui::Color32;
+
+use crate::gui::widgets::palette::Palette;
+
+/// A page of the Records view.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RecordsPage {
+    /// Every channel in the selected record over time.
+    #[default]
+    Histories,
+    /// Input excitation, and its highest frequency.
+    Inputs,
+    /// The measured response with the models.
+    Response,
+    /// Poles over the model order.
+    Stabilisation,
+    /// Poles with standard deviations, for the recommended model.
+    Poles,
+    /// Fit quality for each record and output.
+    Fit,
+    /// Columns assigned to channels.
+    Columns,
+    /// Identification results in every condition.
+    Conditions,
+}
+
+impl RecordsPage {
+    /// All pages, in display order.
+    pub const ALL: [Self; 8] = [
+        Self::Histories,
+        Self::Inputs,
+        Self::Response,
+        Self::Stabilisation,
+        Self::Poles,
+        Self::Fit,
+        Self::Columns,
+        Self::Conditions,
+    ];
+
+    /// Returns the name, a shorter name for narrow windows, and a sentence about the content.
+    pub fn words(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::Histories => (
+                "Time",
+                "Time",
+                "Every channel of the chosen record over time; bridged and cut samples are marked",
+            ),
+            Self::Inputs => (
+                "Inputs",
+                "Inputs",
+                "Excited inputs of each record, and the highest frequency of the excitation",
+            ),
+            Self::Response => (
+                "Response",
+                "Response",
+                "The measured response with its error bars, under the models and their bands",
+            ),
+            Self::Stabilisation => (
+                "Stabilisation",
+                "Orders",
+                "Poles over the model order: poles that stay are the aircraft's",
+            ),
+            Self::Poles => (
+                "Identified poles",
+                "Poles",
+                "Poles of the recommended model with their standard deviations; grey: not determined",
+            ),
+            Self::Fit => (
+                "Fit",
+                "Fit",
+                "Fit of the model to each record and output, in frequency and in time",
+            ),
+            Self::Columns => (
+                "Columns",
+                "Columns",
+                "Columns of the chosen record with its time and its channels",
+            ),
+            Self::Conditions => (
+                "Conditions",
+                "Conditions",
+                "Identified models of every condition; a click shows the condition",
+            ),
+        }
+    }
+}
+
+/// A model that can be compared with a record in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum TimeModel {
+    /// The recommended identified model.
+    Identified,
+    /// The physics representative.
+    Physics,
+    /// The corrected physics representative.
+    Corrected,
+}
+
+impl TimeModel {
+    /// All models, in display order.
+    pub const ALL: [Self; 3] = [Self::Identified, Self::Physics, Self::Corrected];
+
+    /// Returns the name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Identified => "identified",
+            Self::Physics => "physics",
+            Self::Corrected => "corrected",
+        }
+    }
+
+    /// Returns the line colour.
+    pub fn color(self, palette: &Palette) -> Color32 {
+        match self {
+            Self::Identified => palette.accent,
+            Self::Physics => palette.nominal,
+            Self::Corrected => palette.corrected,
+        }
+    }
+}

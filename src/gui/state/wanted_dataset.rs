@@ -1,0 +1,131 @@
+//! Form for a dataset made from records.
+
+use std::collections::BTreeSet;
+
+use gdcm_model::dataset::Band;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::names::ChannelRule;
+use gdcm_model::units::number;
+use gdcm_sysid::records::channel_list::{ChannelList, SaidChannel};
+use gdcm_sysid::records::record_channels::ResamplingWish;
+use gdcm_sysid::records::{RecordChannels, RecordColumn, RecordTable};
+
+use super::condition_records::ConditionRecords;
+use crate::gui::widgets::controls::typed_number;
+
+/// Column meanings that are the pilot's controls; "TARG" is neither an input nor an output.
+const CONTROLS: [&str; 4] = ["LON", "LAT", "PED", "COL"];
+const TARGET: &str = "TARG";
+
+/// Form for a dataset made from records, as typed.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WantedDataset {
+    /// Inputs, in [`ChannelList`] syntax.
+    pub inputs: String,
+    /// Outputs, in the same syntax.
+    pub outputs: String,
+    /// Lower and upper band limit \[rad/s\].
+    pub band: [String; 2],
+    pub path: String,
+    /// Descriptions for the record columns.
+    pub columns: Vec<String>,
+    /// Reasons why the dataset could not be made.
+    pub problems: Vec<String>,
+}
+
+impl WantedDataset {
+    /// Creates a proposal from a condition's records: the channels known from the documentation for
+    /// their system; others must be typed.
+    pub fn proposed(records: &ConditionRecords, band: Band, path: String) -> Self {
+        let mut inputs = Vec::new();
+        let mut outputs = Vec::new();
+        let mut columns = BTreeSet::new();
+        for row in &records.rows {
+            for column in &row.table.columns {
+                columns.insert(column_description(&row.table, column));
+                match known_side(column) {
+                    Some(ChannelSide::Input) => add_name(&mut inputs, column),
+                    Some(ChannelSide::Output) => add_name(&mut outputs, column),
+                    None => {}
+                }
+            }
+        }
+        Self {
+            inputs: inputs.join(", "),
+            outputs: outputs.join(", "),
+            band: [band.min(), band.max()].map(number),
+            path,
+            columns: columns.into_iter().collect(),
+            problems: Vec::new(),
+        }
+    }
+
+    /// Parses the requested channels and the band.
+    ///
+    /// # Errors
+    /// Messages about invalid channels or an invalid band.
+    pub fn channels(&self) -> Result<(RecordChannels, Band), String> {
+        let inputs = parse_rules("inputs", &self.inputs)?;
+        let outputs = parse_rules("outputs", &self.outputs)?;
+        let [min, max] = &self.band;
+        let band = Band::new(parse_end(min), parse_end(max)).map_err(|error| error.to_string())?;
+        let channels = RecordChannels {
+            inputs,
+            outputs,
+            resampling: ResamplingWish {
+                band_end: Some(band.max()),
+                ..ResamplingWish::default()
+            },
+            ..RecordChannels::default()
+        };
+        Ok((channels, band))
+    }
+}
+
+/// Returns the channel side for a column, as stated in the file or known from its meaning.
+fn known_side(column: &RecordColumn) -> Option<ChannelSide> {
+    if column.side.is_some() {
+        return column.side;
+    }
+    let meaning = column.meaning?;
+    if CONTROLS.contains(&meaning) {
+        Some(ChannelSide::Input)
+    } else if meaning != TARGET {
+        Some(ChannelSide::Output)
+    } else {
+        None
+    }
+}
+
+/// Adds a column's channel name, unless it is in the list.
+fn add_name(names: &mut Vec<String>, column: &RecordColumn) {
+    let name = column.meaning.unwrap_or(&column.name);
+    if !names.iter().any(|known| known == name) {
+        names.push(name.to_owned());
+    }
+}
+
+/// "topic.column \[unit\]". Topics not yet joined to a channel are separate records, named after
+/// their variables.
+fn column_description(table: &RecordTable, column: &RecordColumn) -> String {
+    let mut description = String::new();
+    if let Some(variable) = &table.source.variable {
+        description.push_str(&format!("{variable}."));
+    }
+    description.push_str(&column.name);
+    if let Some(unit) = &column.unit {
+        description.push_str(&format!(" [{unit}]"));
+    }
+    description
+}
+
+/// Parses a channel list; an error names the side.
+fn parse_rules(side: &str, text: &str) -> Result<Vec<ChannelRule>, String> {
+    let list: ChannelList = text.parse().map_err(|error| format!("{side}: {error}"))?;
+    Ok(list.channels.iter().map(SaidChannel::rule).collect())
+}
+
+/// Parses a band limit \[rad/s\]; NaN, which no band accepts, if the text is not a number.
+fn parse_end(text: &str) -> f64 {
+    typed_number(text).ok().flatten().unwrap_or(f64::NAN)
+}

@@ -1,7 +1,11 @@
 //! Matrices as text: one in a file, or several with names, as programs print them.
 
-use crate::formats::text::columns::{TextTable, comment, is_rule, read_table};
-use crate::formats::text::separator::{cell_number, excerpt, is_number, lines, refuse_binary};
+use std::collections::HashSet;
+
+use crate::formats::text::cell_number::{cell_number, is_number};
+use crate::formats::text::columns::{TextTable, read_table};
+use crate::formats::text::encoding::refuse_binary;
+use crate::formats::text::lines::{comment, excerpt, is_rule, lines};
 use crate::formats::variables::{Array, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 

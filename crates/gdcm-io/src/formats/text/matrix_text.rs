@@ -513,10 +513,7 @@ mod matrix_text_tests {
         assert!(message("1 2\n").starts_with("line 1: numbers without a name"));
         assert!(message("A =\n1 2\n\n3\n").starts_with("variable A: line 4: "));
         assert!(message("A =\n1 2\n3 x\n").starts_with("line 3: \"3 x\" is no row of numbers"));
-        assert_eq!(
-            message("A\n1\nA\n2\n"),
-            "the name \"A\" stands twice; rename one"
-        );
+        assert_eq!(message("A\n1\nA\n2\n"), "duplicate name \"A\"; rename one");
         assert!(message("A =\n").contains("no name with numbers below it"));
     }
 

@@ -18,8 +18,10 @@ mod matlab_scanner;
 mod matrix_text;
 mod response_columns;
 mod response_label;
+mod response_recognition;
 pub(crate) mod sections;
 mod separator;
+mod unrecognised;
 mod word_columns;
 mod workspace;
 
@@ -30,10 +32,11 @@ use crate::formats::{Contents, Importer};
 
 pub(crate) use columns::{TextTable, read_table};
 pub(crate) use complex_columns::split_complex;
-pub use frequency_columns::UnsaidUnit;
-pub(crate) use frequency_columns::{FrequencyColumns, Unrecognised};
+pub(crate) use frequency_columns::FrequencyColumns;
 pub(crate) use matrix_text::{read_matrices, read_matrix};
 pub(crate) use response_columns::{RecognisedResponse, ResponsePoints};
+pub(crate) use unrecognised::Unrecognised;
+pub use unrecognised::UnsaidUnit;
 pub(crate) use word_columns::{NumberedText, numbered_words};
 
 /// MATLAB and Octave statements.

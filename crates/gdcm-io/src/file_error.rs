@@ -63,7 +63,7 @@ pub enum FileError {
     #[error("{}: {}the JSON ends too early (line {line}, column {column}), the file is cut off; copy it again", sanitized_path(path), place.before())]
     CutOff {
         path: PathBuf,
-        /// Place of the reader.
+        /// Place that the reader had reached.
         place: Box<Location>,
         /// Line, counted from 1.
         line: usize,
@@ -74,7 +74,7 @@ pub enum FileError {
     #[error("{}: {}this is not JSON (line {line}, column {column}: {reason})", sanitized_path(path), place.before())]
     NotJson {
         path: PathBuf,
-        /// Place of the reader.
+        /// Place that the reader had reached.
         place: Box<Location>,
         /// Line, counted from 1.
         line: usize,
@@ -91,7 +91,7 @@ pub enum FileError {
         path: PathBuf,
         /// The expected format or formats.
         expected: &'static str,
-        /// Description of the format in the file.
+        /// Format in the file, for the message.
         found: String,
     },
     /// The file has an unknown version.
@@ -104,7 +104,7 @@ pub enum FileError {
         format: &'static str,
         /// The version that this program reads.
         newest: u64,
-        /// Description of the version in the file.
+        /// Version in the file, for the message.
         found: String,
     },
     /// Some content is invalid.
@@ -119,7 +119,7 @@ pub enum FileError {
         /// its own.
         line: Option<usize>,
     },
-    /// A file of variables cannot be read or written.
+    /// Variables cannot be read or written.
     #[error("{}: {}", sanitized_path(path), sanitized(&.fault.to_string()))]
     Variables { path: PathBuf, fault: VariableFault },
     /// Folders are nested more deeply than the search for models goes.
@@ -128,13 +128,13 @@ pub enum FileError {
         sanitized_path(path)
     )]
     FolderTooDeep { path: PathBuf },
-    /// A file of records does not contain the requested record.
+    /// The requested record is not in the file.
     #[error("{}: {}", sanitized_path(path), no_record_words(record.as_deref(), *held))]
     NoRecord {
         path: PathBuf,
         /// The record; `None` for the only one.
         record: Option<String>,
-        /// Number of records in it.
+        /// Record count in the file.
         held: usize,
     },
     #[error(
@@ -142,7 +142,7 @@ pub enum FileError {
         sanitized_path(path)
     )]
     TooManyFiles { path: PathBuf, most: usize },
-    /// The dataset of a study cannot be read.
+    /// A study's dataset cannot be read.
     #[error(
         "{}: the study's dataset cannot be opened: {dataset}; give its present path with --dataset",
         sanitized_path(path)
@@ -152,7 +152,7 @@ pub enum FileError {
         /// The reason, with the dataset's path.
         dataset: Box<FileError>,
     },
-    /// A file has the path of a directory to be created.
+    /// A file has the path for a new directory.
     #[error(
         "{}: cannot be written: a file has the name of this directory",
         sanitized_path(path)
@@ -173,7 +173,7 @@ pub enum FileError {
         sanitized_path(path)
     )]
     FigureFormat { path: PathBuf },
-    /// The numbers of a figure without numbers were requested.
+    /// Numbers were requested from a figure that has none.
     #[error(
         "{}: \"{}\" shows no numbers that could be written: none of the requested responses or channels has a result; request others, or \
          .svg",
@@ -345,7 +345,7 @@ pub enum ContentFault {
         /// Column in bytes, counted from 1.
         column: usize,
     },
-    /// Lists are nested more deeply than in any file of this format.
+    /// Lists are nested more deeply than this format allows.
     #[error("lists or objects are nested too deeply (line {line}, column {column})")]
     TooDeep {
         /// Line, counted from 1.
@@ -372,7 +372,7 @@ pub enum ContentFault {
     #[error("expected at most {most} entries, found {found}")]
     TooMany {
         most: usize,
-        /// Number of entries.
+        /// Entry count.
         found: usize,
     },
     /// A text is not among the permitted words.
@@ -385,7 +385,7 @@ pub enum ContentFault {
     /// A row in a tolerance table is invalid.
     #[error(transparent)]
     Tolerance(#[from] ToleranceError),
-    /// The ends of the band are invalid.
+    /// The band ends are invalid.
     #[error(transparent)]
     Band(#[from] BandError),
     /// The content is not a valid dataset.

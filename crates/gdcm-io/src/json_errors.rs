@@ -1,4 +1,4 @@
-//! Errors of serde_json in the words of engineers.
+//! serde_json errors in the words of engineers.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ struct Position {
     column: usize,
 }
 
-/// Translates an error of serde_json at a place in a file.
+/// Translates a serde_json error at a place in a file.
 pub(super) fn json_error(
     text: &[u8],
     path: &Path,
@@ -71,7 +71,7 @@ fn syntax_error(
         };
         return FileError::content(path, ContentError::new(place, fault));
     }
-    // serde_json also classifies a value as a syntax error if it matches none of the known words.
+    // serde_json also classifies a value as a syntax error if it is not among the known words.
     if is_json_so_far(text) {
         let fault = ContentFault::Type {
             expected: "a text in quotation marks".to_owned(),
@@ -90,7 +90,7 @@ fn syntax_error(
     }
 }
 
-/// Whether a text is JSON, or the beginning of JSON.
+/// Whether a text is JSON, or could become JSON with more text.
 fn is_json_so_far(text: &[u8]) -> bool {
     match serde_json::from_slice::<IgnoredAny>(text) {
         Ok(_) => true,
@@ -111,7 +111,7 @@ fn syntax_words(reason: &str) -> String {
     }
 }
 
-/// Translates an error about a value of the wrong type.
+/// Translates an error about a value with the wrong type.
 fn data_fault(reason: &str, position: Position) -> ContentFault {
     let Position { line, column } = position;
     if let Some(key) = text_between(reason, "missing field `", "`") {
@@ -148,7 +148,7 @@ fn data_fault(reason: &str, position: Position) -> ContentFault {
     }
 }
 
-/// Beginning of serde's errors about the length of a list.
+/// Text that begins serde errors about the length of a list.
 const INVALID_LENGTH: &str = "invalid length ";
 
 /// Returns the text between a beginning and an end.
@@ -163,7 +163,7 @@ fn found_words(found: &str, is_length: bool) -> String {
         return format!("{found} entries");
     }
     let unquoted = found.replace('`', "");
-    // serde writes all digits of a number.
+    // serde writes all digits.
     if let Some(Ok(value)) = unquoted.strip_prefix("floating point ").map(str::parse) {
         return number(value);
     }

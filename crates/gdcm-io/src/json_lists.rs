@@ -26,7 +26,7 @@ pub(super) struct Nested<const DEPTH: usize> {
 }
 
 impl<const DEPTH: usize> Nested<DEPTH> {
-    /// Returns the maximum number of entries of a list at a depth, 0 being the outermost.
+    /// Returns the most entries in a list at a depth, 0 being the outermost.
     const fn most(depth: usize) -> usize {
         match (DEPTH, depth) {
             (2, _) => MOST_STATES,
@@ -67,7 +67,7 @@ impl<'de, const DEPTH: usize> Deserialize<'de> for Nested<DEPTH> {
 
 /// An array being read.
 struct Filling<const DEPTH: usize> {
-    /// Length of the lists at each depth, known once the first of them has ended.
+    /// List length at each depth, known once the first list has ended.
     lengths: [Option<usize>; DEPTH],
     values: Vec<f64>,
 }
@@ -140,7 +140,7 @@ impl<const DEPTH: usize> Serialize for Nested<DEPTH> {
     }
 }
 
-/// A list of an array being written.
+/// A list in an array being written.
 struct Part<'v> {
     shape: &'v [usize],
     values: &'v [f64],
@@ -195,7 +195,7 @@ impl<T, const MOST: usize> Limited<T, MOST> {
         }
     }
 
-    /// Returns the entries of an optional list.
+    /// Returns the entries in an optional list.
     pub(super) fn entries(list: Option<Self>) -> Vec<T> {
         list.map(|list| list.0).unwrap_or_default()
     }
@@ -256,7 +256,7 @@ where
     }
 }
 
-/// Numbers by name, at most `MOST`; the last of several numbers with the same name counts.
+/// Numbers by name, at most `MOST`; among numbers with the same name the last counts.
 pub(super) struct Numbers<const MOST: usize>(pub(super) BTreeMap<String, f64>);
 
 impl<'de, const MOST: usize> Deserialize<'de> for Numbers<MOST> {

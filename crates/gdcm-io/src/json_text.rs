@@ -67,7 +67,7 @@ fn escaped(text: &str) -> String {
     escaped
 }
 
-/// A kind of file: the expected values of its "format" and "version".
+/// A file format: the expected "format" and "version".
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Format {
     pub(super) name: &'static str,
@@ -80,7 +80,7 @@ impl Format {
     ///
     /// # Errors
     /// Another format or version, which is reported before any other error; text that is not JSON;
-    /// values of other types.
+    /// values with other types.
     pub(super) fn decode<'t, T: Deserialize<'t>>(
         self,
         text: &'t [u8],

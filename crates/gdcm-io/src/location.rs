@@ -11,7 +11,7 @@ use gdcm_model::message_text::{quoted, sanitized, shortened};
 
 use crate::reading_budget::ReadingBudget;
 
-/// A step on the path from the top of a JSON text to a value in it.
+/// A step on the path from the top to a value in a JSON text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Step {
     /// Into an object, to this key.
@@ -24,7 +24,7 @@ const CONDITIONS: &str = "conditions";
 const PHYSICS_MODELS: &str = "physics_models";
 const IDENTIFIED_MODELS: &str = "identified_models";
 
-/// Returns the location at the end of these steps.
+/// Returns the location to which these steps lead.
 pub(super) fn location_of(steps: &[Step], outline: &Outline) -> Location {
     let mut location = Location::default();
     let mut rest = steps;
@@ -51,7 +51,7 @@ pub(super) fn location_of(steps: &[Step], outline: &Outline) -> Location {
     location
 }
 
-/// Returns the bundle of a key in a condition.
+/// Returns the bundle under a key in a condition.
 fn bundle_with_key(key: &str) -> Option<BundleKind> {
     match key {
         PHYSICS_MODELS => Some(BundleKind::Physics),
@@ -60,7 +60,7 @@ fn bundle_with_key(key: &str) -> Option<BundleKind> {
     }
 }
 
-/// Returns the key of a bundle in a condition.
+/// Returns the key for a bundle in a condition.
 fn bundle_key(bundle: BundleKind) -> &'static str {
     match bundle {
         BundleKind::Physics => PHYSICS_MODELS,
@@ -100,7 +100,7 @@ pub(super) fn entry_words(steps: &[Step]) -> String {
     words.join(", ")
 }
 
-/// Whether a key holds a matrix of a state-space model.
+/// Whether a key holds a state-space matrix.
 fn is_matrix(key: &str) -> bool {
     matches!(key, "A" | "B" | "C" | "D")
 }
@@ -113,20 +113,20 @@ fn is_response_table(key: &str) -> bool {
     )
 }
 
-/// Maximum number of labelled conditions and models, so that an outline takes no more memory than a
+/// Most labelled conditions and models, so that an outline takes no more memory than a
 /// dataset.
 const MOST_LABELS: usize = 50_000;
-/// Maximum nesting of lists and objects; labels lie far above that.
+/// Most lists and objects inside one another; labels are never nested that deeply.
 const DEEPEST: usize = 100;
 
 /// Labels in a file, for naming places in it; labels after an error in the text are missing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Outline {
-    /// Value of "format": a text, or the type of another value.
+    /// Value for "format": a text, or the type of another value.
     pub(super) format: Option<String>,
-    /// Value of "version".
+    /// Value for "version".
     pub(super) version: Option<String>,
-    /// Condition ids, by the index of the condition.
+    /// Condition ids, by condition index.
     ids: BTreeMap<usize, i64>,
     /// Model names.
     names: BTreeMap<ModelIndex, String>,
@@ -135,16 +135,16 @@ pub(super) struct Outline {
 /// Place of a model in a file.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct ModelIndex {
-    /// Index of the condition.
+    /// Condition index.
     condition: usize,
-    /// Key of the bundle.
+    /// Bundle key.
     bundle: String,
     /// Index in the bundle.
     model: usize,
 }
 
 impl Outline {
-    /// Collects all labels before the end of the text or its first error.
+    /// Collects all labels up to the first error in the text.
     pub(super) fn read(text: &[u8]) -> Self {
         Self::read_until(text, |outline| {
             outline.ids.len() + outline.names.len() >= MOST_LABELS
@@ -171,13 +171,12 @@ impl Outline {
         (outline.format, outline.version)
     }
 
-    /// Returns the id of a condition, by index.
+    /// Returns a condition id, by index.
     pub(super) fn id(&self, condition: usize) -> Option<i64> {
         self.ids.get(&condition).copied()
     }
 
-    /// Returns the name of a model, by the index of its condition, the key of its bundle, and its
-    /// index in it.
+    /// Returns a model name, by condition index, bundle key, and index in the bundle.
     pub(super) fn name(&self, condition: usize, bundle: &str, model: usize) -> Option<String> {
         let index = ModelIndex {
             condition,
@@ -264,7 +263,7 @@ impl Outline {
     }
 }
 
-/// Moves to the next entry if the value that ended is an entry of a list.
+/// Moves to the next entry if the value that ended is in a list.
 fn end_value(steps: &mut [Step]) {
     if let Some(Step::Entry(index)) = steps.last_mut() {
         *index += 1;
@@ -284,7 +283,7 @@ fn words(value: &JsonEvent<'_>) -> String {
     }
 }
 
-/// Maximum number of keys reported individually; a file with more comes from another program, or
+/// Most keys reported individually; a file with more comes from another program, or
 /// was made to fill the memory.
 const MOST_KEYS: usize = 50;
 
@@ -293,7 +292,7 @@ const MOST_KEYS: usize = 50;
 pub(super) struct UnknownKeys {
     /// By the keys on the path, without the indices.
     found: BTreeMap<Vec<String>, UnknownKey>,
-    /// Number of keys that are not kept, because there are too many others.
+    /// Count of keys that are not kept, because there are too many.
     beyond: usize,
 }
 
@@ -367,7 +366,7 @@ impl UnknownKey {
     }
 }
 
-/// Appends the steps of a path, from the top of the text.
+/// Appends the steps on a path, from the top.
 fn collect_steps(path: &serde_ignored::Path<'_>, steps: &mut Vec<Step>) {
     use serde_ignored::Path as Ignored;
     let (parent, step) = match path {
@@ -382,7 +381,7 @@ fn collect_steps(path: &serde_ignored::Path<'_>, steps: &mut Vec<Step>) {
     steps.extend(step);
 }
 
-/// Returns the line at which the condition or the model of a place begins, counted from 1.
+/// Returns the line at which the condition or the model in a place begins, counted from 1.
 pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
     let condition = place.condition.as_ref()?;
     let mut value = entry(
@@ -397,7 +396,7 @@ pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
     Some(1 + text[..offset].iter().filter(|byte| **byte == b'\n').count())
 }
 
-/// Returns an entry of a list in an object, counted from 1, as a part of the text.
+/// Returns an entry in a list, counted from 1; the list is under a key in an object.
 pub(super) fn entry<'t>(object: &'t RawValue, key: &str, position: usize) -> Option<&'t RawValue> {
     let object: BTreeMap<String, &RawValue> = serde_json::from_str(object.get()).ok()?;
     let list: Vec<&RawValue> = serde_json::from_str(object.get(key)?.get()).ok()?;

@@ -14,7 +14,7 @@ pub enum VariableFault {
     #[error("expected {expected}, found {found}")]
     Format {
         expected: &'static str,
-        /// Description of the beginning of the file.
+        /// How the file begins.
         found: String,
     },
     /// The file ends prematurely.
@@ -179,7 +179,7 @@ impl VariableFault {
     }
 }
 
-/// Returns the beginning of a message about a variable.
+/// Returns the first words in a message about a variable.
 fn at(variable: &str) -> String {
     if variable.is_empty() {
         String::new()
@@ -188,7 +188,7 @@ fn at(variable: &str) -> String {
     }
 }
 
-/// Memory limit for the contents of one file \[bytes\].
+/// Memory limit for one file \[bytes\].
 pub(crate) const MOST_MEMORY: u64 = 1 << 30;
 
 /// Maximum work for reading one file \[steps\]: text bytes, array elements, values, and name
@@ -209,7 +209,7 @@ pub struct ReadingBudget<'p> {
 }
 
 impl ReadingBudget<'static> {
-    /// Creates a budget for at most `most` bytes of memory.
+    /// Creates a budget with a memory limit \[bytes\].
     pub fn new(most: u64) -> Self {
         Self {
             most_memory: most,
@@ -261,8 +261,8 @@ impl<'p> ReadingBudget<'p> {
         &self.stop
     }
 
-    /// Counts `count` elements that `variable` is about to take, each with `size` bytes and a step
-    /// of work.
+    /// Counts `count` elements that `variable` is about to take, each with `size` bytes and a work
+    /// step.
     pub fn take(&self, count: u64, size: u64, variable: &str) -> Result<(), VariableFault> {
         let memory = self.memory.get().saturating_add(count.saturating_mul(size));
         if memory > self.most_memory {
@@ -289,7 +289,7 @@ impl<'p> ReadingBudget<'p> {
         Ok(())
     }
 
-    /// Counts steps of work that `variable` is about to take.
+    /// Counts work steps that `variable` is about to take.
     pub fn work(&self, steps: u64, variable: &str) -> Result<(), VariableFault> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(VariableFault::Stopped);

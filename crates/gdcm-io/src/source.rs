@@ -1,4 +1,4 @@
-//! Reading of a file's bytes, within limits.
+//! Reading file bytes within limits.
 
 use std::borrow::Cow;
 use std::fs;
@@ -20,13 +20,13 @@ pub(super) const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 /// Written before UTF-8 text by some editors.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
 
-/// Number of bytes read, decompressed or hashed between two queries to the budget.
+/// Bytes read, decompressed or hashed between two queries to the budget.
 const CHUNK: usize = 1 << 16;
 
-/// Content of a file: the hash of its bytes, and its text.
+/// A file: its hash and its text.
 #[derive(Debug)]
 pub(super) struct Source<'b> {
-    /// SHA-256 of the stored bytes of the file, in lower-case hexadecimal.
+    /// SHA-256 of the stored bytes, in lower-case hexadecimal.
     pub(super) sha256: String,
     text: Cow<'b, [u8]>,
 }
@@ -93,7 +93,7 @@ fn open_file(path: &Path) -> Result<(File, u64), FileError> {
     Ok((File::open(path).map_err(failed)?, metadata.len()))
 }
 
-/// Returns a reader for the text of a file from its beginning, decompressed if necessary.
+/// Returns a reader for the text in a file, decompressed if necessary.
 pub(super) fn text_reader(path: &Path) -> Result<Box<dyn Read>, FileError> {
     let mut file = BufReader::with_capacity(CHUNK, open_file(path)?.0);
     let begin = file
@@ -106,7 +106,7 @@ pub(super) fn text_reader(path: &Path) -> Result<Box<dyn Read>, FileError> {
     }
 }
 
-/// Reads a file of at most `most` bytes.
+/// Reads a file with at most `most` bytes.
 pub(super) fn read_bytes(
     path: &Path,
     most: u64,
@@ -237,7 +237,7 @@ pub struct FileStamp {
 }
 
 impl FileStamp {
-    /// Reads the stamp of a file; `None` if there is no such file.
+    /// Reads the stamp; `None` if there is no such file.
     pub fn of(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
         Some(Self {
@@ -247,7 +247,7 @@ impl FileStamp {
     }
 }
 
-/// Computes the SHA-256 of the stored bytes of a file, in lower-case hexadecimal.
+/// Computes the SHA-256 of the stored bytes in a file, in lower-case hexadecimal.
 ///
 /// # Errors
 /// Returned if the file cannot be read.
@@ -265,13 +265,13 @@ pub fn file_exists(path: &Path) -> bool {
 /// Expands `~` and `~/x` with the home directory, as a shell does; any other path, and any path
 /// without a known home directory, is unchanged.
 pub fn at_home(path: &Path, home: Option<&Path>) -> PathBuf {
-    let (Ok(rest), Some(home)) = (path.strip_prefix("~"), home) else {
+    let Some(home) = home else {
         return path.to_owned();
     };
-    if rest.as_os_str().is_empty() {
-        home.to_owned()
-    } else {
-        home.join(rest)
+    match path.strip_prefix("~") {
+        Ok(rest) if rest.as_os_str().is_empty() => home.to_owned(),
+        Ok(rest) => home.join(rest),
+        Err(_) => path.to_owned(),
     }
 }
 

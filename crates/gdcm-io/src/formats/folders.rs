@@ -11,9 +11,9 @@ use crate::formats::text::TEXT;
 use crate::formats::{ending_of, importer_of, is_known};
 use crate::source::kind_of;
 
-/// Largest number of files examined.
+/// Most files examined.
 pub(crate) const MOST_FILES: usize = 20_000;
-/// Deepest nesting of folders.
+/// Most folders inside one another.
 pub(crate) const DEEPEST: usize = 16;
 
 /// A file to be read.
@@ -23,8 +23,8 @@ pub(super) struct ListedFile {
     pub(super) name: String,
 }
 
-/// Returns the folder to which the file names of models are relative: the first folder given, or
-/// the folder of a single file.
+/// Returns the folder to which the file names in models are relative: the first folder given, or
+/// the folder that contains a single file.
 pub fn sources_folder(sources: &[PathBuf]) -> &Path {
     let here = Path::new(".");
     let first = sources.first().map_or(here, PathBuf::as_path);
@@ -73,14 +73,14 @@ pub(super) fn list_files(
 /// Files below a requested folder, while they are listed.
 struct Listing<'p> {
     root: &'p Path,
-    /// All files so far, also those of other requested paths.
+    /// All files so far, also from other requested paths.
     files: Vec<ListedFile>,
     /// Messages about entries that are no files.
     skipped: &'p mut Vec<String>,
 }
 
 impl Listing<'_> {
-    /// Adds the files of a folder; `deeper` is the number of folders that may be nested in it.
+    /// Adds the files in a folder; up to `deeper` folders may be nested in it.
     fn add_folder(&mut self, folder: &Path, deeper: usize) -> Result<(), FileError> {
         let failed = |error: std::io::Error| FileError::reading(folder, &error);
         let mut entries = fs::read_dir(folder)
@@ -133,7 +133,7 @@ impl Listing<'_> {
     }
 }
 
-/// Whether a file with a widely used ending (`.log`, `.bin`) has none of the supported formats.
+/// Whether a file with a widely used ending (`.log`, `.bin`) has no supported format.
 fn is_other_log(path: &Path) -> bool {
     /// Formats with these endings are recognised by their first bytes.
     const FIRST: usize = 64;
@@ -146,7 +146,7 @@ fn is_other_log(path: &Path) -> bool {
     read.is_ok() && importer_of(&first, path).name == TEXT.name
 }
 
-/// Part of a sort key: letters in lower case, and the number after them.
+/// Letters in lower case, and the number after them.
 type TextAndNumber = (String, u64);
 
 /// Returns a sort key that puts "c2" before "c10".
@@ -169,7 +169,7 @@ fn natural_key(name: &str) -> Vec<TextAndNumber> {
     if !digits.is_empty() {
         parts.push(text_and_number(&mut text, &mut digits));
     }
-    // Marks the end of the name.
+    // End mark.
     text.push('\0');
     parts.push((text, 0));
     parts

@@ -6,11 +6,11 @@ use crate::reading_budget::VariableFault;
 
 /// An unsupported format.
 struct Foreign {
-    /// First bytes of such files.
+    /// Possible first bytes.
     signatures: &'static [&'static [u8]],
     name: &'static str,
-    /// How to obtain the numbers; `{file}` and `{stem}` represent the name of the file with and
-    /// without its extension.
+    /// How to obtain the numbers; `{file}` and `{stem}` represent the file name with and without
+    /// its extension.
     remedy: &'static str,
 }
 
@@ -100,7 +100,7 @@ pub(super) const FOREIGN_FORMAT: Importer = Importer {
     read: |bytes, path, _| Err(FileError::variables(path, unsupported(bytes))),
 };
 
-/// Returns the fault for a file of an unsupported format.
+/// Returns the fault for an unsupported format.
 fn unsupported(bytes: &[u8]) -> VariableFault {
     match find_foreign(bytes) {
         Some(Foreign { name, remedy, .. }) => VariableFault::unsupported("", *name, *remedy),

@@ -1,4 +1,4 @@
-//! JSON of any shape, read within a budget.
+//! Any JSON, read within a budget.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -7,10 +7,10 @@ use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visi
 
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Overhead of an allocation, and the initial capacity of a list \[bytes\].
+/// Overhead per allocation, and the initial capacity of a list \[bytes\].
 const ALLOCATION: usize = 64;
 
-/// JSON of any shape.
+/// Any JSON value.
 #[derive(Debug)]
 pub(super) enum Tree {
     Null,
@@ -18,7 +18,7 @@ pub(super) enum Tree {
     Number(f64),
     Text(String),
     List(Vec<Tree>),
-    /// Sorted by name; the last of several members with the same name.
+    /// Sorted by name; among members with the same name only the last.
     Object(Vec<(String, Tree)>),
 }
 
@@ -44,7 +44,7 @@ impl Tree {
     }
 }
 
-/// Reads JSON of any shape within a budget: a few bytes of text can become a list, an object or a
+/// Reads any JSON within a budget: a few bytes can become a list, an object or a
 /// name, each with its own memory.
 #[derive(Clone, Copy)]
 struct TreeReader<'r> {
@@ -54,7 +54,7 @@ struct TreeReader<'r> {
 }
 
 impl TreeReader<'_> {
-    /// Takes the memory of a value \[bytes\].
+    /// Takes memory for a value \[bytes\].
     fn take<E: Error>(self, size: usize) -> Result<(), E> {
         // Lists grow by doubling; a step of work is a value.
         self.budget.take(1, 2 * size as u64, "").map_err(|fault| {

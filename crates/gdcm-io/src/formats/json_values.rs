@@ -16,11 +16,11 @@ use crate::location::Outline;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
 
-/// Overhead of a value's shape, name and number \[bytes\].
+/// Overhead for shape, name and number \[bytes\].
 const OVERHEAD: u64 = 3 * 64;
-/// Memory of a value with its shape and one number, and of null \[bytes\].
+/// Memory for a value with its shape and a number, or for null \[bytes\].
 const VALUE: u64 = size_of::<Value>() as u64 + OVERHEAD;
-/// Largest number of dimensions of an array.
+/// Most array dimensions.
 const MOST_DIMENSIONS: usize = 3;
 
 /// JSON, and any gzip-packed file.
@@ -64,7 +64,7 @@ fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Co
     Contents::row_major(read_variables(text, budget), path)
 }
 
-/// Reads an unpacked text that does not begin like JSON, by the format of its name without ".gz".
+/// Reads an unpacked text that does not begin like JSON, by its name without ".gz".
 fn read_unpacked(
     text: &[u8],
     path: &Path,
@@ -78,7 +78,7 @@ fn read_unpacked(
     }
 }
 
-/// Reads the members of a JSON object, or a list under the name "models".
+/// Reads the members in a JSON object, or a list under the name "models".
 fn read_variables(text: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let members = match Tree::read(text, budget)? {
         Tree::Object(members) => members,
@@ -142,7 +142,7 @@ fn list_value(list: Vec<Tree>, budget: &ReadingBudget<'_>) -> Result<Value, Vari
     Ok(Value::Cell(CellArray { shape, values }))
 }
 
-/// Converts nested lists of numbers; returns nothing if they are not rectangular, or nested too
+/// Converts numbers in nested lists; returns nothing if they are not rectangular, or nested too
 /// deeply.
 fn number_array(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Array>, VariableFault> {
     let shape = shape_of(list);
@@ -170,7 +170,7 @@ fn number_array(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Arra
     }))
 }
 
-/// Returns the lengths of a list, of its first entry, and so on.
+/// Returns the length along each dimension: the list, its first entry, and so on.
 fn shape_of(list: &[Tree]) -> Vec<usize> {
     let mut shape = vec![list.len()];
     let mut inner = list;
@@ -181,7 +181,7 @@ fn shape_of(list: &[Tree]) -> Vec<usize> {
     shape
 }
 
-/// Appends the numbers of a rectangular list; returns whether the list has the shape.
+/// Appends the numbers in a rectangular list; returns whether the list has the shape.
 fn append_numbers(
     list: &[Tree],
     shape: &[usize],

@@ -1,9 +1,8 @@
-//! Number files of other programs: the format interface, the list of formats, and the reading of
-//! files.
+//! Number files from other programs: the format interface, the list of formats, and reading.
 //!
 //! ```text
-//! bytes -> format, by the first bytes                   (the ending of the name decides only between texts)
-//!       -> variables, a text, or the files of an archive    (the formats, which know nothing of models and records)
+//! bytes -> format, by the first bytes                   (the name ending decides only between texts)
+//!       -> variables, a text, or the files in an archive    (the formats, which know nothing of models and records)
 //!       -> models or records                                (recognise)
 //! ```
 //!

@@ -1,8 +1,8 @@
-//! Columns of a flight record as a format reads them, before their file is known.
+//! Flight record columns as a format reads them, before their file is known.
 
 use gdcm_sysid::records::{ModeSpan, RecordColumn, RecordSource, RecordTable};
 
-/// Largest number of records in one file.
+/// Most records in one file.
 pub(crate) const MOST_RECORDS: usize = 1000;
 
 /// Columns that belong together, before their file is known.
@@ -16,7 +16,7 @@ pub(crate) struct Columns {
     pub(crate) sample_time_s: Option<f64>,
     /// Remarks on the reading.
     pub(crate) notes: Vec<String>,
-    /// Modes of the logging system over time.
+    /// Logging system modes over time.
     pub(crate) modes: Vec<ModeSpan>,
 }
 
@@ -33,7 +33,7 @@ impl Columns {
         }
     }
 
-    /// Returns the record of these columns; `name` and `sha256` identify the file.
+    /// Returns the record with these columns; `name` and `sha256` identify the file.
     pub(crate) fn in_file(self, name: &str, sha256: &str) -> RecordTable {
         let file = name.rsplit('/').next().unwrap_or(name);
         let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);

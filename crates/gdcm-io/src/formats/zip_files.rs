@@ -13,16 +13,16 @@ use crate::formats::variables::Variable;
 use crate::formats::{Contents, Importer, importer_of, is_known};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Largest ratio of unpacked to packed bytes in deflate (RFC 1951).
+/// Most unpacked bytes for a packed byte in deflate (RFC 1951).
 const LARGEST_RATIO: u64 = 1032;
 
-/// Number of bytes unpacked between two checks of the budget.
+/// Bytes unpacked between two queries to the budget.
 const CHUNK: u64 = 1 << 20;
 
-/// Name ending of NumPy arrays.
+/// Name ending for NumPy arrays.
 const ARRAY: &str = ".npy";
 
-/// Zip archives: NumPy arrays (`.npz`), and files of any other format.
+/// Zip archives: NumPy arrays (`.npz`), and files with any other format.
 pub(crate) const ZIP: Importer = Importer {
     name: "a zip archive",
     endings: &["npz", "zip"],
@@ -32,7 +32,7 @@ pub(crate) const ZIP: Importer = Importer {
     },
 };
 
-/// Reads the arrays and the other files of an archive; nested archives are not read.
+/// Reads the arrays and the other files in an archive; nested archives are not read.
 pub(crate) fn read_archive(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
@@ -49,7 +49,7 @@ pub(crate) fn read_archive(
 /// An archive during reading.
 #[derive(Default)]
 struct ArchiveReading {
-    /// Names of the arrays.
+    /// Array names.
     names: HashSet<String>,
     variables: Vec<Variable>,
     files: Vec<(String, Result<Contents, FileError>)>,
@@ -98,7 +98,7 @@ impl ArchiveReading {
         Ok(())
     }
 
-    /// Takes the contents of a file or its fault; ends if the budget is exhausted.
+    /// Takes the contents read from a file, or the fault; ends if the budget is exhausted.
     fn take_contents(
         &mut self,
         file: &ZipFile<'_, '_>,
@@ -118,13 +118,13 @@ impl ArchiveReading {
 struct ZipFile<'z, 'b> {
     /// Path in the archive.
     path: &'z str,
-    /// Offset of the file \[bytes\].
+    /// File offset \[bytes\].
     offset: u64,
     archive: &'z ZipSliceArchive<&'b [u8]>,
     entry: &'z ZipFileHeaderRecord<'b>,
 }
 
-/// Passes every file of an archive to `visit`, in archive order.
+/// Passes every file in an archive to `visit`, in archive order.
 fn visit_files(
     bytes: &[u8],
     mut visit: impl FnMut(&ZipFile<'_, '_>) -> Result<(), VariableFault>,
@@ -156,7 +156,7 @@ fn visit_files(
 
 impl ZipFile<'_, '_> {
     /// Unpacks the file up to the size given by the archive: a few kilobytes can unpack to
-    /// gigabytes. `name` is the name of the file in faults.
+    /// gigabytes. Faults contain `name`.
     fn unpack(&self, name: &str, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, VariableFault> {
         if self.entry.flags().is_encrypted() {
             return Err(unsupported(name, "an encrypted entry"));

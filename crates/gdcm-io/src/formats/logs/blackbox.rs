@@ -2,8 +2,8 @@
 //! lines followed by frames (<https://betaflight.com/docs/development/Blackbox-Internals>).
 //!
 //! ```text
-//! H Product:Blackbox …        beginning of a flight
-//! H Field I name:time,…       fields of intra frames; P: encodings of predicted frames
+//! H Product:Blackbox …        begins a flight
+//! H Field I name:time,…       intra frame fields; P: encodings in predicted frames
 //! I, P, S, G, H, E            frames: intra, predicted, slow, GPS, GPS home, event
 //! ```
 //!
@@ -31,10 +31,10 @@ const LONGEST_STEP_US: i64 = 10_000_000;
 const FEWEST_FRAMES: usize = 50;
 /// 1.0 as an IEEE 754 bit pattern, as the header has it.
 const ONE: &str = "0x3f800000";
-/// Names of the controller's terms; the index of an axis follows in brackets.
+/// Names for the controller terms; an axis index follows in brackets.
 const TERMS: [&str; 4] = ["axisP", "axisI", "axisD", "axisF"];
 
-/// Logs of Betaflight.
+/// Betaflight logs.
 pub(crate) const BLACKBOX: Importer = Importer {
     name: "a blackbox log",
     endings: &["bbl", "bfl"],
@@ -96,15 +96,15 @@ fn flight_offsets(bytes: &[u8]) -> Vec<usize> {
     offsets
 }
 
-/// Contents of the header lines before the frames.
+/// Header lines before the frames.
 #[derive(Default)]
 struct Heading {
     /// Values by key.
     lines: BTreeMap<String, String>,
-    /// Fields of each kind of frame, by its letter.
+    /// Fields by frame letter.
     frames: BTreeMap<u8, FrameFields>,
     numbers: HeaderNumbers,
-    /// Length of the header \[bytes\].
+    /// Header length \[bytes\].
     length: usize,
 }
 
@@ -116,7 +116,7 @@ impl Heading {
             let fields = heading.fields(char::from(kind));
             heading.frames.insert(kind, fields);
         }
-        // Predicted frames have the names and signs of intra frames.
+        // Predicted frames share names and signs with intra frames.
         let intra = heading.frames[&b'I'].clone();
         if let Some(predicted) = heading.frames.get_mut(&b'P') {
             predicted.names = intra.names;
@@ -144,18 +144,17 @@ impl Heading {
         }
     }
 
-    /// Returns the value of a key; empty if it is missing.
+    /// Returns the value for a key; empty if it is missing.
     fn value(&self, key: &str) -> &str {
         self.lines.get(key).map_or("", String::as_str)
     }
 
-    /// Returns the first number of a list; 0 if it is missing.
+    /// Returns the first number in a list; 0 if it is missing.
     fn number(&self, key: &str) -> i64 {
         let first = self.value(key).split(',').next().unwrap_or_default();
         first.parse().unwrap_or(0)
     }
 
-    /// Reads the fields of a kind of frame.
     fn fields(&self, kind: char) -> FrameFields {
         FrameFields {
             names: self.field_cells(kind, "name").map(str::to_owned).collect(),
@@ -169,21 +168,21 @@ impl Heading {
         }
     }
 
-    /// Returns the cells of a line such as "Field I name".
+    /// Returns the cells in a line such as "Field I name".
     fn field_cells(&self, kind: char, property: &str) -> impl Iterator<Item = &str> {
         self.value(&format!("Field {kind} {property}"))
             .split(',')
             .filter(|cell| !cell.is_empty())
     }
 
-    /// Returns the numbers of a line such as "Field I signed"; 255 for anything else.
+    /// Returns the numbers in a line such as "Field I signed"; 255 for anything else.
     fn field_numbers(&self, kind: char, property: &str) -> Vec<u8> {
         self.field_cells(kind, property)
             .map(|cell| cell.parse().unwrap_or(u8::MAX))
             .collect()
     }
 
-    /// Returns the fields of a kind of frame, if all are known.
+    /// Returns the fields for a frame letter, if all are known.
     fn frame(&self, kind: u8) -> Option<&FrameFields> {
         let fields = self.frames.get(&kind)?;
         if fields.is_whole() {
@@ -193,7 +192,7 @@ impl Heading {
         }
     }
 
-    /// Parses the frame of a letter; returns nothing for an unknown letter or a damaged frame.
+    /// Parses the frame with a letter; returns nothing for an unknown letter or a damaged frame.
     fn parse(&self, kind: u8, bytes: &mut PackedBytes<'_>, before: &Predecessors) -> Option<Frame> {
         if kind == b'E' {
             return event(bytes);
@@ -224,11 +223,11 @@ enum Frame {
 /// Parses an event, whose number decides its length.
 fn event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
     match bytes.byte()? {
-        // Beep, disarming, failure of the inertial unit.
+        // Beep, disarming, inertial unit failure.
         0 | 15 | 40 => {
             bytes.unsigned()?;
         }
-        // Logging resumes; change of the flight mode.
+        // Logging resumes; the flight mode changes.
         14 | 30 => {
             bytes.unsigned()?;
             bytes.unsigned()?;
@@ -256,25 +255,25 @@ fn event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
     Some(Frame::Other)
 }
 
-/// Frames of a flight.
+/// A flight and its frames.
 struct Flight {
     heading: Heading,
-    /// Index of the field "time".
+    /// Index for the field "time".
     time: Option<usize>,
-    /// Numbers of each field of the main frames.
+    /// Numbers in the main frames, by field.
     values: Vec<Vec<f64>>,
     modes: Vec<ModeSample>,
     damaged: usize,
 }
 
-/// Mode flags of a slow frame, at the time of the main frame before it.
+/// Mode flags in a slow frame, at the time in the preceding main frame.
 struct ModeSample {
     time_us: f64,
     flags: f64,
 }
 
 impl Flight {
-    /// Reads the frames of a flight; returns nothing if there are too few.
+    /// Reads a flight with its frames; returns nothing if there are too few.
     fn read(
         bytes: &[u8],
         name: &str,
@@ -294,7 +293,7 @@ impl Flight {
     /// Creates a flight without frames.
     ///
     /// # Errors
-    /// Another data version, or unknown encodings of the intra frames.
+    /// Another data version, or unknown encodings in intra frames.
     fn begin(heading: Heading, name: &str) -> Result<Self, VariableFault> {
         let version = heading.value("Data version");
         match heading.frame(b'I') {
@@ -369,13 +368,15 @@ impl Flight {
 
     /// Whether a main frame follows its predecessor in time.
     fn continues(&self, frame: &[i64], before: &Predecessors) -> bool {
-        let (Some(time), Some(last)) = (self.time, &before.last) else {
-            return true;
-        };
-        (0..=LONGEST_STEP_US).contains(&(frame[time] - last[time]))
+        if let Some(time) = self.time
+            && let Some(last) = &before.last
+        {
+            return (0..=LONGEST_STEP_US).contains(&(frame[time] - last[time]));
+        }
+        true
     }
 
-    /// Takes the mode flags of a slow frame after a main frame.
+    /// Takes the mode flags in a slow frame after a main frame.
     fn take_modes(
         &mut self,
         slow: &[i64],
@@ -383,7 +384,10 @@ impl Flight {
         name: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<(), VariableFault> {
-        if let (Some(time), Some(flags), Some(last)) = (self.time, slow.first(), &before.last) {
+        if let Some(time) = self.time
+            && let Some(flags) = slow.first()
+            && let Some(last) = &before.last
+        {
             budget.take(2, 8, name)?;
             self.modes.push(ModeSample {
                 time_us: last[time] as f64,
@@ -393,7 +397,7 @@ impl Flight {
         Ok(())
     }
 
-    /// Returns the columns of the flight, with the sums of the controller's terms.
+    /// Returns the columns, with a sum of the controller terms for each axis.
     fn columns(self, name: String, budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
         let mut notes = vec![
             "a log of Betaflight; axisSum is the sum of the terms of the controller".to_owned(),
@@ -445,7 +449,7 @@ impl Flight {
     }
 }
 
-/// Returns the sum of the controller's terms for an axis, if there are any.
+/// Adds up the controller terms for an axis, if there are any.
 fn controller_sum(
     columns: &[RecordColumn],
     axis: usize,
@@ -468,7 +472,7 @@ fn controller_sum(
     Ok(Some(RecordColumn::new(format!("axisSum[{axis}]"), sum)))
 }
 
-/// Returns the mode of `flightModeFlags`: bit 1 is angle, bit 2 is horizon, neither is acro.
+/// Returns the mode for `flightModeFlags`: bit 1 is angle, bit 2 is horizon, neither is acro.
 fn mode_name(flags: f64) -> &'static str {
     let flags = flags as u32;
     if flags & 2 != 0 {

@@ -1,13 +1,13 @@
-//! Fields of the frames in a blackbox: encoding and prediction.
+//! Frame fields in a blackbox: encoding and prediction.
 //!
 //! Each field has a numbered encoding and a numbered predictor
 //! (<https://betaflight.com/docs/development/Blackbox-Internals>). The file holds the difference
 //! from the prediction.
 
-/// Largest number of fields in a frame.
+/// Most fields in a frame.
 const MOST_FIELDS: usize = 256;
 
-/// Fields of one kind of frame.
+/// Fields in frames with the same letter.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrameFields {
     pub(super) names: Vec<String>,
@@ -36,7 +36,7 @@ pub(super) struct Predecessors {
 /// Cursor over bytes with packed numbers.
 pub(super) struct PackedBytes<'b> {
     bytes: &'b [u8],
-    /// Offset of the next byte.
+    /// Next byte to be read.
     pub(super) at: usize,
 }
 
@@ -76,7 +76,7 @@ impl<'b> PackedBytes<'b> {
         Some(-extended(self.unsigned()? & 0x3fff, 14))
     }
 
-    /// Reads three numbers of 2, 4 or 6 bits, or of 1 to 4 bytes each.
+    /// Reads three numbers with 2, 4 or 6 bits each, or with 1 to 4 bytes each.
     fn three(&mut self) -> Option<[i32; 3]> {
         let lead = self.byte()?;
         Some(match lead >> 6 {
@@ -101,7 +101,7 @@ impl<'b> PackedBytes<'b> {
         })
     }
 
-    /// Reads four numbers of 0, 4, 8 or 16 bits, in half-byte steps, highest first.
+    /// Reads four numbers with 0, 4, 8 or 16 bits each, in half-byte steps, highest first.
     fn four(&mut self) -> Option<[i32; 4]> {
         let tags = self.byte()?;
         let mut half = None;
@@ -130,7 +130,7 @@ impl<'b> PackedBytes<'b> {
     }
 }
 
-/// Sign-extends a number of `count` bits.
+/// Sign-extends a number with `count` bits.
 fn extended(bits: u32, count: u32) -> i32 {
     let unused = 32 - count;
     (bits << unused).cast_signed() >> unused
@@ -147,7 +147,7 @@ impl FrameFields {
             && self.encodings.iter().all(|encoding| is_known(*encoding))
     }
 
-    /// Reads the differences of a frame as stored; returns nothing if they are damaged.
+    /// Reads the stored differences for a frame; returns nothing if they are damaged.
     pub(super) fn differences(&self, bytes: &mut PackedBytes<'_>) -> Option<Vec<i64>> {
         let count = self.names.len();
         let mut values: Vec<i64> = Vec::with_capacity(count);
@@ -189,7 +189,7 @@ impl FrameFields {
         Some(())
     }
 
-    /// Computes the numbers of a frame from its differences and the two frames before.
+    /// Computes the numbers in a frame from its differences and the two frames before.
     pub(super) fn values(
         &self,
         mut values: Vec<i64>,
@@ -232,7 +232,7 @@ fn is_known(encoding: u8) -> bool {
     matches!(encoding, 0 | 1 | 3 | 6 | 7 | 8 | 9)
 }
 
-/// Returns a field of a frame, if there is such a frame.
+/// Returns a field, if there is such a frame.
 fn field_of(frame: &Option<Vec<i64>>, field: usize) -> Option<i64> {
     frame.as_ref()?.get(field).copied()
 }

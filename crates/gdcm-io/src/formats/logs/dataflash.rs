@@ -1,11 +1,11 @@
-//! DataFlash, the log format of ArduPilot, in binary form
+//! DataFlash, the ArduPilot log format, in binary form
 //! (<https://ardupilot.org/dev/docs/code-overview-adding-a-new-log-message.html>).
 //!
 //! ```text
-//! each message: A3 95, type, content; FMT messages give the length and the fields of each type
+//! each message: A3 95, type, content; FMT messages give length and fields for each type
 //! FMT           type, length with these three bytes, name, a letter for each field, field names
 //! FMTU          type, a unit letter and a multiplier letter for each field
-//! UNIT, MULT    meanings of these letters
+//! UNIT, MULT    meanings for these letters
 //! ```
 
 use std::collections::BTreeMap;
@@ -21,13 +21,13 @@ use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const MARK: [u8; 2] = [0xa3, 0x95];
-/// Length of the mark and the type \[bytes\].
+/// Length of mark and type \[bytes\].
 const HEADER: usize = 3;
-/// Type and length of the messages that describe other messages.
+/// Type and length \[bytes\] for messages that describe other messages.
 const FORMAT: u8 = 128;
 const FORMAT_LENGTH: usize = 89;
 
-/// Binary logs of ArduPilot.
+/// ArduPilot logs in binary form.
 pub(crate) const DATAFLASH: Importer = Importer {
     name: "a DataFlash log of ArduPilot",
     endings: &["bin"],
@@ -74,10 +74,9 @@ fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, V
     topics.columns(notes)
 }
 
-/// Length of each message type with its header \[bytes\]; 0 if it is unknown.
+/// Length by message type, with the header \[bytes\]; 0 if it is unknown.
 type Lengths = [usize; 256];
 
-/// A message of a log.
 #[derive(Clone, Copy)]
 struct Message<'b> {
     kind: u8,
@@ -108,12 +107,12 @@ impl Message<'_> {
     }
 }
 
-/// The messages in the bytes of a log.
+/// The messages in a log, one after another.
 struct Messages<'b, 'm> {
     bytes: &'b [u8],
     budget: &'m ReadingBudget<'m>,
     at: usize,
-    /// Number of bytes outside messages.
+    /// Byte count outside messages.
     skipped: usize,
 }
 
@@ -127,7 +126,7 @@ impl<'b, 'm> Messages<'b, 'm> {
         }
     }
 
-    /// Returns the next message of a known length, which may describe the lengths of later
+    /// Returns the next message with a known length, which may describe the lengths of later
     /// messages.
     fn next(&mut self, lengths: &Lengths) -> Result<Option<Message<'b>>, VariableFault> {
         while let Some([first, second, kind]) = array::<HEADER>(self.bytes, self.at) {
@@ -150,7 +149,7 @@ impl<'b, 'm> Messages<'b, 'm> {
     }
 }
 
-/// Descriptions of the messages, as far as they are read.
+/// Message descriptions that have been read.
 struct Descriptions {
     layouts: Layouts,
     lengths: Lengths,
@@ -166,7 +165,7 @@ impl Descriptions {
         }
     }
 
-    /// Takes the description of other messages from a message.
+    /// Takes the description of other messages.
     fn take(&mut self, message: Message<'_>) {
         if message.kind == FORMAT {
             self.take_format(message.content);
@@ -178,27 +177,26 @@ impl Descriptions {
         };
         match layout.name.as_str() {
             "FMTU" => {
-                let kind = message.byte(layout, "FmtType");
-                let units = message.text(layout, "UnitIds");
-                let multipliers = message.text(layout, "MultIds");
-                if let (Some(kind), Some(units), Some(multipliers)) = (kind, units, multipliers) {
+                if let Some(kind) = message.byte(layout, "FmtType")
+                    && let Some(units) = message.text(layout, "UnitIds")
+                    && let Some(multipliers) = message.text(layout, "MultIds")
+                {
                     layouts.set_units(kind, &units, &multipliers);
                 }
             }
             "UNIT" => {
-                let letter = message.byte(layout, "Id");
-                let label = message.text(layout, "Label");
-                if let (Some(letter), Some(label)) = (letter, label) {
+                if let Some(letter) = message.byte(layout, "Id")
+                    && let Some(label) = message.text(layout, "Label")
+                {
                     layouts.units.insert(char::from(letter), label);
                 }
             }
             "MULT" => {
-                let letter = message.byte(layout, "Id");
                 let stored = StoredNumber::little_endian(NumberClass::Float, 8);
-                let multiplier = layout
-                    .field("Mult")
-                    .and_then(|field| stored.at(message.content, field.offset));
-                if let (Some(letter), Some(multiplier)) = (letter, multiplier) {
+                if let Some(letter) = message.byte(layout, "Id")
+                    && let Some(field) = layout.field("Mult")
+                    && let Some(multiplier) = stored.at(message.content, field.offset)
+                {
                     layouts.multipliers.insert(char::from(letter), multiplier);
                 }
             }
@@ -206,7 +204,7 @@ impl Descriptions {
         }
     }
 
-    /// Takes the layout and the length of a message type.
+    /// Takes layout and length for a message type.
     fn take_format(&mut self, content: &[u8]) {
         let Some([kind, length]) = array::<2>(content, 0) else {
             return;
@@ -220,7 +218,7 @@ impl Descriptions {
         };
         let ends = layout.fields.iter().map(|field| field.end());
         let needed = ends.max().unwrap_or(0);
-        // The length of this description itself is fixed.
+        // The length for FMT itself is fixed.
         if kind != FORMAT && usize::from(length) >= needed + HEADER {
             self.lengths[usize::from(kind)] = usize::from(length);
             self.layouts.by_type.insert(kind, layout);

@@ -1,4 +1,4 @@
-//! Messages of DataFlash logs, in binary and in text form: their layouts, and their samples by topic.
+//! Messages in DataFlash logs, in binary and in text form: their layouts, and their samples by topic.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -12,7 +12,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Messages that describe the log and hold no samples.
 const DESCRIPTIONS: [&str; 5] = ["FMT", "FMTU", "UNIT", "MULT", "PARM"];
-/// Unit letter of the field that numbers the instances of a message.
+/// Unit letter for the field that numbers message instances.
 const INSTANCE: char = '#';
 
 /// Kind of a message field, given by its letter.
@@ -66,7 +66,6 @@ impl FieldKind {
     }
 }
 
-/// A field of a message.
 #[derive(Clone, Debug)]
 pub(super) struct MessageField {
     pub(super) name: String,
@@ -82,14 +81,14 @@ impl MessageField {
     }
 }
 
-/// Layout of a message type.
+/// Fields in messages with the same type.
 #[derive(Clone, Debug)]
 pub(super) struct MessageLayout {
     pub(super) name: String,
     pub(super) fields: Vec<MessageField>,
-    /// Unit letter of each field.
+    /// Unit letter by field.
     units: Vec<char>,
-    /// Multiplier letter of each field.
+    /// Multiplier letter by field.
     multipliers: Vec<char>,
 }
 
@@ -128,7 +127,7 @@ impl MessageLayout {
     }
 }
 
-/// Layouts of a log by type, with the meanings of the letters for units and multipliers.
+/// Layouts in a log by type, with the meanings of unit and multiplier letters.
 #[derive(Default)]
 pub(super) struct Layouts {
     pub(super) by_type: BTreeMap<u8, MessageLayout>,
@@ -137,7 +136,7 @@ pub(super) struct Layouts {
 }
 
 impl Layouts {
-    /// Sets the letters for units and multipliers of a message type.
+    /// Sets the unit and multiplier letters for a message type.
     pub(super) fn set_units(&mut self, kind: u8, units: &str, multipliers: &str) {
         if let Some(layout) = self.by_type.get_mut(&kind) {
             layout.units = units.chars().collect();
@@ -145,7 +144,7 @@ impl Layouts {
         }
     }
 
-    /// Returns the unit of a field, in the spelling of this program.
+    /// Returns the unit for a field, in the spelling of this program.
     fn unit(&self, layout: &MessageLayout, field: usize) -> Option<String> {
         let unit = self.units.get(layout.units.get(field)?)?;
         match unit.as_str() {
@@ -156,7 +155,7 @@ impl Layouts {
         }
     }
 
-    /// Returns the multiplier of a field; 1 unless it is known, finite and not 0.
+    /// Returns the multiplier for a field; 1 unless it is known, finite and not 0.
     fn multiplier(&self, layout: &MessageLayout, field: usize) -> f64 {
         let letter = layout.multipliers.get(field);
         match letter.and_then(|letter| self.multipliers.get(letter)) {
@@ -166,20 +165,20 @@ impl Layouts {
     }
 }
 
-/// The fields of a message that are used.
+/// The fields that are used from a message.
 pub(super) struct SampleFields<'l> {
     pub(super) layout: &'l MessageLayout,
     stamp: Stamp,
-    /// Index of the field with the instance.
+    /// Index for the field with the instance.
     instance: Option<usize>,
     numbers: Vec<SampleNumber>,
 }
 
-/// The time stamp of a message.
+/// Time stamp field.
 #[derive(Clone, Copy)]
 struct Stamp {
     field: usize,
-    /// Duration of its unit \[s\].
+    /// Factor to seconds.
     unit_s: f64,
 }
 
@@ -191,7 +190,7 @@ struct SampleNumber {
 }
 
 impl<'l> SampleFields<'l> {
-    /// Finds the time stamp, the instance and the numbers of a layout; returns nothing without a
+    /// Finds time stamp, instance and numbers in a layout; returns nothing without a
     /// stamp or numbers.
     pub(super) fn find(layout: &'l MessageLayout, layouts: &Layouts) -> Option<Self> {
         if DESCRIPTIONS.contains(&layout.name.as_str()) {
@@ -244,7 +243,7 @@ impl<'l> SampleFields<'l> {
     }
 }
 
-/// Topics of a log during reading, by message and instance.
+/// Topics during reading, by message and instance.
 #[derive(Default)]
 pub(super) struct Topics {
     by_name: BTreeMap<(String, u64), TopicSamples>,
@@ -327,7 +326,7 @@ impl Topics {
         Ok(columns)
     }
 
-    /// Returns the values of a field in the first instance of a message.
+    /// Returns a field over time, in the first instance of a message.
     fn states(&self, name: &str, field: &str) -> Option<States<'_>> {
         let topic = self.by_name.get(&(name.to_owned(), 0))?;
         Some(States {
@@ -349,7 +348,7 @@ impl States<'_> {
     }
 }
 
-/// Creates the topic of a message and an instance, without samples.
+/// Creates a topic without samples for a message and its instance.
 fn new_topic(fields: &SampleFields<'_>, instance: u64) -> TopicSamples {
     let name = &fields.layout.name;
     let name = if instance == 0 {

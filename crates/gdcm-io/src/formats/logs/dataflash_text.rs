@@ -1,4 +1,4 @@
-//! DataFlash logs of ArduPilot as text: a line for each message, `NAME, value, value`.
+//! DataFlash logs from ArduPilot as text: a line for each message, `NAME, value, value`.
 //!
 //! FMT, FMTU, UNIT and MULT lines describe the messages. The values are already multiplied.
 
@@ -10,10 +10,10 @@ use crate::formats::recorded_columns::Columns;
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Beginning of a log without its blanks.
+/// First characters in a log, without blanks.
 const BEGINNING: &[u8] = b"FMT,128,89,FMT,";
 
-/// Text logs of ArduPilot.
+/// ArduPilot logs in text form.
 pub(crate) const DATAFLASH_TEXT: Importer = Importer {
     name: "a DataFlash log of ArduPilot as text",
     endings: &["log"],

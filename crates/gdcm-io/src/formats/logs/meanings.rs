@@ -1,4 +1,4 @@
-//! Channels and units of logged columns, by the documentation of each system.
+//! Channels and units for logged columns, as each system documents them.
 
 use gdcm_sysid::records::RecordColumn;
 
@@ -22,8 +22,8 @@ const fn documented(
     }
 }
 
-/// Documented columns in the logs of a system: each channel is the first of its columns that is
-/// present and varies.
+/// Documented columns in the logs from a system. A channel is its first column here that is present
+/// and varies.
 pub(super) struct Meanings {
     columns: &'static [DocumentedColumn],
     /// Remark on the signs.
@@ -60,7 +60,7 @@ pub(super) const PX4: Meanings = Meanings {
             to reverse one)",
 };
 
-/// ArduPilot: `SIDD` of the system identification mode, `RATE`, `IMU`
+/// ArduPilot: `SIDD` from the system identification mode, `RATE`, `IMU`
 /// (<https://ardupilot.org/copter/docs/logmessages.html>). `R`, `P` and `Y` are roll, pitch and
 /// yaw; `…Out` goes to the motors, from -1 to 1 (`AOut` from 0 to 1).
 pub(super) const ARDUPILOT: Meanings = Meanings {

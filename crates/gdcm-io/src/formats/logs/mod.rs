@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! bytes -> messages -> topics: stamps, and a column for each field      (ulog, dataflash, blackbox)
-//!       -> units and channels by the documentation of the system        (meanings)
+//!       -> documented units and channels                               (meanings)
 //! ```
 
 mod blackbox;

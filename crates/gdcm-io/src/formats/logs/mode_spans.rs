@@ -1,13 +1,13 @@
-//! Modes of a logging system over time.
+//! Modes over time in a logging system.
 
 use gdcm_sysid::records::ModeSpan;
 
-/// Largest number of mode spans kept for a log.
+/// Most spans kept for a log.
 const MOST_SPANS: usize = 1000;
-/// Number of spans listed in a note.
+/// Spans listed in a note.
 const SHOWN: usize = 8;
 
-/// Returns the spans of equal, named values of a state.
+/// Returns the time spans in which a state keeps a value that has a name.
 pub(super) fn mode_spans(
     time_s: &[f64],
     values: impl IntoIterator<Item = f64>,

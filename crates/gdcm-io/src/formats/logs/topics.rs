@@ -1,4 +1,4 @@
-//! Topics of a log, each with its own clock, during reading.
+//! Topics in a log, each with its own clock, during reading.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ pub(super) struct TopicSamples {
     pub(super) time_s: Vec<f64>,
 }
 
-/// A field of a topic with its samples.
+/// A topic field with its samples.
 pub(super) struct TopicField {
     pub(super) name: String,
     pub(super) unit: Option<String>,

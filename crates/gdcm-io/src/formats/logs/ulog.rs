@@ -1,13 +1,13 @@
-//! ULog, the logs of PX4 (<https://docs.px4.io/main/en/dev_log/ulog_file_format.html>).
+//! ULog, the PX4 log format (<https://docs.px4.io/main/en/dev_log/ulog_file_format.html>).
 //!
 //! ```text
-//! 16 bytes of header
+//! header: 16 bytes
 //! messages: length (16 bits), type (a letter), content
-//!   B  flags, offsets of appended data       F  layout of a topic      A  topic and instance for a number
-//!   D  number, data of its topic             O  a dropout [ms]         others: parameters, texts, marks
+//!   B  flags, offsets to appended data       F  topic layout           A  topic and instance for a number
+//!   D  number, data for its topic            O  dropout [ms]           others: parameters, texts, marks
 //! ```
 //!
-//! Stamps are microseconds since the start of the autopilot. A log cut off by a crash is read up to
+//! Stamps are microseconds since the autopilot was started. A log cut off by a crash is read up to
 //! its end.
 
 use std::collections::BTreeMap;
@@ -25,16 +25,16 @@ use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const MAGIC: &[u8] = b"ULog\x01\x12\x35";
-/// Length of the header of the file \[bytes\].
+/// Length of the file header \[bytes\].
 const HEADER: usize = 16;
-/// Length of the header of a message \[bytes\].
+/// Length of a message header \[bytes\].
 const MESSAGE_HEADER: usize = 3;
 /// Flag for appended data, the only flag that a reader must know.
 const APPENDED: u8 = 1;
-/// `VehicleStatus.msg` of PX4: `ARMING_STATE_ARMED`.
+/// `ARMING_STATE_ARMED` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
 const ARMED: f64 = 2.0;
 
-/// Logs of PX4.
+/// PX4 logs.
 pub(crate) const ULOG: Importer = Importer {
     name: "a ULog of PX4",
     endings: &["ulg", "ulog"],
@@ -46,13 +46,13 @@ pub(crate) const ULOG: Importer = Importer {
     },
 };
 
-/// A subscribed topic and the positions of its data in a message.
+/// A subscribed topic and the positions in its messages.
 struct Subscription {
     samples: TopicSamples,
     stamp: Place,
-    /// Position of each field.
+    /// Position for each field.
     places: Vec<Place>,
-    /// Shortest possible data of the topic \[bytes\].
+    /// Shortest possible data in a message \[bytes\].
     least: usize,
 }
 
@@ -63,7 +63,7 @@ struct Messages<'b> {
     subscriptions: BTreeMap<u16, Subscription>,
     dropouts: usize,
     lost_ms: u64,
-    /// Number of data messages without a topic, or too short.
+    /// Count of data messages without a topic, or too short.
     unread: usize,
 }
 
@@ -101,10 +101,10 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
     messages.columns(is_cut)
 }
 
-/// Reads the offsets of appended data \[bytes\] from the flags.
+/// Reads the offsets to appended data \[bytes\] from the flags.
 ///
 /// # Errors
-/// A flag of a later version.
+/// A flag from a later version.
 fn appended_offsets(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
     for (index, flag) in flags.get(8..16).unwrap_or_default().iter().enumerate() {
         let known = if index == 0 { APPENDED } else { 0 };
@@ -148,7 +148,7 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Takes the layout of a topic; the first of several layouts counts.
+    /// Takes the layout for a topic; later layouts for the same topic are ignored.
     fn take_format(
         &mut self,
         content: &'b [u8],
@@ -162,7 +162,6 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Takes a sample of a topic.
     fn take_data(
         &mut self,
         content: &[u8],
@@ -298,7 +297,7 @@ fn navigation_mode(state: f64) -> Option<String> {
     Some((*name).to_owned())
 }
 
-/// `VehicleStatus.msg` of PX4 1.14 to 1.16: `NAVIGATION_STATE_…`.
+/// `NAVIGATION_STATE_…` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
 const NAVIGATION: [(u8, &str); 13] = [
     (0, "manual"),
     (1, "altitude"),

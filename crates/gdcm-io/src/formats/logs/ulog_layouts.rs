@@ -1,5 +1,4 @@
-//! Message layouts of ULog: fields that are numbers, arrays or other layouts, flattened to a list
-//! of numbers.
+//! Message layouts in ULog: fields that are numbers, arrays or other layouts, flattened to a list.
 
 use std::collections::BTreeMap;
 
@@ -8,10 +7,10 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Largest message, limited by its 16-bit length \[bytes\].
 const LARGEST: usize = 65_535;
-/// Deepest nesting of layouts.
+/// Most layouts inside one another.
 const DEEPEST: usize = 8;
 
-/// A number in the data of a message.
+/// A number in the data part of a message.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Place {
     /// For example `xyz[0]`, `esc[1].esc_rpm`.
@@ -22,7 +21,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// Whether this is the time stamp of the message, in microseconds.
+    /// Whether this is the time stamp, in microseconds.
     pub(super) fn is_stamp(&self) -> bool {
         self.name == "timestamp" && Some(self.stored) == number_type("uint64_t")
     }
@@ -32,7 +31,7 @@ impl Place {
         self.offset + self.stored.size()
     }
 
-    /// Reads the number from the data of a message, unless they are too short.
+    /// Reads the number, unless the data are too short.
     pub(super) fn read(&self, data: &[u8]) -> Option<f64> {
         self.stored.at(data, self.offset)
     }
@@ -67,16 +66,16 @@ struct Flattening<'a> {
     budget: &'a ReadingBudget<'a>,
     message: &'a str,
     places: Vec<Place>,
-    /// Offset of the next field \[bytes\].
+    /// Offset for the next field \[bytes\].
     offset: usize,
 }
 
-/// A field of a layout: `float[3] xyz`.
+/// A layout field: `float[3] xyz`.
 struct LayoutField<'f> {
-    /// Name of a number type or of another layout.
+    /// A number type or another layout.
     kind: &'f str,
     name: &'f str,
-    /// Number of elements in an array.
+    /// Element count in an array.
     length: Option<usize>,
 }
 
@@ -85,8 +84,7 @@ impl Flattening<'_> {
         VariableFault::damaged(self.message, what, 0)
     }
 
-    /// Adds the numbers of a layout; `deeper` is the number of layouts that may be nested from
-    /// here.
+    /// Adds the numbers in a layout; up to `deeper` layouts may be nested from here.
     fn add_layout(&mut self, name: &str, prefix: &str, deeper: usize) -> Result<(), VariableFault> {
         if deeper == 0 {
             return Err(VariableFault::too_deep(self.message));
@@ -125,7 +123,7 @@ impl Flattening<'_> {
         }
     }
 
-    /// Adds the numbers of a field, or of each element of an array.
+    /// Adds the numbers in a field, or in each array element.
     fn add_field(
         &mut self,
         field: &LayoutField<'_>,

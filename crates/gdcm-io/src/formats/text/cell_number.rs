@@ -1,4 +1,4 @@
-//! Numbers in the cells of a table, in the notations of various programs.
+//! Numbers in table cells, in the notations of various programs.
 
 /// Words that programs write for a missing number.
 const MISSING: [&str; 14] = [
@@ -53,14 +53,14 @@ pub(super) fn has_number(cell: &str, decimal_comma: bool) -> bool {
 fn is_missing(cell: &str) -> bool {
     let unsigned = cell.trim_start_matches('-');
     MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word))
-        // The older C library of Windows writes NaN like this.
+        // NaN from the older Windows C library.
         || ["1.#IND", "1.#QNAN", "1.#SNAN"].iter().any(|start| unsigned.starts_with(start))
         // Fortran writes asterisks for a number too wide for its field.
         || cell.bytes().all(|byte| byte == b'*')
 }
 
 /// Parses a number with a decimal comma, a typographic minus, a Fortran exponent or the infinity of
-/// the older C library of Windows.
+/// the older Windows C library.
 fn foreign_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     if cell.starts_with("1.#INF") {
         return Some(f64::INFINITY);

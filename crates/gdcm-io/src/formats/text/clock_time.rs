@@ -3,7 +3,7 @@
 const DAY_S: f64 = 86_400.0;
 
 /// Parses a time such as "12:30:01.25", "12:30:01,25", "2026-03-01 12:30:01.25" or
-/// "2026-03-01T12:30:01.250Z" \[s\]: since midnight, or since the beginning of 1970 with a date.
+/// "2026-03-01T12:30:01.250Z" \[s\]: since midnight, or since 1970-01-01 with a date.
 pub(super) fn clock_s(text: &str) -> Option<f64> {
     let text = text.trim().trim_end_matches('Z').trim();
     let (date, time) = match text.split_once(['T', ' ']) {

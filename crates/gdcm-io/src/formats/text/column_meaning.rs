@@ -1,10 +1,10 @@
-//! Meaning of the columns of a frequency response, from names and units.
+//! Meaning of frequency response columns, from names and units.
 
 use gdcm_model::assembly::PhysicalUnit;
 
 use crate::formats::text::response_label::ResponseLabel;
 
-/// Quantity in a column of a frequency response.
+/// Quantity in a frequency response column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     Error,
@@ -35,7 +35,7 @@ pub(super) enum KnownUnit {
     Other,
 }
 
-/// Meaning of a column by its name and unit.
+/// Meaning of a column, from its name and unit.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ColumnMeaning {
     pub(super) quantity: Option<Quantity>,
@@ -112,7 +112,7 @@ const WORDS: [(Quantity, &[&str]); 7] = [
     ),
 ];
 
-/// Units at the end of a name without brackets.
+/// Units after a name, without brackets.
 const UNIT_ENDINGS: [(&str, KnownUnit); 13] = [
     ("rad/s", KnownUnit::RadianPerSecond),
     ("rad/sec", KnownUnit::RadianPerSecond),
@@ -144,7 +144,7 @@ struct Word<'n> {
 }
 
 impl ColumnMeaning {
-    /// Interprets the name and the unit of a column.
+    /// Interprets the name and the unit in a heading.
     pub(super) fn interpret(name: &str, unit: Option<&str>) -> Self {
         let (name, unit) = match unit {
             Some(unit) => (name, Some(known_unit(unit))),
@@ -226,7 +226,7 @@ fn without_digits(word: &str) -> &str {
     word.trim_end_matches(|c: char| c.is_ascii_digit())
 }
 
-/// Returns the unit implied by the words of a name; `word` is the word that gives the quantity, in
+/// Returns the unit that the words in a name imply; `word` is the word that gives the quantity, in
 /// lower case.
 fn usual_unit(quantity: Quantity, word: &str, words: &[Word<'_>]) -> Option<KnownUnit> {
     match quantity {
@@ -264,7 +264,7 @@ fn known_unit(unit: &str) -> KnownUnit {
     }
 }
 
-/// Splits a unit off the end of a name: "mag_dB", "freqHz", "w_rad_s".
+/// Splits a unit off a name: "mag_dB", "freqHz", "w_rad_s".
 fn split_unit(name: &str) -> (&str, Option<KnownUnit>) {
     let name = name.trim();
     for (ending, unit) in UNIT_ENDINGS {
@@ -290,7 +290,7 @@ fn without_ending<'n>(name: &'n str, ending: &str) -> Option<&'n str> {
     }
 }
 
-/// Whether a name ends with a known word of at least two bytes, as the front of "freqHz" does.
+/// Whether a name ends with a known word that has at least two bytes, as the front of "freqHz" does.
 fn ends_with_known_word(name: &str) -> bool {
     let name = name.to_lowercase();
     WORDS
@@ -299,7 +299,7 @@ fn ends_with_known_word(name: &str) -> bool {
         .any(|word| word.len() > 1 && name.ends_with(word))
 }
 
-/// Returns the words of a name: letters, digits and "²" without a break.
+/// Returns the words in a name: letters, digits and "²" without a break.
 fn words_of(name: &str) -> Vec<Word<'_>> {
     let mut words = Vec::new();
     let mut begun = None;

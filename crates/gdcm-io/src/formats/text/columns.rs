@@ -1,4 +1,4 @@
-//! Tables of numbers in columns, written by programs and people.
+//! Number tables in columns, written by programs and people.
 
 use crate::formats::text::cell_number::cell_number;
 use crate::formats::text::encoding::refuse_binary;
@@ -12,32 +12,31 @@ use crate::formats::text::separator::Separator;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const EXPECTED: &str = "a table of numbers in columns";
-/// Number of lines before the first row compared with a repeated heading.
+/// Lines before the first row that are compared with a repeated heading.
 const COMPARED_HEADINGS: usize = 20;
 
-/// A table of numbers in columns.
+/// A table with number columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextTable {
     /// Column names, if the text has them.
     pub names: Option<Vec<String>>,
-    /// Unit of each column, if the text has one.
+    /// Unit for each column, if the text gives it.
     pub units: Vec<Option<String>>,
     /// The numbers, column by column. Missing numbers are NaN, which users of the table refuse with
     /// their position.
     pub columns: Vec<Vec<f64>>,
-    /// Line number of each row, from 1.
+    /// Line number by row, from 1.
     pub lines: Vec<usize>,
-    /// Separator of the cells.
     pub separator: Separator,
     pub decimal_comma: bool,
     /// Comments and headings: line number and line.
     pub skipped: Vec<(usize, String)>,
-    /// Descriptions of ambiguous readings.
+    /// Notes on ambiguous readings.
     pub notes: Vec<String>,
 }
 
 impl TextTable {
-    /// Returns the name of a column, if the text has it.
+    /// Returns a column name, if the text has it.
     pub(super) fn name(&self, column: usize) -> Option<&str> {
         self.names.as_ref()?.get(column).map(String::as_str)
     }
@@ -57,10 +56,10 @@ impl TextTable {
         }
     }
 
-    /// Returns the table with other headings, in the form of [`TextTable::headings`].
+    /// Returns the table with other headings, written as in [`TextTable::headings`].
     ///
     /// # Errors
-    /// The number of headings differs from the number of columns.
+    /// There are more or fewer headings than columns.
     pub fn with_headings(mut self, headings: &[String]) -> Result<Self, VariableFault> {
         if headings.len() != self.columns.len() {
             let found = format!(
@@ -84,7 +83,7 @@ impl TextTable {
     }
 }
 
-/// Reads a table of numbers in columns: recognises its separator, decimal mark, names and units.
+/// Reads a table with number columns: recognises its separator, decimal mark, names and units.
 pub fn read_table(text: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
     refuse_binary(text, EXPECTED)?;
     let Some(layout) = Layout::recognise(text, budget)? else {
@@ -110,7 +109,7 @@ struct Reading<'m> {
     layout: Layout,
     budget: &'m ReadingBudget<'m>,
     columns: Vec<Vec<f64>>,
-    /// Line number of each row.
+    /// Line number by row.
     lines: Vec<usize>,
     skipped: Vec<NumberedLine>,
     notes: Vec<String>,
@@ -118,7 +117,7 @@ struct Reading<'m> {
 
 impl<'m> Reading<'m> {
     fn new(layout: Layout, budget: &'m ReadingBudget<'m>) -> Result<Self, VariableFault> {
-        // Memory of a column's header here, and of its unit and name later.
+        // Memory for a column header here, and for its unit and name later.
         budget.take(layout.columns as u64, 128, "")?;
         Ok(Self {
             layout,
@@ -159,7 +158,7 @@ impl<'m> Reading<'m> {
     fn line_before_rows(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         match self.layout.row_shape(line) {
             Some(shape) if self.layout.fits(shape) => self.row(number, line),
-            // A row count or a date: a single number is not a row of a table.
+            // A row count or a date: a single number is not a table row.
             Some(RowShape { width: 1, .. }) => {
                 let columns = self.layout.columns;
                 self.notes.push(format!(
@@ -218,7 +217,7 @@ impl<'m> Reading<'m> {
             self.layout.trailing = false;
             self.columns.push(Vec::new());
         }
-        // Vectors grow by doubling: up to half of their memory may be unused.
+        // Vectors grow by doubling: up to half their memory may be unused.
         self.budget.take(self.layout.columns as u64 + 1, 16, "")?;
         let mut cells = self.layout.cells(line);
         let mut ends_empty = false;
@@ -250,7 +249,7 @@ impl<'m> Reading<'m> {
 
     /// Describes a cell that is no number, or a line without any number.
     fn no_number(&self, index: usize, cell: &str, line: &str) -> String {
-        /// Number of cells examined.
+        /// Cells examined.
         const EXAMINED: usize = 20;
         let decimal_comma = self.layout.decimal_comma;
         let mut cells = self.layout.cells(line).take(EXAMINED);
@@ -316,8 +315,8 @@ impl<'m> Reading<'m> {
         })
     }
 
-    /// Whether the table could also be one column of numbers with decimal commas: two columns of
-    /// whole numbers between commas.
+    /// Whether the table could also be a single column with decimal commas: two columns with whole
+    /// numbers between commas.
     fn may_have_decimal_commas(&self) -> bool {
         self.layout.separator == Separator::Comma
             && self.layout.columns == 2

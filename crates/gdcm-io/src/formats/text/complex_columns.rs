@@ -1,11 +1,11 @@
-//! Complex columns, `(1.5-2j)`, as columns of real and imaginary parts.
+//! Complex columns, `(1.5-2j)`, as columns with real and imaginary parts.
 
 use crate::formats::text::cell_number::{cell_number, has_number};
 use crate::formats::text::lines::{comment, lines};
 use crate::formats::text::separator::Separator;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Number of lines examined.
+/// Lines examined.
 const SAMPLE: usize = 200;
 
 /// Replaces each complex column by two columns, with "re" and "im" before their headings; returns
@@ -29,7 +29,7 @@ pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String
     Ok(Some(split))
 }
 
-/// Separator and complex columns of a text.
+/// Separator and complex columns in a text.
 struct ComplexColumns {
     separator: Separator,
     /// Whether each column is complex.
@@ -37,7 +37,7 @@ struct ComplexColumns {
 }
 
 impl ComplexColumns {
-    /// Finds the first line of numbers with a complex number.
+    /// Finds the first number row with a complex number.
     fn recognise(text: &str) -> Option<Self> {
         lines(text)
             .filter(|(_, line)| comment(line).is_none())
@@ -51,8 +51,8 @@ impl ComplexColumns {
             .find_map(|separator| Self::from_separated_line(line, separator))
     }
 
-    /// Interprets the cells of a line; `None` unless all are numbers, at least two, and at least
-    /// one is complex.
+    /// Interprets the cells in a line; `None` unless all are numbers, at least two, and some
+    /// are complex.
     fn from_separated_line(line: &str, separator: Separator) -> Option<Self> {
         let mut is_complex = Vec::new();
         for cell in separator.cells(line) {
@@ -73,7 +73,7 @@ impl ComplexColumns {
         }
     }
 
-    /// Splits the complex cells of a line; `None` if it has a different number of cells.
+    /// Splits the complex cells in a line; `None` if the cell count differs.
     fn split_line(&self, line: &str) -> Option<String> {
         let cells: Vec<_> = self.separator.cells(line).collect();
         if cells.len() != self.is_complex.len() {
@@ -92,7 +92,7 @@ impl ComplexColumns {
         Some(self.separator.line(split.into_iter()))
     }
 
-    /// Returns the parts of a number, or two headings for a heading.
+    /// Returns both parts of a number, or two headings for a heading.
     fn parts_or_headings(&self, cell: &str) -> ComplexText {
         if let Some(parts) = ComplexText::parse(cell) {
             return parts;
@@ -116,7 +116,7 @@ impl ComplexColumns {
     }
 }
 
-/// Real and imaginary part of a number, as text.
+/// Real and imaginary part, as text.
 struct ComplexText {
     re: String,
     im: String,
@@ -157,7 +157,7 @@ impl ComplexText {
     }
 }
 
-/// Returns the offset of the sign between real and imaginary part: the last sign that is neither at
+/// Returns the offset for the sign between real and imaginary part: the last sign that is neither at
 /// the beginning nor in an exponent.
 fn last_sign(number: &str) -> Option<usize> {
     let (at, _) = number.char_indices().rfind(|(at, letter)| {

@@ -1,8 +1,8 @@
-//! Character encodings of text files.
+//! Character encodings in text files.
 
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Characters 0x80 to 0x9f of code page 1252; its five undefined codes remain control characters.
+/// Characters 0x80 to 0x9f in code page 1252; its five undefined codes remain control characters.
 const WINDOWS_1252: [char; 32] = [
     '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}',
     '\u{90}', '‘', '’', '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',
@@ -21,7 +21,7 @@ pub fn decode(bytes: &[u8], budget: &ReadingBudget) -> Result<String, VariableFa
     if let Some(at) = body.iter().position(|&byte| byte == 0) {
         return Err(no_text("a text", at));
     }
-    // A character of code page 1252 takes at most three bytes in UTF-8.
+    // A character from code page 1252 takes at most three bytes in UTF-8.
     budget.take(body.len() as u64, 3, "")?;
     Ok(match std::str::from_utf8(body) {
         Ok(text) => text.to_owned(),

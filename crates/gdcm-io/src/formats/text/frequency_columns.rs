@@ -6,7 +6,7 @@ use crate::formats::text::response_recognition::{FrequencyColumn, Recognition};
 use crate::formats::text::unrecognised::{Unrecognised, units_missing, unrecognised};
 use crate::reading_budget::VariableFault;
 
-/// Meaning of the columns of a table.
+/// Meaning of the columns in a table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FrequencyColumns {
     frequency: FrequencyColumn,
@@ -14,7 +14,7 @@ pub(crate) struct FrequencyColumns {
     pub(crate) responses: Vec<RecognisedResponse>,
     /// Each decision with its reason.
     pub(crate) notes: Vec<String>,
-    /// Names of the unused columns, or their numbers if they have no name.
+    /// Unused columns: their names, or their numbers if they have no name.
     pub(crate) unused: Vec<String>,
 }
 
@@ -45,7 +45,7 @@ impl FrequencyColumns {
         Ok(columns)
     }
 
-    /// Returns the points of every response, in rad/s and as complex numbers.
+    /// Returns the points for every response, in rad/s and as complex numbers.
     ///
     /// Decreasing frequencies are reversed. A frequency that is missing, negative, or not above the
     /// frequency before it is refused with its line, and so is half a complex number.
@@ -98,7 +98,7 @@ fn reversed(table: &TextTable) -> TextTable {
     table
 }
 
-/// Describes the fault of a frequency that follows `before`.
+/// Describes the fault in a frequency that follows `before`.
 fn frequency_fault(value: f64, before: f64) -> Option<String> {
     if !value.is_finite() {
         Some("is missing or infinite; complete it or take the line out".to_owned())

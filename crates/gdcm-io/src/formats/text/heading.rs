@@ -1,4 +1,4 @@
-//! Names and units of columns from the preceding lines.
+//! Column names and units from the preceding lines.
 
 use crate::formats::text::cell_number::has_number;
 use crate::formats::text::heading_units::{is_unit, name_and_unit};
@@ -6,20 +6,20 @@ use crate::formats::text::layout::Layout;
 use crate::formats::text::lines::{comment, is_rule};
 use crate::formats::text::separator::Separator;
 
-/// Number of lines before the first row searched for names and units.
+/// Lines before the first row that are searched for names and units.
 const SEARCHED: usize = 100;
 
 /// A line and its number, from 1.
 pub(super) type NumberedLine = (usize, String);
 
-/// Names and units of the columns.
+/// Column names and units.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Heading {
     /// A name for each column.
     pub(super) names: Option<Vec<String>>,
-    /// Unit of each column, if given.
+    /// Unit for each column, if given.
     pub(super) units: Vec<Option<String>>,
-    /// Descriptions of the lines that were used.
+    /// Notes on the lines that were used.
     pub(super) notes: Vec<String>,
 }
 
@@ -74,7 +74,7 @@ impl Heading {
         self.names = Some(names);
     }
 
-    /// Notes a line that looks like names but has a different number of cells.
+    /// Notes a line that looks like names but has more or fewer cells.
     fn note_misfit(&mut self, above: &[NumberedLine], layout: Layout) {
         let nearest = above
             .iter()
@@ -175,7 +175,7 @@ fn trimmed_cells(line: &str, separator: Separator, columns: usize) -> Vec<String
         .collect()
 }
 
-/// Whether a line is probably a row of numbers with an error.
+/// Whether a line is probably a number row with an error.
 pub(super) fn is_mostly_numbers(cells: &[String], layout: Layout) -> bool {
     let Some(first) = cells.first() else {
         return false;
@@ -255,7 +255,7 @@ fn unit_of(cell: &str) -> Option<String> {
     }
 }
 
-/// Whether at least half of the cells are units and the others are empty.
+/// Whether at least half the cells are units and the others are empty.
 fn is_units_line(cells: &[String]) -> bool {
     let units: Vec<_> = cells.iter().filter_map(|cell| unit_of(cell)).collect();
     2 * units.len() >= cells.len() && units.iter().all(|unit| is_unit(unit))

@@ -12,7 +12,7 @@ const WORDS: [&str; 68] = [
     "norm", "abs", "unitless",
 ];
 
-/// Whether a text consists only of unit words, numbers and signs: "deg/s", "rad/s^2", "%", "1/s".
+/// Whether a text contains only unit words, numbers and signs: "deg/s", "rad/s^2", "%", "1/s".
 pub(super) fn is_unit(text: &str) -> bool {
     let text = text.trim().to_lowercase();
     if matches!(text.as_str(), "-" | "1" | "--" | "none") {
@@ -35,7 +35,7 @@ pub(super) fn is_unit(text: &str) -> bool {
 /// Splits a heading into name and unit: "omega \[rad/s\]", "P (deg/s)", "_Vind,_kias".
 ///
 /// Square brackets hold a unit unless they contain an integer; round brackets and text after a
-/// comma only if they consist of known words, as "re(LAT->P)" names a response.
+/// comma only if all words are known, as "re(LAT->P)" names a response.
 pub(super) fn name_and_unit(heading: &str) -> (String, Option<String>) {
     let heading = heading.trim().trim_matches(['"', '\'']).trim();
     for (open, close) in [('[', ']'), ('(', ')'), ('{', '}')] {

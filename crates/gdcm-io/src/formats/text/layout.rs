@@ -1,4 +1,4 @@
-//! Layout of the lines of a table: separator, decimal mark, and column count.
+//! Line layout in a table: separator, decimal mark, and column count.
 
 use std::collections::BTreeMap;
 
@@ -7,10 +7,10 @@ use crate::formats::text::lines::{comment, lines, without_comment};
 use crate::formats::text::separator::{Cells, Separator};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Number of rows examined to recognise the layout.
+/// Rows examined to recognise the layout.
 const SAMPLE: usize = 200;
 
-/// Layout of the lines of a table.
+/// Line layout in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Layout {
     pub(super) separator: Separator,
@@ -21,7 +21,7 @@ pub(super) struct Layout {
     pub(super) trailing: bool,
 }
 
-/// Cells of a line that holds numbers.
+/// Cells in a line that holds numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct RowShape {
     /// Cell count.
@@ -59,13 +59,12 @@ impl Layout {
         Ok(best.map(|best| best.layout))
     }
 
-    /// Returns the cells of a row, without a trailing comment.
+    /// Returns the cells in a row, without a trailing comment.
     pub(super) fn cells(self, line: &str) -> Cells<'_> {
         self.separator.cells(without_comment(line))
     }
 
-    /// Returns the shape of a line if all cells are numbers or missing and at least one is a
-    /// number.
+    /// Returns the shape of a line if all cells are numbers or missing, and not all are missing.
     pub(super) fn row_shape(self, line: &str) -> Option<RowShape> {
         let mut shape = RowShape {
             width: 0,
@@ -93,7 +92,7 @@ impl Layout {
     }
 }
 
-/// Returns a tally for each combination of separator and decimal mark; the point goes first.
+/// Returns a tally for each separator and decimal mark; the decimal point goes first.
 fn candidates() -> Vec<Tally> {
     let mut tallies = Vec::with_capacity(2 * Separator::ALL.len());
     for decimal_comma in [false, true] {
@@ -126,7 +125,7 @@ struct RowCount {
     ending_empty: usize,
 }
 
-/// A layout and the number of examined rows that have it.
+/// A layout and how many examined rows have it.
 #[derive(Clone, Copy)]
 struct Score {
     rows: usize,

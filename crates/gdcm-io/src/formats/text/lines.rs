@@ -1,8 +1,8 @@
-//! Lines of a text: their ends, comments, rules, and excerpts for messages.
+//! Text lines: their ends, comments, rules, and excerpts for messages.
 
-/// Marks at the beginning of a comment line.
+/// Marks that begin a comment line.
 const COMMENT_MARKS: [&str; 5] = ["#", "%", "//", "!", ";"];
-/// Marks of a comment after the cells of a line, with the blanks around them.
+/// Marks that begin a comment after the cells, with the blanks around them.
 const TRAILING_MARKS: [&str; 7] = [" # ", " % ", " ! ", " // ", "\t# ", "\t% ", "\t! "];
 /// Longest excerpt in a message \[characters\].
 const EXCERPT: usize = 40;
@@ -13,7 +13,6 @@ pub(super) struct Lines<'t> {
     number: usize,
 }
 
-/// Returns the lines of `text`.
 pub(super) fn lines(text: &str) -> Lines<'_> {
     Lines {
         rest: Some(text.strip_prefix('\u{feff}').unwrap_or(text)),
@@ -37,7 +36,7 @@ impl<'t> Iterator for Lines<'t> {
     }
 }
 
-/// Returns the text of a comment line after its mark.
+/// Returns the text after the mark in a comment line.
 pub(super) fn comment(line: &str) -> Option<&str> {
     let line = line.trim_start();
     let mark = COMMENT_MARKS.iter().find(|&&mark| line.starts_with(mark))?;

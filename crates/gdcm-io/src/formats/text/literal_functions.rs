@@ -23,12 +23,12 @@ pub(super) enum Fill {
     Identity,
 }
 
-/// A call of a function in the text.
+/// A function call in the text.
 #[derive(Clone, Copy)]
 pub(super) struct Call<'n> {
     pub(super) name: &'n str,
     pub(super) function: Function,
-    /// Position of the name in the text.
+    /// Position of the name.
     pub(super) place: Position,
 }
 
@@ -50,7 +50,7 @@ impl Function {
 }
 
 impl Call<'_> {
-    /// Creates the value of the call.
+    /// Creates the value that the function returns.
     pub(super) fn value(
         self,
         arguments: Vec<Value>,
@@ -63,26 +63,26 @@ impl Call<'_> {
             },
             Function::Text => match arguments.as_slice() {
                 [text @ Value::Text(_)] => Ok(text.clone()),
-                // Without a text, the arguments are read like those of `zeros`.
+                // Without a text, the arguments are read as in `zeros`.
                 sizes => self.filled(Fill::Zeros, sizes, budget),
             },
             Function::Fill(fill) => self.filled(fill, &arguments, budget),
         }
     }
 
-    /// Builds a matrix from its numbers of rows and columns.
+    /// Builds a matrix from its row and column counts.
     fn filled(
         self,
         fill: Fill,
         sizes: &[Value],
         budget: &ReadingBudget,
     ) -> Result<Value, ValueError> {
-        let (rows, columns) = match sizes {
-            [both] => (size_from(both), size_from(both)),
-            [rows, columns] => (size_from(rows), size_from(columns)),
-            _ => (None, None),
+        let size = match sizes {
+            [both] => MatrixSize::parse(both, both),
+            [rows, columns] => MatrixSize::parse(rows, columns),
+            _ => None,
         };
-        let (Some(rows), Some(columns)) = (rows, columns) else {
+        let Some(MatrixSize { rows, columns }) = size else {
             return refused(
                 format!(
                     "{}(…) is read with its numbers of rows and columns only; {REMEDY}",
@@ -105,8 +105,23 @@ impl Call<'_> {
     }
 }
 
-/// Parses a number of rows or columns; negative numbers count as 0, as in MATLAB.
-fn size_from(value: &Value) -> Option<usize> {
+/// Row and column counts.
+struct MatrixSize {
+    rows: usize,
+    columns: usize,
+}
+
+impl MatrixSize {
+    fn parse(rows: &Value, columns: &Value) -> Option<Self> {
+        Some(Self {
+            rows: count_from(rows)?,
+            columns: count_from(columns)?,
+        })
+    }
+}
+
+/// Parses a row or column count; negative numbers count as 0, as in MATLAB.
+fn count_from(value: &Value) -> Option<usize> {
     let Value::Array(array) = value else {
         return None;
     };

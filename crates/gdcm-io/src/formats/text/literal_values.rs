@@ -14,7 +14,7 @@ const OPERATORS: &str = "+-*/^:.\\";
 /// Operators directly after an element; the quote transposes.
 const ATTACHED_OPERATORS: &str = "+-*/^:.\\'";
 
-/// Reads values at the position of a scanner.
+/// Reads values at the scanner position.
 pub(super) struct ValueReader<'r, 't, 'm> {
     pub(super) scanner: &'r mut Scanner<'t>,
     pub(super) budget: &'r ReadingBudget<'m>,
@@ -34,7 +34,7 @@ struct Rows<T> {
     elements: Vec<T>,
 }
 
-/// An element of a matrix.
+/// A matrix element.
 enum Element {
     Number { re: f64, im: f64 },
     Text(String),
@@ -77,7 +77,7 @@ impl ValueReader<'_, '_, '_> {
         }
     }
 
-    /// Reads a call of a function, or copies a variable or one of its fields.
+    /// Reads a function call, or copies a variable or a field.
     fn named_value(&mut self, place: Position, depth: usize) -> Result<Value, ValueError> {
         let path = self.scanner.path(self.budget)?;
         let before = self.scanner.clone();
@@ -132,7 +132,7 @@ impl ValueReader<'_, '_, '_> {
         }))
     }
 
-    /// Reads a number after any number of signs.
+    /// Reads a number, with or without signs before it.
     fn signed(&mut self) -> Result<Option<Number>, ValueError> {
         let mut sign = 1.0;
         loop {
@@ -162,7 +162,7 @@ impl ValueReader<'_, '_, '_> {
         }))
     }
 
-    /// Reads rows of elements after an opening bracket up to the closing bracket; blanks separate
+    /// Reads elements in rows after an opening bracket up to the closing bracket; blanks separate
     /// elements.
     fn rows<T>(
         &mut self,
@@ -174,7 +174,7 @@ impl ValueReader<'_, '_, '_> {
         let mut elements = Vec::new();
         let mut columns = 0;
         let mut rows = 0;
-        // Number of elements in the current row.
+        // Element count in the current row.
         let mut row = 0;
         loop {
             let is_spaced = self.scanner.pass_blanks()?;
@@ -250,7 +250,7 @@ impl ValueReader<'_, '_, '_> {
         }))
     }
 
-    /// Reads a matrix of numbers, transposed if a quote follows it, or of texts in double quotes.
+    /// Reads a matrix with numbers, transposed if a quote follows it, or with texts in double quotes.
     fn matrix(&mut self) -> Result<Value, ValueError> {
         let opening = self.scanner.position();
         let Rows {
@@ -262,8 +262,7 @@ impl ValueReader<'_, '_, '_> {
         self.budget
             .take(count as u64, 2 * size_of::<Element>() as u64, "")?;
         let is_transposed = self.scanner.take("'");
-        // Values are stored column by column: the rows of a matrix are the columns of its
-        // transpose.
+        // Values are stored column by column: the rows become the columns of the transpose.
         let (shape, elements) = if is_transposed {
             (vec![columns, rows], elements)
         } else {
@@ -320,7 +319,7 @@ impl ValueReader<'_, '_, '_> {
         }
     }
 
-    /// Reads the arguments of a function, after its opening bracket, and creates its value.
+    /// Reads the arguments after an opening bracket, and creates the value of the function.
     fn call(&mut self, name: &str, place: Position, depth: usize) -> Result<Value, ValueError> {
         let Some(function) = Function::find(name) else {
             return refused(format!("{name}(…) is not computed here; {REMEDY}"), place);

@@ -1,6 +1,6 @@
 //! Variables written as MATLAB or Octave statements: `A = [1 2; 3 4e-3]; % comment`.
 //!
-//! Supported are numbers, texts, matrices and cells of them, variables and fields assigned to them,
+//! Supported are numbers, texts, matrices and cells with them, variables and fields assigned to them,
 //! and models created by `ss`, `tf` and `zpk`. Nothing is computed or run: other statements are
 //! reported with a remedy, and never guessed.
 
@@ -14,7 +14,7 @@ use crate::formats::text::workspace::Workspace;
 use crate::formats::variables::{Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Words at the beginning of a block that may run never, once or repeatedly.
+/// Words that begin a block, which may run never, once or repeatedly.
 const BLOCKS: [&str; 8] = [
     "if",
     "for",
@@ -38,13 +38,13 @@ const BLOCK_ENDS: [&str; 9] = [
     "end_unwind_protect",
 ];
 
-/// Results of the statements.
+/// Variables and notes from the statements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statements {
-    /// The variables in the order of their first assignment, with their last values. A value that
+    /// The variables in the order in which they were first assigned, with their last values. A value that
     /// is not understood is [`Value::Opaque`] with the reason, its line and its column.
     pub variables: Vec<Variable>,
-    /// Descriptions of the statements that were not run.
+    /// Statements that were not run.
     pub notes: Vec<String>,
 }
 
@@ -74,11 +74,11 @@ struct Reading<'t, 'm> {
     budget: &'m ReadingBudget<'m>,
     workspace: Workspace<'t>,
     notes: Vec<String>,
-    /// Number of open conditions and loops.
+    /// Open conditions and loops.
     open_blocks: usize,
 }
 
-/// Beginning of a statement.
+/// Where a statement begins.
 #[derive(Clone, Copy)]
 struct Beginning {
     position: Position,
@@ -152,7 +152,7 @@ impl<'t> Reading<'t, '_> {
         self.scanner.pass_statement(self.budget)
     }
 
-    /// Skips "[a, b] = …", results of a function, which is not run.
+    /// Skips "[a, b] = …", results from a function, which is not run.
     fn function_results(&mut self, begin: Beginning) -> Result<(), VariableFault> {
         let line = self.scanner.rest_of_line();
         let Some(names) = assigned_names(line) else {
@@ -167,7 +167,7 @@ impl<'t> Reading<'t, '_> {
         self.scanner.pass_statement(self.budget)
     }
 
-    /// Reads the value of an assignment; a value that is not understood makes the variable opaque.
+    /// Reads an assigned value; a value that is not understood makes the variable opaque.
     fn assignment(&mut self, path: &[&'t str], begin: Position) -> Result<(), VariableFault> {
         let before = self.scanner.clone();
         match self.assigned_value(begin) {

@@ -6,7 +6,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 /// Remedy for unsupported statements.
 pub(super) const REMEDY: &str =
     "write its numbers, or save the workspace in MATLAB: save -v7 workspace.mat";
-/// Deepest nesting of values; each level takes stack space.
+/// Most values inside one another; each level takes stack space.
 pub(super) const MOST_NESTED: usize = 64;
 
 /// Whether a name can contain this character.
@@ -14,7 +14,7 @@ pub(super) fn is_of_word(character: char) -> bool {
     character.is_alphanumeric() || character == '_'
 }
 
-/// Whether a text begins with the first character of a name.
+/// Whether a text begins like a name.
 pub(super) fn begins_word(text: &str) -> bool {
     text.starts_with(|first: char| first.is_alphabetic() || first == '_')
 }
@@ -61,12 +61,11 @@ pub(super) struct Scanner<'t> {
     /// Offset in the text \[bytes\].
     pub(super) at: usize,
     line: usize,
-    /// Offset of the current line \[bytes\].
+    /// Offset at which the line begins \[bytes\].
     line_start: usize,
 }
 
 impl<'t> Scanner<'t> {
-    /// Starts at the beginning of a text.
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
@@ -124,7 +123,7 @@ impl<'t> Scanner<'t> {
         self.line_start = self.at;
     }
 
-    /// Moves to the end of the line.
+    /// Moves to the line end.
     fn pass_line(&mut self) {
         self.at += self.rest().find(['\n', '\r']).unwrap_or(self.rest().len());
     }
@@ -158,7 +157,7 @@ impl<'t> Scanner<'t> {
         self.text[self.line_start..self.at].trim().is_empty()
     }
 
-    /// Whether the rest of the line is a comment mark and this bracket, which begin or end a block
+    /// Whether the line continues with only a comment mark and this bracket, which begin or end a block
     /// comment.
     fn is_block_mark(&self, bracket: char) -> bool {
         let line = self.rest_of_line().trim();
@@ -316,7 +315,7 @@ impl<'t> Scanner<'t> {
         !is_operand
     }
 
-    /// Moves past a text; past the rest of the line if the text has no end.
+    /// Moves past a text, or past the whole line if the text has no end.
     fn pass_text(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
         match self.quoted(budget) {
             Err(ValueError::Fault(fault)) => return Err(fault),
@@ -326,7 +325,7 @@ impl<'t> Scanner<'t> {
         Ok(())
     }
 
-    /// Whether the text after a name changes part of its value: "+= 1", "++", "(2,1) = 3".
+    /// Whether the text after a name changes part of the value: "+= 1", "++", "(2,1) = 3".
     pub(super) fn changes_part(&self) -> bool {
         let line = self.rest_of_line();
         match line.chars().next() {
@@ -370,7 +369,7 @@ fn is_indexed_assignment(line: &str, open: char, close: char) -> bool {
     false
 }
 
-/// Open brackets of a statement, from the outermost.
+/// Open brackets in a statement, from the outermost.
 #[derive(Default)]
 struct OpenBrackets(Vec<OpenBracket>);
 
@@ -450,7 +449,7 @@ fn past_digits(bytes: &[u8], from: usize) -> usize {
     at
 }
 
-/// Returns the offset after the digits of a number and its decimal point.
+/// Returns the offset after digits with a decimal point.
 fn past_mantissa(bytes: &[u8]) -> usize {
     let end = past_digits(bytes, 0);
     // A point before an operator belongs to the operator: "1./x", "2.^n", "1...".

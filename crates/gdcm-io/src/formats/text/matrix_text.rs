@@ -14,11 +14,11 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 pub struct NamedMatrices {
     /// The matrices in their order.
     pub variables: Vec<Variable>,
-    /// Descriptions of skipped parts and of decisions.
+    /// Notes on skipped parts and on decisions.
     pub notes: Vec<String>,
 }
 
-/// Reads one matrix, a row on each line; skips a line of names above it.
+/// Reads a single matrix, a row on each line; skips a line with names above it.
 pub fn read_matrix(
     text: &str,
     name: &str,
@@ -46,7 +46,7 @@ pub fn read_matrix(
 /// Reads named matrices: "A =", "A:" or "A" on a line, the rows on the following lines.
 ///
 /// A common factor ("1.0e+03 *") is applied, columns printed in several parts ("Columns 1 through
-/// 6") are joined, and names of rows and columns are skipped.
+/// 6") are joined, and row and column names are skipped.
 pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices, VariableFault> {
     refuse_binary(text, "matrices under their names")?;
     let mut reading = Reading {
@@ -66,7 +66,7 @@ pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices
 /// Rows that are printed together.
 #[derive(Default)]
 struct Part {
-    /// Line number of each row in the whole text.
+    /// Line number by row, in the whole text.
     line_numbers: Vec<usize>,
     text: String,
 }
@@ -74,7 +74,7 @@ struct Part {
 /// A matrix whose rows are being read.
 struct OpenMatrix {
     name: String,
-    /// Line number of the name.
+    /// Line number for the name.
     line: usize,
     /// Whether an equals sign follows the name, so that a single word below it names a column.
     assigned: bool,
@@ -104,7 +104,9 @@ impl Reading<'_> {
             self.begin_part();
             return Ok(());
         }
-        if let (Some(scale), Some(matrix)) = (scale_line(line), self.matrices.last_mut()) {
+        if let Some(scale) = scale_line(line)
+            && let Some(matrix) = self.matrices.last_mut()
+        {
             matrix.scale = scale;
             return Ok(());
         }
@@ -177,7 +179,7 @@ impl Reading<'_> {
         }
     }
 
-    /// Takes a line of column names: the rows below it have names too.
+    /// Takes a line with column names: the rows below it have names too.
     fn column_names(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         if let Some(matrix) = self.matrices.last_mut() {
             matrix.labelled = true;
@@ -190,7 +192,7 @@ impl Reading<'_> {
         Ok(())
     }
 
-    /// Begins a part of the last matrix, unless its last part is still empty.
+    /// Begins another part for the last matrix, unless its last part is still empty.
     fn begin_part(&mut self) {
         if let Some(matrix) = self.matrices.last_mut()
             && matrix
@@ -303,7 +305,7 @@ fn is_number_word(word: &str) -> bool {
     !word.is_empty() && is_number(word)
 }
 
-/// Whether a line consists of numbers, with any separator.
+/// Whether a line contains only numbers, with any separator.
 fn is_row_of_numbers(line: &str) -> bool {
     let mut has_number = false;
     for word in line.split(|c: char| c.is_whitespace() || matches!(c, ',' | ';' | '|')) {
@@ -346,7 +348,7 @@ fn joined(
     Ok(Value::Array(Array::matrix(rows, columns, values)))
 }
 
-// Lines that programs print above the rows of a matrix.
+// Lines that programs print above matrix rows.
 
 /// A line that names a matrix.
 #[derive(Debug, PartialEq, Eq)]
@@ -405,7 +407,7 @@ fn is_count(word: &str) -> bool {
     !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// Returns the factor of a line such as "1.0e+03 *".
+/// Returns the factor in a line such as "1.0e+03 *".
 fn scale_line(line: &str) -> Option<f64> {
     let factor = line.trim().strip_suffix('*')?.trim();
     let factor: f64 = factor.parse().ok()?;

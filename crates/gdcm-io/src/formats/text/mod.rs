@@ -74,9 +74,9 @@ pub(crate) const TEXT: Importer = Importer {
     },
 };
 
-/// Returns the first lines of a text, without MATLAB comments and empty lines.
+/// Returns the first lines in a text, without MATLAB comments and empty lines.
 fn first_lines(bytes: &[u8]) -> Vec<String> {
-    /// Length of the examined beginning \[bytes\].
+    /// Examined length \[bytes\].
     const HEAD: usize = 4000;
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]);
     head.lines()
@@ -86,7 +86,7 @@ fn first_lines(bytes: &[u8]) -> Vec<String> {
         .collect()
 }
 
-/// Whether a text begins with an assignment of numbers or texts to a name, such as `A = [1 2` or
+/// Whether a text begins by assigning numbers or texts to a name, such as `A = [1 2` or
 /// `Ts = 0.02;`. A table may begin with `Fs = 50`.
 fn begins_with_statement(bytes: &[u8]) -> bool {
     let lines = first_lines(bytes);
@@ -102,7 +102,7 @@ fn begins_with_statement(bytes: &[u8]) -> bool {
     begins_name && is_name && (value.starts_with(['[', '{', '\'']) || value.ends_with(';'))
 }
 
-/// Whether a text begins with a row of numbers, or with column names and such a row; statements
+/// Whether a text begins with a number row, or with column names and such a row; statements
 /// never do.
 fn begins_with_numbers(bytes: &[u8]) -> bool {
     for line in first_lines(bytes).iter().take(2) {

@@ -1,9 +1,9 @@
-//! Frequency responses among the columns of a table, and their points.
+//! Frequency responses among table columns, and their points.
 
 use crate::formats::text::columns::TextTable;
 use crate::reading_budget::VariableFault;
 
-/// A frequency response among the columns of a table.
+/// A frequency response among table columns.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RecognisedResponse {
     /// The output, if the names give it.
@@ -23,7 +23,7 @@ pub(crate) struct CoherenceColumn {
     pub(super) is_gamma: bool,
 }
 
-/// The two columns, counted from 0, of a complex number.
+/// The two columns, counted from 0, for a complex number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ResponseParts {
     Polar {
@@ -60,11 +60,11 @@ impl CoherenceColumn {
 }
 
 impl RecognisedResponse {
-    /// Returns the points of the response at the frequencies `omega` \[rad/s\] of the rows, without
-    /// the rows in which both of its numbers are missing.
+    /// Returns the points of the response, without rows in which both its numbers are missing;
+    /// `omega` is the frequency in each row \[rad/s\].
     ///
     /// # Errors
-    /// Only one of the two numbers is finite, or the magnitude is too large.
+    /// Half a complex number is missing or infinite, or the magnitude is too large.
     pub(super) fn points(
         &self,
         table: &TextTable,
@@ -101,7 +101,9 @@ impl RecognisedResponse {
             points.omega.push(omega);
             points.re.push(re);
             points.im.push(im);
-            if let (Some(values), Some(column)) = (&mut points.coherence, self.coherence) {
+            if let Some(column) = self.coherence
+                && let Some(values) = &mut points.coherence
+            {
                 values.push(column.gamma_squared(table, row));
             }
         }
@@ -120,7 +122,7 @@ impl ResponseParts {
         }
     }
 
-    /// Returns real and imaginary part in a row of the table.
+    /// Returns real and imaginary part in a row.
     pub(super) fn complex(self, table: &TextTable, row: usize) -> (f64, f64) {
         match self {
             ResponseParts::Rectangular { re, im } => {
@@ -146,7 +148,7 @@ impl ResponseParts {
     }
 }
 
-/// Returns the name of a column, or "column 5" if it has none.
+/// Returns a column name, or "column 5" without a name.
 pub(super) fn column_name(table: &TextTable, column: usize) -> String {
     match table.name(column) {
         Some(name) => name.to_owned(),

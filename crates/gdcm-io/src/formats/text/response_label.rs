@@ -1,4 +1,4 @@
-//! Output and input named in the heading of a column.
+//! Output and input named in a column heading.
 
 use gdcm_model::assembly::response_name::{KnownChannels, ResponseName};
 

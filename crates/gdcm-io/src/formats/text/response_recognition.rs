@@ -1,4 +1,4 @@
-//! Assembly of frequency responses from the columns of a table.
+//! Assembly of frequency responses from table columns.
 
 use std::f64::consts::TAU;
 
@@ -25,7 +25,7 @@ pub(super) struct FrequencyColumn {
     pub(super) factor: f64,
 }
 
-/// A table during the assembly of its responses.
+/// A table while its responses are assembled.
 pub(super) struct Recognition<'t> {
     table: &'t TextTable,
     meanings: Vec<ColumnMeaning>,
@@ -33,7 +33,7 @@ pub(super) struct Recognition<'t> {
     pub(super) notes: Vec<String>,
     /// Columns without a unit whose numbers allow several.
     pub(super) unsaid: Vec<UnsaidUnit>,
-    /// Names of the unused columns.
+    /// Unused column names.
     pub(super) unused: Vec<String>,
 }
 
@@ -49,14 +49,14 @@ struct GroupColumn {
     column: usize,
 }
 
-/// Columns of a response in polar form.
+/// Columns in polar form.
 #[derive(Clone, Copy)]
 struct PolarColumns {
     magnitude: usize,
     phase: usize,
 }
 
-/// Interpretation of a magnitude and a phase.
+/// A magnitude and a phase, interpreted.
 struct PolarReading {
     parts: ResponseParts,
     /// Columns whose units are neither given nor evident.
@@ -128,7 +128,7 @@ impl<'t> Recognition<'t> {
         ));
     }
 
-    /// Returns the responses, in the order of their first columns.
+    /// Returns the responses, ordered by their first columns.
     pub(super) fn responses(&mut self) -> Vec<RecognisedResponse> {
         let mut responses = Vec::new();
         for group in self.groups() {
@@ -153,19 +153,19 @@ impl<'t> Recognition<'t> {
         responses
     }
 
-    /// Finds the columns of the complex numbers; real and imaginary parts go before magnitude and
+    /// Finds the columns with the complex numbers; real and imaginary parts go before magnitude and
     /// phase.
     fn parts(&mut self, group: &Group) -> Option<ResponseParts> {
-        let re = group.column(Quantity::Real);
-        let im = group.column(Quantity::Imaginary);
         let polar = group.polar();
-        if let (Some(re), Some(im)) = (re, im) {
+        if let Some(re) = group.column(Quantity::Real)
+            && let Some(im) = group.column(Quantity::Imaginary)
+        {
             let parts = ResponseParts::Rectangular { re, im };
             self.note(re, "real part", "");
             self.note(im, "imaginary part", "");
             if let Some(columns) = polar {
                 let polar = self.polar(columns);
-                // Missing units of the second form are not asked for.
+                // Missing units in the second form are not asked for.
                 if polar.unsaid.is_empty() {
                     self.compare(parts, polar.parts);
                 }
@@ -177,7 +177,7 @@ impl<'t> Recognition<'t> {
         Some(polar.parts)
     }
 
-    /// Notes that the columns of a group are unused because half of the response is missing.
+    /// Notes that a group is unused because half the response is missing.
     fn leave_out(&mut self, group: &Group) {
         for known in &group.columns {
             if known.quantity == Quantity::Error {
@@ -225,7 +225,7 @@ impl<'t> Recognition<'t> {
         }
     }
 
-    /// Collects the columns of each response, and notes columns of unknown meaning.
+    /// Collects the columns for each response, and notes columns with an unknown meaning.
     fn groups(&mut self) -> Vec<Group> {
         let mut groups: Vec<Group> = Vec::new();
         for (column, meaning) in self.meanings.iter().enumerate() {
@@ -317,7 +317,7 @@ impl<'t> Recognition<'t> {
                 .any(|&value| value < 0.0)
     }
 
-    /// Notes whether the two forms of a response agree.
+    /// Notes whether both forms of a response agree.
     fn compare(&mut self, rectangular: ResponseParts, polar: ResponseParts) {
         let table = self.table;
         let differing = (0..table.lines.len()).find(|&row| {

@@ -6,8 +6,8 @@ use crate::formats::text::lines::{comment, is_rule, lines};
 /// Separators that may surround blanks within a cell.
 const STRONG_SEPARATORS: [char; 4] = ['|', ';', '\t', ','];
 
-/// Splits a text before every heading that follows rows; returns the number of the first line and
-/// the text of each part. A log that is restarted with other columns is split where they change.
+/// Splits a text before every heading that follows rows; returns the text
+/// and the first line number for each part. A log that is restarted with other columns is split where they change.
 pub fn sections(text: &str) -> Vec<(usize, &str)> {
     let mut sections = Vec::new();
     let mut first_line = 1;
@@ -19,7 +19,7 @@ pub fn sections(text: &str) -> Vec<(usize, &str)> {
         }
         let is_heading = is_heading(line);
         if is_heading && has_rows {
-            // Each line is a slice of the text.
+            // Each line is a slice from the text.
             let end = line.as_ptr() as usize - text.as_ptr() as usize;
             sections.extend(text.get(start..end).map(|part| (first_line, part)));
             first_line = number;
@@ -31,7 +31,7 @@ pub fn sections(text: &str) -> Vec<(usize, &str)> {
     sections
 }
 
-/// Whether no cell of a line is a number, and at least one contains letters.
+/// Whether a line contains letters, and no cell in it is a number.
 fn is_heading(line: &str) -> bool {
     if !line.chars().any(char::is_alphabetic) {
         return false;

@@ -1,8 +1,8 @@
-//! Separators between the cells of a line.
+//! Separators between the cells in a line.
 
 use std::borrow::Cow;
 
-/// Separator between the cells of a line.
+/// Separator between the cells in a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separator {
     Tab,
@@ -10,7 +10,7 @@ pub enum Separator {
     /// A vertical bar; a leading bar is skipped.
     Pipe,
     Comma,
-    /// Any run of blanks and tabulators.
+    /// Any blanks and tabulators in succession.
     Blanks,
 }
 
@@ -35,7 +35,7 @@ impl Separator {
         }
     }
 
-    /// Returns the cells of a line, without surrounding quotes.
+    /// Returns the cells in a line, without surrounding quotes.
     pub(super) fn cells(self, line: &str) -> Cells<'_> {
         let line = match self {
             Separator::Pipe => line.trim_start().strip_prefix('|').unwrap_or(line),
@@ -87,7 +87,7 @@ impl Separator {
     }
 }
 
-/// Iterator over the cells of a line, so that a line with a million cells takes no memory.
+/// Iterator over the cells in a line, so that a line with a million cells takes no memory.
 pub(super) struct Cells<'t> {
     rest: Option<&'t str>,
     separator: Separator,
@@ -128,12 +128,12 @@ fn without_first(text: &str) -> &str {
     characters.as_str()
 }
 
-/// Returns a cell without quotes; an empty pair of quotes is an empty cell.
+/// Returns a cell without quotes; two quotes with nothing between them are an empty cell.
 fn unquoted(cell: &str) -> &str {
     if cell.trim() == "\"\"" { "" } else { cell }
 }
 
-/// A quoted cell at the beginning of a text.
+/// A quoted cell that begins a text.
 struct Quoted<'t> {
     /// Content between the quotes; a doubled quote stands for a single quote.
     cell: Cow<'t, str>,

@@ -8,11 +8,11 @@ use crate::formats::text::lines::{comment, lines};
 use crate::formats::text::separator::Separator;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Number of lines examined to recognise the columns.
+/// Lines examined to recognise the columns.
 const SAMPLE: usize = 200;
-/// Largest number of distinct words in a column; a column with more is not a label.
+/// Most distinct words in a column; a column with more is not a label.
 const MOST_WORDS: usize = 500;
-/// Number of words listed in a note.
+/// Words listed in a note.
 const SHOWN: usize = 12;
 const DAY_S: f64 = 86_400.0;
 
@@ -20,7 +20,7 @@ const DAY_S: f64 = 86_400.0;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NumberedText {
     pub text: String,
-    /// The number of each word, and the columns with clock times.
+    /// The number for each word, and the columns with clock times.
     pub notes: Vec<String>,
 }
 
@@ -32,7 +32,7 @@ enum Kind {
     Words,
 }
 
-/// Replaces the words in columns by numbers, in the order of their first occurrence, and clock
+/// Replaces the words in columns by numbers, in the order in which they first occur, and clock
 /// times by seconds; returns nothing if the text has no word columns beside number columns. The
 /// columns need a separator other than blanks.
 pub fn numbered_words(
@@ -71,19 +71,19 @@ fn trimmed_cells(line: &str, separator: Separator) -> Vec<String> {
 struct Numbering {
     separator: Separator,
     columns: Vec<Column>,
-    /// Cells of the first line that is not a row.
+    /// Cells in the first line that is not a row.
     heading: Option<Vec<String>>,
 }
 
 /// A column during numbering.
 struct Column {
     kind: Kind,
-    /// Number of each word.
+    /// Number for each word.
     words: BTreeMap<String, usize>,
     clock: Option<ClockSpan>,
 }
 
-/// Clock times of a column so far.
+/// Clock times in a column so far.
 #[derive(Clone, Copy)]
 struct ClockSpan {
     first_s: f64,
@@ -92,7 +92,7 @@ struct ClockSpan {
 }
 
 impl Numbering {
-    /// Finds the separator and the kind of each column; at least two columns must hold numbers, and
+    /// Finds the separator and the kind of data in each column; at least two columns must hold numbers, and
     /// at least one column words or clock times.
     fn recognise(text: &str) -> Option<Self> {
         let sample: Vec<&str> = lines(text)
@@ -182,8 +182,8 @@ impl Numbering {
 }
 
 impl Column {
-    /// Returns the number of a word; an empty text for an empty cell, and beyond the largest number
-    /// of words.
+    /// Returns the number for a word; an empty text for an empty cell, and for words beyond the
+    /// limit.
     fn number(&mut self, word: &str) -> String {
         if word.is_empty() || self.words.len() > MOST_WORDS {
             return String::new();
@@ -195,7 +195,7 @@ impl Column {
             .to_string()
     }
 
-    /// Returns the seconds since the first time of the column; midnight adds a day.
+    /// Returns the seconds since the first time in the column; midnight adds a day.
     fn seconds(&mut self, cell: &str) -> String {
         let Some(mut now_s) = clock_s(cell) else {
             return String::new();
@@ -232,7 +232,7 @@ impl Column {
     }
 }
 
-/// A separator and the most frequent width of the lines with it.
+/// A separator and the most frequent line width with it.
 struct Candidate {
     separator: Separator,
     width: usize,
@@ -249,7 +249,7 @@ fn best_candidate(sample: &[&str]) -> Option<Candidate> {
         .max_by_key(|candidate| (candidate.lines, candidate.width))
 }
 
-/// Returns the width that more than half of the lines have with a separator, if it exceeds two.
+/// Returns the width that more than half the lines have with a separator, if it exceeds two.
 fn candidate(sample: &[&str], separator: Separator) -> Option<Candidate> {
     let mut lines_by_width: BTreeMap<usize, usize> = BTreeMap::new();
     for line in sample {
@@ -270,7 +270,7 @@ fn candidate(sample: &[&str], separator: Separator) -> Option<Candidate> {
     })
 }
 
-/// Returns the kind of most filled cells in a column.
+/// Returns the kind to which most filled cells in a column belong.
 fn kind_of_column(rows: &[Vec<String>], index: usize) -> Kind {
     let mut filled = 0;
     let mut numbers = 0;

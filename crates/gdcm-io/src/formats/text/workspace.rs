@@ -9,14 +9,14 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 /// The variables and their fields.
 #[derive(Default)]
 pub(super) struct Workspace<'t> {
-    /// In the order of their first assignment, with their last values.
+    /// In the order in which they were first assigned, with their last values.
     pub(super) variables: Vec<Variable>,
-    /// Index of each variable.
+    /// Index by name.
     places: HashMap<&'t str, usize>,
 }
 
 impl<'t> Workspace<'t> {
-    /// Sets a variable or one of its fields, which `path` leads to.
+    /// Sets the variable or field to which `path` leads.
     pub(super) fn set(
         &mut self,
         path: &[&'t str],
@@ -50,7 +50,7 @@ impl<'t> Workspace<'t> {
         place
     }
 
-    /// Copies a variable or one of its fields; `place` is the position of its name in the text.
+    /// Copies a variable or a field; `place` is the position of its name in the text.
     pub(super) fn copy(
         &self,
         path: &[&str],
@@ -85,7 +85,7 @@ fn empty_struct() -> Value {
     Value::Struct(StructArray::one(Vec::new()))
 }
 
-/// Sets a field of a value, or the value itself for an empty path; missing fields are added. A
+/// Sets a field in a value, or the value itself for an empty path; missing fields are added. A
 /// value that cannot have fields becomes opaque.
 fn set_field(target: &mut Value, path: &[&str], value: Value) {
     let Some((name, rest)) = path.split_first() else {

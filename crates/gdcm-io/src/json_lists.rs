@@ -26,7 +26,7 @@ pub(super) struct Nested<const DEPTH: usize> {
 }
 
 impl<const DEPTH: usize> Nested<DEPTH> {
-    /// Returns the most entries in a list at a depth, 0 being the outermost.
+    /// Returns the largest number of entries in a list at a depth, 0 being the outermost.
     const fn most(depth: usize) -> usize {
         match (DEPTH, depth) {
             (2, _) => MOST_STATES,

@@ -113,18 +113,18 @@ fn is_response_table(key: &str) -> bool {
     )
 }
 
-/// Most labelled conditions and models, so that an outline takes no more memory than a
+/// Largest number of labelled conditions and models, so that an outline takes no more memory than a
 /// dataset.
 const MOST_LABELS: usize = 50_000;
-/// Most lists and objects inside one another; labels are never nested that deeply.
+/// Deepest nesting of lists and objects; labels are far less deep.
 const DEEPEST: usize = 100;
 
 /// Labels in a file, for naming places in it; labels after an error in the text are missing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Outline {
-    /// Value for "format": a text, or the type of another value.
+    /// Value of "format": a text, or the type of another value.
     pub(super) format: Option<String>,
-    /// Value for "version".
+    /// Value of "version".
     pub(super) version: Option<String>,
     /// Condition ids, by condition index.
     ids: BTreeMap<usize, i64>,
@@ -283,7 +283,7 @@ fn words(value: &JsonEvent<'_>) -> String {
     }
 }
 
-/// Most keys reported individually; a file with more comes from another program, or
+/// Largest number of keys reported individually; a file with more comes from another program, or
 /// was made to fill the memory.
 const MOST_KEYS: usize = 50;
 
@@ -292,7 +292,7 @@ const MOST_KEYS: usize = 50;
 pub(super) struct UnknownKeys {
     /// By the keys on the path, without the indices.
     found: BTreeMap<Vec<String>, UnknownKey>,
-    /// Count of keys that are not kept, because there are too many.
+    /// Number of keys that are not kept, because there are too many.
     beyond: usize,
 }
 

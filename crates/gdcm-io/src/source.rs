@@ -20,7 +20,7 @@ pub(super) const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 /// Written before UTF-8 text by some editors.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
 
-/// Bytes read, decompressed or hashed between two queries to the budget.
+/// Number of bytes read, decompressed or hashed between two queries to the budget.
 const CHUNK: usize = 1 << 16;
 
 /// A file: its hash and its text.
@@ -74,7 +74,7 @@ pub(super) fn without_mark(text: &[u8]) -> &[u8] {
 /// Opens a file for reading and returns its length \[bytes\].
 ///
 /// # Errors
-/// Returned if the path is missing or not a file: opening a pipe waits for a writer, and some
+/// The path is missing or not a file: opening a pipe waits for a writer, and some
 /// systems permit opening a directory.
 fn open_file(path: &Path) -> Result<(File, u64), FileError> {
     let failed = |error: std::io::Error| FileError::reading(path, &error);
@@ -201,7 +201,7 @@ fn unpack_chunk(
     })
 }
 
-/// Refuses a content with more than `most` bytes.
+/// Refuses content with more than `most` bytes.
 fn check_length(length: u64, most: u64, path: &Path) -> Result<(), FileError> {
     if length > most {
         return Err(FileError::TooLarge {
@@ -250,7 +250,7 @@ impl FileStamp {
 /// Computes the SHA-256 of the stored bytes in a file, in lower-case hexadecimal.
 ///
 /// # Errors
-/// Returned if the file cannot be read.
+/// The file cannot be read.
 pub fn file_sha256(path: &Path) -> Result<String, FileError> {
     Ok(Source::read(path, &ReadingBudget::default())?.sha256)
 }

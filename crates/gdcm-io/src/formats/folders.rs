@@ -11,9 +11,9 @@ use crate::formats::text::TEXT;
 use crate::formats::{ending_of, importer_of, is_known};
 use crate::source::kind_of;
 
-/// Most files examined.
+/// Largest number of files examined.
 pub(crate) const MOST_FILES: usize = 20_000;
-/// Most folders inside one another.
+/// Deepest nesting of folders.
 pub(crate) const DEEPEST: usize = 16;
 
 /// A file to be read.
@@ -146,7 +146,7 @@ fn is_other_log(path: &Path) -> bool {
     read.is_ok() && importer_of(&first, path).name == TEXT.name
 }
 
-/// Letters in lower case, and the number after them.
+/// Part of a name, in lower case, and the number after it.
 type TextAndNumber = (String, u64);
 
 /// Returns a sort key that puts "c2" before "c10".
@@ -169,7 +169,7 @@ fn natural_key(name: &str) -> Vec<TextAndNumber> {
     if !digits.is_empty() {
         parts.push(text_and_number(&mut text, &mut digits));
     }
-    // End mark.
+    // The end of a name sorts before any letter.
     text.push('\0');
     parts.push((text, 0));
     parts

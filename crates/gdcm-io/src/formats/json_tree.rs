@@ -44,8 +44,8 @@ impl Tree {
     }
 }
 
-/// Reads any JSON within a budget: a few bytes can become a list, an object or a
-/// name, each with its own memory.
+/// Reads any JSON within a budget: a few bytes can become a list, an object or a name, each with
+/// its own memory.
 #[derive(Clone, Copy)]
 struct TreeReader<'r> {
     budget: &'r ReadingBudget<'r>,

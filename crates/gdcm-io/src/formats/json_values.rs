@@ -20,7 +20,7 @@ use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
 const OVERHEAD: u64 = 3 * 64;
 /// Memory for a value with its shape and a number, or for null \[bytes\].
 const VALUE: u64 = size_of::<Value>() as u64 + OVERHEAD;
-/// Most array dimensions.
+/// Largest number of array dimensions.
 const MOST_DIMENSIONS: usize = 3;
 
 /// JSON, and any gzip-packed file.

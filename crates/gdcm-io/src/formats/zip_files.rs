@@ -13,10 +13,10 @@ use crate::formats::variables::Variable;
 use crate::formats::{Contents, Importer, importer_of, is_known};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Most unpacked bytes for a packed byte in deflate (RFC 1951).
+/// Largest ratio of unpacked to packed bytes in deflate (RFC 1951).
 const LARGEST_RATIO: u64 = 1032;
 
-/// Bytes unpacked between two queries to the budget.
+/// Number of bytes unpacked between two queries to the budget.
 const CHUNK: u64 = 1 << 20;
 
 /// Name ending for NumPy arrays.
@@ -156,7 +156,7 @@ fn visit_files(
 
 impl ZipFile<'_, '_> {
     /// Unpacks the file up to the size given by the archive: a few kilobytes can unpack to
-    /// gigabytes. Faults contain `name`.
+    /// gigabytes. Faults give `name` as the file.
     fn unpack(&self, name: &str, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, VariableFault> {
         if self.entry.flags().is_encrypted() {
             return Err(unsupported(name, "an encrypted entry"));

@@ -29,9 +29,9 @@ const MARK: &[u8] = b"H Product:Blackbox";
 const LONGEST_STEP_US: i64 = 10_000_000;
 /// A flight with fewer frames is ignored.
 const FEWEST_FRAMES: usize = 50;
-/// 1.0 as an IEEE 754 bit pattern, as the header has it.
+/// 1.0 as an IEEE 754 bit pattern, in the notation of the header.
 const ONE: &str = "0x3f800000";
-/// Names for the controller terms; an axis index follows in brackets.
+/// Names of the controller terms; an axis index follows in brackets.
 const TERMS: [&str; 4] = ["axisP", "axisI", "axisD", "axisF"];
 
 /// Betaflight logs.
@@ -258,7 +258,7 @@ fn event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
 /// A flight and its frames.
 struct Flight {
     heading: Heading,
-    /// Index for the field "time".
+    /// Index of the field "time".
     time: Option<usize>,
     /// Numbers in the main frames, by field.
     values: Vec<Vec<f64>>,
@@ -266,7 +266,7 @@ struct Flight {
     damaged: usize,
 }
 
-/// Mode flags in a slow frame, at the time in the preceding main frame.
+/// Mode flags in a slow frame, with the time of the preceding main frame.
 struct ModeSample {
     time_us: f64,
     flags: f64,
@@ -418,7 +418,7 @@ impl Flight {
             let sum = controller_sum(&columns, axis, &name, budget)?;
             columns.extend(sum);
         }
-        // Without a scale, rates are in deg/s.
+        // With a scale of 1, rates are in deg/s.
         if self.heading.value("gyro_scale") == ONE {
             notes.extend(give_meanings(&mut columns, &BETAFLIGHT));
         } else {

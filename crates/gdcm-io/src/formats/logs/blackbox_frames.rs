@@ -4,7 +4,7 @@
 //! (<https://betaflight.com/docs/development/Blackbox-Internals>). The file holds the difference
 //! from the prediction.
 
-/// Most fields in a frame.
+/// Largest number of fields in a frame.
 const MOST_FIELDS: usize = 256;
 
 /// Fields in frames with the same letter.
@@ -36,7 +36,7 @@ pub(super) struct Predecessors {
 /// Cursor over bytes with packed numbers.
 pub(super) struct PackedBytes<'b> {
     bytes: &'b [u8],
-    /// Next byte to be read.
+    /// Offset of the next byte.
     pub(super) at: usize,
 }
 

@@ -5,7 +5,7 @@
 //! each message: A3 95, type, content; FMT messages give length and fields for each type
 //! FMT           type, length with these three bytes, name, a letter for each field, field names
 //! FMTU          type, a unit letter and a multiplier letter for each field
-//! UNIT, MULT    meanings for these letters
+//! UNIT, MULT    meanings of these letters
 //! ```
 
 use std::collections::BTreeMap;
@@ -84,7 +84,7 @@ struct Message<'b> {
 }
 
 impl Message<'_> {
-    /// Returns the number in a field, if it is one.
+    /// Returns the number in a field; `None` for other fields.
     fn number(self, layout: &MessageLayout, index: usize) -> Option<f64> {
         let field = layout.fields.get(index)?;
         match field.kind {
@@ -112,7 +112,7 @@ struct Messages<'b, 'm> {
     bytes: &'b [u8],
     budget: &'m ReadingBudget<'m>,
     at: usize,
-    /// Byte count outside messages.
+    /// Number of bytes outside messages.
     skipped: usize,
 }
 
@@ -218,7 +218,7 @@ impl Descriptions {
         };
         let ends = layout.fields.iter().map(|field| field.end());
         let needed = ends.max().unwrap_or(0);
-        // The length for FMT itself is fixed.
+        // The length of FMT itself is fixed.
         if kind != FORMAT && usize::from(length) >= needed + HEADER {
             self.lengths[usize::from(kind)] = usize::from(length);
             self.layouts.by_type.insert(kind, layout);

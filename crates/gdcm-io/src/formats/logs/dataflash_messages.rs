@@ -12,7 +12,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Messages that describe the log and hold no samples.
 const DESCRIPTIONS: [&str; 5] = ["FMT", "FMTU", "UNIT", "MULT", "PARM"];
-/// Unit letter for the field that numbers message instances.
+/// Unit letter of the field that numbers message instances.
 const INSTANCE: char = '#';
 
 /// Kind of a message field, given by its letter.
@@ -81,7 +81,7 @@ impl MessageField {
     }
 }
 
-/// Fields in messages with the same type.
+/// Layout of the messages with the same type.
 #[derive(Clone, Debug)]
 pub(super) struct MessageLayout {
     pub(super) name: String,
@@ -144,7 +144,7 @@ impl Layouts {
         }
     }
 
-    /// Returns the unit for a field, in the spelling of this program.
+    /// Returns the unit of a field, in the spelling of this program.
     fn unit(&self, layout: &MessageLayout, field: usize) -> Option<String> {
         let unit = self.units.get(layout.units.get(field)?)?;
         match unit.as_str() {
@@ -155,7 +155,7 @@ impl Layouts {
         }
     }
 
-    /// Returns the multiplier for a field; 1 unless it is known, finite and not 0.
+    /// Returns the multiplier of a field; 1 unless it is known, finite and not 0.
     fn multiplier(&self, layout: &MessageLayout, field: usize) -> f64 {
         let letter = layout.multipliers.get(field);
         match letter.and_then(|letter| self.multipliers.get(letter)) {
@@ -169,7 +169,7 @@ impl Layouts {
 pub(super) struct SampleFields<'l> {
     pub(super) layout: &'l MessageLayout,
     stamp: Stamp,
-    /// Index for the field with the instance.
+    /// Index of the field with the instance.
     instance: Option<usize>,
     numbers: Vec<SampleNumber>,
 }
@@ -190,8 +190,8 @@ struct SampleNumber {
 }
 
 impl<'l> SampleFields<'l> {
-    /// Finds time stamp, instance and numbers in a layout; returns nothing without a
-    /// stamp or numbers.
+    /// Finds time stamp, instance and numbers in a layout; returns nothing without a stamp or
+    /// numbers.
     pub(super) fn find(layout: &'l MessageLayout, layouts: &Layouts) -> Option<Self> {
         if DESCRIPTIONS.contains(&layout.name.as_str()) {
             return None;

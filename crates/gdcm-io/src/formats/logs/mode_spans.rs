@@ -2,9 +2,9 @@
 
 use gdcm_sysid::records::ModeSpan;
 
-/// Most spans kept for a log.
+/// Largest number of spans kept for a log.
 const MOST_SPANS: usize = 1000;
-/// Spans listed in a note.
+/// Largest number of spans listed in a note.
 const SHOWN: usize = 8;
 
 /// Returns the time spans in which a state keeps a value that has a name.

@@ -3,7 +3,7 @@
 //! ```text
 //! header: 16 bytes
 //! messages: length (16 bits), type (a letter), content
-//!   B  flags, offsets to appended data       F  topic layout           A  topic and instance for a number
+//!   B  flags, offsets of appended data       F  topic layout           A  topic and instance for a number
 //!   D  number, data for its topic            O  dropout [ms]           others: parameters, texts, marks
 //! ```
 //!
@@ -50,7 +50,7 @@ pub(crate) const ULOG: Importer = Importer {
 struct Subscription {
     samples: TopicSamples,
     stamp: Place,
-    /// Position for each field.
+    /// Position of each field.
     places: Vec<Place>,
     /// Shortest possible data in a message \[bytes\].
     least: usize,
@@ -63,7 +63,7 @@ struct Messages<'b> {
     subscriptions: BTreeMap<u16, Subscription>,
     dropouts: usize,
     lost_ms: u64,
-    /// Count of data messages without a topic, or too short.
+    /// Number of data messages without a topic, or too short.
     unread: usize,
 }
 
@@ -101,7 +101,7 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
     messages.columns(is_cut)
 }
 
-/// Reads the offsets to appended data \[bytes\] from the flags.
+/// Reads the offsets of appended data \[bytes\] from the flags.
 ///
 /// # Errors
 /// A flag from a later version.

@@ -7,7 +7,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Largest message, limited by its 16-bit length \[bytes\].
 const LARGEST: usize = 65_535;
-/// Most layouts inside one another.
+/// Deepest nesting of layouts.
 const DEEPEST: usize = 8;
 
 /// A number in the data part of a message.
@@ -66,13 +66,13 @@ struct Flattening<'a> {
     budget: &'a ReadingBudget<'a>,
     message: &'a str,
     places: Vec<Place>,
-    /// Offset for the next field \[bytes\].
+    /// Offset of the next field \[bytes\].
     offset: usize,
 }
 
 /// A layout field: `float[3] xyz`.
 struct LayoutField<'f> {
-    /// A number type or another layout.
+    /// Name of a number type or of another layout.
     kind: &'f str,
     name: &'f str,
     /// Element count in an array.

@@ -12,7 +12,7 @@ use crate::formats::text::separator::Separator;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const EXPECTED: &str = "a table of numbers in columns";
-/// Lines before the first row that are compared with a repeated heading.
+/// Number of lines before the first row that are compared with a repeated heading.
 const COMPARED_HEADINGS: usize = 20;
 
 /// A table with number columns.
@@ -249,7 +249,7 @@ impl<'m> Reading<'m> {
 
     /// Describes a cell that is no number, or a line without any number.
     fn no_number(&self, index: usize, cell: &str, line: &str) -> String {
-        /// Cells examined.
+        /// Number of cells examined.
         const EXAMINED: usize = 20;
         let decimal_comma = self.layout.decimal_comma;
         let mut cells = self.layout.cells(line).take(EXAMINED);

@@ -5,7 +5,7 @@ use crate::formats::text::lines::{comment, lines};
 use crate::formats::text::separator::Separator;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Lines examined.
+/// Number of lines examined.
 const SAMPLE: usize = 200;
 
 /// Replaces each complex column by two columns, with "re" and "im" before their headings; returns
@@ -51,8 +51,8 @@ impl ComplexColumns {
             .find_map(|separator| Self::from_separated_line(line, separator))
     }
 
-    /// Interprets the cells in a line; `None` unless all are numbers, at least two, and some
-    /// are complex.
+    /// Interprets the cells in a line; `None` unless there are at least two, all are
+    /// numbers, and some are complex.
     fn from_separated_line(line: &str, separator: Separator) -> Option<Self> {
         let mut is_complex = Vec::new();
         for cell in separator.cells(line) {
@@ -157,7 +157,7 @@ impl ComplexText {
     }
 }
 
-/// Returns the offset for the sign between real and imaginary part: the last sign that is neither at
+/// Returns the offset of the sign between real and imaginary part: the last sign that is neither at
 /// the beginning nor in an exponent.
 fn last_sign(number: &str) -> Option<usize> {
     let (at, _) = number.char_indices().rfind(|(at, letter)| {

@@ -6,7 +6,7 @@ use crate::formats::text::layout::Layout;
 use crate::formats::text::lines::{comment, is_rule};
 use crate::formats::text::separator::Separator;
 
-/// Lines before the first row that are searched for names and units.
+/// Number of lines before the first row that are searched for names and units.
 const SEARCHED: usize = 100;
 
 /// A line and its number, from 1.

@@ -7,7 +7,7 @@ use crate::formats::text::lines::{comment, lines, without_comment};
 use crate::formats::text::separator::{Cells, Separator};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Rows examined to recognise the layout.
+/// Number of rows examined to recognise the layout.
 const SAMPLE: usize = 200;
 
 /// Line layout in a table.

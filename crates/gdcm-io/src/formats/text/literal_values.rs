@@ -9,7 +9,7 @@ use crate::formats::text::workspace::Workspace;
 use crate::formats::variables::{Array, CellArray, ElementKind, TextArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Operators before which blanks, and none after, leave a sign: `[1 -2]` has two elements.
+/// Operators between blanks; with a blank only before it, a sign begins an element: `[1 -2]`.
 const OPERATORS: &str = "+-*/^:.\\";
 /// Operators directly after an element; the quote transposes.
 const ATTACHED_OPERATORS: &str = "+-*/^:.\\'";

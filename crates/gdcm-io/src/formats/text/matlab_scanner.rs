@@ -6,7 +6,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 /// Remedy for unsupported statements.
 pub(super) const REMEDY: &str =
     "write its numbers, or save the workspace in MATLAB: save -v7 workspace.mat";
-/// Most values inside one another; each level takes stack space.
+/// Deepest nesting of values; each level takes stack space.
 pub(super) const MOST_NESTED: usize = 64;
 
 /// Whether a name can contain this character.

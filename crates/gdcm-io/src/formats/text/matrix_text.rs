@@ -74,7 +74,7 @@ struct Part {
 /// A matrix whose rows are being read.
 struct OpenMatrix {
     name: String,
-    /// Line number for the name.
+    /// Line number of the name.
     line: usize,
     /// Whether an equals sign follows the name, so that a single word below it names a column.
     assigned: bool,

@@ -76,7 +76,7 @@ pub(crate) const TEXT: Importer = Importer {
 
 /// Returns the first lines in a text, without MATLAB comments and empty lines.
 fn first_lines(bytes: &[u8]) -> Vec<String> {
-    /// Examined length \[bytes\].
+    /// Length of the examined beginning \[bytes\].
     const HEAD: usize = 4000;
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]);
     head.lines()

@@ -140,9 +140,10 @@ impl<'t> Recognition<'t> {
                 self.leave_out(&group);
                 continue;
             };
-            let coherence = group
-                .column(Quantity::Coherence)
-                .map(|column| self.coherence(column));
+            let coherence = match group.column(Quantity::Coherence) {
+                Some(column) => Some(self.coherence(column)),
+                None => None,
+            };
             responses.push(RecognisedResponse {
                 output: group.label.output,
                 input: group.label.input,

@@ -6,8 +6,8 @@ use crate::formats::text::lines::{comment, is_rule, lines};
 /// Separators that may surround blanks within a cell.
 const STRONG_SEPARATORS: [char; 4] = ['|', ';', '\t', ','];
 
-/// Splits a text before every heading that follows rows; returns the text
-/// and the first line number for each part. A log that is restarted with other columns is split where they change.
+/// Splits a text before every heading that follows rows; returns the number of the first line and
+/// the text of each part. A log that is restarted with other columns is split where they change.
 pub fn sections(text: &str) -> Vec<(usize, &str)> {
     let mut sections = Vec::new();
     let mut first_line = 1;

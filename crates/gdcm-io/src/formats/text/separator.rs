@@ -10,7 +10,7 @@ pub enum Separator {
     /// A vertical bar; a leading bar is skipped.
     Pipe,
     Comma,
-    /// Any blanks and tabulators in succession.
+    /// Any run of blanks and tabulators.
     Blanks,
 }
 

@@ -8,11 +8,11 @@ use crate::formats::text::lines::{comment, lines};
 use crate::formats::text::separator::Separator;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Lines examined to recognise the columns.
+/// Number of lines examined to recognise the columns.
 const SAMPLE: usize = 200;
-/// Most distinct words in a column; a column with more is not a label.
+/// Largest number of distinct words in a column; a column with more is not a label.
 const MOST_WORDS: usize = 500;
-/// Words listed in a note.
+/// Largest number of words listed in a note.
 const SHOWN: usize = 12;
 const DAY_S: f64 = 86_400.0;
 
@@ -20,7 +20,7 @@ const DAY_S: f64 = 86_400.0;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NumberedText {
     pub text: String,
-    /// The number for each word, and the columns with clock times.
+    /// The number of each word, and the columns with clock times.
     pub notes: Vec<String>,
 }
 
@@ -78,7 +78,7 @@ struct Numbering {
 /// A column during numbering.
 struct Column {
     kind: Kind,
-    /// Number for each word.
+    /// Number of each word.
     words: BTreeMap<String, usize>,
     clock: Option<ClockSpan>,
 }
@@ -92,8 +92,8 @@ struct ClockSpan {
 }
 
 impl Numbering {
-    /// Finds the separator and the kind of data in each column; at least two columns must hold numbers, and
-    /// at least one column words or clock times.
+    /// Finds the separator and the kind of data in each column; at least two columns must hold
+    /// numbers, and at least one column words or clock times.
     fn recognise(text: &str) -> Option<Self> {
         let sample: Vec<&str> = lines(text)
             .map(|(_, line)| line)

@@ -28,7 +28,7 @@ pub enum FileError {
     Directory { path: PathBuf },
     /// The path is neither a file nor a directory: reading it might never end.
     #[error(
-        "{}: this is {kind}, not a file; save what it gives as a file, and give its name",
+        "{}: this is {kind}, not a file; save its content as a file, and give the name of that file",
         sanitized_path(path)
     )]
     NotAFile { path: PathBuf, kind: &'static str },

@@ -245,7 +245,7 @@ impl<'p> ReadingBudget<'p> {
 
     /// Returns the budget with a callback that receives the memory taken so far \[bytes\] whenever
     /// more is taken.
-    pub fn telling<'q>(self, on_memory: &'q dyn Fn(u64)) -> ReadingBudget<'q> {
+    pub fn with_memory_callback<'q>(self, on_memory: &'q dyn Fn(u64)) -> ReadingBudget<'q> {
         ReadingBudget {
             most_memory: self.most_memory,
             most_work: self.most_work,
@@ -342,10 +342,10 @@ mod tests {
     fn the_flag_stops_the_reader_and_the_callback_receives_the_memory() {
         let stop = Arc::new(AtomicBool::new(false));
         let heard = Cell::new(0);
-        let tell = |taken| heard.set(taken);
+        let on_memory = |taken| heard.set(taken);
         let budget = ReadingBudget::new(1 << 20)
             .stopped_by(Arc::clone(&stop))
-            .telling(&tell);
+            .with_memory_callback(&on_memory);
         assert_eq!((budget.take(3, 8, ""), heard.get()), (Ok(()), 24));
         stop.store(true, Ordering::Relaxed);
         assert_eq!(budget.take(u64::MAX, 1, ""), Err(VariableFault::Stopped));

@@ -172,7 +172,7 @@ fn ending_of(path: &Path) -> String {
 /// Progress of reading files, and its cancellation.
 pub trait FolderProgress {
     /// Called before a file is read, with its number from 1, the number of files and its name.
-    fn reading(&self, number: usize, of: usize, name: &str);
+    fn reading(&self, number: usize, count: usize, name: &str);
     /// Called when memory is taken for the contents of a file \[bytes\].
     fn taken(&self, _bytes: u64) {}
     /// Returns the flag that ends the reading once it is set.
@@ -236,7 +236,7 @@ pub(crate) fn import(
         progress.reading(index + 1, files.len(), &file.name);
         let budget = ReadingBudget::default()
             .stopped_by(Arc::clone(&stop))
-            .telling(&report_memory);
+            .with_memory_callback(&report_memory);
         let read = import_file(&file.path, &file.name, &budget);
         match read.and_then(|imported| take(imported, &budget)) {
             Ok(()) => {}

@@ -67,9 +67,7 @@ fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, V
     let mut notes =
         vec!["a log of ArduPilot; time in seconds since the autopilot was started".to_owned()];
     if skipped > 0 {
-        notes.push(format!(
-            "{skipped} bytes between messages belong to none: left out"
-        ));
+        notes.push(format!("{skipped} bytes between messages: left out"));
     }
     topics.columns(notes)
 }

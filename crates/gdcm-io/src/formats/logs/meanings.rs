@@ -104,7 +104,7 @@ pub(super) const BETAFLIGHT: Meanings = Meanings {
         documented("gyroADC[1]", "Q", "deg/s"),
         documented("gyroADC[2]", "R", "deg/s"),
     ],
-    signs: "signs are the flight controller's: compare one channel before signs of derivatives are used",
+    signs: "signs are the flight controller's: check the sign of one channel before using signs of derivatives",
 };
 
 /// Assigns the documented channels and units to columns; returns a note with the assignments.

@@ -41,7 +41,7 @@ pub(super) struct ColumnMeaning {
     pub(super) quantity: Option<Quantity>,
     pub(super) unit: Option<KnownUnit>,
     pub(super) label: ResponseLabel,
-    /// Reason for the quantity: "its name says phase".
+    /// Reason for the quantity: "its name contains phase".
     pub(super) reason: String,
 }
 
@@ -175,7 +175,7 @@ impl ColumnMeaning {
                     quantity: Some(quantity),
                     unit: unit.or_else(|| usual_unit(quantity, &lower, &words)),
                     label: ResponseLabel::parse(&without_words(name, &words, known)),
-                    reason: format!("its name says {lower}"),
+                    reason: format!("its name contains {lower}"),
                 };
             }
         }

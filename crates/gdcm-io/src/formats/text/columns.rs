@@ -147,7 +147,7 @@ impl<'m> Reading<'m> {
             self.line_before_rows(number, line)
         } else if self.repeats_heading(line) {
             self.notes.push(format!(
-                "line {number} repeats a heading: the rows behind it are taken as more of the same"
+                "line {number} repeats a heading: the rows after it continue the table"
             ));
             self.skip(number, line)
         } else {
@@ -162,7 +162,7 @@ impl<'m> Reading<'m> {
             Some(RowShape { width: 1, .. }) => {
                 let columns = self.layout.columns;
                 self.notes.push(format!(
-                    "line {number} holds one number, the table {columns} columns: passed over"
+                    "line {number} holds one number, the table has {columns} columns: skipped"
                 ));
                 self.skip(number, line)
             }
@@ -378,7 +378,7 @@ mod columns_tests {
     }
 
     #[test]
-    fn headings_can_be_said_in_place_of_the_file_s() {
+    fn headings_can_be_given_instead_of_those_in_the_file() {
         let table = read("w,P [dB],x\n1,2,3\n2,3,4\n").unwrap();
         assert_eq!(table.headings(), ["w", "P [dB]", "x"]);
         let said = ["f [Hz]", "", "phase [deg]"].map(str::to_owned);
@@ -390,7 +390,7 @@ mod columns_tests {
     }
 
     #[test]
-    fn comments_rules_and_blank_lines_are_passed_over() {
+    fn comments_rules_and_blank_lines_are_skipped() {
         let text = "% by a tool\n# w mag ph\n-------\n1 2 3\n\n! middle\n4 5 6 # behind\n// end\n";
         let table = read(text).unwrap();
         assert_eq!(table.names.as_deref().unwrap(), ["w", "mag", "ph"]);
@@ -411,7 +411,7 @@ mod columns_tests {
         assert_eq!(table.columns[0], [1000.0, 2000.0]);
         assert_eq!(
             table.notes[0],
-            "line 1 holds one number, the table 2 columns: passed over"
+            "line 1 holds one number, the table has 2 columns: skipped"
         );
         assert_eq!(missing(&table), 1);
     }
@@ -452,7 +452,7 @@ mod columns_tests {
     }
 
     #[test]
-    fn headings_in_the_middle_are_passed_over_with_a_note() {
+    fn headings_in_the_middle_are_skipped_with_a_note() {
         let table = read("t,x\n1,2\n3,4\nt,x\n1,5\n").unwrap();
         assert_eq!(table.columns, [[1.0, 3.0, 1.0], [2.0, 4.0, 5.0]]);
         assert!(
@@ -496,7 +496,7 @@ mod columns_tests {
     }
 
     #[test]
-    fn what_claims_too_much_is_refused_before_it_is_taken() {
+    fn tables_beyond_the_limit_are_refused_before_their_memory_is_taken() {
         let wide = "1,".repeat(1_000_000);
         assert!(matches!(read(&wide), Err(VariableFault::TooLarge { .. })));
         let stopped = read_table(

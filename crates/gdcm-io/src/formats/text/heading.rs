@@ -38,21 +38,20 @@ impl Heading {
             units: vec![None; layout.columns],
             notes: Vec::new(),
         };
-        let mut lines = fitting_lines(above, layout).into_iter().peekable();
+        let mut lines = fitting_lines(above, layout).into_iter();
         let Some(mut names) = lines.next() else {
             heading.note_misfit(above, layout);
             return heading;
         };
         if is_units_line(&names.cells)
             && let Some(before) = lines.next()
+            && names.number > before.number
         {
-            if names.number > before.number {
-                heading.units = names.cells.iter().map(|cell| unit_of(cell)).collect();
-                heading
-                    .notes
-                    .push(format!("line {} gives the units", names.number));
-                names = before;
-            }
+            heading.units = names.cells.iter().map(|cell| unit_of(cell)).collect();
+            heading
+                .notes
+                .push(format!("line {} gives the units", names.number));
+            names = before;
         }
         heading.take_names(&names.cells);
         heading.notes.push(format!(
@@ -87,7 +86,7 @@ impl Heading {
         if found > 1 {
             let columns = layout.columns;
             self.notes.push(format!(
-                "line {number} has {found} words for {columns} columns: not taken as their names"
+                "line {number} has {found} words for {columns} columns: not read as their names"
             ));
         }
     }
@@ -325,7 +324,7 @@ mod heading_tests {
         assert_eq!(heading.names, None);
         assert_eq!(
             heading.notes,
-            ["line 2 has 2 words for 3 columns: not taken as their names"]
+            ["line 2 has 2 words for 3 columns: not read as their names"]
         );
     }
 

@@ -121,7 +121,7 @@ impl<'t> Reading<'t, '_> {
             [] => self.pass_over(begin, "is not understood"),
             [word] if BLOCKS.contains(word) => {
                 self.open_blocks += 1;
-                self.pass_over(begin, "is not run, and what is set in it is not read")
+                self.pass_over(begin, "is not run, and values set in it are not read")
             }
             [word] if BLOCK_ENDS.contains(word) => {
                 self.open_blocks = self.open_blocks.saturating_sub(1);
@@ -133,7 +133,7 @@ impl<'t> Reading<'t, '_> {
                 if !changes_part {
                     return self.pass_over(begin, "is not run");
                 }
-                let why = "only a part of it is set here; write the whole of it in one statement";
+                let why = "only a part of it is set here; write the whole value in one statement";
                 self.set_unread(&[name], begin.position, why)?;
                 self.scanner.pass_statement(self.budget)
             }
@@ -391,8 +391,8 @@ mod tests {
                 &format!("A line 1, column 5: inv(…) is not computed here; {REMEDY}"),
                 "B line 3, column 5: A could not be read itself",
                 "C line 4, column 11: it is set within a condition or a loop, which is not run; write its value outside",
-                "D line 8, column 1: only a part of it is set here; write the whole of it in one statement",
-                "E line 6, column 1: only a part of it is set here; write the whole of it in one statement",
+                "D line 8, column 1: only a part of it is set here; write the whole value in one statement",
+                "E line 6, column 1: only a part of it is set here; write the whole value in one statement",
                 "F line 7, column 1: it is the result of a function, which is not run; write its value",
                 "G line 7, column 1: it is the result of a function, which is not run; write its value",
                 "H",
@@ -416,9 +416,9 @@ mod tests {
         );
         assert_eq!(
             why("A = 'open"),
-            "line 1, column 5: a text begins here and has no end; write ' behind it"
+            "line 1, column 5: a text begins here and has no end; close it with '"
         );
-        let part = "line 1, column 8: only a part of it is set here; write the whole of it in one statement";
+        let part = "line 1, column 8: only a part of it is set here; write the whole value in one statement";
         assert_eq!(why("A = 1; A += 2"), part);
         assert_eq!(why("A = 1; A++"), part);
         assert_eq!(

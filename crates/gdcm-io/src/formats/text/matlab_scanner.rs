@@ -229,7 +229,7 @@ impl<'t> Scanner<'t> {
             let end = rest.find([quote, '\n', '\r']);
             let Some(end) = end.filter(|&end| rest[end..].starts_with(quote)) else {
                 return refused(
-                    format!("a text begins here and has no end; write {quote} behind it"),
+                    format!("a text begins here and has no end; close it with {quote}"),
                     opening,
                 );
             };

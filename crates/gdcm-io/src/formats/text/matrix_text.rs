@@ -31,7 +31,7 @@ pub fn read_matrix(
         .find(|(_, line)| cell_number(line, table.decimal_comma).is_some());
     if let Some((line, _)) = single_number {
         let what = format!(
-            "one number, where other rows have {}; complete the row",
+            "a single number, where other rows have {}; complete the row",
             table.columns.len()
         );
         return Err(VariableFault::line(name, *line, what));
@@ -143,10 +143,8 @@ impl Reading<'_> {
             let what = format!("\"{}\" is no row of numbers; correct it", excerpt(line));
             return Err(VariableFault::line("", number, what));
         }
-        self.notes.push(format!(
-            "line {number} (\"{}\") is passed over",
-            excerpt(line)
-        ));
+        self.notes
+            .push(format!("line {number} (\"{}\") is skipped", excerpt(line)));
         Ok(())
     }
 
@@ -185,7 +183,7 @@ impl Reading<'_> {
             matrix.labelled = true;
         }
         self.notes.push(format!(
-            "line {number} (\"{}\") is taken as names of columns",
+            "line {number} (\"{}\") is read as column names",
             excerpt(line)
         ));
         self.begin_part();
@@ -230,7 +228,7 @@ impl Reading<'_> {
             let OpenMatrix { name, line, .. } = &matrix;
             if matrix.parts.is_empty() {
                 self.notes.push(format!(
-                    "line {line} (\"{name}\") is passed over: no numbers follow"
+                    "line {line} (\"{name}\") is skipped: no numbers follow"
                 ));
                 continue;
             }
@@ -468,7 +466,7 @@ mod matrix_text_tests {
             .to_string();
         assert_eq!(
             ragged,
-            "variable A: line 1: one number, where other rows have 2; complete the row"
+            "variable A: line 1: a single number, where other rows have 2; complete the row"
         );
     }
 

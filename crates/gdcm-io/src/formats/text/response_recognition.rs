@@ -112,7 +112,7 @@ impl<'t> Recognition<'t> {
             }
         };
         let reason = match self.table.units.get(column).and_then(Option::as_ref) {
-            Some(unit) => format!(", its unit says {unit}"),
+            Some(unit) => format!(", its unit is {unit}"),
             None => ", and with it the unit".to_owned(),
         };
         self.note(column, &format!("the frequency in {unit}"), &reason);
@@ -140,10 +140,10 @@ impl<'t> Recognition<'t> {
                 self.leave_out(&group);
                 continue;
             };
-            let coherence = match group.column(Quantity::Coherence) {
-                Some(column) => Some(self.coherence(column)),
-                None => None,
-            };
+            let mut coherence = None;
+            if let Some(column) = group.column(Quantity::Coherence) {
+                coherence = Some(self.coherence(column));
+            }
             responses.push(RecognisedResponse {
                 output: group.label.output,
                 input: group.label.input,
@@ -208,7 +208,7 @@ impl<'t> Recognition<'t> {
         if unit == Some(KnownUnit::Percent) {
             factor = 0.01;
             interpretation = "coherence in percent";
-            reason = ", its unit says %";
+            reason = ", its unit is %";
         } else if numbers.iter().any(|value| *value > LARGEST_COHERENCE) {
             factor = 0.01;
             interpretation = "coherence in percent";
@@ -216,7 +216,7 @@ impl<'t> Recognition<'t> {
         }
         let is_gamma = unit == Some(KnownUnit::Gamma);
         if is_gamma {
-            reason = ", its unit says γ: squared";
+            reason = ", its unit is γ: squared";
         }
         self.note(column, interpretation, reason);
         CoherenceColumn {
@@ -261,7 +261,7 @@ impl<'t> Recognition<'t> {
         match self.meanings[magnitude].unit {
             Some(KnownUnit::Decibel) => {
                 in_db = true;
-                reason = "its unit says dB";
+                reason = "its unit is dB";
             }
             Some(_) => reason = "its unit is not dB",
             None if self.has_negative_levels(magnitude) => {
@@ -293,7 +293,7 @@ impl<'t> Recognition<'t> {
             self.note(
                 phase,
                 &format!("phase in {unit}"),
-                &format!(", its unit says {unit}"),
+                &format!(", its unit is {unit}"),
             );
         }
         PolarReading {

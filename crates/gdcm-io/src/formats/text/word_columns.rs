@@ -158,7 +158,7 @@ impl Numbering {
             match column.kind {
                 Kind::Numbers => {}
                 Kind::Clock => notes.push(format!(
-                    "{name} has times of the clock: taken as seconds from the first"
+                    "{name} has clock times: read as seconds from the first"
                 )),
                 Kind::Words if column.words.len() > MOST_WORDS => {
                     notes.push(format!("{name} has words: left out"));

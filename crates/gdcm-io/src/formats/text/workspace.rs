@@ -106,7 +106,7 @@ fn set_field(target: &mut Value, path: &[&str], value: Value) {
         }
         Value::Opaque { .. } => {}
         _ => {
-            let why = format!("{words} is given a field {name}; use another name for one of them");
+            let why = format!("a field {name} is set in {words}; use different names");
             *target = Value::opaque("a variable with a field", why);
         }
     }

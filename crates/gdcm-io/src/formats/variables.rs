@@ -1,11 +1,11 @@
-//! Named variables in files from other programs; their meaning is determined elsewhere.
+//! Named variables in files of other programs; their meaning is determined elsewhere.
 //!
-//! All readers of such files (MATLAB, NumPy, text) return these values and know nothing about models.
+//! All readers of such files (MATLAB, NumPy, text) return these values and know nothing of models.
 
-/// Number type in the file.
+/// Type of the numbers in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ElementKind {
-    /// IEEE 754 numbers with 32 or 64 bits.
+    /// IEEE 754 numbers of 32 or 64 bits.
     Float,
     /// Signed or unsigned integers.
     Integer,
@@ -22,7 +22,7 @@ pub struct Array {
     /// The numbers, or their real parts. NaN and infinities are kept: the user of the numbers
     /// rejects them with their place.
     pub re: Vec<f64>,
-    /// Imaginary parts of complex numbers, as many as real parts.
+    /// Imaginary parts of complex numbers, of the same length.
     pub im: Option<Vec<f64>>,
 }
 
@@ -38,7 +38,7 @@ impl Array {
         }
     }
 
-    /// Returns the element count.
+    /// Returns the number of elements.
     pub fn len(&self) -> usize {
         self.re.len()
     }
@@ -99,7 +99,7 @@ pub struct CellArray {
 pub struct StructArray {
     /// Number of records along each dimension.
     pub shape: Vec<usize>,
-    /// The fields in order: name, and a value for each record.
+    /// The fields in order: name, and one value for each record.
     pub fields: Vec<(String, Vec<Value>)>,
 }
 
@@ -160,15 +160,11 @@ impl Value {
 
     /// Iterates over the values inside this value.
     pub(crate) fn inner(&self) -> impl Iterator<Item = &Self> {
-        let mut values: &[Self] = &[];
-        let mut fields: &[(String, Vec<Self>)] = &[];
-        match self {
-            Self::Cell(cell) => values = &cell.values,
-            Self::Struct(records) | Self::Object(Object { records, .. }) => {
-                fields = &records.fields;
-            }
-            Self::Array(_) | Self::Text(_) | Self::Opaque { .. } => {}
-        }
+        let (values, fields): (&[Self], &[(String, Vec<Self>)]) = match self {
+            Self::Cell(cell) => (&cell.values, &[]),
+            Self::Struct(records) | Self::Object(Object { records, .. }) => (&[], &records.fields),
+            Self::Array(_) | Self::Text(_) | Self::Opaque { .. } => (&[], &[]),
+        };
         values
             .iter()
             .chain(fields.iter().flat_map(|(_, values)| values))
@@ -176,62 +172,54 @@ impl Value {
 
     /// Returns its memory, excluding inner values, rounded up \[bytes\].
     pub(crate) fn own_memory(&self) -> u64 {
-        let content = match self {
+        let text = |text: &String| size_of::<String>() + text.len();
+        let shape = |shape: &[usize]| size_of_val(shape);
+        let bytes = match self {
             Self::Array(array) => {
-                let number = if array.im.is_some() { 16 } else { 8 };
-                size_of_val(array.shape.as_slice()) + array.len() * number
+                shape(&array.shape) + array.len() * if array.im.is_some() { 16 } else { 8 }
             }
-            Self::Text(texts) => {
-                let characters: usize = texts.texts.iter().map(|text| text_memory(text)).sum();
-                size_of_val(texts.shape.as_slice()) + characters
-            }
-            Self::Cell(cell) => size_of_val(cell.shape.as_slice()),
+            Self::Text(texts) => shape(&texts.shape) + texts.texts.iter().map(text).sum::<usize>(),
+            Self::Cell(cell) => shape(&cell.shape),
             Self::Struct(records) => {
-                let fields = records.fields.iter();
-                let names: usize = fields.map(|(name, _)| FIELD + text_memory(name)).sum();
-                size_of_val(records.shape.as_slice()) + names
+                shape(&records.shape)
+                    + records
+                        .fields
+                        .iter()
+                        .map(|(name, _)| 48 + text(name))
+                        .sum::<usize>()
             }
-            Self::Object(object) => {
-                size_of_val(object.records.shape.as_slice()) + text_memory(&object.class)
-            }
-            Self::Opaque { class, why } => text_memory(class) + text_memory(why),
+            Self::Object(object) => shape(&object.records.shape) + text(&object.class),
+            Self::Opaque { class, why } => text(class) + text(why),
         };
-        (size_of::<Self>() + content) as u64
+        (size_of::<Self>() + bytes) as u64
     }
 
     /// Describes the value in a message: "a 3 x 4 array of numbers".
     pub fn words(&self) -> String {
+        let by = |shape: &[usize]| {
+            shape
+                .iter()
+                .map(usize::to_string)
+                .collect::<Vec<_>>()
+                .join(" x ")
+        };
         match self {
             Value::Array(array) if array.im.is_some() => {
-                format!("a {} array of complex numbers", size_words(&array.shape))
+                format!("a {} array of complex numbers", by(&array.shape))
             }
-            Value::Array(array) => format!("a {} array of numbers", size_words(&array.shape)),
+            Value::Array(array) => format!("a {} array of numbers", by(&array.shape)),
             Value::Text(text) if text.texts.len() == 1 => "a text".to_owned(),
             Value::Text(text) => format!("{} texts", text.texts.len()),
-            Value::Cell(cell) => format!("a {} cell array", size_words(&cell.shape)),
-            Value::Struct(records) => format!("a {} struct array", size_words(&records.shape)),
+            Value::Cell(cell) => format!("a {} cell array", by(&cell.shape)),
+            Value::Struct(records) => format!("a {} struct array", by(&records.shape)),
             Value::Object(object) => format!(
                 "a {} array of {} objects",
-                size_words(&object.records.shape),
+                by(&object.records.shape),
                 object.class
             ),
             Value::Opaque { class, .. } => format!("{class}, which cannot be read"),
         }
     }
-}
-
-/// Memory for a field besides its name and values \[bytes\].
-const FIELD: usize = 48;
-
-/// Memory for a text \[bytes\].
-fn text_memory(text: &str) -> usize {
-    size_of::<String>() + text.len()
-}
-
-/// Describes a size: "3 x 4".
-fn size_words(shape: &[usize]) -> String {
-    let sides: Vec<String> = shape.iter().map(usize::to_string).collect();
-    sides.join(" x ")
 }
 
 impl StructArray {
@@ -243,7 +231,7 @@ impl StructArray {
         }
     }
 
-    /// Returns the values in a field, as many as there are records.
+    /// Returns the values of a field, one for each record.
     pub fn field(&self, name: &str) -> Option<&[Value]> {
         self.fields
             .iter()
@@ -251,6 +239,8 @@ impl StructArray {
             .map(|(_, values)| values.as_slice())
     }
 }
+
+// Limits of a reader, and its cancellation.
 
 #[cfg(test)]
 mod tests {

@@ -745,7 +745,13 @@ fn a_wrong_command_line_is_status_2_with_the_option() {
 fn an_output_directory_that_cannot_be_made_is_status_2_before_any_work() {
     let desk = Desk::new();
     let ended = desk.gdcm(&["analyze", "small.json", "--out", "small.json"]);
-    ended.assert_failed(2, &["small.json: cannot be written", "a file stands where"]);
+    ended.assert_failed(
+        2,
+        &[
+            "small.json: cannot be written",
+            "a file has the name of this directory",
+        ],
+    );
 }
 
 #[test]

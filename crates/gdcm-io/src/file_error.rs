@@ -14,8 +14,7 @@ use crate::export_fault::ExportFault;
 use crate::location::line_of;
 use crate::reading_budget::VariableFault;
 
-/// Reason why a file could not be read or written: one line that names the file, and the place in
-/// it.
+/// Reason why a file could not be read or written: a line with the file and the place in it.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// There is no file with this name.
@@ -29,7 +28,7 @@ pub enum FileError {
     Directory { path: PathBuf },
     /// The path is neither a file nor a directory: reading it might never end.
     #[error(
-        "{}: this is {kind}, not a file; save what it gives as a file, and give its name",
+        "{}: this is {kind}, not a file; save its content as a file, and give the name of that file",
         sanitized_path(path)
     )]
     NotAFile { path: PathBuf, kind: &'static str },
@@ -44,7 +43,7 @@ pub enum FileError {
     Unreadable { path: PathBuf, reason: String },
     /// The file, or its uncompressed content, exceeds the size limit.
     #[error(
-        "{}: holds more than {most_mib} MiB, which is the most that is read; split the file",
+        "{}: holds more than {most_mib} MiB, the limit for a file; split the file",
         sanitized_path(path)
     )]
     TooLarge { path: PathBuf, most_mib: u64 },
@@ -60,11 +59,11 @@ pub enum FileError {
         sanitized_path(path)
     )]
     GzipCutOff { path: PathBuf },
-    /// The text ends before the JSON does.
+    /// The text ends within the JSON.
     #[error("{}: {}the JSON ends too early (line {line}, column {column}), the file is cut off; copy it again", sanitized_path(path), place.before())]
     CutOff {
         path: PathBuf,
-        /// Where the reader was.
+        /// Place that the reader had reached.
         place: Box<Location>,
         /// Line, counted from 1.
         line: usize,
@@ -75,7 +74,7 @@ pub enum FileError {
     #[error("{}: {}this is not JSON (line {line}, column {column}: {reason})", sanitized_path(path), place.before())]
     NotJson {
         path: PathBuf,
-        /// Where the reader was.
+        /// Place that the reader had reached.
         place: Box<Location>,
         /// Line, counted from 1.
         line: usize,
@@ -92,7 +91,7 @@ pub enum FileError {
         path: PathBuf,
         /// The expected format or formats.
         expected: &'static str,
-        /// The format in the file, in words.
+        /// Format in the file, for the message.
         found: String,
     },
     /// The file has an unknown version.
@@ -105,11 +104,11 @@ pub enum FileError {
         format: &'static str,
         /// The version that this program reads.
         newest: u64,
-        /// The version in the file, in words.
+        /// Version in the file, for the message.
         found: String,
     },
-    /// Some content of the file is invalid.
-    #[error("{}: {}{fault}{}", sanitized_path(path), place.before(), line.map(|line| format!(" (line {line})")).unwrap_or_default())]
+    /// Some content is invalid.
+    #[error("{}: {}{fault}{}", sanitized_path(path), place.before(), line_words(*line))]
     Content {
         path: PathBuf,
         /// Place in the file.
@@ -120,22 +119,22 @@ pub enum FileError {
         /// its own.
         line: Option<usize>,
     },
-    /// A file of variables cannot be read or written.
+    /// Variables cannot be read or written.
     #[error("{}: {}", sanitized_path(path), sanitized(&.fault.to_string()))]
     Variables { path: PathBuf, fault: VariableFault },
     /// Folders are nested more deeply than the search for models goes.
     #[error(
-        "{}: folders lie too deep inside one another; give a folder farther down",
+        "{}: folders are nested too deeply; give a folder farther down",
         sanitized_path(path)
     )]
     FolderTooDeep { path: PathBuf },
-    /// A file of records does not contain the requested record.
+    /// The requested record is not in the file.
     #[error("{}: {}", sanitized_path(path), no_record_words(record.as_deref(), *held))]
     NoRecord {
         path: PathBuf,
         /// The record; `None` for the only one.
         record: Option<String>,
-        /// Number of records in it.
+        /// Record count in the file.
         held: usize,
     },
     #[error(
@@ -143,9 +142,9 @@ pub enum FileError {
         sanitized_path(path)
     )]
     TooManyFiles { path: PathBuf, most: usize },
-    /// The dataset of a study cannot be read.
+    /// A study's dataset cannot be read.
     #[error(
-        "{}: the study's dataset cannot be opened: {dataset}; say where it is now, with --dataset and its path",
+        "{}: the study's dataset cannot be opened: {dataset}; give its present path with --dataset",
         sanitized_path(path)
     )]
     StudyDataset {
@@ -153,31 +152,31 @@ pub enum FileError {
         /// The reason, with the dataset's path.
         dataset: Box<FileError>,
     },
-    /// A file has the path of a directory to be created.
+    /// A file has the path for a new directory.
     #[error(
-        "{}: cannot be written: a file stands where this directory would have to be made",
+        "{}: cannot be written: a file has the name of this directory",
         sanitized_path(path)
     )]
     NotADirectory { path: PathBuf },
     /// Files exist, and replacing them was not requested.
-    #[error("{} {} already", listed(paths), if paths.len() == 1 { "exists" } else { "exist" })]
+    #[error("{}", existing_words(paths))]
     Exists { paths: Vec<PathBuf> },
-    /// The output file is an input of the program.
+    /// The output file is an input.
     #[error(
         "{}: the data are read from this file, so it is not overwritten; choose another name or directory",
         sanitized_path(path)
     )]
     Input { path: PathBuf },
-    /// The extension of an output file is no figure format.
+    /// The extension is no figure format.
     #[error(
         "{}: a figure is written to a name that ends in .svg, .png, .pdf or .csv",
         sanitized_path(path)
     )]
     FigureFormat { path: PathBuf },
-    /// A figure without numbers was requested as numbers.
+    /// Numbers were requested from a figure that has none.
     #[error(
-        "{}: \"{}\" shows no numbers that could be written: none of the responses or channels asked for has a result; ask for others, or \
-         for .svg",
+        "{}: \"{}\" shows no numbers that could be written: none of the requested responses or channels has a result; request others, or \
+         .svg",
         sanitized_path(path),
         sanitized(title)
     )]
@@ -220,11 +219,9 @@ impl FileError {
     /// Creates the error for unreadable variables in a file; a remedy names the file.
     pub(super) fn variables(path: &Path, mut fault: VariableFault) -> Self {
         if let VariableFault::Unsupported { remedy, .. } = &mut fault {
-            let name =
-                |path: &Path| sanitized(&path.file_name().unwrap_or_default().to_string_lossy());
             *remedy = remedy
-                .replace("{file}", &name(path))
-                .replace("{stem}", &name(&path.with_extension("")));
+                .replace("{file}", &file_name(path))
+                .replace("{stem}", &file_name(&path.with_extension("")));
         }
         FileError::Variables {
             path: path.to_owned(),
@@ -259,27 +256,36 @@ impl FileError {
         }
     }
 
-    pub(super) fn content(path: &Path, flaw: ContentError) -> Self {
-        let ContentError { place, fault } = flaw;
+    /// Creates the error for invalid content.
+    pub(super) fn content(path: &Path, error: ContentError) -> Self {
         FileError::Content {
             path: path.to_owned(),
-            place,
-            fault,
+            place: error.place,
+            fault: error.fault,
             line: None,
         }
     }
 
     /// Creates an error like [`FileError::content`], with the line of the JSON text at which the
     /// condition or the model begins.
-    pub(super) fn content_of(path: &Path, flaw: ContentError, text: &[u8]) -> Self {
-        let ContentError { place, fault } = flaw;
-        let line = line_of(text, &place);
+    pub(super) fn content_of(path: &Path, error: ContentError, text: &[u8]) -> Self {
         FileError::Content {
             path: path.to_owned(),
-            place,
-            fault,
-            line,
+            line: line_of(text, &error.place),
+            place: error.place,
+            fault: error.fault,
         }
+    }
+}
+
+fn file_name(path: &Path) -> String {
+    sanitized(&path.file_name().unwrap_or_default().to_string_lossy())
+}
+
+fn line_words(line: Option<usize>) -> String {
+    match line {
+        Some(line) => format!(" (line {line})"),
+        None => String::new(),
     }
 }
 
@@ -291,16 +297,14 @@ fn no_record_words(record: Option<&str>, held: usize) -> String {
     };
     match record {
         Some(record) => format!("the record {} is not in it; it {held}", quoted(record)),
-        None => format!("one record is asked for; it {held}"),
+        None => format!("a single record is requested; it {held}"),
     }
 }
 
-fn listed(paths: &[PathBuf]) -> String {
-    paths
-        .iter()
-        .map(|path| sanitized_path(path))
-        .collect::<Vec<_>>()
-        .join(", ")
+fn existing_words(paths: &[PathBuf]) -> String {
+    let listed: Vec<String> = paths.iter().map(|path| sanitized_path(path)).collect();
+    let verb = if paths.len() == 1 { "exists" } else { "exist" };
+    format!("{} {verb} already", listed.join(", "))
 }
 
 /// Returns the system's message without its error number.
@@ -341,7 +345,7 @@ pub enum ContentFault {
         /// Column in bytes, counted from 1.
         column: usize,
     },
-    /// Lists are nested more deeply than in any file of this format.
+    /// Lists are nested more deeply than this format allows.
     #[error("lists or objects are nested too deeply (line {line}, column {column})")]
     TooDeep {
         /// Line, counted from 1.
@@ -353,9 +357,9 @@ pub enum ContentFault {
     #[error("the key \"{key}\" is missing; add it")]
     MissingKey { key: String },
     /// Duplicate key.
-    #[error("the key {} stands twice; remove one", quoted(key))]
+    #[error("duplicate key {}; remove one", quoted(key))]
     DuplicateKey { key: String },
-    /// Any other fault of the text.
+    /// Any other fault in the text.
     #[error("{reason} (line {line}, column {column})")]
     Text {
         reason: String,
@@ -368,34 +372,32 @@ pub enum ContentFault {
     #[error("expected at most {most} entries, found {found}")]
     TooMany {
         most: usize,
-        /// Number of entries.
+        /// Entry count.
         found: usize,
     },
-    /// A text is none of the permitted words.
+    /// A text is not among the permitted words.
     #[error("expected {expected}, found {}", quoted(found))]
     Word {
         /// The permitted words.
         expected: String,
         found: String,
     },
-    /// A row of a table of tolerances is invalid.
+    /// A row in a tolerance table is invalid.
     #[error(transparent)]
     Tolerance(#[from] ToleranceError),
-    /// The ends of the band are invalid.
+    /// The band ends are invalid.
     #[error(transparent)]
     Band(#[from] BandError),
     /// The content is not a valid dataset.
     #[error("{}", sanitized(&.0.to_string()))]
     Dataset(#[from] DraftFault),
     /// A study contains a condition twice.
-    #[error("condition {id} stands twice; remove one")]
+    #[error("duplicate condition {id}; remove one")]
     DuplicateCondition { id: i64 },
     /// A study contains an invalid decision.
     #[error("{}", sanitized(&.0.to_string()))]
     Refused(#[from] EditRefusal),
 }
-
-// Something wrong in a file.
 
 /// A fault in a file with its place. Boxed, so that results, which are mostly successful, stay
 /// small.

@@ -7,6 +7,8 @@ pub mod file_error;
 pub mod files;
 pub mod formats;
 pub mod import;
+mod json_errors;
+mod json_lists;
 pub mod json_text;
 mod location;
 pub mod output_set;

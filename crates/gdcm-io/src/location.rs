@@ -1,4 +1,4 @@
-//! Locations in a file, in the engineer's words.
+//! Locations in a JSON text, in the words of engineers.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use gdcm_model::message_text::{quoted, sanitized, shortened};
 
 use crate::reading_budget::ReadingBudget;
 
-/// A step on the path from the top of a JSON text to a value in it.
+/// A step on the path from the top to a value in a JSON text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Step {
     /// Into an object, to this key.
@@ -20,39 +20,51 @@ pub(super) enum Step {
     Entry(usize),
 }
 
-/// Returns the location at the end of these steps.
+const CONDITIONS: &str = "conditions";
+const PHYSICS_MODELS: &str = "physics_models";
+const IDENTIFIED_MODELS: &str = "identified_models";
+
+/// Returns the location to which these steps lead.
 pub(super) fn location_of(steps: &[Step], outline: &Outline) -> Location {
-    let mut place = Location::default();
+    let mut location = Location::default();
     let mut rest = steps;
-    if let [Step::Key(key), Step::Entry(index), after @ ..] = rest
-        && key == "conditions"
+    if let [Step::Key(key), Step::Entry(condition), after @ ..] = rest
+        && key == CONDITIONS
     {
-        place.condition = Some(ConditionPlace {
-            position: index + 1,
-            id: outline.id(*index),
+        location.condition = Some(ConditionPlace {
+            position: condition + 1,
+            id: outline.id(*condition),
         });
         rest = after;
         if let [Step::Key(key), Step::Entry(model), after @ ..] = rest
-            && let Some(bundle) = bundle_of(key)
+            && let Some(bundle) = bundle_with_key(key)
         {
-            let name = outline.name(*index, key, *model);
-            place.model = Some(ModelPlace {
+            location.model = Some(ModelPlace {
                 bundle,
                 position: model + 1,
-                name,
+                name: outline.name(*condition, key, *model),
             });
             rest = after;
         }
     }
-    place.entry = entry_words(rest);
-    place
+    location.entry = entry_words(rest);
+    location
 }
 
-fn bundle_of(key: &str) -> Option<BundleKind> {
+/// Returns the bundle under a key in a condition.
+fn bundle_with_key(key: &str) -> Option<BundleKind> {
     match key {
-        "physics_models" => Some(BundleKind::Physics),
-        "identified_models" => Some(BundleKind::Identified),
+        PHYSICS_MODELS => Some(BundleKind::Physics),
+        IDENTIFIED_MODELS => Some(BundleKind::Identified),
         _ => None,
+    }
+}
+
+/// Returns the key for a bundle in a condition.
+fn bundle_key(bundle: BundleKind) -> &'static str {
+    match bundle {
+        BundleKind::Physics => PHYSICS_MODELS,
+        BundleKind::Identified => IDENTIFIED_MODELS,
     }
 }
 
@@ -60,70 +72,91 @@ fn bundle_of(key: &str) -> Option<BundleKind> {
 /// 2, entry 5".
 pub(super) fn entry_words(steps: &[Step]) -> String {
     let mut words: Vec<String> = Vec::new();
-    let mut indices: &[&str] = &[];
+    // Words for the next indices.
+    let mut index_names: &[&str] = &[];
     for step in steps {
         match step {
             Step::Key(key) => {
-                indices = match key.as_str() {
-                    "A" | "B" | "C" | "D" => &["row", "column"],
-                    "re" | "im" | "coherence" | "valid_band_rad_s" | "sd_db" | "sd_deg" => {
-                        &["output", "input"]
-                    }
-                    _ => &[],
-                };
-                let matrix = if indices == ["row", "column"] {
-                    "matrix "
+                let name = shortened(&sanitized(key));
+                if is_matrix(key) {
+                    words.push(format!("matrix {name}"));
+                    index_names = &["row", "column"];
                 } else {
-                    ""
-                };
-                words.push(format!("{matrix}{}", shortened(&sanitized(key))));
+                    words.push(name);
+                    index_names = if is_response_table(key) {
+                        &["output", "input"]
+                    } else {
+                        &[]
+                    };
+                }
             }
             Step::Entry(index) => {
-                let (name, after) = indices
-                    .split_first()
-                    .map_or(("entry", indices), |(name, after)| (*name, after));
+                let name = index_names.first().unwrap_or(&"entry");
                 words.push(format!("{name} {}", index + 1));
-                indices = after;
+                index_names = index_names.get(1..).unwrap_or_default();
             }
         }
     }
     words.join(", ")
 }
 
-/// Maximum number of labelled conditions and models, so that an outline takes no more memory than a
+/// Whether a key holds a state-space matrix.
+fn is_matrix(key: &str) -> bool {
+    matches!(key, "A" | "B" | "C" | "D")
+}
+
+/// Whether a key holds values for each output and input.
+fn is_response_table(key: &str) -> bool {
+    matches!(
+        key,
+        "re" | "im" | "coherence" | "valid_band_rad_s" | "sd_db" | "sd_deg"
+    )
+}
+
+/// Largest number of labelled conditions and models, so that an outline takes no more memory than a
 /// dataset.
 const MOST_LABELS: usize = 50_000;
-/// Maximum nesting of lists and objects; labels lie far above that.
+/// Deepest nesting of lists and objects; labels are far less deep.
 const DEEPEST: usize = 100;
 
-/// The labels of a file, for naming places in it; those after an error in the text are missing.
+/// Labels in a file, for naming places in it; labels after an error in the text are missing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Outline {
     /// Value of "format": a text, or the type of another value.
     pub(super) format: Option<String>,
     /// Value of "version".
     pub(super) version: Option<String>,
-    /// Ids of conditions.
+    /// Condition ids, by condition index.
     ids: BTreeMap<usize, i64>,
-    /// Names of models, by the index of their condition, the key of their bundle, and their index
-    /// in it.
-    names: BTreeMap<(usize, String, usize), String>,
+    /// Model names.
+    names: BTreeMap<ModelIndex, String>,
+}
+
+/// Place of a model in a file.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct ModelIndex {
+    /// Condition index.
+    condition: usize,
+    /// Bundle key.
+    bundle: String,
+    /// Index in the bundle.
+    model: usize,
 }
 
 impl Outline {
-    /// Collects all labels that can be read before the text ends or breaks.
-    pub(super) fn of(text: &[u8]) -> Self {
-        Self::read(text, |outline| {
+    /// Collects all labels up to the first error in the text.
+    pub(super) fn read(text: &[u8]) -> Self {
+        Self::read_until(text, |outline| {
             outline.ids.len() + outline.names.len() >= MOST_LABELS
         })
     }
 
     /// Returns the format in the file; reads no further than that, and stops when the budget does.
     pub(super) fn format_of(text: &[u8], budget: &ReadingBudget<'_>) -> Option<String> {
-        Self::read(text, |outline| {
+        let outline = Self::read_until(text, |outline| {
             outline.format.is_some() || budget.work(0, "").is_err()
-        })
-        .format
+        });
+        outline.format
     }
 
     /// Returns format and version in the file; reads no further than those.
@@ -131,53 +164,58 @@ impl Outline {
         text: &[u8],
         budget: &ReadingBudget<'_>,
     ) -> (Option<String>, Option<String>) {
-        let is_read = |outline: &Self| outline.format.is_some() && outline.version.is_some();
-        let outline = Self::read(text, |outline| {
-            is_read(outline) || budget.work(0, "").is_err()
+        let outline = Self::read_until(text, |outline| {
+            let is_complete = outline.format.is_some() && outline.version.is_some();
+            is_complete || budget.work(0, "").is_err()
         });
         (outline.format, outline.version)
     }
 
-    /// Returns the id of a condition, by index.
+    /// Returns a condition id, by index.
     pub(super) fn id(&self, condition: usize) -> Option<i64> {
         self.ids.get(&condition).copied()
     }
 
-    /// Returns the name of a model, by the index of its condition, the key of its bundle, and its
-    /// index in it.
+    /// Returns a model name, by condition index, bundle key, and index in the bundle.
     pub(super) fn name(&self, condition: usize, bundle: &str, model: usize) -> Option<String> {
-        self.names
-            .get(&(condition, bundle.to_owned(), model))
-            .cloned()
+        let index = ModelIndex {
+            condition,
+            bundle: bundle.to_owned(),
+            model,
+        };
+        self.names.get(&index).cloned()
     }
 
-    /// Reads until `enough`; an error ends the outline, and the reader proper finds and reports it
-    /// again.
-    fn read(text: &[u8], enough: impl Fn(&Self) -> bool) -> Self {
+    /// Reads until `is_enough`; an error ends the outline, and the actual reader reports it.
+    fn read_until(text: &[u8], is_enough: impl Fn(&Self) -> bool) -> Self {
         let mut outline = Self::default();
         let mut parser = SliceJsonParser::new(text);
         let mut steps: Vec<Step> = Vec::new();
         while let Ok(event) = parser.parse_next()
             && steps.len() < DEEPEST
-            && !enough(&outline)
+            && !is_enough(&outline)
         {
             match event {
                 JsonEvent::Eof => break,
                 JsonEvent::ObjectKey(key) => {
                     steps.pop();
                     steps.push(Step::Key(key.into_owned()));
-                    continue;
                 }
-                JsonEvent::EndArray | JsonEvent::EndObject => drop(steps.pop()),
-                _ => outline.note(&steps, &event),
-            }
-            match event {
-                JsonEvent::StartArray => steps.push(Step::Entry(0)),
-                JsonEvent::StartObject => steps.push(Step::Key(String::new())),
+                JsonEvent::StartArray => {
+                    outline.note(&steps, &event);
+                    steps.push(Step::Entry(0));
+                }
+                JsonEvent::StartObject => {
+                    outline.note(&steps, &event);
+                    steps.push(Step::Key(String::new()));
+                }
+                JsonEvent::EndArray | JsonEvent::EndObject => {
+                    steps.pop();
+                    end_value(&mut steps);
+                }
                 _ => {
-                    if let Some(Step::Entry(index)) = steps.last_mut() {
-                        *index += 1;
-                    }
+                    outline.note(&steps, &event);
+                    end_value(&mut steps);
                 }
             }
         }
@@ -186,29 +224,49 @@ impl Outline {
 
     /// Stores a value if it is a label.
     fn note(&mut self, steps: &[Step], value: &JsonEvent<'_>) {
-        match (steps, value) {
-            ([Step::Key(key)], _) if key == "format" => self.format = Some(words(value)),
-            ([Step::Key(key)], _) if key == "version" => self.version = Some(words(value)),
-            ([Step::Key(list), Step::Entry(condition), Step::Key(key)], JsonEvent::Number(id))
-                if list == "conditions" && key == "id" =>
-            {
-                self.ids.extend(id.parse().ok().map(|id| (*condition, id)));
+        match steps {
+            [Step::Key(key)] => match key.as_str() {
+                "format" => self.format = Some(words(value)),
+                "version" => self.version = Some(words(value)),
+                _ => {}
+            },
+            [Step::Key(list), Step::Entry(condition), Step::Key(key)] => {
+                if list == CONDITIONS
+                    && key == "id"
+                    && let JsonEvent::Number(id) = value
+                    && let Ok(id) = id.parse()
+                {
+                    self.ids.insert(*condition, id);
+                }
             }
-            (
-                [
-                    Step::Key(list),
-                    Step::Entry(condition),
-                    Step::Key(bundle),
-                    Step::Entry(model),
-                    Step::Key(key),
-                ],
-                JsonEvent::String(name),
-            ) if list == "conditions" && key == "name" => {
-                self.names
-                    .insert((*condition, bundle.clone(), *model), name.to_string());
+            [
+                Step::Key(list),
+                Step::Entry(condition),
+                Step::Key(bundle),
+                Step::Entry(model),
+                Step::Key(key),
+            ] => {
+                if list == CONDITIONS
+                    && key == "name"
+                    && let JsonEvent::String(name) = value
+                {
+                    let index = ModelIndex {
+                        condition: *condition,
+                        bundle: bundle.clone(),
+                        model: *model,
+                    };
+                    self.names.insert(index, name.to_string());
+                }
             }
             _ => {}
         }
+    }
+}
+
+/// Moves to the next entry if the value that ended is in a list.
+fn end_value(steps: &mut [Step]) {
+    if let Some(Step::Entry(index)) = steps.last_mut() {
+        *index += 1;
     }
 }
 
@@ -225,17 +283,25 @@ fn words(value: &JsonEvent<'_>) -> String {
     }
 }
 
-/// Maximum number of keys reported individually; a file with more is not one of ours, or made to
-/// fill the memory.
+/// Largest number of keys reported individually; a file with more comes from another program, or
+/// was made to fill the memory.
 const MOST_KEYS: usize = 50;
 
-/// Keys unknown to the program, counted once for the same key in the same kind of place.
+/// Keys unknown to the program; the same key in the same kind of place is counted.
 #[derive(Debug, Default)]
 pub(super) struct UnknownKeys {
-    /// By the steps without their indices: the first such place, and their number.
-    found: BTreeMap<Vec<String>, (Vec<Step>, usize)>,
-    /// Number of those not kept, because there are too many others.
+    /// By the keys on the path, without the indices.
+    found: BTreeMap<Vec<String>, UnknownKey>,
+    /// Number of keys that are not kept, because there are too many.
     beyond: usize,
+}
+
+/// A key that the program does not know, or an entry that it does not use.
+#[derive(Debug)]
+struct UnknownKey {
+    /// Path to the first such key.
+    steps: Vec<Step>,
+    count: usize,
 }
 
 impl UnknownKeys {
@@ -243,16 +309,18 @@ impl UnknownKeys {
     pub(super) fn add(&mut self, path: &serde_ignored::Path<'_>) {
         let mut steps = Vec::new();
         collect_steps(path, &mut steps);
-        let keys = steps.iter().filter_map(|step| match step {
-            Step::Key(key) => Some(key.clone()),
-            Step::Entry(_) => None,
-        });
-        let keys: Vec<String> = keys.collect();
-        let is_full = self.found.len() == MOST_KEYS;
-        match self.found.get_mut(&keys) {
-            Some((_, count)) => *count += 1,
-            None if is_full => self.beyond += 1,
-            None => drop(self.found.insert(keys, (steps, 1))),
+        let mut keys = Vec::new();
+        for step in &steps {
+            if let Step::Key(key) = step {
+                keys.push(key.clone());
+            }
+        }
+        if let Some(known) = self.found.get_mut(&keys) {
+            known.count += 1;
+        } else if self.found.len() == MOST_KEYS {
+            self.beyond += 1;
+        } else {
+            self.found.insert(keys, UnknownKey { steps, count: 1 });
         }
     }
 
@@ -261,33 +329,44 @@ impl UnknownKeys {
         if self.found.is_empty() {
             return Vec::new();
         }
-        let outline = Outline::of(text);
-        let caution = |(steps, count): &(Vec<Step>, usize)| {
-            let more = if *count > 1 {
-                format!(", and {} more like it", count - 1)
-            } else {
-                String::new()
-            };
-            match steps.split_last() {
-                Some((Step::Key(key), place)) => {
-                    let place = location_of(place, &outline).before();
-                    format!(
-                        "{place}the key {} is not known and not used{more}",
-                        quoted(key)
-                    )
-                }
-                _ => format!(
-                    "{}this entry is not known and not used{more}",
-                    location_of(steps, &outline).before()
-                ),
-            }
-        };
-        let beyond = (self.beyond > 0)
-            .then(|| format!("{} other keys are not known and not used", self.beyond));
-        self.found.values().map(caution).chain(beyond).collect()
+        let outline = Outline::read(text);
+        let mut cautions: Vec<String> = self
+            .found
+            .values()
+            .map(|unknown| unknown.caution(&outline))
+            .collect();
+        if self.beyond > 0 {
+            cautions.push(format!(
+                "{} other keys are not known and not used",
+                self.beyond
+            ));
+        }
+        cautions
     }
 }
 
+impl UnknownKey {
+    fn caution(&self, outline: &Outline) -> String {
+        let more = if self.count > 1 {
+            format!(", and {} more like it", self.count - 1)
+        } else {
+            String::new()
+        };
+        match self.steps.split_last() {
+            Some((Step::Key(key), parent)) => format!(
+                "{}the key {} is not known and not used{more}",
+                location_of(parent, outline).before(),
+                quoted(key)
+            ),
+            _ => format!(
+                "{}this entry is not known and not used{more}",
+                location_of(&self.steps, outline).before()
+            ),
+        }
+    }
+}
+
+/// Appends the steps on a path, from the top.
 fn collect_steps(path: &serde_ignored::Path<'_>, steps: &mut Vec<Step>) {
     use serde_ignored::Path as Ignored;
     let (parent, step) = match path {
@@ -302,25 +381,22 @@ fn collect_steps(path: &serde_ignored::Path<'_>, steps: &mut Vec<Step>) {
     steps.extend(step);
 }
 
-/// Returns the line at which the condition or the model of a place begins, counted from 1.
+/// Returns the line at which the condition or the model in a place begins, counted from 1.
 pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
+    let condition = place.condition.as_ref()?;
     let mut value = entry(
         serde_json::from_slice(text).ok()?,
-        "conditions",
-        place.condition.as_ref()?.position,
+        CONDITIONS,
+        condition.position,
     )?;
     if let Some(model) = &place.model {
-        let key = match model.bundle {
-            BundleKind::Physics => "physics_models",
-            BundleKind::Identified => "identified_models",
-        };
-        value = entry(value, key, model.position)?;
+        value = entry(value, bundle_key(model.bundle), model.position)?;
     }
     let offset = value.get().as_ptr() as usize - text.as_ptr() as usize;
     Some(1 + text[..offset].iter().filter(|byte| **byte == b'\n').count())
 }
 
-/// Returns an entry of a list in an object, counted from 1: a part of the text, not a copy.
+/// Returns an entry in a list, counted from 1; the list is under a key in an object.
 pub(super) fn entry<'t>(object: &'t RawValue, key: &str, position: usize) -> Option<&'t RawValue> {
     let object: BTreeMap<String, &RawValue> = serde_json::from_str(object.get()).ok()?;
     let list: Vec<&RawValue> = serde_json::from_str(object.get(key)?.get()).ok()?;
@@ -342,7 +418,7 @@ mod place_tests {
 
     #[test]
     fn a_place_is_named_by_id_name_matrix_row_and_column() {
-        let outline = Outline::of(
+        let outline = Outline::read(
             br#"{"conditions": [{"id": 10, "physics_models": [{"name": "nominal"}]}]}"#,
         );
         let place = location_of(
@@ -354,7 +430,7 @@ mod place_tests {
     }
 
     #[test]
-    fn what_cannot_be_named_is_counted() {
+    fn places_without_labels_are_numbered() {
         let path = steps(&[
             "conditions",
             "2",
@@ -377,10 +453,10 @@ mod outline_tests {
     use super::*;
 
     #[test]
-    fn labels_before_a_break_in_the_text_are_kept() {
+    fn labels_before_an_error_in_the_text_are_kept() {
         let text = br#"{"format": "gdcm-dataset", "version": 1, "conditions": [{}, {"deep": [[[], {}], 1], "id": 7,
             "physics_models": [{"name": "nominal", "A": [[1]]}, {"A": [], "name": "V+5kt", "A": [[NaN"#;
-        let outline = Outline::of(text);
+        let outline = Outline::read(text);
         let name = |model| outline.name(1, "physics_models", model);
         assert_eq!((outline.id(0), outline.id(1)), (None, Some(7)));
         assert_eq!(
@@ -394,7 +470,7 @@ mod outline_tests {
     }
 
     #[test]
-    fn the_format_is_read_without_reading_on() {
+    fn the_format_is_read_without_the_rest() {
         let format_of = |text: &[u8]| Outline::format_of(text, &ReadingBudget::new(0));
         assert_eq!(
             format_of(br#"{"name": [1], "format": "x", broken"#).as_deref(),

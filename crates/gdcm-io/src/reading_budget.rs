@@ -1,4 +1,4 @@
-//! Limits of memory and work of a reader, its cancellation, and the reasons why a reader gives up.
+//! Limits on memory and work for a reader, its cancellation, and the reasons why a reader gives up.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ pub enum VariableFault {
     #[error("expected {expected}, found {found}")]
     Format {
         expected: &'static str,
-        /// Beginning of the file, in words.
+        /// How the file begins.
         found: String,
     },
     /// The file ends prematurely.
@@ -35,7 +35,7 @@ pub enum VariableFault {
         /// Position in the file \[bytes\].
         offset: u64,
     },
-    /// A line of a text is invalid.
+    /// A line is invalid.
     #[error("{}line {line}: {what}", at(variable))]
     Line {
         variable: String,
@@ -55,7 +55,7 @@ pub enum VariableFault {
     },
     /// The file contains, or claims to contain, more than the limit.
     #[error(
-        "{}this would take more than {most_mib} MiB of memory, which is the most that is read; split the file",
+        "{}this would take more than {most_mib} MiB of memory, the limit for a file; split the file",
         at(variable)
     )]
     TooLarge {
@@ -63,9 +63,9 @@ pub enum VariableFault {
         /// The limit \[MiB\].
         most_mib: u64,
     },
-    /// Reading the file would take longer than for any file of data.
+    /// Reading the file would take longer than for any data file.
     #[error(
-        "{}this would take more than {most_millions} million steps of work, which is the most that is read; split the file",
+        "{}this would take more than {most_millions} million steps of work, the limit for a file; split the file",
         at(variable)
     )]
     TooMuchWork {
@@ -77,7 +77,7 @@ pub enum VariableFault {
     #[error("{}values are nested too deeply, or contain themselves", at(variable))]
     TooDeep { variable: String },
     /// Duplicate name.
-    #[error("the name \"{name}\" stands twice; rename one")]
+    #[error("duplicate name \"{name}\"; rename one")]
     Duplicate { name: String },
     /// The reader was stopped.
     #[error("stopped")]
@@ -95,14 +95,12 @@ impl VariableFault {
 
     /// Creates the error for a file with another format, from its bytes.
     pub(crate) fn other_bytes(expected: &'static str, bytes: &[u8]) -> Self {
-        Self::format(
-            expected,
-            if bytes.is_empty() {
-                "nothing"
-            } else {
-                "other bytes"
-            },
-        )
+        let found = if bytes.is_empty() {
+            "nothing"
+        } else {
+            "other bytes"
+        };
+        Self::format(expected, found)
     }
 
     /// Creates the error for a file that ends prematurely.
@@ -122,7 +120,7 @@ impl VariableFault {
         }
     }
 
-    /// Creates the error for an invalid line of a text.
+    /// Creates the error for an invalid line.
     pub(crate) fn line(variable: &str, line: usize, what: impl Into<String>) -> Self {
         Self::Line {
             variable: variable.to_owned(),
@@ -171,7 +169,8 @@ impl VariableFault {
         self
     }
 
-    /// Returns whether the budget ends the reading: no other attempt with the file should follow.
+    /// Returns whether the budget ends the reading, so that no other attempt with the file should
+    /// follow.
     pub fn is_of_the_budget(&self) -> bool {
         matches!(
             self,
@@ -180,6 +179,7 @@ impl VariableFault {
     }
 }
 
+/// Returns the first words in a message about a variable.
 fn at(variable: &str) -> String {
     if variable.is_empty() {
         String::new()
@@ -188,50 +188,49 @@ fn at(variable: &str) -> String {
     }
 }
 
-/// Memory limit for the contents of one file \[bytes\].
+/// Memory limit for one file \[bytes\].
 pub(crate) const MOST_MEMORY: u64 = 1 << 30;
 
-/// Maximum work for reading one file \[steps\]: bytes of a text, elements of an array, values,
-/// comparisons of names.
+/// Maximum work for reading one file \[steps\]: text bytes, array elements, values, and name
+/// comparisons.
 pub(crate) const MOST_WORK: u64 = 4_000_000_000;
 
 /// Counts the memory and the work of a reader: anything beyond the limits is rejected before it is
 /// allocated, and a cancelled reader stops. Every reader asks in its inner loops, even for elements
-/// without content: a file of a few bytes may claim 10^18 of them.
+/// without content: a file with a few bytes may claim 10^18 such elements.
 pub struct ReadingBudget<'p> {
     most_memory: u64,
     most_work: u64,
     memory: Cell<u64>,
     work: Cell<u64>,
     stop: Arc<AtomicBool>,
-    tell: &'p dyn Fn(u64),
+    /// Receives the memory taken so far \[bytes\].
+    on_memory: &'p dyn Fn(u64),
 }
 
 impl ReadingBudget<'static> {
-    /// Creates a budget for at most `most` bytes of memory.
+    /// Creates a budget with a memory limit \[bytes\].
     pub fn new(most: u64) -> Self {
-        let zero = || Cell::new(0);
-        let stop = Arc::default();
         Self {
             most_memory: most,
             most_work: MOST_WORK,
-            memory: zero(),
-            work: zero(),
-            stop,
-            tell: &|_| (),
+            memory: Cell::new(0),
+            work: Cell::new(0),
+            stop: Arc::default(),
+            on_memory: &|_| (),
         }
     }
 }
 
 impl Default for ReadingBudget<'static> {
-    /// Creates the budget of a single file, without cancellation.
+    /// Creates the budget for a single file, without cancellation.
     fn default() -> Self {
         Self::new(MOST_MEMORY)
     }
 }
 
 impl<'p> ReadingBudget<'p> {
-    /// Returns the budget with another limit of work \[steps\].
+    /// Returns the budget with another work limit \[steps\].
     pub fn with_work(self, most: u64) -> Self {
         Self {
             most_work: most,
@@ -244,24 +243,16 @@ impl<'p> ReadingBudget<'p> {
         Self { stop, ..self }
     }
 
-    /// Returns the budget with a callback that receives the number of bytes whenever memory is
-    /// taken.
-    pub fn telling<'q>(self, tell: &'q dyn Fn(u64)) -> ReadingBudget<'q> {
-        let Self {
-            most_memory,
-            most_work,
-            memory,
-            work,
-            stop,
-            ..
-        } = self;
+    /// Returns the budget with a callback that receives the memory taken so far \[bytes\] whenever
+    /// more is taken.
+    pub fn with_memory_callback<'q>(self, on_memory: &'q dyn Fn(u64)) -> ReadingBudget<'q> {
         ReadingBudget {
-            most_memory,
-            most_work,
-            memory,
-            work,
-            stop,
-            tell,
+            most_memory: self.most_memory,
+            most_work: self.most_work,
+            memory: self.memory,
+            work: self.work,
+            stop: self.stop,
+            on_memory,
         }
     }
 
@@ -270,8 +261,8 @@ impl<'p> ReadingBudget<'p> {
         &self.stop
     }
 
-    /// Counts `count` elements of `size` bytes that `variable` is about to take; each is also a
-    /// step of work.
+    /// Counts `count` elements that `variable` is about to take, each with `size` bytes and a work
+    /// step.
     pub fn take(&self, count: u64, size: u64, variable: &str) -> Result<(), VariableFault> {
         let memory = self.memory.get().saturating_add(count.saturating_mul(size));
         if memory > self.most_memory {
@@ -283,7 +274,7 @@ impl<'p> ReadingBudget<'p> {
         }
         self.work(count, variable)?;
         self.memory.set(memory);
-        (self.tell)(memory);
+        (self.on_memory)(memory);
         Ok(())
     }
 
@@ -292,15 +283,13 @@ impl<'p> ReadingBudget<'p> {
     pub fn go_on(&self, element: usize) -> Result<(), VariableFault> {
         /// Elements that take less than a hundredth of a second.
         const BETWEEN: usize = 1 << 14;
-        let stops = element.is_multiple_of(BETWEEN) && self.stop.load(Ordering::Relaxed);
-        if stops {
-            Err(VariableFault::Stopped)
-        } else {
-            Ok(())
+        if element.is_multiple_of(BETWEEN) && self.stop.load(Ordering::Relaxed) {
+            return Err(VariableFault::Stopped);
         }
+        Ok(())
     }
 
-    /// Counts steps of work that `variable` is about to take.
+    /// Counts work steps that `variable` is about to take.
     pub fn work(&self, steps: u64, variable: &str) -> Result<(), VariableFault> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(VariableFault::Stopped);
@@ -308,10 +297,9 @@ impl<'p> ReadingBudget<'p> {
         // The caller has done some work since its last call.
         let work = self.work.get().saturating_add(steps.max(1));
         if work > self.most_work {
-            let most_millions = self.most_work / 1_000_000;
             return Err(VariableFault::TooMuchWork {
                 variable: variable.to_owned(),
-                most_millions,
+                most_millions: self.most_work / 1_000_000,
             });
         }
         self.work.set(work);
@@ -328,17 +316,17 @@ mod tests {
         let budget = ReadingBudget::new(2 << 20).with_work(5_000_000);
         assert_eq!(budget.take(1 << 20, 2, "x"), Ok(()));
         let memory = budget.take(1, 1, "x").unwrap_err();
-        let words = "variable x: this would take more than 2 MiB of memory, which is the most that is read; split the file";
+        let words = "variable x: this would take more than 2 MiB of memory, the limit for a file; split the file";
         assert_eq!(memory.to_string(), words);
         assert_eq!(budget.work(3_000_000, ""), Ok(()));
         let work = budget.work(1_000_000, "").unwrap_err();
-        let words = "this would take more than 5 million steps of work, which is the most that is read; split the file";
+        let words = "this would take more than 5 million steps of work, the limit for a file; split the file";
         assert_eq!(work.to_string(), words);
         assert!(memory.is_of_the_budget() && work.is_of_the_budget());
     }
 
     #[test]
-    fn a_number_beyond_what_can_be_counted_is_beyond_the_limit() {
+    fn counts_beyond_64_bits_are_beyond_the_limit() {
         let budget = ReadingBudget::new(1 << 20);
         assert!(matches!(
             budget.take(u64::MAX, 8, ""),
@@ -351,13 +339,13 @@ mod tests {
     }
 
     #[test]
-    fn whoever_holds_the_flag_stops_the_reader_and_the_listener_hears_what_is_taken() {
+    fn the_flag_stops_the_reader_and_the_callback_receives_the_memory() {
         let stop = Arc::new(AtomicBool::new(false));
         let heard = Cell::new(0);
-        let tell = |taken| heard.set(taken);
+        let on_memory = |taken| heard.set(taken);
         let budget = ReadingBudget::new(1 << 20)
             .stopped_by(Arc::clone(&stop))
-            .telling(&tell);
+            .with_memory_callback(&on_memory);
         assert_eq!((budget.take(3, 8, ""), heard.get()), (Ok(()), 24));
         stop.store(true, Ordering::Relaxed);
         assert_eq!(budget.take(u64::MAX, 1, ""), Err(VariableFault::Stopped));

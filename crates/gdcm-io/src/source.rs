@@ -1,4 +1,4 @@
-//! Reading of a file's bytes, within limits.
+//! Reading file bytes within limits.
 
 use std::borrow::Cow;
 use std::fs;
@@ -20,13 +20,13 @@ pub(super) const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 /// Written before UTF-8 text by some editors.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
 
-/// Number of bytes read, decompressed or hashed between queries of the budget.
+/// Number of bytes read, decompressed or hashed between two queries to the budget.
 const CHUNK: usize = 1 << 16;
 
-/// A file's content: the hash of its bytes, and its text.
+/// A file: its hash and its text.
 #[derive(Debug)]
 pub(super) struct Source<'b> {
-    /// SHA-256 of the stored bytes of the file, in lower-case hexadecimal.
+    /// SHA-256 of the stored bytes, in lower-case hexadecimal.
     pub(super) sha256: String,
     text: Cow<'b, [u8]>,
 }
@@ -35,11 +35,10 @@ impl Source<'static> {
     /// Reads a file within a budget, decompressing it if necessary.
     pub(super) fn read(path: &Path, budget: &ReadingBudget<'_>) -> Result<Self, FileError> {
         let bytes = read_bytes(path, LARGEST_TEXT, budget)?;
-        let Source { sha256, text } = Source::of(&bytes, path, budget)?;
-        let unpacked = if let Cow::Owned(unpacked) = text {
-            Some(unpacked)
-        } else {
-            None
+        let sha256 = sha256(&bytes, path, budget)?;
+        let unpacked = match text_of(&bytes, path, budget)? {
+            Cow::Owned(unpacked) => Some(unpacked),
+            Cow::Borrowed(_) => None,
         };
         Ok(Source {
             sha256,
@@ -75,7 +74,7 @@ pub(super) fn without_mark(text: &[u8]) -> &[u8] {
 /// Opens a file for reading and returns its length \[bytes\].
 ///
 /// # Errors
-/// Returned if the path is missing or not a file: opening a pipe waits for a writer, and some
+/// The path is missing or not a file: opening a pipe waits for a writer, and some
 /// systems permit opening a directory.
 fn open_file(path: &Path) -> Result<(File, u64), FileError> {
     let failed = |error: std::io::Error| FileError::reading(path, &error);
@@ -94,7 +93,7 @@ fn open_file(path: &Path) -> Result<(File, u64), FileError> {
     Ok((File::open(path).map_err(failed)?, metadata.len()))
 }
 
-/// Returns a reader of a file's text from its beginning, decompressed if necessary.
+/// Returns a reader for the text in a file, decompressed if necessary.
 pub(super) fn text_reader(path: &Path) -> Result<Box<dyn Read>, FileError> {
     let mut file = BufReader::with_capacity(CHUNK, open_file(path)?.0);
     let begin = file
@@ -107,7 +106,7 @@ pub(super) fn text_reader(path: &Path) -> Result<Box<dyn Read>, FileError> {
     }
 }
 
-/// Reads a file of at most `most` bytes.
+/// Reads a file with at most `most` bytes.
 pub(super) fn read_bytes(
     path: &Path,
     most: u64,
@@ -117,13 +116,11 @@ pub(super) fn read_bytes(
     let (file, length) = open_file(path)?;
     let mut file = file.take(most + 1);
     let mut bytes = Vec::with_capacity(usize::try_from(length.min(most)).unwrap_or(0));
-    while file
-        .by_ref()
-        .take(CHUNK as u64)
-        .read_to_end(&mut bytes)
-        .map_err(failed)?
-        > 0
-    {
+    loop {
+        let mut chunk = file.by_ref().take(CHUNK as u64);
+        if chunk.read_to_end(&mut bytes).map_err(failed)? == 0 {
+            break;
+        }
         budget
             .work(CHUNK as u64, "")
             .map_err(|fault| FileError::variables(path, fault))?;
@@ -140,20 +137,20 @@ pub(super) fn kind_of(kind: FileType) -> Option<&'static str> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::FileTypeExt;
-        for (is, words) in [
-            (kind.is_fifo(), "a named pipe"),
-            (kind.is_socket(), "a socket"),
-            (kind.is_char_device() || kind.is_block_device(), "a device"),
-        ] {
-            if is {
-                return Some(words);
-            }
+        if kind.is_fifo() {
+            return Some("a named pipe");
+        }
+        if kind.is_socket() {
+            return Some("a socket");
+        }
+        if kind.is_char_device() || kind.is_block_device() {
+            return Some("a device");
         }
     }
-    Some("something of the system")
+    Some("a special file")
 }
 
-/// Returns the text of bytes, decompressed if necessary with its memory taken from a budget.
+/// Returns the text in `bytes`, decompressed if necessary; its memory is taken from the budget.
 pub(super) fn text_of<'b>(
     bytes: &'b [u8],
     path: &Path,
@@ -176,30 +173,35 @@ fn unpack(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Vec<u
     let mut rest = bytes;
     while rest.iter().any(|&byte| byte != 0) {
         let mut member = GzDecoder::new(rest);
-        loop {
-            // A growing text is copied into twice its memory.
-            budget
-                .take(CHUNK as u64, 2, "")
-                .map_err(|fault| FileError::variables(path, fault))?;
-            let unpacked = member.by_ref().take(CHUNK as u64).read_to_end(&mut text);
-            check_length(text.len() as u64, LARGEST_TEXT, path)?;
-            let count = unpacked.map_err(|error| match error.kind() {
-                ErrorKind::UnexpectedEof => FileError::GzipCutOff {
-                    path: path.to_owned(),
-                },
-                _ => FileError::Gzip {
-                    path: path.to_owned(),
-                },
-            })?;
-            if count == 0 {
-                break;
-            }
-        }
+        while unpack_chunk(&mut member, &mut text, path, budget)? > 0 {}
         rest = member.into_inner();
     }
     Ok(text)
 }
 
+/// Appends decompressed bytes to a text and returns their number, 0 at the end of a member.
+fn unpack_chunk(
+    member: &mut GzDecoder<&[u8]>,
+    text: &mut Vec<u8>,
+    path: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Result<usize, FileError> {
+    // A growing text is copied into twice its memory.
+    budget
+        .take(CHUNK as u64, 2, "")
+        .map_err(|fault| FileError::variables(path, fault))?;
+    let unpacked = member.take(CHUNK as u64).read_to_end(text);
+    check_length(text.len() as u64, LARGEST_TEXT, path)?;
+    unpacked.map_err(|error| {
+        let path = path.to_owned();
+        match error.kind() {
+            ErrorKind::UnexpectedEof => FileError::GzipCutOff { path },
+            _ => FileError::Gzip { path },
+        }
+    })
+}
+
+/// Refuses content with more than `most` bytes.
 fn check_length(length: u64, most: u64, path: &Path) -> Result<(), FileError> {
     if length > most {
         return Err(FileError::TooLarge {
@@ -223,14 +225,11 @@ pub(super) fn sha256(
             .map_err(|fault| FileError::variables(path, fault))?;
         hash.update(chunk);
     }
-    Ok(hash
-        .finalize()
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect())
+    let digest = hash.finalize();
+    Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// Metadata that change when a file is written: cheap to query, also on a network drive.
+/// Metadata that change when a file is written; cheap to query, also on a network drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FileStamp {
     modified: Option<SystemTime>,
@@ -238,7 +237,7 @@ pub struct FileStamp {
 }
 
 impl FileStamp {
-    /// Returns the stamp of a file; `None` if there is no such file.
+    /// Reads the stamp; `None` if there is no such file.
     pub fn of(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
         Some(Self {
@@ -248,10 +247,10 @@ impl FileStamp {
     }
 }
 
-/// Computes the SHA-256 of the stored bytes of a file, in lower-case hexadecimal.
+/// Computes the SHA-256 of the stored bytes in a file, in lower-case hexadecimal.
 ///
 /// # Errors
-/// Returned if the file cannot be read.
+/// The file cannot be read.
 pub fn file_sha256(path: &Path) -> Result<String, FileError> {
     Ok(Source::read(path, &ReadingBudget::default())?.sha256)
 }
@@ -266,10 +265,13 @@ pub fn file_exists(path: &Path) -> bool {
 /// Expands `~` and `~/x` with the home directory, as a shell does; any other path, and any path
 /// without a known home directory, is unchanged.
 pub fn at_home(path: &Path, home: Option<&Path>) -> PathBuf {
-    match (path.strip_prefix("~"), home) {
-        (Ok(rest), Some(home)) if rest.as_os_str().is_empty() => home.to_owned(),
-        (Ok(rest), Some(home)) => home.join(rest),
-        _ => path.to_owned(),
+    let Some(home) = home else {
+        return path.to_owned();
+    };
+    match path.strip_prefix("~") {
+        Ok(rest) if rest.as_os_str().is_empty() => home.to_owned(),
+        Ok(rest) => home.join(rest),
+        Err(_) => path.to_owned(),
     }
 }
 
@@ -278,7 +280,7 @@ mod source_tests {
     use super::*;
 
     #[test]
-    fn the_hash_is_that_of_the_published_example() {
+    fn the_hash_agrees_with_the_published_example() {
         // FIPS 180-2, appendix B.1.
         let hash = sha256(b"abc", Path::new("x"), &ReadingBudget::new(0)).unwrap();
         assert_eq!(
@@ -288,7 +290,7 @@ mod source_tests {
     }
 
     #[test]
-    fn members_follow_one_another_and_zeros_behind_the_last_are_passed_over() {
+    fn members_are_joined_and_zeros_after_the_last_are_skipped() {
         use std::io::Write;
         let member = |text: &[u8]| {
             let mut encoder =
@@ -297,12 +299,12 @@ mod source_tests {
             encoder.finish().unwrap()
         };
         let packed = [member(b"{"), member(b""), member(b"}"), vec![0; 700]].concat();
-        let of = |bytes| Source::of(bytes, Path::new("x"), &ReadingBudget::default());
-        assert_eq!(of(&packed).unwrap().text(), b"{}");
+        let source = |bytes| Source::of(bytes, Path::new("x"), &ReadingBudget::default());
+        assert_eq!(source(&packed).unwrap().text(), b"{}");
         let strange = [member(b"{}"), b"\0\0something else".to_vec()].concat();
-        assert!(matches!(of(&strange), Err(FileError::Gzip { .. })));
+        assert!(matches!(source(&strange), Err(FileError::Gzip { .. })));
         let cut = [member(b"{"), member(b"}")[..12].to_vec()].concat();
-        assert!(matches!(of(&cut), Err(FileError::GzipCutOff { .. })));
+        assert!(matches!(source(&cut), Err(FileError::GzipCutOff { .. })));
     }
 
     #[test]
@@ -318,7 +320,7 @@ mod home_tests {
     use super::*;
 
     #[test]
-    fn a_tilde_means_home_where_a_shell_says_so() {
+    fn a_tilde_means_home_as_in_a_shell() {
         let home = Path::new("/home/ada");
         for (typed, meant) in [
             ("~", "/home/ada"),

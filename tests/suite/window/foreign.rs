@@ -76,15 +76,6 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
         "{words:?}"
     );
     window.get_by_label("its sign seems reversed");
-    let cost = |window: &Window| {
-        let pair = pair(window, "NZ", "COL");
-        state(window)
-            .shown()
-            .and_then(|shown| shown.cost[pair])
-            .expect("it has a J")
-            .uncorrected
-            .total()
-    };
     let before = cost(&window);
     click(&mut window, "Turn NZ");
     assert_eq!(doubted(&window), Vec::<String>::new());

@@ -1,20 +1,27 @@
 //! JSON, gzip-packed or not: datasets and models of this program, and JSON of any shape as
 //! variables. Other gzip-packed contents go to their own format.
 
-use std::cell::RefCell;
-use std::fmt;
+use std::path::Path;
 
-use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
-
-use super::strides::Places;
-use super::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable};
 use crate::file_error::FileError;
 use crate::files::dataset_file::{DatasetOrigin, dataset_from};
 use crate::files::model_collection::found_models;
+use crate::formats::json_tree::Tree;
+use crate::formats::strides::Places;
+use crate::formats::variables::{
+    Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable,
+};
 use crate::formats::{Contents, Importer, importer_of};
 use crate::location::Outline;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
+
+/// Overhead for shape, name and number \[bytes\].
+const OVERHEAD: u64 = 3 * 64;
+/// Memory for a value with its shape and a number, or for null \[bytes\].
+const VALUE: u64 = size_of::<Value>() as u64 + OVERHEAD;
+/// Largest number of array dimensions.
+const MOST_DIMENSIONS: usize = 3;
 
 /// JSON, and any gzip-packed file.
 pub(crate) const JSON: Importer = Importer {
@@ -25,284 +32,182 @@ pub(crate) const JSON: Importer = Importer {
             || ending == "json"
             || bytes.trim_ascii_start().first() == Some(&b'{')
     },
-    read: |bytes, path, budget| {
-        let wrong = |fault| FileError::variables(path, fault);
-        let text = text_of(bytes, path, budget)?;
-        let text = without_mark(&text);
-        if bytes.starts_with(&GZIP_MAGIC)
-            && !matches!(text.trim_ascii_start().first(), Some(b'{' | b'['))
-        {
-            let packed = path.with_extension("");
-            return match importer_of(text, &packed) {
-                importer if importer.name == JSON.name => {
-                    Contents::row_major(variables_of(text, budget), path)
-                }
-                importer => (importer.read)(text, path, budget),
-            };
-        }
-        let format = Outline::format_of(text, budget);
-        budget.work(text.len() as u64, "").map_err(wrong)?;
-        match format.as_deref() {
-            Some("\"gdcm-dataset\"") => {
-                // The text was packed and is unpacked again here.
-                let source = Source::of(bytes, path, budget)?;
-                let loaded = dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?;
-                return Ok(Contents::Dataset(
-                    Box::new(loaded.dataset.as_ref().clone()),
-                    loaded.cautions,
-                ));
-            }
-            Some("\"gdcm-models\"" | "\"gdcm-identified\"") => {
-                if let Some((models, unknown)) = found_models(text, path, budget) {
-                    return Ok(Contents::Models(models, unknown));
-                }
-            }
-            _ => {}
-        }
-        Contents::row_major(variables_of(text, budget), path)
-    },
+    read: read_json,
 };
 
-/// The members of a JSON object, or a list under the name "models".
-fn variables_of(text: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
-    let refused = RefCell::new(None);
-    let mut json = serde_json::Deserializer::from_slice(text);
-    let read = TreeReader {
-        budget,
-        refused: &refused,
+fn read_json(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
+    let text = text_of(bytes, path, budget)?;
+    let text = without_mark(&text);
+    let is_packed = bytes.starts_with(&GZIP_MAGIC);
+    if is_packed && !matches!(text.trim_ascii_start().first(), Some(b'{' | b'[')) {
+        return read_unpacked(text, path, budget);
     }
-    .deserialize(&mut json);
-    let tree = read
-        .and_then(|tree| json.end().map(|()| tree))
-        .map_err(|error| {
-            let wrong =
-                || VariableFault::line("", error.line(), format!("this is not JSON: {error}"));
-            refused.take().unwrap_or_else(wrong)
-        })?;
-    match tree {
-        Tree::Object(members) => {
-            let variable = |(name, value)| {
-                Ok(Variable {
-                    value: value_of(value, budget)?,
-                    name,
-                })
-            };
-            members.into_iter().map(variable).collect()
+    let format = Outline::format_of(text, budget);
+    budget
+        .work(text.len() as u64, "")
+        .map_err(|fault| FileError::variables(path, fault))?;
+    match format.as_deref() {
+        Some("\"gdcm-dataset\"") => {
+            // The packed text is unpacked once more here.
+            let source = Source::of(bytes, path, budget)?;
+            let loaded = dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?;
+            let dataset = loaded.dataset.as_ref().clone();
+            return Ok(Contents::Dataset(Box::new(dataset), loaded.cautions));
         }
-        other => Ok(vec![Variable {
-            name: "models".to_owned(),
-            value: value_of(other, budget)?,
-        }]),
-    }
-}
-
-/// JSON of any shape.
-#[derive(Debug)]
-enum Tree {
-    Null,
-    Bool(bool),
-    Number(f64),
-    Text(String),
-    List(Vec<Tree>),
-    /// Sorted by name; the last of several members with the same name.
-    Object(Vec<(String, Tree)>),
-}
-
-/// Reads JSON of any shape within a budget: a few bytes of text can become a list, an object or a
-/// name, each with its own memory.
-#[derive(Clone, Copy)]
-struct TreeReader<'r> {
-    budget: &'r ReadingBudget<'r>,
-    /// Set if the budget ended the reading.
-    refused: &'r RefCell<Option<VariableFault>>,
-}
-
-impl TreeReader<'_> {
-    fn take<E: Error>(self, size: usize) -> Result<(), E> {
-        // Lists grow by doubling; a step of work is a value.
-        self.budget.take(1, 2 * size as u64, "").map_err(|fault| {
-            *self.refused.borrow_mut() = Some(fault);
-            E::custom("refused")
-        })
-    }
-}
-
-impl<'de> DeserializeSeed<'de> for TreeReader<'_> {
-    type Value = Tree;
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Tree, D::Error> {
-        deserializer.deserialize_any(self)
-    }
-}
-
-impl<'de> Visitor<'de> for TreeReader<'_> {
-    type Value = Tree;
-
-    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("any value")
-    }
-
-    fn visit_unit<E>(self) -> Result<Tree, E> {
-        Ok(Tree::Null)
-    }
-
-    fn visit_bool<E>(self, value: bool) -> Result<Tree, E> {
-        Ok(Tree::Bool(value))
-    }
-
-    fn visit_i64<E>(self, value: i64) -> Result<Tree, E> {
-        Ok(Tree::Number(value as f64))
-    }
-
-    fn visit_u64<E>(self, value: u64) -> Result<Tree, E> {
-        Ok(Tree::Number(value as f64))
-    }
-
-    fn visit_f64<E>(self, value: f64) -> Result<Tree, E> {
-        Ok(Tree::Number(value))
-    }
-
-    fn visit_str<E: Error>(self, text: &str) -> Result<Tree, E> {
-        self.take(ALLOCATION + text.len())?;
-        Ok(Tree::Text(text.to_owned()))
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<Tree, A::Error> {
-        self.take(ALLOCATION)?;
-        let mut list = Vec::new();
-        while let Some(entry) = entries.next_element_seed(self)? {
-            self.take(size_of::<Tree>())?;
-            list.push(entry);
+        Some("\"gdcm-models\"" | "\"gdcm-identified\"") => {
+            if let Some((models, unknown)) = found_models(text, path, budget) {
+                return Ok(Contents::Models(models, unknown));
+            }
         }
-        Ok(Tree::List(list))
+        _ => {}
     }
+    Contents::row_major(read_variables(text, budget), path)
+}
 
-    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Tree, A::Error> {
-        self.take(ALLOCATION)?;
-        let mut members: Vec<(String, Tree)> = Vec::new();
-        while let Some(name) = entries.next_key::<String>()? {
-            self.take(size_of::<(String, Tree)>() + ALLOCATION + name.len())?;
-            members.push((name, entries.next_value_seed(self)?));
-        }
-        members.reverse();
-        members.sort_by(|(one, _), (other, _)| one.cmp(other));
-        members.dedup_by(|(later, _), (earlier, _)| later == earlier);
-        Ok(Tree::Object(members))
+/// Reads an unpacked text that does not begin like JSON, by its name without ".gz".
+fn read_unpacked(
+    text: &[u8],
+    path: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Result<Contents, FileError> {
+    let importer = importer_of(text, &path.with_extension(""));
+    if importer.name == JSON.name {
+        Contents::row_major(read_variables(text, budget), path)
+    } else {
+        (importer.read)(text, path, budget)
     }
 }
 
-/// Overhead of an allocation, and the initial capacity of a list \[bytes\].
-const ALLOCATION: usize = 64;
-/// Memory of a value with its shape and one number, and of null \[bytes\].
-const VALUE: u64 = size_of::<Value>() as u64 + 3 * ALLOCATION as u64;
+/// Reads the members in a JSON object, or a list under the name "models".
+fn read_variables(text: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+    let members = match Tree::read(text, budget)? {
+        Tree::Object(members) => members,
+        other => vec![("models".to_owned(), other)],
+    };
+    let mut variables = Vec::new();
+    for (name, value) in members {
+        variables.push(Variable {
+            value: value_from(value, budget)?,
+            name,
+        });
+    }
+    Ok(variables)
+}
 
-fn value_of(json: Tree, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
+fn value_from(json: Tree, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
     budget.take(1, VALUE, "")?;
     Ok(match json {
         Tree::Null => Value::empty(),
         Tree::Bool(flag) => Value::truth(flag),
         Tree::Number(number) => Value::number(number),
         Tree::Text(text) => Value::text(text),
-        Tree::List(list) => list_of(list, budget)?,
+        Tree::List(list) => list_value(list, budget)?,
         Tree::Object(members) => {
             budget.take(
                 members.len() as u64,
                 size_of::<(String, Vec<Value>)>() as u64,
                 "",
             )?;
-            let field = |(name, value)| Ok((name, vec![value_of(value, budget)?]));
-            let fields = members.into_iter().map(field).collect::<Result<_, _>>()?;
+            let mut fields = Vec::with_capacity(members.len());
+            for (name, value) in members {
+                fields.push((name, vec![value_from(value, budget)?]));
+            }
             Value::Struct(StructArray::one(fields))
         }
     })
 }
 
-/// Converts a list: numbers become an array (row by row), texts an array of texts, anything else a
-/// cell array.
-fn list_of(list: Vec<Tree>, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
+/// Converts a list: numbers become an array (row by row), texts a text array, anything else a cell
+/// array.
+fn list_value(list: Vec<Tree>, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
+    let shape = vec![1, list.len()];
     if !list.is_empty() && list.iter().all(|item| matches!(item, Tree::Text(_))) {
         budget.take(list.len() as u64, size_of::<String>() as u64, "")?;
-        let text = |item| {
+        let mut texts = Vec::with_capacity(list.len());
+        for item in list {
             if let Tree::Text(text) = item {
-                Some(text)
-            } else {
-                None
+                texts.push(text);
             }
-        };
-        let texts: Vec<String> = list.into_iter().filter_map(text).collect();
-        return Ok(Value::Text(TextArray {
-            shape: vec![1, texts.len()],
-            texts,
-        }));
+        }
+        return Ok(Value::Text(TextArray { shape, texts }));
     }
-    if let Some(array) = numbers_of(&list, budget)? {
+    if let Some(array) = number_array(&list, budget)? {
         return Ok(Value::Array(array));
     }
     budget.take(list.len() as u64, size_of::<Value>() as u64, "")?;
-    let shape = vec![1, list.len()];
-    let values = list
-        .into_iter()
-        .map(|item| value_of(item, budget))
-        .collect::<Result<_, _>>()?;
+    let mut values = Vec::with_capacity(list.len());
+    for item in list {
+        values.push(value_from(item, budget)?);
+    }
     Ok(Value::Cell(CellArray { shape, values }))
 }
 
-fn numbers_of(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Array>, VariableFault> {
+/// Converts numbers in nested lists; returns nothing if they are not rectangular, or nested too
+/// deeply.
+fn number_array(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Array>, VariableFault> {
+    let shape = shape_of(list);
+    if shape.len() > MOST_DIMENSIONS {
+        return Ok(None);
+    }
+    let mut values = Vec::new();
+    if !append_numbers(list, &shape, &mut values, budget)? {
+        return Ok(None);
+    }
+    if let [count] = *shape {
+        return Ok(Some(Array::matrix(1, count, values)));
+    }
+    budget.take(values.len() as u64, 8, "")?;
+    let re = Places::row_major(&shape)
+        .into_iter()
+        .flatten()
+        .map(|place| values[place])
+        .collect();
+    Ok(Some(Array {
+        shape,
+        kind: ElementKind::Float,
+        re,
+        im: None,
+    }))
+}
+
+/// Returns the length along each dimension: the list, its first entry, and so on.
+fn shape_of(list: &[Tree]) -> Vec<usize> {
     let mut shape = vec![list.len()];
     let mut inner = list;
     while let Some(Tree::List(next)) = inner.first() {
         shape.push(next.len());
         inner = next;
     }
-    if shape.len() > 3 {
-        return Ok(None);
-    }
-    let mut values = Vec::new();
-    if flatten(list, &shape, &mut values, budget)?.is_none() {
-        return Ok(None);
-    }
-    Ok(Some(match shape.as_slice() {
-        [count] => Array::matrix(1, *count, values),
-        _ => {
-            budget.take(values.len() as u64, 8, "")?;
-            let re = Places::row_major(&shape)
-                .into_iter()
-                .flatten()
-                .map(|place| values[place])
-                .collect();
-            Array {
-                shape,
-                kind: ElementKind::Float,
-                re,
-                im: None,
-            }
-        }
-    }))
+    shape
 }
 
-/// Appends the numbers of a rectangular list; returns nothing if the list is not rectangular.
-fn flatten(
+/// Appends the numbers in a rectangular list; returns whether the list has the shape.
+fn append_numbers(
     list: &[Tree],
     shape: &[usize],
     values: &mut Vec<f64>,
     budget: &ReadingBudget<'_>,
-) -> Result<Option<()>, VariableFault> {
-    let Some((count, rest)) = shape
-        .split_first()
-        .filter(|(count, _)| list.len() == **count)
-    else {
-        return Ok(None);
+) -> Result<bool, VariableFault> {
+    let Some((&length, inner_shape)) = shape.split_first() else {
+        return Ok(false);
     };
+    if list.len() != length {
+        return Ok(false);
+    }
     // Lists grow by doubling.
-    budget.take(*count as u64, 16, "")?;
+    budget.take(length as u64, 16, "")?;
     for item in list {
-        match (item, rest) {
-            (Tree::List(inner), [_, ..]) if flatten(inner, rest, values, budget)?.is_some() => {}
-            (Tree::Number(number), []) => values.push(*number),
-            _ => return Ok(None),
+        match item {
+            Tree::Number(number) if inner_shape.is_empty() => values.push(*number),
+            Tree::List(inner) if !inner_shape.is_empty() => {
+                if !append_numbers(inner, inner_shape, values, budget)? {
+                    return Ok(false);
+                }
+            }
+            _ => return Ok(false),
         }
     }
-    Ok(Some(()))
+    Ok(true)
 }
 
 #[cfg(test)]
@@ -312,45 +217,45 @@ mod tests {
     #[test]
     fn nested_lists_of_numbers_are_arrays_and_ragged_ones_are_not() {
         let budget = ReadingBudget::new(1 << 20);
-        let of = |text: &str| {
+        let value = |text: &str| {
             let text = format!("{{\"x\": {text}}}");
-            variables_of(text.as_bytes(), &budget)
+            read_variables(text.as_bytes(), &budget)
                 .unwrap()
                 .remove(0)
                 .value
         };
         assert_eq!(
-            of("[[1, 2, 3], [4, 5, 6]]"),
+            value("[[1, 2, 3], [4, 5, 6]]"),
             Value::Array(Array::matrix(2, 3, vec![1.0, 4.0, 2.0, 5.0, 3.0, 6.0]))
         );
-        assert!(matches!(of("[[1, 2], [3]]"), Value::Cell(_)));
-        let Value::Array(cube) = of("[[[1, 2], [3, 4]]]") else {
+        assert!(matches!(value("[[1, 2], [3]]"), Value::Cell(_)));
+        let Value::Array(cube) = value("[[[1, 2], [3, 4]]]") else {
             panic!("an array")
         };
         assert_eq!(
             (cube.shape, cube.re),
             (vec![1, 2, 2], vec![1.0, 3.0, 2.0, 4.0])
         );
-        assert!(matches!(of("[\"LON\", \"LAT\"]"), Value::Text(_)));
+        assert!(matches!(value("[\"LON\", \"LAT\"]"), Value::Text(_)));
     }
 
     #[test]
-    fn members_come_in_the_order_of_their_names_and_the_last_of_one_name_counts() {
-        let read = variables_of(
+    fn members_are_sorted_by_name_and_the_last_duplicate_counts() {
+        let read = read_variables(
             b"{\"b\": 1, \"a\": 2, \"b\": 3}",
             &ReadingBudget::new(1 << 20),
         )
         .unwrap();
-        let number = |name: &str, value| Variable {
+        let number = |name: &str, number| Variable {
             name: name.to_owned(),
-            value: Value::Array(Array::matrix(1, 1, vec![value])),
+            value: Value::Array(Array::matrix(1, 1, vec![number])),
         };
         assert_eq!(read, [number("a", 2.0), number("b", 3.0)]);
     }
 
     #[test]
-    fn the_line_of_what_is_no_json_is_named() {
-        let error = variables_of(b"{\"A\":\n [1,,2]}", &ReadingBudget::new(1 << 20)).unwrap_err();
+    fn syntax_errors_give_the_line() {
+        let error = read_variables(b"{\"A\":\n [1,,2]}", &ReadingBudget::new(1 << 20)).unwrap_err();
         assert!(error.to_string().contains("line 2"), "{error}");
     }
 }

@@ -7,22 +7,22 @@ use std::path::Path;
 use flate2::bufread::DeflateDecoder;
 use rawzip::{CompressionMethod, ZipArchive, ZipFileHeaderRecord, ZipSliceArchive};
 
-use super::variables::Variable;
 use crate::file_error::FileError;
 use crate::formats::npy::read_npy;
+use crate::formats::variables::Variable;
 use crate::formats::{Contents, Importer, importer_of, is_known};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Largest ratio of unpacked to packed bytes in deflate (RFC 1951).
 const LARGEST_RATIO: u64 = 1032;
 
-/// Number of bytes unpacked between two checks of the budget.
+/// Number of bytes unpacked between two queries to the budget.
 const CHUNK: u64 = 1 << 20;
 
-/// Name ending of NumPy arrays.
+/// Name ending for NumPy arrays.
 const ARRAY: &str = ".npy";
 
-/// Zip archives: NumPy arrays (`.npz`), and files of any other format.
+/// Zip archives: NumPy arrays (`.npz`), and files with any other format.
 pub(crate) const ZIP: Importer = Importer {
     name: "a zip archive",
     endings: &["npz", "zip"],
@@ -32,79 +32,112 @@ pub(crate) const ZIP: Importer = Importer {
     },
 };
 
-/// Reads the arrays and the other files of an archive; nested archives are not read.
+/// Reads the arrays and the other files in an archive; nested archives are not read.
 pub(crate) fn read_archive(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
 ) -> Result<Contents, VariableFault> {
-    let mut names = HashSet::new();
-    let mut variables = Vec::new();
-    let mut files = Vec::new();
-    let mut ignored = Vec::new();
-    visit_files(bytes, |file| {
-        // A few bytes in the archive's directory create a variable or a file, regardless of its
-        // contents.
-        budget.take(
-            1,
-            (size_of::<Variable>() + size_of::<Contents>() + file.path.len()) as u64,
-            "",
-        )?;
-        let path = Path::new(file.path);
-        if let Some(name) = file.path.strip_suffix(ARRAY) {
-            if !names.insert(name.to_owned()) {
-                return Err(VariableFault::Duplicate {
-                    name: name.to_owned(),
-                });
-            }
-            variables.extend(read_npy(&file.unpack(name, budget)?, name, budget)?);
-            return Ok(());
-        }
-        let unpacked = if is_known(path) {
-            Some(file.unpack(file.path, budget)?)
-        } else {
-            None
-        };
-        let importer = unpacked
-            .as_deref()
-            .map(|bytes| (importer_of(bytes, path), bytes));
-        match importer.filter(|(importer, _)| importer.name != ZIP.name) {
-            None => ignored.push(format!("{}: no file of a known kind", file.path)),
-            Some((importer, bytes)) => match (importer.read)(bytes, path, budget) {
-                Err(FileError::Variables { fault, .. }) if fault.is_of_the_budget() => {
-                    return Err(fault);
-                }
-                contents => files.push((file.path.to_owned(), contents)),
-            },
-        }
-        Ok(())
-    })?;
+    let mut reading = ArchiveReading::default();
+    visit_files(bytes, |file| reading.take(file, budget))?;
     Ok(Contents::Archive {
-        variables,
-        files,
-        ignored,
+        variables: reading.variables,
+        files: reading.files,
+        ignored: reading.ignored,
     })
 }
 
+/// An archive during reading.
+#[derive(Default)]
+struct ArchiveReading {
+    /// Array names.
+    names: HashSet<String>,
+    variables: Vec<Variable>,
+    files: Vec<(String, Result<Contents, FileError>)>,
+    ignored: Vec<String>,
+}
+
+impl ArchiveReading {
+    fn take(
+        &mut self,
+        file: &ZipFile<'_, '_>,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<(), VariableFault> {
+        // A few bytes in the archive's directory create a variable or a file, regardless of its
+        // contents.
+        let overhead = size_of::<Variable>() + size_of::<Contents>() + file.path.len();
+        budget.take(1, overhead as u64, "")?;
+        if let Some(name) = file.path.strip_suffix(ARRAY) {
+            return self.take_array(file, name, budget);
+        }
+        let path = Path::new(file.path);
+        if is_known(path) {
+            let bytes = file.unpack(file.path, budget)?;
+            let importer = importer_of(&bytes, path);
+            if importer.name != ZIP.name {
+                return self.take_contents(file, (importer.read)(&bytes, path, budget));
+            }
+        }
+        self.ignored
+            .push(format!("{}: no file of a known kind", file.path));
+        Ok(())
+    }
+
+    fn take_array(
+        &mut self,
+        file: &ZipFile<'_, '_>,
+        name: &str,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<(), VariableFault> {
+        if !self.names.insert(name.to_owned()) {
+            return Err(VariableFault::Duplicate {
+                name: name.to_owned(),
+            });
+        }
+        let bytes = file.unpack(name, budget)?;
+        self.variables.extend(read_npy(&bytes, name, budget)?);
+        Ok(())
+    }
+
+    /// Takes the contents read from a file, or the fault; ends if the budget is exhausted.
+    fn take_contents(
+        &mut self,
+        file: &ZipFile<'_, '_>,
+        contents: Result<Contents, FileError>,
+    ) -> Result<(), VariableFault> {
+        match contents {
+            Err(FileError::Variables { fault, .. }) if fault.is_of_the_budget() => Err(fault),
+            contents => {
+                self.files.push((file.path.to_owned(), contents));
+                Ok(())
+            }
+        }
+    }
+}
+
 /// A packed file in a zip archive (APPNOTE 6.3).
-pub(super) struct ZipFile<'z, 'b> {
+struct ZipFile<'z, 'b> {
     /// Path in the archive.
-    pub(super) path: &'z str,
-    /// Offset of the file \[bytes\].
-    pub(super) offset: u64,
+    path: &'z str,
+    /// File offset \[bytes\].
+    offset: u64,
     archive: &'z ZipSliceArchive<&'b [u8]>,
     entry: &'z ZipFileHeaderRecord<'b>,
 }
 
-/// Passes every file of an archive to `visit`, in archive order.
-pub(super) fn visit_files(
+/// Passes every file in an archive to `visit`, in archive order.
+fn visit_files(
     bytes: &[u8],
     mut visit: impl FnMut(&ZipFile<'_, '_>) -> Result<(), VariableFault>,
 ) -> Result<(), VariableFault> {
     let archive = ZipArchive::from_slice(bytes).map_err(|_| unreadable(bytes))?;
     let mut entries = archive.entries();
-    while let Some(entry) = entries.next_entry().map_err(|error| {
-        VariableFault::damaged("", error.to_string(), archive.directory_offset())
-    })? {
+    loop {
+        let entry = entries.next_entry().map_err(|error| {
+            VariableFault::damaged("", error.to_string(), archive.directory_offset())
+        })?;
+        let Some(entry) = entry else {
+            return Ok(());
+        };
         if entry.is_dir() {
             continue;
         }
@@ -119,34 +152,23 @@ pub(super) fn visit_files(
             entry: &entry,
         })?;
     }
-    Ok(())
 }
 
 impl ZipFile<'_, '_> {
     /// Unpacks the file up to the size given by the archive: a few kilobytes can unpack to
-    /// gigabytes. `name` is the name of the file in faults.
-    pub(super) fn unpack(
-        &self,
-        name: &str,
-        budget: &ReadingBudget<'_>,
-    ) -> Result<Vec<u8>, VariableFault> {
-        let unsupported = |what: &str| {
-            VariableFault::unsupported(name, what, "pack it again by deflate, without a password")
-        };
+    /// gigabytes. Faults give `name` as the file.
+    fn unpack(&self, name: &str, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, VariableFault> {
         if self.entry.flags().is_encrypted() {
-            return Err(unsupported("an encrypted entry"));
+            return Err(unsupported(name, "an encrypted entry"));
         }
-        let found = self.archive.get_entry(self.entry.wayfinder());
-        let found =
-            found.map_err(|error| VariableFault::damaged(name, error.to_string(), self.offset))?;
+        let found = self
+            .archive
+            .get_entry(self.entry.wayfinder())
+            .map_err(|error| self.damaged(name, error.to_string()))?;
         let packed = found.data();
         let length = self.entry.uncompressed_size_hint();
         if length > (packed.len() as u64).saturating_mul(LARGEST_RATIO) {
-            return Err(VariableFault::damaged(
-                name,
-                "it claims more bytes than it can unpack to",
-                self.offset,
-            ));
+            return Err(self.damaged(name, "it claims more bytes than it can unpack to"));
         }
         budget.take(length, 1, name)?;
         let unpacked = match self.entry.compression_method() {
@@ -157,18 +179,24 @@ impl ZipFile<'_, '_> {
                 budget,
             )?,
             method => {
-                return Err(unsupported(&format!(
-                    "an entry packed by method {}",
-                    method.as_u16()
-                )));
+                let what = format!("an entry packed by method {}", method.as_u16());
+                return Err(unsupported(name, &what));
             }
         };
-        unpacked.map_err(|error| VariableFault::damaged(name, error.to_string(), self.offset))
+        unpacked.map_err(|error| self.damaged(name, error.to_string()))
+    }
+
+    fn damaged(&self, name: &str, what: impl Into<String>) -> VariableFault {
+        VariableFault::damaged(name, what, self.offset)
     }
 }
 
-/// Reads up to the end, where the length and the checksum are compared, or one byte beyond
-/// `length`, unless the reading is stopped.
+fn unsupported(name: &str, what: &str) -> VariableFault {
+    VariableFault::unsupported(name, what, "pack it again by deflate, without a password")
+}
+
+/// Reads up to the end, where the length and the checksum are compared, or up to the first byte
+/// beyond `length`, unless the reading is stopped.
 fn read_whole(
     reader: impl Read,
     length: u64,
@@ -187,8 +215,8 @@ fn read_whole(
     }
 }
 
-/// Returns the fault for an unreadable archive: a file with the signature of an archive has lost
-/// its end, which holds the directory.
+/// Returns the fault for an unreadable archive. A file that begins like an archive has lost its
+/// end, which holds the directory.
 fn unreadable(bytes: &[u8]) -> VariableFault {
     if bytes.starts_with(b"PK\x03\x04") {
         return VariableFault::cut_off("", bytes.len());

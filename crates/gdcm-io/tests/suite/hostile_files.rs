@@ -167,7 +167,7 @@ fn every_reader_stops_when_it_is_asked_to() {
             let tell = |taken| stop.store(taken >= most, Ordering::Relaxed);
             let budget = ReadingBudget::new(1 << 30)
                 .stopped_by(Arc::clone(&stop))
-                .telling(&tell);
+                .with_memory_callback(&tell);
             let found = [
                 models_of_bytes(bytes, name, &budget).err(),
                 records_of_bytes(bytes, name, &budget).err(),
@@ -267,7 +267,7 @@ fn the_reader_of_every_format_ends_at_once_wherever_it_is_stopped() {
             };
             let budget = ReadingBudget::default()
                 .stopped_by(Arc::clone(&stop))
-                .telling(&tell);
+                .with_memory_callback(&tell);
             (read(bytes, name, &budget), count.get())
         };
         let (_, all) = taken(usize::MAX);
@@ -329,7 +329,7 @@ fn a_named_pipe_is_skipped_with_a_word_in_a_folder_and_refused_before_it_is_read
     let found = read_models(&[folder.path().to_owned()], &Default::default(), &Silent).unwrap();
     assert_eq!(
         (found.files, found.faults[0].as_str()),
-        (1, "p.csv: skipped, for this is a named pipe, not a file")
+        (1, "p.csv: skipped: this is a named pipe, not a file")
     );
     let given = read_models(std::slice::from_ref(&pipe), &Default::default(), &Silent).unwrap_err();
     assert!(
@@ -351,6 +351,6 @@ fn a_named_pipe_is_skipped_with_a_word_in_a_folder_and_refused_before_it_is_read
         .to_string();
     assert_eq!(
         device,
-        "/dev/zero: this is a device, not a file; save what it gives as a file, and give its name"
+        "/dev/zero: this is a device, not a file; save its content as a file, and give the name of that file"
     );
 }

@@ -2,9 +2,9 @@
 //! lines followed by frames (<https://betaflight.com/docs/development/Blackbox-Internals>).
 //!
 //! ```text
-//! H Product:Blackbox …        a flight begins
-//! H Field I name:time,…       what a frame holds; P: the same told from the frames before
-//! I, P, S, G, H, E            frames: whole, told from others, slow, of GPS, of home; an event
+//! H Product:Blackbox …        begins a flight
+//! H Field I name:time,…       intra frame fields; P: encodings in predicted frames
+//! I, P, S, G, H, E            frames: intra, predicted, slow, GPS, GPS home, event
 //! ```
 //!
 //! A frame counts if another frame begins where it ends. After a damaged frame, all frames
@@ -15,18 +15,26 @@ use std::collections::BTreeMap;
 use gdcm_sysid::records::RecordColumn;
 
 use crate::file_error::FileError;
-use crate::formats::logs::{BETAFLIGHT, give_meanings, mode_spans, modes_note};
+use crate::formats::logs::blackbox_frames::{
+    FrameFields, HeaderNumbers, PackedBytes, Predecessors,
+};
+use crate::formats::logs::meanings::{BETAFLIGHT, give_meanings};
+use crate::formats::logs::mode_spans::{mode_spans, modes_note};
 use crate::formats::recorded_columns::{Columns, MOST_RECORDS};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const MARK: &[u8] = b"H Product:Blackbox";
 /// A larger time step is damage \[µs\].
-const LONGEST_STEP: i64 = 10_000_000;
+const LONGEST_STEP_US: i64 = 10_000_000;
 /// A flight with fewer frames is ignored.
-const FEWEST: usize = 50;
+const FEWEST_FRAMES: usize = 50;
+/// 1.0 as an IEEE 754 bit pattern, in the notation of the header.
+const ONE: &str = "0x3f800000";
+/// Names of the controller terms; an axis index follows in brackets.
+const TERMS: [&str; 4] = ["axisP", "axisI", "axisD", "axisF"];
 
-/// Logs of Betaflight.
+/// Betaflight logs.
 pub(crate) const BLACKBOX: Importer = Importer {
     name: "a blackbox log",
     endings: &["bbl", "bfl"],
@@ -39,13 +47,8 @@ pub(crate) const BLACKBOX: Importer = Importer {
 };
 
 fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns>, VariableFault> {
-    let mut begins: Vec<usize> = Vec::new();
     budget.work(bytes.len() as u64, "")?;
-    for at in 0..bytes.len().saturating_sub(MARK.len()) {
-        if bytes[at] == b'H' && bytes[at..].starts_with(MARK) {
-            begins.push(at);
-        }
-    }
+    let begins = flight_offsets(bytes);
     let count = begins.len();
     if count > MOST_RECORDS {
         return Err(VariableFault::TooMuchWork {
@@ -54,9 +57,9 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
         });
     }
     let mut flights = Vec::new();
-    let mut without = 0;
-    let ends = begins.iter().skip(1).copied().chain([bytes.len()]);
-    for (index, (&begin, end)) in begins.iter().zip(ends).enumerate() {
+    let mut ignored = 0;
+    for (index, &begin) in begins.iter().enumerate() {
+        let end = begins.get(index + 1).copied().unwrap_or(bytes.len());
         let name = if count == 1 {
             String::new()
         } else {
@@ -64,7 +67,7 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
         };
         match Flight::read(&bytes[begin..end], &name, budget)? {
             Some(flight) => flights.push(flight.columns(name, budget)?),
-            None => without += 1,
+            None => ignored += 1,
         }
     }
     if flights.is_empty() {
@@ -74,103 +77,139 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
             0,
         ));
     }
-    if without > 0 {
+    if ignored > 0 {
         flights[0].notes.push(format!(
-            "{without} of {count} flights in the file have hardly any frames: left out"
+            "{ignored} of {count} flights in the file have fewer than {FEWEST_FRAMES} frames: left out"
         ));
     }
     Ok(flights)
 }
 
-/// Contents of the header lines before the frames.
+/// Returns the offsets at which flights begin.
+fn flight_offsets(bytes: &[u8]) -> Vec<usize> {
+    let mut offsets = Vec::new();
+    for at in 0..bytes.len().saturating_sub(MARK.len()) {
+        if bytes[at] == b'H' && bytes[at..].starts_with(MARK) {
+            offsets.push(at);
+        }
+    }
+    offsets
+}
+
+/// Header lines before the frames.
 #[derive(Default)]
 struct Heading {
+    /// Values by key.
     lines: BTreeMap<String, String>,
+    /// Fields by frame letter.
     frames: BTreeMap<u8, FrameFields>,
-    known: Known,
+    numbers: HeaderNumbers,
+    /// Header length \[bytes\].
+    length: usize,
 }
 
 impl Heading {
-    /// Reads the header; also returns where it ends.
-    fn read(bytes: &[u8]) -> (Self, usize) {
+    fn read(bytes: &[u8]) -> Self {
         let mut heading = Self::default();
-        let mut at = 0;
-        while bytes[at..].starts_with(b"H ") {
-            let Some(length) = bytes[at..].iter().position(|byte| *byte == b'\n') else {
+        heading.read_lines(bytes);
+        for kind in *b"IPSGH" {
+            let fields = heading.fields(char::from(kind));
+            heading.frames.insert(kind, fields);
+        }
+        // Predicted frames share names and signs with intra frames.
+        let intra = heading.frames[&b'I'].clone();
+        if let Some(predicted) = heading.frames.get_mut(&b'P') {
+            predicted.names = intra.names;
+            predicted.signed = intra.signed;
+        }
+        heading.numbers = HeaderNumbers {
+            least_throttle: heading.number("minthrottle"),
+            least_motor: heading.number("motorOutput"),
+            battery: heading.number("vbatref"),
+        };
+        heading
+    }
+
+    fn read_lines(&mut self, bytes: &[u8]) {
+        while bytes[self.length..].starts_with(b"H ") {
+            let rest = &bytes[self.length..];
+            let Some(end) = rest.iter().position(|byte| *byte == b'\n') else {
                 break;
             };
-            let line = String::from_utf8_lossy(&bytes[at + 2..at + length]);
+            let line = String::from_utf8_lossy(&rest[2..end]);
             if let Some((key, value)) = line.split_once(':') {
-                heading
-                    .lines
-                    .insert(key.to_owned(), value.trim().to_owned());
+                self.lines.insert(key.to_owned(), value.trim().to_owned());
             }
-            at += length + 1;
+            self.length += end + 1;
         }
-        for kind in *b"IPSGH" {
-            heading
-                .frames
-                .insert(kind, heading.fields(char::from(kind)));
-        }
-        // Predicted frames have the names and signs of intra frames.
-        let whole = heading.frames[&b'I'].clone();
-        if let Some(told) = heading.frames.get_mut(&b'P') {
-            (told.names, told.signed) = (whole.names, whole.signed);
-        }
-        let number = |key: &str| {
-            let first = heading.lines.get(key)?.split(',').next()?;
-            first.parse::<i64>().ok()
-        };
-        heading.known = Known {
-            least_throttle: number("minthrottle").unwrap_or(0),
-            least_motor: number("motorOutput").unwrap_or(0),
-            battery: number("vbatref").unwrap_or(0),
-        };
-        (heading, at)
+    }
+
+    /// Returns the value for a key; empty if it is missing.
+    fn value(&self, key: &str) -> &str {
+        self.lines.get(key).map_or("", String::as_str)
+    }
+
+    /// Returns the first number in a list; 0 if it is missing.
+    fn number(&self, key: &str) -> i64 {
+        let first = self.value(key).split(',').next().unwrap_or_default();
+        first.parse().unwrap_or(0)
     }
 
     fn fields(&self, kind: char) -> FrameFields {
-        let list = |what: &str| {
-            let line = self
-                .lines
-                .get(&format!("Field {kind} {what}"))
-                .map_or("", String::as_str);
-            line.split(',')
-                .filter(|cell| !cell.is_empty())
-                .map(str::to_owned)
-                .collect::<Vec<String>>()
-        };
-        let numbers = |what: &str| {
-            list(what)
-                .iter()
-                .map(|cell| cell.parse().unwrap_or(u8::MAX))
-                .collect::<Vec<u8>>()
-        };
         FrameFields {
-            names: list("name"),
-            signed: numbers("signed")
-                .into_iter()
-                .map(|signed| signed == 1)
+            names: self.field_cells(kind, "name").map(str::to_owned).collect(),
+            signed: self
+                .field_numbers(kind, "signed")
+                .iter()
+                .map(|signed| *signed == 1)
                 .collect(),
-            predictors: numbers("predictor"),
-            encodings: numbers("encoding"),
+            predictors: self.field_numbers(kind, "predictor"),
+            encodings: self.field_numbers(kind, "encoding"),
         }
     }
 
-    /// The fields of a kind of frame, if they are known.
-    fn frame(&self, kind: u8) -> Option<&FrameFields> {
-        self.frames.get(&kind).filter(|fields| fields.is_whole())
+    /// Returns the cells in a line such as "Field I name".
+    fn field_cells(&self, kind: char, property: &str) -> impl Iterator<Item = &str> {
+        self.value(&format!("Field {kind} {property}"))
+            .split(',')
+            .filter(|cell| !cell.is_empty())
     }
-}
 
-/// Frames of a flight.
-struct Flight {
-    heading: Heading,
-    /// Numbers of the fields of intra frames.
-    values: Vec<Vec<f64>>,
-    /// Times \[µs\] and mode flags.
-    modes: (Vec<f64>, Vec<f64>),
-    damaged: usize,
+    /// Returns the numbers in a line such as "Field I signed"; 255 for anything else.
+    fn field_numbers(&self, kind: char, property: &str) -> Vec<u8> {
+        self.field_cells(kind, property)
+            .map(|cell| cell.parse().unwrap_or(u8::MAX))
+            .collect()
+    }
+
+    /// Returns the fields for a frame letter, if all are known.
+    fn frame(&self, kind: u8) -> Option<&FrameFields> {
+        let fields = self.frames.get(&kind)?;
+        if fields.is_whole() {
+            Some(fields)
+        } else {
+            None
+        }
+    }
+
+    /// Parses the frame with a letter; returns nothing for an unknown letter or a damaged frame.
+    fn parse(&self, kind: u8, bytes: &mut PackedBytes<'_>, before: &Predecessors) -> Option<Frame> {
+        if kind == b'E' {
+            return event(bytes);
+        }
+        let fields = self.frame(kind)?;
+        if kind == b'P' && before.last.is_none() {
+            return None;
+        }
+        let differences = fields.differences(bytes)?;
+        let independent = Predecessors::default();
+        Some(match kind {
+            b'G' | b'H' => Frame::Other,
+            b'S' => Frame::Slow(fields.values(differences, &independent, self.numbers)),
+            b'P' => Frame::Main(fields.values(differences, before, self.numbers)),
+            _ => Frame::Main(fields.values(differences, &independent, self.numbers)),
+        })
+    }
 }
 
 /// A decoded frame.
@@ -181,132 +220,206 @@ enum Frame {
     End,
 }
 
+/// Parses an event, whose number decides its length.
+fn event(bytes: &mut PackedBytes<'_>) -> Option<Frame> {
+    match bytes.byte()? {
+        // Beep, disarming, inertial unit failure.
+        0 | 15 | 40 => {
+            bytes.unsigned()?;
+        }
+        // Logging resumes; the flight mode changes.
+        14 | 30 => {
+            bytes.unsigned()?;
+            bytes.unsigned()?;
+        }
+        // In-flight adjustment: a four-byte number, or a packed number.
+        13 => {
+            if bytes.byte()? & 0x80 == 0 {
+                bytes.signed()?;
+            } else {
+                for _ in 0..4 {
+                    bytes.byte()?;
+                }
+            }
+        }
+        255 => {
+            for letter in b"End of log" {
+                if bytes.byte() != Some(*letter) {
+                    return None;
+                }
+            }
+            return Some(Frame::End);
+        }
+        _ => return None,
+    }
+    Some(Frame::Other)
+}
+
+/// A flight and its frames.
+struct Flight {
+    heading: Heading,
+    /// Index of the field "time".
+    time: Option<usize>,
+    /// Numbers in the main frames, by field.
+    values: Vec<Vec<f64>>,
+    modes: Vec<ModeSample>,
+    damaged: usize,
+}
+
+/// Mode flags in a slow frame, with the time of the preceding main frame.
+struct ModeSample {
+    time_us: f64,
+    flags: f64,
+}
+
 impl Flight {
-    /// Reads the frames of a flight; returns nothing if there are too few.
+    /// Reads a flight with its frames; returns nothing if there are too few.
     fn read(
         bytes: &[u8],
         name: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<Option<Self>, VariableFault> {
-        let (heading, mut at) = Heading::read(bytes);
-        budget.take(at as u64, 2, name)?;
-        let version = heading.lines.get("Data version").map_or("", String::as_str);
-        let Some(fields) = heading.frame(b'I').filter(|_| version == "2") else {
-            let what = format!(
-                "a blackbox of data version \"{}\", or of fields of a later one",
-                &version.chars().take(9).collect::<String>()
-            );
-            return Err(VariableFault::unsupported(
-                name,
-                what,
-                "save it as CSV: blackbox_decode \"{file}\"",
-            ));
-        };
-        let time = fields.names.iter().position(|field| field == "time");
-        let count = fields.names.len();
-        let mut flight = Self {
-            values: vec![Vec::new(); count],
-            modes: Default::default(),
-            damaged: 0,
-            heading,
-        };
-        let mut before: [Option<Vec<i64>>; 2] = [None, None];
+        let heading = Heading::read(bytes);
+        budget.take(heading.length as u64, 2, name)?;
+        let mut flight = Self::begin(heading, name)?;
+        flight.read_frames(bytes, name, budget)?;
+        let frames = flight.values.first().map_or(0, Vec::len);
+        if frames < FEWEST_FRAMES {
+            return Ok(None);
+        }
+        Ok(Some(flight))
+    }
+
+    /// Creates a flight without frames.
+    ///
+    /// # Errors
+    /// Another data version, or unknown encodings in intra frames.
+    fn begin(heading: Heading, name: &str) -> Result<Self, VariableFault> {
+        let version = heading.value("Data version");
+        match heading.frame(b'I') {
+            Some(fields) if version == "2" => Ok(Self {
+                time: fields.names.iter().position(|field| field == "time"),
+                values: vec![Vec::new(); fields.names.len()],
+                modes: Vec::new(),
+                damaged: 0,
+                heading,
+            }),
+            _ => {
+                let version: String = version.chars().take(9).collect();
+                Err(VariableFault::unsupported(
+                    name,
+                    format!(
+                        "a blackbox of data version \"{version}\", or with fields of a later version"
+                    ),
+                    "save it as CSV: blackbox_decode \"{file}\"",
+                ))
+            }
+        }
+    }
+
+    fn read_frames(
+        &mut self,
+        bytes: &[u8],
+        name: &str,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<(), VariableFault> {
+        let count = self.values.len();
+        let mut before = Predecessors::default();
+        let mut at = self.heading.length;
         while at < bytes.len() {
             budget.work(count as u64, name)?;
-            let mut bits = Bits::new(bytes, at + 1);
-            let frame = flight.heading.parse(bytes[at], &mut bits, &before);
+            let mut packed = PackedBytes::new(bytes, at + 1);
+            let mut frame = self.heading.parse(bytes[at], &mut packed, &before);
             // The next frame begins where this frame ends.
-            let follows = bytes
-                .get(bits.at)
-                .is_none_or(|next| b"IPSGHE".contains(next));
-            let is_next = |frame: &Vec<i64>| {
-                let (Some(time), Some(last)) = (time, &before[0]) else {
-                    return true;
-                };
-                (0..=LONGEST_STEP).contains(&(frame[time] - last[time]))
-            };
-            match frame.filter(|_| follows) {
+            let next = bytes.get(packed.at);
+            if next.is_some_and(|next| !b"IPSGHE".contains(next)) {
+                frame = None;
+            }
+            match frame {
                 Some(Frame::End) => break,
-                Some(Frame::Main(values)) if is_next(&values) => {
+                Some(Frame::Main(values)) if self.continues(&values, &before) => {
                     budget.take(count as u64, 8, name)?;
-                    flight
-                        .values
-                        .iter_mut()
-                        .zip(&values)
-                        .for_each(|(column, value)| column.push(*value as f64));
-                    let earlier = if bytes[at] == b'I' {
-                        None
-                    } else {
-                        before[0].take()
+                    for (column, value) in self.values.iter_mut().zip(&values) {
+                        column.push(*value as f64);
+                    }
+                    let is_intra = bytes[at] == b'I';
+                    before = Predecessors {
+                        earlier: if is_intra { None } else { before.last },
+                        last: Some(values),
                     };
-                    before = [Some(values), earlier];
-                    at = bits.at;
+                    at = packed.at;
                 }
                 Some(Frame::Slow(values)) => {
-                    if let (Some(time), Some(flags), Some(last)) =
-                        (time, values.first(), &before[0])
-                    {
-                        budget.take(2, 8, name)?;
-                        flight.modes.0.push(last[time] as f64);
-                        flight.modes.1.push(*flags as f64);
-                    }
-                    at = bits.at;
+                    self.take_modes(&values, &before, name, budget)?;
+                    at = packed.at;
                 }
-                Some(Frame::Other) => at = bits.at,
-                _ => {
-                    flight.damaged += usize::from(before[0].is_some());
-                    before = [None, None];
+                Some(Frame::Other) => at = packed.at,
+                Some(Frame::Main(_)) | None => {
+                    if before.last.is_some() {
+                        self.damaged += 1;
+                    }
+                    before = Predecessors::default();
                     at += 1;
                 }
             }
         }
-        let frames = flight.values.first().map_or(0, Vec::len);
-        Ok((frames >= FEWEST).then_some(flight))
+        Ok(())
     }
 
-    /// Returns the columns of the flight, with the sums of the controller's terms.
+    /// Whether a main frame follows its predecessor in time.
+    fn continues(&self, frame: &[i64], before: &Predecessors) -> bool {
+        if let Some(time) = self.time
+            && let Some(last) = &before.last
+        {
+            return (0..=LONGEST_STEP_US).contains(&(frame[time] - last[time]));
+        }
+        true
+    }
+
+    /// Takes the mode flags in a slow frame after a main frame.
+    fn take_modes(
+        &mut self,
+        slow: &[i64],
+        before: &Predecessors,
+        name: &str,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<(), VariableFault> {
+        if let Some(time) = self.time
+            && let Some(flags) = slow.first()
+            && let Some(last) = &before.last
+        {
+            budget.take(2, 8, name)?;
+            self.modes.push(ModeSample {
+                time_us: last[time] as f64,
+                flags: *flags as f64,
+            });
+        }
+        Ok(())
+    }
+
+    /// Returns the columns, with a sum of the controller terms for each axis.
     fn columns(self, name: String, budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
-        let names = self
-            .heading
-            .frames
-            .get(&b'I')
-            .map_or_else(Vec::new, |fields| fields.names.clone());
-        let mut columns: Vec<RecordColumn> = Vec::new();
-        for (field, values) in names.iter().zip(self.values) {
-            let unit = (field == "time").then(|| "µs".to_owned());
-            if field != "loopIteration" {
-                columns.push(RecordColumn {
-                    unit,
-                    ..RecordColumn::new(field.clone(), values)
-                });
-            }
-        }
-        for axis in 0..3 {
-            let is_term = |column: &&RecordColumn| {
-                ["axisP", "axisI", "axisD", "axisF"]
-                    .iter()
-                    .any(|term| column.name == format!("{term}[{axis}]"))
-            };
-            let terms: Vec<&RecordColumn> = columns.iter().filter(is_term).collect();
-            if let Some(first) = terms.first() {
-                let rows = first.values.len();
-                budget.take(rows as u64, 8, &name)?;
-                let sum = (0..rows)
-                    .map(|row| terms.iter().map(|term| term.values[row]).sum())
-                    .collect();
-                columns.push(RecordColumn::new(format!("axisSum[{axis}]"), sum));
-            }
-        }
         let mut notes = vec![
             "a log of Betaflight; axisSum is the sum of the terms of the controller".to_owned(),
         ];
-        // 1.0 as an IEEE 754 bit pattern: rates are in deg/s.
-        let is_degrees = self
-            .heading
-            .lines
-            .get("gyro_scale")
-            .is_some_and(|scale| scale == "0x3f800000");
-        if is_degrees {
+        let names = &self.heading.frames[&b'I'].names;
+        let mut columns = Vec::new();
+        for (field, values) in names.iter().zip(self.values) {
+            if field == "loopIteration" {
+                continue;
+            }
+            let mut column = RecordColumn::new(field.clone(), values);
+            if field == "time" {
+                column.unit = Some("µs".to_owned());
+            }
+            columns.push(column);
+        }
+        for axis in 0..3 {
+            let sum = controller_sum(&columns, axis, &name, budget)?;
+            columns.extend(sum);
+        }
+        // With a scale of 1, rates are in deg/s.
+        if self.heading.value("gyro_scale") == ONE {
             notes.extend(give_meanings(&mut columns, &BETAFLIGHT));
         } else {
             notes.push(
@@ -316,18 +429,17 @@ impl Flight {
         }
         if self.damaged > 0 {
             notes.push(format!(
-                "{} frames are damaged: left out, up to the next whole one",
+                "{} frames are damaged: left out up to the next intra frame",
                 self.damaged
             ));
         }
-        let seconds: Vec<f64> = self.modes.0.iter().map(|time| time * 1e-6).collect();
-        // `flightModeFlags`: 1 is angle, 2 is horizon, neither is acro.
-        let named = |flags: f64| match flags as u32 {
-            flags if flags & 2 != 0 => Some("angle".to_owned()),
-            flags if flags & 4 != 0 => Some("horizon".to_owned()),
-            _ => Some("acro".to_owned()),
-        };
-        let modes = mode_spans(&seconds, self.modes.1, named);
+        let time_s: Vec<f64> = self
+            .modes
+            .iter()
+            .map(|sample| sample.time_us * 1e-6)
+            .collect();
+        let flags = self.modes.iter().map(|sample| sample.flags);
+        let modes = mode_spans(&time_s, flags, |flags| Some(mode_name(flags).to_owned()));
         notes.extend(modes_note(&modes));
         Ok(Columns {
             notes,
@@ -337,273 +449,38 @@ impl Flight {
     }
 }
 
-impl Heading {
-    /// Parses the frame of a letter; returns nothing for an unknown letter or a damaged frame.
-    fn parse(
-        &self,
-        kind: u8,
-        bits: &mut Bits<'_>,
-        before: &[Option<Vec<i64>>; 2],
-    ) -> Option<Frame> {
-        if kind == b'E' {
-            return event(bits);
-        }
-        let fields = self.frame(kind)?;
-        let before = if kind == b'P' {
-            [Some(before[0].as_ref()?), before[1].as_ref()]
-        } else {
-            [None, None]
-        };
-        let differences = fields.differences(bits)?;
-        Some(match kind {
-            b'G' | b'H' => Frame::Other,
-            b'S' => Frame::Slow(fields.values(differences, before, self.known)),
-            _ => Frame::Main(fields.values(differences, before, self.known)),
-        })
-    }
+/// Adds up the controller terms for an axis, if there are any.
+fn controller_sum(
+    columns: &[RecordColumn],
+    axis: usize,
+    flight: &str,
+    budget: &ReadingBudget<'_>,
+) -> Result<Option<RecordColumn>, VariableFault> {
+    let names = TERMS.map(|term| format!("{term}[{axis}]"));
+    let terms: Vec<&RecordColumn> = columns
+        .iter()
+        .filter(|column| names.contains(&column.name))
+        .collect();
+    let Some(first) = terms.first() else {
+        return Ok(None);
+    };
+    let rows = first.values.len();
+    budget.take(rows as u64, 8, flight)?;
+    let sum = (0..rows)
+        .map(|row| terms.iter().map(|term| term.values[row]).sum())
+        .collect();
+    Ok(Some(RecordColumn::new(format!("axisSum[{axis}]"), sum)))
 }
 
-/// Parses an event, whose number decides its length.
-fn event(bits: &mut Bits<'_>) -> Option<Frame> {
-    match bits.byte()? {
-        // Beep, disarming, failure of the inertial unit.
-        0 | 15 | 40 => drop(bits.unsigned()?),
-        // Logging resumes; change of the flight mode.
-        14 | 30 => drop((bits.unsigned()?, bits.unsigned()?)),
-        // In-flight adjustment: a four-byte number, or a packed number.
-        13 => match bits.byte()? & 0x80 {
-            0 => drop(bits.signed()?),
-            _ => drop((bits.byte()?, bits.byte()?, bits.byte()?, bits.byte()?)),
-        },
-        255 => {
-            let is_end = b"End of log"
-                .iter()
-                .all(|letter| bits.byte() == Some(*letter));
-            return is_end.then_some(Frame::End);
-        }
-        _ => return None,
-    }
-    Some(Frame::Other)
-}
-
-// Frame fields: encoding and prediction.
-//
-// Each field has a numbered encoding and a numbered predictor
-// (<https://betaflight.com/docs/development/Blackbox-Internals>). The file holds the difference
-// from the prediction.
-
-/// Largest number of fields of a frame.
-pub(super) const MOST_FIELDS: usize = 256;
-
-/// Fields of one kind of frame.
-#[derive(Clone, Debug, Default)]
-pub(super) struct FrameFields {
-    pub(super) names: Vec<String>,
-    pub(super) signed: Vec<bool>,
-    pub(super) predictors: Vec<u8>,
-    pub(super) encodings: Vec<u8>,
-}
-
-/// Header numbers used by the predictors.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Known {
-    pub(super) least_throttle: i64,
-    pub(super) least_motor: i64,
-    pub(super) battery: i64,
-}
-
-/// Cursor over bytes.
-pub(super) struct Bits<'b> {
-    bytes: &'b [u8],
-    pub(super) at: usize,
-}
-
-impl<'b> Bits<'b> {
-    pub(super) fn new(bytes: &'b [u8], at: usize) -> Self {
-        Self { bytes, at }
-    }
-
-    pub(super) fn byte(&mut self) -> Option<u8> {
-        let byte = self.bytes.get(self.at).copied()?;
-        self.at += 1;
-        Some(byte)
-    }
-
-    /// Reads a variable-length number: seven bits a byte, lowest first; the eighth bit announces
-    /// another byte.
-    pub(super) fn unsigned(&mut self) -> Option<u32> {
-        let mut value = 0_u32;
-        for shift in (0..32).step_by(7) {
-            let byte = self.byte()?;
-            value |= u32::from(byte & 0x7f) << shift;
-            if byte & 0x80 == 0 {
-                return Some(value);
-            }
-        }
-        None
-    }
-
-    /// Reads a variable-length number with the sign in the lowest bit.
-    pub(super) fn signed(&mut self) -> Option<i32> {
-        let value = self.unsigned()?;
-        Some((value >> 1).cast_signed() ^ -((value & 1).cast_signed()))
-    }
-
-    /// Reads the negative of a signed 14-bit number.
-    fn negative_14(&mut self) -> Option<i32> {
-        Some(-extended(self.unsigned()? & 0x3fff, 14))
-    }
-
-    /// Reads three numbers of 2, 4 or 6 bits, or of 1 to 4 bytes each.
-    fn three(&mut self) -> Option<[i32; 3]> {
-        let lead = self.byte()?;
-        Some(match lead >> 6 {
-            0 => [lead >> 4, lead >> 2, lead].map(|bits| extended(u32::from(bits & 3), 2)),
-            1 => {
-                let next = self.byte()?;
-                [lead & 15, next >> 4, next & 15].map(|bits| extended(u32::from(bits), 4))
-            }
-            2 => [lead, self.byte()?, self.byte()?].map(|bits| extended(u32::from(bits & 63), 6)),
-            _ => {
-                let mut values = [0; 3];
-                for (index, value) in values.iter_mut().enumerate() {
-                    let bytes = 1 + u32::from((lead >> (2 * index)) & 3);
-                    let mut bits = 0_u32;
-                    for byte in 0..bytes {
-                        bits |= u32::from(self.byte()?) << (8 * byte);
-                    }
-                    *value = extended(bits, 8 * bytes);
-                }
-                values
-            }
-        })
-    }
-
-    /// Reads four numbers of 0, 4, 8 or 16 bits, in half-byte steps, highest first.
-    fn four(&mut self) -> Option<[i32; 4]> {
-        let tags = self.byte()?;
-        let mut half = None;
-        let mut values = [0; 4];
-        for (index, value) in values.iter_mut().enumerate() {
-            let halves = [0, 1, 2, 4][usize::from((tags >> (2 * index)) & 3)];
-            let mut bits = 0_u32;
-            for _ in 0..halves {
-                let next = match half.take() {
-                    Some(next) => next,
-                    None => {
-                        let byte = self.byte()?;
-                        half = Some(byte & 15);
-                        byte >> 4
-                    }
-                };
-                bits = bits << 4 | u32::from(next);
-            }
-            *value = if halves == 0 {
-                0
-            } else {
-                extended(bits, 4 * halves)
-            };
-        }
-        Some(values)
-    }
-}
-
-/// Sign-extends a number of `count` bits.
-fn extended(bits: u32, count: u32) -> i32 {
-    let unused = 32 - count;
-    (bits << unused).cast_signed() >> unused
-}
-
-impl FrameFields {
-    /// Whether every name has a known encoding and predictor.
-    pub(super) fn is_whole(&self) -> bool {
-        let count = self.names.len();
-        let known = |encoding: &u8| matches!(encoding, 0 | 1 | 3 | 6 | 7 | 8 | 9);
-        (1..=MOST_FIELDS).contains(&count)
-            && [
-                self.signed.len(),
-                self.predictors.len(),
-                self.encodings.len(),
-            ] == [count; 3]
-            && self.encodings.iter().all(known)
-    }
-
-    /// Reads the differences of a frame as stored; returns nothing if they are damaged.
-    pub(super) fn differences(&self, bits: &mut Bits<'_>) -> Option<Vec<i64>> {
-        let mut values: Vec<i64> = Vec::with_capacity(self.names.len());
-        while values.len() < self.names.len() {
-            let from = values.len();
-            let encoding = self.encodings[from];
-            match encoding {
-                0 => values.push(i64::from(bits.signed()?)),
-                1 => values.push(i64::from(bits.unsigned()?)),
-                3 => values.push(i64::from(bits.negative_14()?)),
-                6 => {
-                    // Up to eight consecutive fields share a byte; each bit marks a nonzero field.
-                    let count = self.encodings[from..]
-                        .iter()
-                        .take(8)
-                        .take_while(|other| **other == encoding)
-                        .count();
-                    let tags = if count == 1 { 1 } else { bits.byte()? };
-                    for index in 0..count {
-                        values.push(if tags >> index & 1 == 1 {
-                            i64::from(bits.signed()?)
-                        } else {
-                            0
-                        });
-                    }
-                }
-                7 => values.extend(bits.three()?.map(i64::from)),
-                8 => values.extend(bits.four()?.map(i64::from)),
-                _ => values.push(0),
-            }
-        }
-        values.truncate(self.names.len());
-        Some(values)
-    }
-
-    /// Computes the numbers of a frame from its differences and the two frames before.
-    pub(super) fn values(
-        &self,
-        mut values: Vec<i64>,
-        before: [Option<&Vec<i64>>; 2],
-        known: Known,
-    ) -> Vec<i64> {
-        let motor = self.names.iter().position(|name| name == "motor[0]");
-        for at in 0..values.len() {
-            let last = before[0]
-                .and_then(|frame| frame.get(at))
-                .copied()
-                .unwrap_or(0);
-            let earlier = before[1]
-                .and_then(|frame| frame.get(at))
-                .copied()
-                .unwrap_or(last);
-            let predicted = match self.predictors[at] {
-                1 => last,
-                2 => 2 * last - earlier,
-                3 => (last + earlier) / 2,
-                4 => known.least_throttle,
-                5 => motor
-                    .and_then(|motor| values.get(motor))
-                    .copied()
-                    .unwrap_or(0),
-                6 => last + 1,
-                8 => 1500,
-                9 => known.battery,
-                11 => known.least_motor,
-                _ => 0,
-            };
-            // 32-bit arithmetic, as in the logger.
-            let low = values[at].wrapping_add(predicted) as u32;
-            values[at] = if self.signed[at] {
-                i64::from(low.cast_signed())
-            } else {
-                i64::from(low)
-            };
-        }
-        values
+/// Returns the mode for `flightModeFlags`: bit 1 is angle, bit 2 is horizon, neither is acro.
+fn mode_name(flags: f64) -> &'static str {
+    let flags = flags as u32;
+    if flags & 2 != 0 {
+        "angle"
+    } else if flags & 4 != 0 {
+        "horizon"
+    } else {
+        "acro"
     }
 }
 
@@ -706,7 +583,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_frame_is_a_gap_up_to_the_next_whole_one() {
+    fn a_damaged_frame_is_a_gap_up_to_the_next_intra_frame() {
         let mut bytes = flight(100);
         let at = bytes.len() / 2 + 100;
         bytes[at] = 0xff;
@@ -718,61 +595,9 @@ mod tests {
     }
 
     #[test]
-    fn another_version_is_refused_with_the_line_that_converts() {
+    fn another_version_is_refused_with_the_conversion_command() {
         let text = String::from_utf8_lossy(b"H Product:Blackbox\nH Data version:1\nI").into_owned();
         let words = read(text.as_bytes()).err().unwrap().to_string();
         assert!(words.contains("blackbox_decode"), "{words}");
-    }
-}
-
-#[cfg(test)]
-mod frame_tests {
-    use super::*;
-
-    #[test]
-    fn packed_numbers_are_those_of_the_format_s_description() {
-        assert_eq!(Bits::new(&[0xff, 0x01], 0).unsigned(), Some(255));
-        assert_eq!(Bits::new(&[0x80; 6], 0).unsigned(), None, "it does not end");
-        assert_eq!(
-            [0, 1, 2, 3].map(|byte| Bits::new(&[byte], 0).signed()),
-            [0, -1, 1, -2].map(Some)
-        );
-        assert_eq!(Bits::new(&[0xff, 0x3f], 0).negative_14(), Some(-0x1fff));
-        assert_eq!(Bits::new(&[0b0001_1011], 0).three(), Some([1, -2, -1]));
-        assert_eq!(
-            Bits::new(&[0b0100_0111, 0x9f], 0).three(),
-            Some([7, -7, -1])
-        );
-        assert_eq!(
-            Bits::new(&[0b1100_0001, 0x34, 0x12, 0xff, 0x05], 0).three(),
-            Some([0x1234, -1, 5])
-        );
-        // 4 bits, 8 bits, 0 bits, 16 bits: 1, -2, 0, 0x1234.
-        assert_eq!(
-            Bits::new(&[0b1100_1001, 0x1f, 0xe1, 0x23, 0x40], 0).four(),
-            Some([1, -2, 0, 0x1234])
-        );
-        assert_eq!(Bits::new(&[0b1100_1001, 0x1f], 0).four(), None);
-    }
-
-    #[test]
-    fn predictions_take_the_frames_before() {
-        let fields = FrameFields {
-            names: ["time", "a", "b", "motor[0]", "motor[1]"]
-                .map(str::to_owned)
-                .to_vec(),
-            signed: vec![false, true, true, false, false],
-            predictors: vec![2, 1, 3, 11, 5],
-            encodings: vec![0; 5],
-        };
-        assert!(fields.is_whole());
-        let known = Known {
-            least_motor: 158,
-            ..Known::default()
-        };
-        let last = vec![200, -5, 8, 0, 0];
-        let earlier = vec![100, 0, 4, 0, 0];
-        let values = fields.values(vec![1, 1, 1, 2, 3], [Some(&last), Some(&earlier)], known);
-        assert_eq!(values, [301, -4, 7, 160, 163]);
     }
 }

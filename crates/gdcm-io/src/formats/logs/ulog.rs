@@ -1,13 +1,13 @@
-//! ULog, the logs of PX4 (<https://docs.px4.io/main/en/dev_log/ulog_file_format.html>).
+//! ULog, the PX4 log format (<https://docs.px4.io/main/en/dev_log/ulog_file_format.html>).
 //!
 //! ```text
-//! 16 bytes of header
+//! header: 16 bytes
 //! messages: length (16 bits), type (a letter), content
-//!   B  flags, and where data were appended     F  layout of a topic      A  topic and instance of a number
-//!   D  number, then the data of that topic     O  a dropout [ms]         others: parameters, texts, marks
+//!   B  flags, offsets of appended data       F  topic layout           A  topic and instance for a number
+//!   D  number, data for its topic            O  dropout [ms]           others: parameters, texts, marks
 //! ```
 //!
-//! Stamps are microseconds since the start of the autopilot. A log cut off by a crash is read up to
+//! Stamps are microseconds since the autopilot was started. A log cut off by a crash is read up to
 //! its end.
 
 use std::collections::BTreeMap;
@@ -15,18 +15,26 @@ use std::collections::BTreeMap;
 use gdcm_sysid::records::ModeSpan;
 
 use crate::file_error::FileError;
-use crate::formats::logs::{PX4, TopicSamples, array, give_meanings, mode_spans, modes_note};
+use crate::formats::logs::array;
+use crate::formats::logs::meanings::{PX4, give_meanings};
+use crate::formats::logs::mode_spans::{mode_spans, modes_note};
+use crate::formats::logs::topics::{TopicField, TopicSamples};
+use crate::formats::logs::ulog_layouts::{Formats, Place, places_in_message};
 use crate::formats::recorded_columns::Columns;
-use crate::formats::strides::{NumberClass, StoredNumber};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const MAGIC: &[u8] = b"ULog\x01\x12\x35";
+/// Length of the file header \[bytes\].
 const HEADER: usize = 16;
+/// Length of a message header \[bytes\].
+const MESSAGE_HEADER: usize = 3;
 /// Flag for appended data, the only flag that a reader must know.
 const APPENDED: u8 = 1;
+/// `ARMING_STATE_ARMED` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
+const ARMED: f64 = 2.0;
 
-/// Logs of PX4.
+/// PX4 logs.
 pub(crate) const ULOG: Importer = Importer {
     name: "a ULog of PX4",
     endings: &["ulg", "ulog"],
@@ -38,21 +46,24 @@ pub(crate) const ULOG: Importer = Importer {
     },
 };
 
-/// A subscribed topic and the positions of its data in a message.
+/// A subscribed topic and the positions in its messages.
 struct Subscription {
     samples: TopicSamples,
     stamp: Place,
+    /// Position of each field.
     places: Vec<Place>,
-    /// Shortest possible data of the topic \[bytes\].
+    /// Shortest possible data in a message \[bytes\].
     least: usize,
 }
 
+/// Messages that have been read.
 #[derive(Default)]
 struct Messages<'b> {
     formats: Formats<'b>,
     subscriptions: BTreeMap<u16, Subscription>,
     dropouts: usize,
     lost_ms: u64,
+    /// Number of data messages without a topic, or too short.
     unread: usize,
 }
 
@@ -64,14 +75,16 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
     let mut at = HEADER;
     let mut appended = Vec::new();
     let mut is_cut = false;
-    while let Some([low, high, kind]) = array::<3>(bytes, at) {
+    while let Some([low, high, kind]) = array::<MESSAGE_HEADER>(bytes, at) {
         budget.work(1, "")?;
-        let from = at + 3;
+        let from = at + MESSAGE_HEADER;
         let to = from + usize::from(u16::from_le_bytes([low, high]));
         // A message cut off by a crash ends where data were appended.
-        let next = appended.iter().copied().filter(|offset| *offset > at).min();
-        if next.is_some_and(|next| to > next) {
-            at = next.unwrap_or(to);
+        let next_part = appended.iter().copied().filter(|offset| *offset > at).min();
+        if let Some(next_part) = next_part
+            && to > next_part
+        {
+            at = next_part;
             continue;
         }
         let Some(content) = bytes.get(from..to) else {
@@ -79,7 +92,7 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
             break;
         };
         if kind == b'B' {
-            appended = offsets_of(content)?;
+            appended = appended_offsets(content)?;
         } else {
             messages.take(kind, content, budget)?;
         }
@@ -88,25 +101,31 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
     messages.columns(is_cut)
 }
 
-/// Reads the offsets of appended data.
-fn offsets_of(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
-    let unknown = flags.get(8..16).unwrap_or_default().iter().enumerate();
-    if unknown
-        .into_iter()
-        .any(|(index, byte)| *byte & !(if index == 0 { APPENDED } else { 0 }) != 0)
-    {
-        let remedy = "save its topics as CSV: ulog2csv \"{file}\"";
-        return Err(VariableFault::unsupported(
-            "",
-            "a ULog with parts of a later version",
-            remedy,
-        ));
+/// Reads the offsets of appended data \[bytes\] from the flags.
+///
+/// # Errors
+/// A flag from a later version.
+fn appended_offsets(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
+    for (index, flag) in flags.get(8..16).unwrap_or_default().iter().enumerate() {
+        let known = if index == 0 { APPENDED } else { 0 };
+        if *flag & !known != 0 {
+            return Err(VariableFault::unsupported(
+                "",
+                "a ULog with parts of a later version",
+                "save its topics as CSV: ulog2csv \"{file}\"",
+            ));
+        }
     }
-    let offsets = (0..3).filter_map(|index| array(flags, 16 + 8 * index).map(u64::from_le_bytes));
-    Ok(offsets
-        .filter(|offset| *offset > 0)
-        .filter_map(|offset| usize::try_from(offset).ok())
-        .collect())
+    let mut offsets = Vec::new();
+    for index in 0..3 {
+        let offset = array(flags, 16 + 8 * index).map_or(0, u64::from_le_bytes);
+        if offset > 0
+            && let Ok(offset) = usize::try_from(offset)
+        {
+            offsets.push(offset);
+        }
+    }
+    Ok(offsets)
 }
 
 impl<'b> Messages<'b> {
@@ -117,41 +136,51 @@ impl<'b> Messages<'b> {
         budget: &ReadingBudget<'_>,
     ) -> Result<(), VariableFault> {
         match kind {
-            b'F' => {
-                let text = std::str::from_utf8(content).unwrap_or_default();
-                if let Some((name, fields)) = text.split_once(':') {
-                    budget.take(1, 64, name)?;
-                    self.formats.entry(name).or_insert(fields);
-                }
-            }
+            b'F' => self.take_format(content, budget)?,
             b'A' => self.subscribe(content, budget)?,
-            b'D' => {
-                let number = array(content, 0).map(u16::from_le_bytes);
-                let data = content.get(2..).unwrap_or_default();
-                let Some(topic) = number.and_then(|number| self.subscriptions.get_mut(&number))
-                else {
-                    self.unread += 1;
-                    return Ok(());
-                };
-                let time_us = topic.stamp.number.at(data, topic.stamp.offset);
-                let Some(time_us) = time_us.filter(|_| data.len() >= topic.least) else {
-                    self.unread += 1;
-                    return Ok(());
-                };
-                let values = topic
-                    .places
-                    .iter()
-                    .map(|place| place.number.at(data, place.offset).unwrap_or(f64::NAN));
-                topic.samples.push(time_us * 1e-6, values, budget)?;
-            }
+            b'D' => self.take_data(content, budget)?,
             b'O' => {
                 self.dropouts += 1;
-                self.lost_ms += array(content, 0)
-                    .map(u16::from_le_bytes)
-                    .map_or(0, u64::from);
+                self.lost_ms += u64::from(array(content, 0).map_or(0, u16::from_le_bytes));
             }
             _ => {}
         }
+        Ok(())
+    }
+
+    /// Takes the layout for a topic; later layouts for the same topic are ignored.
+    fn take_format(
+        &mut self,
+        content: &'b [u8],
+        budget: &ReadingBudget<'_>,
+    ) -> Result<(), VariableFault> {
+        let text = std::str::from_utf8(content).unwrap_or_default();
+        if let Some((name, fields)) = text.split_once(':') {
+            budget.take(1, 64, name)?;
+            self.formats.entry(name).or_insert(fields);
+        }
+        Ok(())
+    }
+
+    fn take_data(
+        &mut self,
+        content: &[u8],
+        budget: &ReadingBudget<'_>,
+    ) -> Result<(), VariableFault> {
+        let number = array(content, 0).map(u16::from_le_bytes);
+        let data = content.get(2..).unwrap_or_default();
+        let topic = number.and_then(|number| self.subscriptions.get_mut(&number));
+        if let Some(topic) = topic
+            && data.len() >= topic.least
+            && let Some(time_us) = topic.stamp.read(data)
+        {
+            let values = topic
+                .places
+                .iter()
+                .map(|place| place.read(data).unwrap_or(f64::NAN));
+            return topic.samples.push(time_us * 1e-6, values, budget);
+        }
+        self.unread += 1;
         Ok(())
     }
 
@@ -162,41 +191,33 @@ impl<'b> Messages<'b> {
         content: &'b [u8],
         budget: &ReadingBudget<'_>,
     ) -> Result<(), VariableFault> {
-        let (Some([instance]), Some(number)) = (
-            array::<1>(content, 0),
-            array(content, 1).map(u16::from_le_bytes),
-        ) else {
+        let Some([instance, low, high]) = array::<3>(content, 0) else {
             return Ok(());
         };
-        let name = std::str::from_utf8(content.get(3..).unwrap_or_default()).unwrap_or_default();
-        let (places, _) = match places_of(name, &self.formats, budget) {
+        let number = u16::from_le_bytes([low, high]);
+        let name = std::str::from_utf8(&content[3..]).unwrap_or_default();
+        let mut places = match places_in_message(name, &self.formats, budget) {
             Err(fault) if fault.is_of_the_budget() => return Err(fault),
             Err(_) => return Ok(()),
             Ok(places) => places,
         };
-        let is_stamp = |place: &Place| {
-            place.name == "timestamp" && Some(place.number) == number_of("uint64_t")
-        };
-        let Some(stamp) = places.iter().find(|place| is_stamp(place)).cloned() else {
+        let Some(stamp) = places.iter().find(|place| place.is_stamp()).cloned() else {
             return Ok(());
         };
-        let places: Vec<Place> = places
-            .into_iter()
-            .filter(|place| !is_stamp(place))
-            .collect();
-        let least = places
-            .iter()
-            .chain([&stamp])
-            .map(|place| place.offset + place.number.size())
-            .max()
-            .unwrap_or(0);
+        places.retain(|place| !place.is_stamp());
+        let ends = places.iter().chain([&stamp]).map(Place::end);
+        let least = ends.max().unwrap_or(0);
         let name = if instance == 0 {
             name.to_owned()
         } else {
             format!("{name}[{instance}]")
         };
-        let samples =
-            TopicSamples::new(name, places.iter().map(|place| (place.name.clone(), None)));
+        let fields = places.iter().map(|place| TopicField {
+            name: place.name.clone(),
+            unit: None,
+            values: Vec::new(),
+        });
+        let samples = TopicSamples::new(name, fields.collect());
         self.subscriptions.entry(number).or_insert(Subscription {
             samples,
             stamp,
@@ -206,13 +227,14 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
+    /// Returns the columns with their documented meanings, the flight modes, and notes.
     fn columns(self, is_cut: bool) -> Result<Columns, VariableFault> {
         let topics: Vec<TopicSamples> = self
             .subscriptions
             .into_values()
             .map(|topic| topic.samples)
             .collect();
-        let modes = modes_of(&topics);
+        let modes = flight_modes(&topics);
         let mut columns = Columns::new(
             String::new(),
             topics.into_iter().flat_map(TopicSamples::columns).collect(),
@@ -220,69 +242,62 @@ impl<'b> Messages<'b> {
         if columns.columns.is_empty() {
             return Err(VariableFault::cut_off("", HEADER));
         }
-        columns
-            .notes
-            .push("a log of PX4; time in seconds since the autopilot was started".to_owned());
-        columns
-            .notes
-            .extend(give_meanings(&mut columns.columns, &PX4));
+        let notes = &mut columns.notes;
+        notes.push("a log of PX4; time in seconds since the autopilot was started".to_owned());
+        notes.extend(give_meanings(&mut columns.columns, &PX4));
         if self.dropouts > 0 {
             let lost_s = self.lost_ms as f64 * 1e-3;
-            columns.notes.push(format!(
+            notes.push(format!(
                 "{} dropouts of the logger, {lost_s:.2} s together: gaps",
                 self.dropouts
             ));
         }
         if self.unread > 0 {
-            columns.notes.push(format!(
-                "{} messages that are of no topic, or too short: left out",
+            notes.push(format!(
+                "{} messages without a topic, or too short: left out",
                 self.unread
             ));
         }
         if is_cut {
-            columns
-                .notes
-                .push("the file is cut off: read as far as it goes".to_owned());
+            notes.push("the file is cut off: read up to its end".to_owned());
         }
-        columns.notes.extend(modes_note(&modes));
+        notes.extend(modes_note(&modes));
         columns.modes = modes;
         Ok(columns)
     }
 }
 
-/// Finds the armed spans and the flight modes (`vehicle_status`: `arming_state` 2 is armed,
-/// `nav_state` follows PX4's message).
-fn modes_of(topics: &[TopicSamples]) -> Vec<ModeSpan> {
+/// Finds the armed spans and the flight modes in `vehicle_status`.
+fn flight_modes(topics: &[TopicSamples]) -> Vec<ModeSpan> {
     let Some(status) = topics.iter().find(|topic| topic.name == "vehicle_status") else {
         return Vec::new();
     };
-    let values = |name: &str| {
-        status
-            .fields
-            .iter()
-            .find(|field| field.name == name)
-            .map(|field| field.values.clone())
-    };
     let mut modes = Vec::new();
-    if let Some(values) = values("arming_state") {
-        modes.extend(mode_spans(&status.time_s, values, |state| {
-            (state == 2.0).then(|| "armed".to_owned())
+    if let Some(field) = status.field("arming_state") {
+        let states = field.values.iter().copied();
+        modes.extend(mode_spans(&status.time_s, states, |state| {
+            if state == ARMED {
+                Some("armed".to_owned())
+            } else {
+                None
+            }
         }));
     }
-    if let Some(values) = values("nav_state") {
-        let name = |state| {
-            NAVIGATION
-                .iter()
-                .find(|(number, _)| f64::from(*number) == state)
-        };
-        modes.extend(mode_spans(&status.time_s, values, |state| {
-            name(state).map(|(_, name)| (*name).to_owned())
-        }));
+    if let Some(field) = status.field("nav_state") {
+        let states = field.values.iter().copied();
+        modes.extend(mode_spans(&status.time_s, states, navigation_mode));
     }
     modes
 }
 
-/// `VehicleStatus.msg` of PX4 1.14 to 1.16: `NAVIGATION_STATE_…`.
+fn navigation_mode(state: f64) -> Option<String> {
+    let (_, name) = NAVIGATION
+        .iter()
+        .find(|(number, _)| f64::from(*number) == state)?;
+    Some((*name).to_owned())
+}
+
+/// `NAVIGATION_STATE_…` in `VehicleStatus.msg`, PX4 1.14 to 1.16.
 const NAVIGATION: [(u8, &str); 13] = [
     (0, "manual"),
     (1, "altitude"),
@@ -298,160 +313,6 @@ const NAVIGATION: [(u8, &str); 13] = [
     (18, "land"),
     (21, "orbit"),
 ];
-
-// Message layouts: fields that are numbers, arrays or other layouts, flattened to a list of
-// numbers.
-
-/// Largest message, limited by its 16-bit length \[bytes\].
-const LARGEST: usize = 65_535;
-/// Deepest nesting of layouts.
-const DEEPEST: usize = 8;
-
-/// A number in the data of a message.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Place {
-    /// For example `xyz[0]`, `esc[1].esc_rpm`.
-    pub(super) name: String,
-    pub(super) number: StoredNumber,
-    pub(super) offset: usize,
-}
-
-/// Layouts by message name, as written in the file: `uint64_t timestamp;float[3] xyz`.
-pub(super) type Formats<'b> = BTreeMap<&'b str, &'b str>;
-
-/// Returns the numbers in a message of this name and its length in bytes.
-///
-/// # Errors
-/// A layout that is missing, recursive, or longer than the largest message.
-pub(super) fn places_of(
-    name: &str,
-    formats: &Formats<'_>,
-    budget: &ReadingBudget<'_>,
-) -> Result<(Vec<Place>, usize), VariableFault> {
-    let mut flat = Flat {
-        formats,
-        budget,
-        message: name,
-        places: Vec::new(),
-    };
-    let size = flat.add(name, "", 0, DEEPEST)?;
-    Ok((flat.places, size))
-}
-
-struct Flat<'a> {
-    formats: &'a Formats<'a>,
-    budget: &'a ReadingBudget<'a>,
-    message: &'a str,
-    places: Vec<Place>,
-}
-
-impl Flat<'_> {
-    fn damaged(&self, what: String) -> VariableFault {
-        VariableFault::damaged(self.message, what, 0)
-    }
-
-    /// Adds the numbers of a layout from an offset on; returns the end offset.
-    fn add(
-        &mut self,
-        name: &str,
-        prefix: &str,
-        mut offset: usize,
-        deeper: usize,
-    ) -> Result<usize, VariableFault> {
-        if deeper == 0 {
-            return Err(VariableFault::too_deep(self.message));
-        }
-        let Some(fields) = self.formats.get(name) else {
-            return Err(self.damaged(format!("the layout of \"{}\" is missing", short(name))));
-        };
-        for field in fields
-            .split(';')
-            .map(str::trim)
-            .filter(|field| !field.is_empty())
-        {
-            let Some((kind, field)) = field.split_once(' ') else {
-                return Err(self.damaged(format!("\"{}\" is no field", short(field))));
-            };
-            let is_array = kind.ends_with(']');
-            let (kind, count) = match kind.strip_suffix(']').and_then(|kind| kind.split_once('[')) {
-                Some((kind, count)) => (
-                    kind,
-                    count
-                        .parse::<usize>()
-                        .ok()
-                        .filter(|count| *count <= LARGEST),
-                ),
-                None => (kind, Some(1)),
-            };
-            let Some(count) = count else {
-                return Err(self.damaged(format!("\"{}\" has no length", short(field))));
-            };
-            for index in 0..count {
-                let label = if is_array {
-                    format!("{prefix}{field}[{index}]")
-                } else {
-                    format!("{prefix}{field}")
-                };
-                let begin = offset;
-                self.budget.work(1, self.message)?;
-                offset = match number_of(kind) {
-                    Some(number) => {
-                        if !field.starts_with("_padding") {
-                            self.budget.take(
-                                1,
-                                (size_of::<Place>() + label.len()) as u64,
-                                self.message,
-                            )?;
-                            self.places.push(Place {
-                                name: label,
-                                number,
-                                offset,
-                            });
-                        }
-                        offset + number.size()
-                    }
-                    None if kind == "char" => offset + 1,
-                    None => self.add(kind, &format!("{label}."), offset, deeper - 1)?,
-                };
-                // Fields without bytes could be repeated without limit.
-                if offset == begin || offset > LARGEST {
-                    return Err(self.damaged(format!(
-                        "the field \"{}\" has no length, or too much",
-                        short(field)
-                    )));
-                }
-            }
-        }
-        Ok(offset)
-    }
-}
-
-/// Returns the number type of a C type name, or nothing if it is unknown.
-fn number_of(kind: &str) -> Option<StoredNumber> {
-    use NumberClass::{Float, Signed, Unsigned};
-    let (class, size) = match kind {
-        "int8_t" => (Signed, 1),
-        "uint8_t" | "bool" => (Unsigned, 1),
-        "int16_t" => (Signed, 2),
-        "uint16_t" => (Unsigned, 2),
-        "int32_t" => (Signed, 4),
-        "uint32_t" => (Unsigned, 4),
-        "int64_t" => (Signed, 8),
-        "uint64_t" => (Unsigned, 8),
-        "float" => (Float, 4),
-        "double" => (Float, 8),
-        _ => return None,
-    };
-    Some(StoredNumber::little_endian(class, size))
-}
-
-/// Shortens a name for a message.
-fn short(name: &str) -> String {
-    name.chars()
-        .take(60)
-        .filter(|letter| !letter.is_control())
-        .collect()
-}
 
 #[cfg(test)]
 mod tests {
@@ -534,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn a_log_that_is_cut_off_is_read_as_far_as_it_goes() {
+    fn a_log_that_is_cut_off_is_read_up_to_its_end() {
         let bytes = log(40);
         let columns = read(&bytes[..bytes.len() - 20]).unwrap();
         assert!(columns.notes.iter().any(|note| note.contains("cut off")));
@@ -546,47 +407,5 @@ mod tests {
         let mut bytes = log(3);
         bytes[16 + 3 + 8] = 2;
         assert!(read(&bytes).err().unwrap().to_string().contains("ulog2csv"));
-    }
-}
-
-#[cfg(test)]
-mod layout_tests {
-    use super::*;
-
-    #[test]
-    fn layouts_inside_layouts_become_a_flat_list() {
-        let formats = Formats::from([
-            ("esc", "uint64_t timestamp;one[2] esc;uint8_t[3] _padding0;"),
-            ("one", "int16_t rpm;char[4] name;float v"),
-        ]);
-        let (places, size) = places_of("esc", &formats, &ReadingBudget::new(1 << 20)).unwrap();
-        let found: Vec<(&str, usize)> = places
-            .iter()
-            .map(|place| (place.name.as_str(), place.offset))
-            .collect();
-        let expected = [
-            ("timestamp", 0),
-            ("esc[0].rpm", 8),
-            ("esc[0].v", 14),
-            ("esc[1].rpm", 18),
-            ("esc[1].v", 24),
-        ];
-        assert_eq!((found, size), (expected.to_vec(), 31));
-    }
-
-    #[test]
-    fn circles_and_layouts_without_bytes_are_refused() {
-        let formats = Formats::from([
-            ("a", "a x"),
-            ("b", "none[60000] x"),
-            ("none", ""),
-            ("c", "float[99999999] x"),
-        ]);
-        for name in ["a", "b", "c", "d"] {
-            assert!(
-                places_of(name, &formats, &ReadingBudget::new(1 << 20)).is_err(),
-                "{name}"
-            );
-        }
     }
 }

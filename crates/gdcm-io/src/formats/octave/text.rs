@@ -3,7 +3,7 @@
 use super::{Element, Form, Parts, Sides, texts_in_pages, value};
 use crate::file_error::FileError;
 use crate::formats::strides::Entries;
-use crate::formats::text::separator::decode;
+use crate::formats::text::encoding::decode;
 use crate::formats::variables::{TextArray, Value, Variable};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};

@@ -1,9 +1,10 @@
-//! Meaning of the columns of a frequency response, from names and units.
+//! Meaning of frequency response columns, from names and units.
 
-use gdcm_model::names::{KnownChannels, ResponseName};
 use gdcm_model::units::physical_unit::PhysicalUnit;
 
-/// Quantity in a column of a frequency response.
+use crate::formats::text::response_label::ResponseLabel;
+
+/// Quantity in a frequency response column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     Error,
@@ -30,17 +31,17 @@ pub(super) enum KnownUnit {
     GammaSquared,
     /// `rps`: radians or revolutions per second, ambiguous.
     Rps,
-    /// Another unit, of a magnitude, a real or an imaginary part.
+    /// Any other unit; occurs for magnitudes, real and imaginary parts.
     Other,
 }
 
-/// Meaning of the name and the unit of a column.
+/// Meaning of a column, from its name and unit.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ColumnMeaning {
     pub(super) quantity: Option<Quantity>,
     pub(super) unit: Option<KnownUnit>,
     pub(super) label: ResponseLabel,
-    /// The reason: "its name says phase".
+    /// Reason for the quantity: "its name contains phase".
     pub(super) reason: String,
 }
 
@@ -111,7 +112,7 @@ const WORDS: [(Quantity, &[&str]); 7] = [
     ),
 ];
 
-/// Units at the end of a name without brackets.
+/// Units after a name, without brackets.
 const UNIT_ENDINGS: [(&str, KnownUnit); 13] = [
     ("rad/s", KnownUnit::RadianPerSecond),
     ("rad/sec", KnownUnit::RadianPerSecond),
@@ -128,97 +129,113 @@ const UNIT_ENDINGS: [(&str, KnownUnit); 13] = [
     ("%", KnownUnit::Percent),
 ];
 
+/// Characters between a name and its unit.
+const BEFORE_UNIT: [char; 6] = ['_', ' ', '-', '.', '/', ','];
+
+/// Words for magnitudes that are not in decibels.
+const ABSOLUTE: [&str; 6] = ["abs", "absolute", "lin", "linear", "ratio", "modulus"];
+
+/// A word in a column name.
+#[derive(Clone, Copy)]
+struct Word<'n> {
+    /// Offset in the name \[bytes\].
+    start: usize,
+    text: &'n str,
+}
+
 impl ColumnMeaning {
-    /// Interprets the name and the unit of a column.
-    pub(super) fn of(name: &str, unit: Option<&str>) -> Self {
+    /// Interprets the name and the unit in a heading.
+    pub(super) fn interpret(name: &str, unit: Option<&str>) -> Self {
         let (name, unit) = match unit {
             Some(unit) => (name, Some(known_unit(unit))),
-            None => unit_at_end(name),
+            None => split_unit(name),
         };
-        let lower = name.trim().to_lowercase();
-        let sole = match lower.as_str() {
-            "w" if !matches!(unit, Some(KnownUnit::Other)) => {
-                Some((Quantity::Frequency, Some(KnownUnit::RadianPerSecond)))
-            }
+        let usual_unit = match name.trim().to_lowercase().as_str() {
+            _ if unit == Some(KnownUnit::Other) => return Self::from_words(name, unit),
+            "w" => Some(KnownUnit::RadianPerSecond),
             // In frequency tables f is in Hz as often as in rad/s, so the user is asked for its
             // unit.
-            "f" if !matches!(unit, Some(KnownUnit::Other)) => Some((Quantity::Frequency, None)),
-            _ => None,
+            "f" => None,
+            _ => return Self::from_words(name, unit),
         };
-        if let Some((quantity, usual)) = sole {
-            let reason = format!("its name is \"{name}\"");
-            return Self {
-                quantity: Some(quantity),
-                unit: unit.or(usual),
-                label: ResponseLabel::default(),
-                reason,
-            };
+        Self {
+            quantity: Some(Quantity::Frequency),
+            unit: unit.or(usual_unit),
+            label: ResponseLabel::default(),
+            reason: format!("its name is \"{name}\""),
         }
-        Self::from_words(name, unit)
     }
 
     fn from_words(name: &str, unit: Option<KnownUnit>) -> Self {
         let words = words_of(name);
         for (quantity, known) in WORDS {
-            let is = |word: &str| {
-                known.contains(&word)
-                    || known.contains(&word.trim_end_matches(|c: char| c.is_ascii_digit()))
-            };
-            if let Some((_, word)) = words.iter().find(|(_, word)| is(&word.to_lowercase())) {
-                let reason = format!("its name says {}", word.to_lowercase());
-                let label = without(name, &words, known);
-                let unit = unit.or_else(|| usual_unit(quantity, word, &words));
+            if let Some(word) = words.iter().find(|word| word.is_known(known)) {
+                let lower = word.text.to_lowercase();
                 return Self {
                     quantity: Some(quantity),
-                    unit,
-                    label: ResponseLabel::of(&label),
-                    reason,
+                    unit: unit.or_else(|| usual_unit(quantity, &lower, &words)),
+                    label: ResponseLabel::parse(&without_words(name, &words, known)),
+                    reason: format!("its name contains {lower}"),
                 };
             }
         }
-        let strokes =
-            name.trim().len() > 2 && name.trim().starts_with('|') && name.trim().ends_with('|');
+        Self::from_unit_or_signs(name, unit)
+    }
+
+    /// Interprets a name without a known word by its unit, or by the signs |…| and ∠.
+    fn from_unit_or_signs(name: &str, unit: Option<KnownUnit>) -> Self {
+        let bare = name.trim();
+        let has_strokes = bare.len() > 2 && bare.starts_with('|') && bare.ends_with('|');
         let (quantity, reason) = match unit {
             Some(KnownUnit::Decibel) => (Some(Quantity::Magnitude), "its unit is dB"),
             Some(KnownUnit::Degree) => (Some(Quantity::Phase), "its unit is an angle"),
             Some(KnownUnit::Hertz) => (Some(Quantity::Frequency), "its unit is Hz"),
-            Some(KnownUnit::RadianPerSecond) if name.trim().is_empty() => {
+            Some(KnownUnit::RadianPerSecond) if bare.is_empty() => {
                 (Some(Quantity::Frequency), "its unit is rad/s")
             }
-            _ if strokes => (Some(Quantity::Magnitude), "its name stands between strokes"),
-            _ if name.contains('∠') => {
-                (Some(Quantity::Phase), "its name has the sign of an angle")
-            }
+            _ if has_strokes => (
+                Some(Quantity::Magnitude),
+                "its name is between vertical bars",
+            ),
+            _ if name.contains('∠') => (Some(Quantity::Phase), "its name has an angle sign"),
             _ => (None, ""),
         };
         Self {
             quantity,
             unit,
-            label: ResponseLabel::of(name),
+            label: ResponseLabel::parse(name),
             reason: reason.to_owned(),
         }
     }
 }
 
-/// Words for magnitudes that are not in decibels.
-const ABSOLUTE: [&str; 6] = ["abs", "absolute", "lin", "linear", "ratio", "modulus"];
+impl Word<'_> {
+    /// Whether the word is known, with or without digits after it: "re1".
+    fn is_known(&self, known: &[&str]) -> bool {
+        let lower = self.text.to_lowercase();
+        known.contains(&lower.as_str()) || known.contains(&without_digits(&lower))
+    }
 
-/// Returns the unit implied by the words of a name; `word` is the word that gives the quantity.
-fn usual_unit(quantity: Quantity, word: &str, words: &[(usize, &str)]) -> Option<KnownUnit> {
-    let word = word.to_lowercase();
+    fn is_absolute(&self) -> bool {
+        ABSOLUTE.contains(&self.text.to_lowercase().as_str())
+    }
+}
+
+/// Returns a word without the digits after it.
+fn without_digits(word: &str) -> &str {
+    word.trim_end_matches(|c: char| c.is_ascii_digit())
+}
+
+/// Returns the unit that the words in a name imply; `word` is the word that gives the quantity, in
+/// lower case.
+fn usual_unit(quantity: Quantity, word: &str, words: &[Word<'_>]) -> Option<KnownUnit> {
     match quantity {
-        Quantity::Frequency if matches!(word.as_str(), "omega" | "om" | "ω") => {
+        Quantity::Frequency if matches!(word, "omega" | "om" | "ω") => {
             Some(KnownUnit::RadianPerSecond)
         }
-        Quantity::Magnitude
-            if words
-                .iter()
-                .any(|(_, word)| ABSOLUTE.contains(&word.to_lowercase().as_str())) =>
-        {
-            Some(KnownUnit::Other)
-        }
+        Quantity::Magnitude if words.iter().any(Word::is_absolute) => Some(KnownUnit::Other),
         // Programs call both γ and γ² gamma.
-        Quantity::Coherence if !matches!(word.as_str(), "gamma" | "gam" | "γ") => {
+        Quantity::Coherence if !matches!(word, "gamma" | "gam" | "γ") => {
             Some(KnownUnit::GammaSquared)
         }
         _ => None,
@@ -231,7 +248,7 @@ fn known_unit(unit: &str) -> KnownUnit {
         "gamma2" | "gamma^2" | "γ²" | "γ2" | "γ^2" => return KnownUnit::GammaSquared,
         "rps" => return KnownUnit::Rps,
         "rev/s" | "rev/sec" => return KnownUnit::Hertz,
-        // Only for columns of frequencies.
+        // Only for frequency columns.
         "1/s" | "rads" | "rads^-1" | "rads-1" => return KnownUnit::RadianPerSecond,
         "1/sec" => return KnownUnit::Hertz,
         _ => {}
@@ -247,68 +264,80 @@ fn known_unit(unit: &str) -> KnownUnit {
     }
 }
 
-/// Splits a unit off the end of a name: "mag_dB", "freqHz", "w_rad_s".
-fn unit_at_end(name: &str) -> (&str, Option<KnownUnit>) {
+/// Splits a unit off a name: "mag_dB", "freqHz", "w_rad_s".
+fn split_unit(name: &str) -> (&str, Option<KnownUnit>) {
     let name = name.trim();
     for (ending, unit) in UNIT_ENDINGS {
-        let cut = name
-            .len()
-            .checked_sub(ending.len())
-            .filter(|&at| name.is_char_boundary(at));
-        let Some((front, end)) = cut.map(|at| name.split_at(at)) else {
+        let Some(front) = without_ending(name, ending) else {
             continue;
         };
-        if !end.eq_ignore_ascii_case(ending) {
-            continue;
-        }
-        let between = front.is_empty() || front.ends_with(['_', ' ', '-', '.', '/', ',']);
-        let word = front.to_lowercase();
-        let glued = WORDS.iter().any(|(_, known)| {
-            known
-                .iter()
-                .any(|known| known.len() > 1 && word.ends_with(known))
-        });
-        if between || glued {
-            return (
-                front.trim_end_matches(['_', ' ', '-', '.', '/', ',']),
-                Some(unit),
-            );
+        let is_separate = front.is_empty() || front.ends_with(BEFORE_UNIT);
+        if is_separate || ends_with_known_word(front) {
+            return (front.trim_end_matches(BEFORE_UNIT), Some(unit));
         }
     }
     (name, None)
 }
 
-/// Returns the words of a name and their offsets.
-fn words_of(name: &str) -> Vec<(usize, &str)> {
+/// Removes an ending in any case from a name; `None` if the name ends otherwise.
+fn without_ending<'n>(name: &'n str, ending: &str) -> Option<&'n str> {
+    let at = name.len().checked_sub(ending.len())?;
+    let (front, end) = name.split_at_checked(at)?;
+    if end.eq_ignore_ascii_case(ending) {
+        Some(front)
+    } else {
+        None
+    }
+}
+
+/// Whether a name ends with a known word that has at least two bytes, as the front of "freqHz" does.
+fn ends_with_known_word(name: &str) -> bool {
+    let name = name.to_lowercase();
+    WORDS
+        .iter()
+        .flat_map(|(_, known)| known.iter())
+        .any(|word| word.len() > 1 && name.ends_with(word))
+}
+
+/// Returns the words in a name: letters, digits and "²" without a break.
+fn words_of(name: &str) -> Vec<Word<'_>> {
     let mut words = Vec::new();
-    let mut from = None;
-    for (at, character) in name.char_indices().chain([(name.len(), ' ')]) {
-        let inside = at < name.len() && (character.is_alphanumeric() || character == '²');
-        match (from, inside) {
-            (None, true) => from = Some(at),
+    let mut begun = None;
+    for (at, character) in name.char_indices() {
+        let is_inside = character.is_alphanumeric() || character == '²';
+        match (begun, is_inside) {
+            (None, true) => begun = Some(at),
             (Some(start), false) => {
-                words.push((start, &name[start..at]));
-                from = None;
+                words.push(Word {
+                    start,
+                    text: &name[start..at],
+                });
+                begun = None;
             }
             _ => {}
         }
     }
+    if let Some(start) = begun {
+        words.push(Word {
+            start,
+            text: &name[start..],
+        });
+    }
     words
 }
 
-/// Returns a name without the words of one kind; digits after such a word are kept, as in "re1".
-fn without(name: &str, words: &[(usize, &str)], known: &[&str]) -> String {
+/// Returns a name without the known words; digits after such a word are kept, as in "re1".
+fn without_words(name: &str, words: &[Word<'_>], known: &[&str]) -> String {
     let mut label = String::with_capacity(name.len());
     let mut from = 0;
-    for (start, word) in words {
-        let stem = word.trim_end_matches(|c: char| c.is_ascii_digit());
-        let length = match (
-            known.contains(&word.to_lowercase().as_str()),
-            known.contains(&stem.to_lowercase().as_str()),
-        ) {
-            (true, _) => word.len(),
-            (_, true) => stem.len(),
-            _ => continue,
+    for Word { start, text } in words {
+        let stem = without_digits(text);
+        let length = if known.contains(&text.to_lowercase().as_str()) {
+            text.len()
+        } else if known.contains(&stem.to_lowercase().as_str()) {
+            stem.len()
+        } else {
+            continue;
         };
         label.push_str(&name[from..*start]);
         from = start + length;
@@ -317,82 +346,12 @@ fn without(name: &str, words: &[(usize, &str)], known: &[&str]) -> String {
     label
 }
 
-/// Output and input of a response, as far as its name gives them.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct ResponseLabel {
-    pub(super) output: Option<String>,
-    pub(super) input: Option<String>,
-}
-
-/// Response names that identify no channel.
-const ANY_RESPONSE: [&str; 9] = [
-    "h", "g", "frf", "tf", "fr", "resp", "response", "h(jw)", "g(jw)",
-];
-/// Separators between an input and the following output.
-const FORWARD: [&str; 5] = ["->", "→", "=>", ">", " to "];
-/// Separators between an output and its input.
-const BACKWARD: [&str; 6] = ["<-", "←", "/", " due to ", " from ", " over "];
-
-impl ResponseLabel {
-    /// Parses "P/LAT", "LAT->P", "LAT to P", "P_LAT"; any other text names the output.
-    pub(super) fn of(text: &str) -> Self {
-        let text = clean(text);
-        if ANY_RESPONSE.contains(&text.to_lowercase().as_str()) {
-            return Self::default();
-        }
-        let part = |part: &str| Some(clean(part).to_owned()).filter(|part| !part.is_empty());
-        for sign in BACKWARD {
-            if let Some((output, input)) = text.split_once(sign) {
-                return Self {
-                    output: part(output),
-                    input: part(input),
-                };
-            }
-        }
-        for sign in FORWARD {
-            if let Some((input, output)) = text.split_once(sign) {
-                return Self {
-                    output: part(output),
-                    input: part(input),
-                };
-            }
-        }
-        // Common names in the field: "q_delta_lon", "roll_rate".
-        let known = ResponseName::find(text, KnownChannels::Field).unwrap_or_default();
-        let is_whole = |name: &Option<String>| name.as_deref() == Some(text);
-        if known.output.is_some() && known.input.is_some()
-            || is_whole(&known.output)
-            || is_whole(&known.input)
-        {
-            return Self {
-                output: known.output,
-                input: known.input,
-            };
-        }
-        match text.split_once('_') {
-            Some((output, input)) if !input.contains('_') => Self {
-                output: part(output),
-                input: part(input),
-            },
-            _ => Self {
-                output: part(text),
-                input: None,
-            },
-        }
-    }
-}
-
-/// Returns a text without surrounding brackets, strokes and blanks.
-fn clean(text: &str) -> &str {
-    text.trim_matches(|c: char| c.is_whitespace() || "_-.,:;(){}[]|∠=\"'".contains(c))
-}
-
 #[cfg(test)]
 mod column_meaning_tests {
     use super::*;
 
-    fn of(name: &str, unit: &str) -> (Option<Quantity>, Option<KnownUnit>, String, String) {
-        let meaning = ColumnMeaning::of(name, Some(unit).filter(|unit| !unit.is_empty()));
+    fn meaning(name: &str, unit: &str) -> (Option<Quantity>, Option<KnownUnit>, String, String) {
+        let meaning = ColumnMeaning::interpret(name, Some(unit).filter(|unit| !unit.is_empty()));
         let ResponseLabel { output, input } = meaning.label;
         (
             meaning.quantity,
@@ -402,7 +361,7 @@ mod column_meaning_tests {
         )
     }
 
-    fn is(
+    fn expected(
         quantity: Quantity,
         unit: Option<KnownUnit>,
         output: &str,
@@ -412,8 +371,8 @@ mod column_meaning_tests {
     }
 
     #[test]
-    fn frequencies_are_named_in_many_ways() {
-        let radians = is(
+    fn frequencies_have_many_names() {
+        let radians = expected(
             Quantity::Frequency,
             Some(KnownUnit::RadianPerSecond),
             "",
@@ -427,9 +386,9 @@ mod column_meaning_tests {
             ("freq rad/s", ""),
             ("ω", ""),
         ] {
-            assert_eq!(of(name, unit), radians, "{name}");
+            assert_eq!(meaning(name, unit), radians, "{name}");
         }
-        let hertz = is(Quantity::Frequency, Some(KnownUnit::Hertz), "", "");
+        let hertz = expected(Quantity::Frequency, Some(KnownUnit::Hertz), "", "");
         for (name, unit) in [
             ("f_Hz", ""),
             ("freqHz", ""),
@@ -437,55 +396,67 @@ mod column_meaning_tests {
             ("f", "Hz"),
             ("f", "rev/s"),
         ] {
-            assert_eq!(of(name, unit), hertz, "{name}");
+            assert_eq!(meaning(name, unit), hertz, "{name}");
         }
         for name in ["f", "freq"] {
             assert_eq!(
-                of(name, ""),
-                is(Quantity::Frequency, None, "", ""),
+                meaning(name, ""),
+                expected(Quantity::Frequency, None, "", ""),
                 "{name}"
             );
         }
-        let open = is(Quantity::Frequency, Some(KnownUnit::Rps), "", "");
+        let open = expected(Quantity::Frequency, Some(KnownUnit::Rps), "", "");
         for (name, unit) in [("freq_rps", ""), ("omega", "rps"), ("f", "rps")] {
-            assert_eq!(of(name, unit), open, "{name}");
+            assert_eq!(meaning(name, unit), open, "{name}");
         }
-        assert_eq!(of("w", "m/s").0, None);
+        assert_eq!(meaning("w", "m/s").0, None);
     }
 
     #[test]
-    fn the_response_is_read_from_what_is_left_of_the_name() {
+    fn the_response_is_read_from_the_other_words() {
         let decibel = Some(KnownUnit::Decibel);
         assert_eq!(
-            of("mag P/LAT", "dB"),
-            is(Quantity::Magnitude, decibel, "P", "LAT")
-        );
-        assert_eq!(of("P_LAT_re", ""), is(Quantity::Real, None, "P", "LAT"));
-        assert_eq!(of("re(LAT->P)", ""), is(Quantity::Real, None, "P", "LAT"));
-        assert_eq!(
-            of("P/LAT_mag_dB", ""),
-            is(Quantity::Magnitude, decibel, "P", "LAT")
+            meaning("mag P/LAT", "dB"),
+            expected(Quantity::Magnitude, decibel, "P", "LAT")
         );
         assert_eq!(
-            of("P/LAT", "deg"),
-            is(Quantity::Phase, Some(KnownUnit::Degree), "P", "LAT")
+            meaning("P_LAT_re", ""),
+            expected(Quantity::Real, None, "P", "LAT")
         );
         assert_eq!(
-            of("phasedeg", ""),
-            is(Quantity::Phase, Some(KnownUnit::Degree), "", "")
-        );
-        assert_eq!(of("Im1", ""), is(Quantity::Imaginary, None, "1", ""));
-        assert_eq!(of("|P/LAT|", ""), is(Quantity::Magnitude, None, "P", "LAT"));
-        assert_eq!(
-            of("|H|", "dB"),
-            is(Quantity::Magnitude, decibel, "", ""),
-            "the file says whose it is"
+            meaning("re(LAT->P)", ""),
+            expected(Quantity::Real, None, "P", "LAT")
         );
         assert_eq!(
-            of("ph", "deg"),
-            is(Quantity::Phase, Some(KnownUnit::Degree), "", "")
+            meaning("P/LAT_mag_dB", ""),
+            expected(Quantity::Magnitude, decibel, "P", "LAT")
         );
-        let squared = is(Quantity::Coherence, Some(KnownUnit::GammaSquared), "", "");
+        assert_eq!(
+            meaning("P/LAT", "deg"),
+            expected(Quantity::Phase, Some(KnownUnit::Degree), "P", "LAT")
+        );
+        assert_eq!(
+            meaning("phasedeg", ""),
+            expected(Quantity::Phase, Some(KnownUnit::Degree), "", "")
+        );
+        assert_eq!(
+            meaning("Im1", ""),
+            expected(Quantity::Imaginary, None, "1", "")
+        );
+        assert_eq!(
+            meaning("|P/LAT|", ""),
+            expected(Quantity::Magnitude, None, "P", "LAT")
+        );
+        assert_eq!(
+            meaning("|H|", "dB"),
+            expected(Quantity::Magnitude, decibel, "", ""),
+            "the file names the response"
+        );
+        assert_eq!(
+            meaning("ph", "deg"),
+            expected(Quantity::Phase, Some(KnownUnit::Degree), "", "")
+        );
+        let squared = expected(Quantity::Coherence, Some(KnownUnit::GammaSquared), "", "");
         for (name, unit) in [
             ("Gamma2", ""),
             ("COHER", ""),
@@ -493,80 +464,44 @@ mod column_meaning_tests {
             ("coherence", ""),
             ("gamma", "gamma2"),
         ] {
-            assert_eq!(of(name, unit), squared, "{name}");
+            assert_eq!(meaning(name, unit), squared, "{name}");
         }
         assert_eq!(
-            of("gamma", ""),
-            is(Quantity::Coherence, None, "", ""),
+            meaning("gamma", ""),
+            expected(Quantity::Coherence, None, "", ""),
             "γ or γ²"
         );
         assert_eq!(
-            of("gamma", "gamma"),
-            is(Quantity::Coherence, Some(KnownUnit::Gamma), "", "")
+            meaning("gamma", "gamma"),
+            expected(Quantity::Coherence, Some(KnownUnit::Gamma), "", "")
         );
         assert_eq!(
-            of("gain Q/LON", ""),
-            is(Quantity::Magnitude, None, "Q", "LON"),
+            meaning("gain Q/LON", ""),
+            expected(Quantity::Magnitude, None, "Q", "LON"),
             "dB or a ratio"
         );
         for name in ["mag_abs", "abs", "gain_abs", "|H| abs"] {
-            assert_eq!(of(name, "").1, Some(KnownUnit::Other), "{name}");
+            assert_eq!(meaning(name, "").1, Some(KnownUnit::Other), "{name}");
         }
         for (name, unit) in [
             ("sd_mag_dB", KnownUnit::Decibel),
             ("sd_phase_deg", KnownUnit::Degree),
         ] {
             assert_eq!(
-                (of(name, "").0, of(name, "").1),
+                (meaning(name, "").0, meaning(name, "").1),
                 (Some(Quantity::Error), Some(unit)),
                 "{name}"
             );
         }
         assert_eq!(
-            of("phase error", "deg"),
-            is(Quantity::Error, Some(KnownUnit::Degree), "phase", "")
+            meaning("phase error", "deg"),
+            expected(Quantity::Error, Some(KnownUnit::Degree), "phase", "")
         );
     }
 
     #[test]
-    fn a_name_that_says_nothing_has_no_meaning() {
-        assert_eq!(of("torque", "%").0, None);
-        assert_eq!(of("grad", "").0, None);
-    }
-}
-
-#[cfg(test)]
-mod response_label_tests {
-    use super::*;
-
-    #[test]
-    fn the_ways_of_naming_a_response_are_read() {
-        let read = |text| {
-            let ResponseLabel { output, input } = ResponseLabel::of(text);
-            (output.unwrap_or_default(), input.unwrap_or_default())
-        };
-        let expected = ("P".to_owned(), "LAT".to_owned());
-        for text in [
-            "P/LAT",
-            "(LAT->P)",
-            "LAT → P",
-            "LAT to P",
-            "P <- LAT",
-            "P due to LAT",
-            "|P / LAT|",
-        ] {
-            assert_eq!(read(text), expected, "{text}");
-        }
-        assert_eq!(read("P_LAT"), expected);
-        assert_eq!(
-            read("q_delta_lon"),
-            ("q".to_owned(), "delta_lon".to_owned())
-        );
-        assert_eq!(read("q per lon"), ("q".to_owned(), "lon".to_owned()));
-        assert_eq!(read("roll_rate"), ("roll_rate".to_owned(), String::new()));
-        assert_eq!(read("delta_lon"), (String::new(), "delta_lon".to_owned()));
-        assert_eq!(read(" P_"), ("P".to_owned(), String::new()));
-        assert_eq!(read("a_b_c").0, "a_b_c");
-        assert_eq!(ResponseLabel::of("()"), ResponseLabel::default());
+    fn unknown_names_have_no_meaning() {
+        assert_eq!(meaning("torque", "%").0, None);
+        assert_eq!(meaning("grad", "").0, None);
     }
 }

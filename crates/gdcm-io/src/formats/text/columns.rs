@@ -1,55 +1,65 @@
-//! Tables of numbers in columns, written by programs and people.
+//! Number tables in columns, written by programs and people.
 
-use std::collections::BTreeMap;
-
-use crate::formats::text::heading::{Heading, name_and_unit, names_one_more, numbers_mostly};
-use crate::formats::text::separator::{Separator, cell_number, excerpt, lines, refuse_binary};
+use crate::formats::text::cell_number::cell_number;
+use crate::formats::text::encoding::refuse_binary;
+use crate::formats::text::heading::{
+    Heading, NumberedLine, is_mostly_numbers, names_one_more_column,
+};
+use crate::formats::text::heading_units::name_and_unit;
+use crate::formats::text::layout::{Layout, RowShape};
+use crate::formats::text::lines::{comment, excerpt, is_rule, lines};
+use crate::formats::text::separator::Separator;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 const EXPECTED: &str = "a table of numbers in columns";
+/// Number of lines before the first row that are compared with a repeated heading.
+const COMPARED_HEADINGS: usize = 20;
 
-/// A table of numbers in columns.
+/// A table with number columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextTable {
     /// Column names, if the text has them.
     pub names: Option<Vec<String>>,
-    /// Unit of each column, if the text has one.
+    /// Unit for each column, if the text gives it.
     pub units: Vec<Option<String>>,
     /// The numbers, column by column. Missing numbers are NaN, which users of the table refuse with
     /// their position.
     pub columns: Vec<Vec<f64>>,
-    /// Line number of each row, from 1.
+    /// Line number by row, from 1.
     pub lines: Vec<usize>,
-    /// Separator of the cells.
     pub separator: Separator,
     pub decimal_comma: bool,
     /// Comments and headings: line number and line.
     pub skipped: Vec<(usize, String)>,
-    /// Decisions that could be different, in words.
+    /// Notes on ambiguous readings.
     pub notes: Vec<String>,
 }
 
 impl TextTable {
-    /// Returns the name of a column, if the text has it.
+    /// Returns a column name, if the text has it.
     pub(super) fn name(&self, column: usize) -> Option<&str> {
         self.names.as_ref()?.get(column).map(String::as_str)
     }
 
     /// Returns the column headings: "omega \[rad/s\]"; empty without a name.
     pub fn headings(&self) -> Vec<String> {
-        let heading = |(column, unit): (usize, &Option<String>)| match unit {
-            Some(unit) => format!("{} [{unit}]", self.name(column).unwrap_or_default())
-                .trim()
-                .to_owned(),
-            None => self.name(column).unwrap_or_default().to_owned(),
-        };
-        self.units.iter().enumerate().map(heading).collect()
+        (0..self.units.len())
+            .map(|column| self.heading(column))
+            .collect()
     }
 
-    /// Returns the table with other headings, in the form of [`TextTable::headings`].
+    fn heading(&self, column: usize) -> String {
+        let name = self.name(column).unwrap_or_default();
+        match &self.units[column] {
+            Some(unit) => format!("{name} [{unit}]").trim().to_owned(),
+            None => name.to_owned(),
+        }
+    }
+
+    /// Returns the table with other headings, written as in [`TextTable::headings`].
     ///
     /// # Errors
-    /// The number of headings differs from the number of columns.
+    /// There are more or fewer headings than columns.
     pub fn with_headings(mut self, headings: &[String]) -> Result<Self, VariableFault> {
         if headings.len() != self.columns.len() {
             let found = format!(
@@ -59,18 +69,21 @@ impl TextTable {
             );
             return Err(VariableFault::format("one heading for each column", found));
         }
-        let (names, units) = headings
-            .iter()
-            .map(|heading| name_and_unit(heading))
-            .unzip();
-        (self.names, self.units) = (Some(names), units);
+        let mut names = Vec::with_capacity(headings.len());
+        self.units.clear();
+        for heading in headings {
+            let (name, unit) = name_and_unit(heading);
+            names.push(name);
+            self.units.push(unit);
+        }
+        self.names = Some(names);
         self.notes
             .push("the headings of the columns are those of the rules".to_owned());
         Ok(self)
     }
 }
 
-/// Reads a table of numbers in columns: recognises its separator, decimal mark, names and units.
+/// Reads a table with number columns: recognises its separator, decimal mark, names and units.
 pub fn read_table(text: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
     refuse_binary(text, EXPECTED)?;
     let Some(layout) = Layout::recognise(text, budget)? else {
@@ -96,22 +109,21 @@ struct Reading<'m> {
     layout: Layout,
     budget: &'m ReadingBudget<'m>,
     columns: Vec<Vec<f64>>,
+    /// Line number by row.
     lines: Vec<usize>,
-    skipped: Vec<(usize, String)>,
+    skipped: Vec<NumberedLine>,
     notes: Vec<String>,
 }
 
 impl<'m> Reading<'m> {
     fn new(layout: Layout, budget: &'m ReadingBudget<'m>) -> Result<Self, VariableFault> {
-        // Memory of a column's header here, and of its unit and name later.
+        // Memory for a column header here, and for its unit and name later.
         budget.take(layout.columns as u64, 128, "")?;
-        let columns = vec![Vec::new(); layout.columns];
-        let lines = Vec::new();
         Ok(Self {
             layout,
             budget,
-            columns,
-            lines,
+            columns: vec![Vec::new(); layout.columns],
+            lines: Vec::new(),
             skipped: Vec::new(),
             notes: Vec::new(),
         })
@@ -121,33 +133,36 @@ impl<'m> Reading<'m> {
         if line.trim().is_empty() {
             return Ok(());
         }
-        let width = |layout: Layout| layout.width(line);
         if comment(line).is_some() {
             // "#N/A;1" and ";1;2" begin with a comment mark, but are rows.
-            return match width(self.layout) {
-                Some((width, empty)) if self.layout.fits(width, empty) => self.row(number, line),
+            return match self.layout.row_shape(line) {
+                Some(shape) if self.layout.fits(shape) => self.row(number, line),
                 _ => self.skip(number, line),
             };
         }
         if is_rule(line) {
             return self.skip(number, line);
         }
-        if !self.lines.is_empty() {
-            return if self.repeats_heading(line) {
-                self.notes
-                    .push(format!("line {number} repeats a heading: the rows behind it are taken as more of the same"));
-                self.skip(number, line)
-            } else {
-                self.row(number, line)
-            };
+        if self.lines.is_empty() {
+            self.line_before_rows(number, line)
+        } else if self.repeats_heading(line) {
+            self.notes.push(format!(
+                "line {number} repeats a heading: the rows after it continue the table"
+            ));
+            self.skip(number, line)
+        } else {
+            self.row(number, line)
         }
-        match width(self.layout) {
-            Some((width, empty)) if self.layout.fits(width, empty) => self.row(number, line),
-            // A row count or a date: a single number is not a row of a table.
-            Some((1, _)) => {
+    }
+
+    fn line_before_rows(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+        match self.layout.row_shape(line) {
+            Some(shape) if self.layout.fits(shape) => self.row(number, line),
+            // A row count or a date: a single number is not a table row.
+            Some(RowShape { width: 1, .. }) => {
                 let columns = self.layout.columns;
                 self.notes.push(format!(
-                    "line {number} holds one number, the table {columns} columns: passed over"
+                    "line {number} holds one number, the table has {columns} columns: skipped"
                 ));
                 self.skip(number, line)
             }
@@ -158,13 +173,19 @@ impl<'m> Reading<'m> {
 
     /// Whether a line repeats the heading, as written by programs that continue a record.
     fn repeats_heading(&self, line: &str) -> bool {
-        let first_line = self.lines.first().copied().unwrap_or(0);
-        let mut above = self
-            .skipped
+        self.skipped_above_rows()
             .iter()
-            .take(20)
-            .take_while(|(number, _)| *number < first_line);
-        above.any(|(_, heading)| heading.trim() == line.trim())
+            .take(COMPARED_HEADINGS)
+            .any(|heading| heading.1.trim() == line.trim())
+    }
+
+    /// Returns the skipped lines before the first row.
+    fn skipped_above_rows(&self) -> &[NumberedLine] {
+        let first_row = self.lines.first().copied().unwrap_or(0);
+        let count = self
+            .skipped
+            .partition_point(|(number, _)| *number < first_row);
+        &self.skipped[..count]
     }
 
     fn heading(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
@@ -176,7 +197,7 @@ impl<'m> Reading<'m> {
             .map(|cell| cell.into_owned())
             .collect();
         let fits = cells.len() == columns || cells.len() == columns + 1;
-        if fits && numbers_mostly(&cells, self.layout) {
+        if fits && is_mostly_numbers(&cells, self.layout) {
             self.row(number, line)
         } else {
             self.skip(number, line)
@@ -190,311 +211,122 @@ impl<'m> Reading<'m> {
     }
 
     fn row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
-        if self.lines.is_empty()
-            && self.layout.trailing
-            && names_one_more(&self.skipped, self.layout)
-        {
+        let is_first = self.lines.is_empty();
+        if is_first && self.layout.trailing && names_one_more_column(&self.skipped, self.layout) {
             self.layout.columns += 1;
             self.layout.trailing = false;
             self.columns.push(Vec::new());
         }
-        // Vectors grow by doubling: up to half of their memory may be unused.
+        // Vectors grow by doubling: up to half their memory may be unused.
         self.budget.take(self.layout.columns as u64 + 1, 16, "")?;
         let mut cells = self.layout.cells(line);
         let mut ends_empty = false;
         for (index, column) in self.columns.iter_mut().enumerate() {
             let Some(cell) = cells.next() else {
-                return Err(self.ragged(number, line));
+                return Err(self.wrong_width(number, line));
             };
             let Some(value) = cell_number(&cell, self.layout.decimal_comma) else {
-                return Err(VariableFault::line(
-                    "",
-                    number,
-                    self.no_number(index, &cell, line),
-                ));
+                let what = self.no_number(index, &cell, line);
+                return Err(VariableFault::line("", number, what));
             };
             ends_empty = cell.trim().is_empty();
             column.push(value);
         }
-        let complete = match (cells.next(), cells.next()) {
-            (None, _) => self.layout.fits(self.layout.columns, ends_empty),
-            (Some(cell), None) => cell.trim().is_empty(),
-            _ => false,
+        let is_complete = match cells.next() {
+            None => self.layout.fits(RowShape {
+                width: self.layout.columns,
+                ends_empty,
+            }),
+            // A trailing separator may leave one empty cell.
+            Some(extra) => cells.next().is_none() && extra.trim().is_empty(),
         };
-        if !complete {
-            return Err(self.ragged(number, line));
+        if !is_complete {
+            return Err(self.wrong_width(number, line));
         }
         self.lines.push(number);
         Ok(())
     }
 
+    /// Describes a cell that is no number, or a line without any number.
     fn no_number(&self, index: usize, cell: &str, line: &str) -> String {
-        if self
-            .layout
-            .cells(line)
-            .take(20)
-            .all(|cell| cell_number(&cell, self.layout.decimal_comma).is_none())
-        {
+        /// Number of cells examined.
+        const EXAMINED: usize = 20;
+        let decimal_comma = self.layout.decimal_comma;
+        let mut cells = self.layout.cells(line).take(EXAMINED);
+        if cells.all(|cell| cell_number(&cell, decimal_comma).is_none()) {
             let start = excerpt(line);
             return format!(
                 "words among the rows (\"{start}\"); put # before them, or split the file if others follow"
             );
         }
-        let mark = if self.layout.decimal_comma && cell.contains('.') {
+        let mark = if decimal_comma && cell.contains('.') {
             " (the decimal mark is the comma)"
         } else {
             ""
         };
-        let cell = excerpt(cell);
-        let place = index + 1;
         format!(
-            "column {place} holds \"{cell}\", which is no number{mark}; correct it, or empty the cell"
+            "column {} holds \"{}\", which is no number{mark}; correct it, or empty the cell",
+            index + 1,
+            excerpt(cell)
         )
     }
 
-    fn ragged(&self, number: usize, line: &str) -> VariableFault {
+    fn wrong_width(&self, number: usize, line: &str) -> VariableFault {
+        let mut found: usize = 0;
+        let mut ends_empty = false;
+        for cell in self.layout.cells(line) {
+            found += 1;
+            ends_empty = cell.trim().is_empty();
+        }
+        if self.layout.trailing && ends_empty {
+            found -= 1;
+        }
         let expected = self.layout.columns;
-        let (found, ends_empty) = self
-            .layout
-            .cells(line)
-            .fold((0, false), |(count, _), cell| {
-                (count + 1, cell.trim().is_empty())
-            });
-        let found: usize = if self.layout.trailing && ends_empty {
-            found - 1
-        } else {
-            found
-        };
         let separator = self.layout.separator.words();
-        let remedy = "complete the line, or split the file where the columns change";
         VariableFault::line(
             "",
             number,
             format!(
-                "{found} columns, where the table has {expected} (between {separator}); {remedy}"
+                "{found} columns, where the table has {expected} (between {separator}); \
+                 complete the line, or split the file where the columns change"
             ),
         )
     }
 
     fn finish(mut self, text: &str) -> Result<TextTable, VariableFault> {
-        let Some(&first_line) = self.lines.first() else {
+        if self.lines.is_empty() {
             return Err(no_numbers(text));
-        };
-        let above = self
-            .skipped
-            .iter()
-            .take_while(|(number, _)| *number < first_line)
-            .count();
-        let Heading {
-            names,
-            units,
-            notes,
-        } = Heading::find(&self.skipped[..above], self.layout);
-        self.notes.extend(notes);
-        let Layout {
-            separator,
-            decimal_comma,
-            columns,
-            ..
-        } = self.layout;
-        if separator == Separator::Comma
-            && columns == 2
-            && !decimal_comma
-            && names.is_none()
-            && self.all_whole()
-        {
+        }
+        let heading = Heading::find(self.skipped_above_rows(), self.layout);
+        self.notes.extend(heading.notes);
+        if heading.names.is_none() && self.may_have_decimal_commas() {
             let note = "each line has one comma: read as two columns; numbers with a decimal comma look the same";
             self.notes.push(note.to_owned());
         }
-        let Self {
-            columns,
-            lines,
-            skipped,
-            notes,
-            ..
-        } = self;
         Ok(TextTable {
-            names,
-            units,
-            columns,
-            lines,
-            separator,
-            decimal_comma,
-            skipped,
-            notes,
+            names: heading.names,
+            units: heading.units,
+            columns: self.columns,
+            lines: self.lines,
+            separator: self.layout.separator,
+            decimal_comma: self.layout.decimal_comma,
+            skipped: self.skipped,
+            notes: self.notes,
         })
     }
 
-    fn all_whole(&self) -> bool {
-        self.columns
-            .iter()
-            .flatten()
-            .all(|value| value.fract() == 0.0)
+    /// Whether the table could also be a single column with decimal commas: two columns with whole
+    /// numbers between commas.
+    fn may_have_decimal_commas(&self) -> bool {
+        self.layout.separator == Separator::Comma
+            && self.layout.columns == 2
+            && !self.layout.decimal_comma
+            && self
+                .columns
+                .iter()
+                .flatten()
+                .all(|value| value.fract() == 0.0)
     }
-}
-
-// Layout of the lines of a table.
-
-/// Number of lines examined to recognise the layout.
-const SAMPLE: usize = 200;
-/// Marks at the beginning of a comment line.
-const COMMENT_MARKS: [&str; 5] = ["#", "%", "//", "!", ";"];
-
-/// Layout of the lines of a table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Layout {
-    /// Separator of the cells.
-    pub(super) separator: Separator,
-    pub(super) decimal_comma: bool,
-    /// Number of columns, without the empty column after a trailing separator on every line.
-    pub(super) columns: usize,
-    /// Whether a trailing separator on the examined lines leaves an empty cell.
-    pub(super) trailing: bool,
-}
-
-/// Frequency of lines of one width.
-#[derive(Clone, Copy, Default)]
-struct Count {
-    lines: usize,
-    ending_empty: usize,
-}
-
-/// Number lines found with one candidate layout.
-struct Tally {
-    /// Its columns are not counted yet.
-    layout: Layout,
-    widths: BTreeMap<usize, Count>,
-    lines: usize,
-}
-
-impl Layout {
-    /// Finds the separator and the decimal mark for which most lines are number lines of one width;
-    /// prefers the wider table in a tie; returns nothing if no line is a number line.
-    pub(super) fn recognise(
-        text: &str,
-        budget: &ReadingBudget,
-    ) -> Result<Option<Self>, VariableFault> {
-        let mut tallies: Vec<Tally> = Vec::with_capacity(2 * Separator::ALL.len());
-        for decimal_comma in [false, true] {
-            let layout = |separator| Layout {
-                separator,
-                decimal_comma,
-                columns: 0,
-                trailing: false,
-            };
-            let tally = |separator| Tally {
-                layout: layout(separator),
-                widths: BTreeMap::new(),
-                lines: 0,
-            };
-            tallies.extend(Separator::ALL.map(tally));
-        }
-        for (_, line) in lines(text) {
-            budget.work(1, "")?;
-            if line.trim().is_empty() || comment(line).is_some() {
-                continue;
-            }
-            tallies.iter_mut().for_each(|tally| tally.count(line));
-            if tallies.iter().any(|tally| tally.lines >= SAMPLE) {
-                break;
-            }
-        }
-        let mut best: Option<(usize, Layout)> = None;
-        for (count, layout) in tallies.iter().filter_map(Tally::layout) {
-            if best.is_none_or(|(most, known)| (count, layout.columns) > (most, known.columns)) {
-                best = Some((count, layout));
-            }
-        }
-        Ok(best.map(|(_, layout)| layout))
-    }
-
-    /// Returns the cells of a number line, without a trailing comment.
-    pub(super) fn cells(self, line: &str) -> crate::formats::text::separator::Cells<'_> {
-        self.separator.cells(without_comment(line))
-    }
-
-    /// Returns the number of cells of a line if all are numbers or missing and at least one is a
-    /// number, and whether the last cell is empty.
-    pub(super) fn width(self, line: &str) -> Option<(usize, bool)> {
-        let mut width = 0;
-        let mut numbers = 0;
-        let mut empty = false;
-        for cell in self.cells(line) {
-            let number = cell_number(&cell, self.decimal_comma)?;
-            width += 1;
-            numbers += usize::from(!number.is_nan());
-            empty = cell.trim().is_empty();
-        }
-        (numbers > 0).then_some((width, empty))
-    }
-
-    /// Whether a line with `width` cells fits: an additional empty cell may follow a trailing
-    /// separator. If all lines end in a separator, the empty cell after it is not counted.
-    pub(super) fn fits(self, width: usize, ends_empty: bool) -> bool {
-        let expected = if self.trailing && ends_empty {
-            self.columns + 1
-        } else {
-            self.columns
-        };
-        width == expected || (width == self.columns + 1 && ends_empty)
-    }
-}
-
-impl Tally {
-    fn count(&mut self, line: &str) {
-        if let Some((width, ends_empty)) = self.layout.width(line) {
-            let count = self.widths.entry(width).or_default();
-            count.lines += 1;
-            count.ending_empty += usize::from(ends_empty);
-            self.lines += 1;
-        }
-    }
-
-    /// Returns the most frequent width, the larger in a tie.
-    fn layout(&self) -> Option<(usize, Layout)> {
-        let (&width, count) = self
-            .widths
-            .iter()
-            .max_by_key(|(width, count)| (count.lines, **width))?;
-        let trailing = count.ending_empty == count.lines && width > 1;
-        let columns = if trailing { width - 1 } else { width };
-        Some((
-            count.lines,
-            Layout {
-                columns,
-                trailing,
-                ..self.layout
-            },
-        ))
-    }
-}
-
-/// Returns the text of a comment line after its mark.
-pub(super) fn comment(line: &str) -> Option<&str> {
-    let line = line.trim_start();
-    let mark = COMMENT_MARKS.iter().find(|&&mark| line.starts_with(mark))?;
-    Some(line.trim_start_matches(mark))
-}
-
-/// Whether a line is only a rule: "-----", "|---|---|", "=====".
-pub(super) fn is_rule(line: &str) -> bool {
-    line.trim().len() >= 3
-        && line.bytes().all(|byte| b"-=+|:_ \t".contains(&byte))
-        && !line.trim().contains("- -")
-}
-
-/// Returns a line without a trailing comment, whose mark is between blanks: "#N/A" and "50%"
-/// contain such characters too.
-fn without_comment(line: &str) -> &str {
-    if !line.contains(['#', '%', '!', '/']) {
-        return line;
-    }
-    let marks = [" # ", " % ", " ! ", " // ", "\t# ", "\t% ", "\t! "];
-    marks
-        .iter()
-        .filter_map(|mark| line.find(mark))
-        .min()
-        .map_or(line, |end| &line[..end])
 }
 
 #[cfg(test)]
@@ -546,7 +378,7 @@ mod columns_tests {
     }
 
     #[test]
-    fn headings_can_be_said_in_place_of_the_file_s() {
+    fn headings_can_be_given_instead_of_those_in_the_file() {
         let table = read("w,P [dB],x\n1,2,3\n2,3,4\n").unwrap();
         assert_eq!(table.headings(), ["w", "P [dB]", "x"]);
         let said = ["f [Hz]", "", "phase [deg]"].map(str::to_owned);
@@ -558,7 +390,7 @@ mod columns_tests {
     }
 
     #[test]
-    fn comments_rules_and_blank_lines_are_passed_over() {
+    fn comments_rules_and_blank_lines_are_skipped() {
         let text = "% by a tool\n# w mag ph\n-------\n1 2 3\n\n! middle\n4 5 6 # behind\n// end\n";
         let table = read(text).unwrap();
         assert_eq!(table.names.as_deref().unwrap(), ["w", "mag", "ph"]);
@@ -579,7 +411,7 @@ mod columns_tests {
         assert_eq!(table.columns[0], [1000.0, 2000.0]);
         assert_eq!(
             table.notes[0],
-            "line 1 holds one number, the table 2 columns: passed over"
+            "line 1 holds one number, the table has 2 columns: skipped"
         );
         assert_eq!(missing(&table), 1);
     }
@@ -620,7 +452,7 @@ mod columns_tests {
     }
 
     #[test]
-    fn headings_in_the_middle_are_passed_over_with_a_note() {
+    fn headings_in_the_middle_are_skipped_with_a_note() {
         let table = read("t,x\n1,2\n3,4\nt,x\n1,5\n").unwrap();
         assert_eq!(table.columns, [[1.0, 3.0, 1.0], [2.0, 4.0, 5.0]]);
         assert!(
@@ -664,7 +496,7 @@ mod columns_tests {
     }
 
     #[test]
-    fn what_claims_too_much_is_refused_before_it_is_taken() {
+    fn tables_beyond_the_limit_are_refused_before_their_memory_is_taken() {
         let wide = "1,".repeat(1_000_000);
         assert!(matches!(read(&wide), Err(VariableFault::TooLarge { .. })));
         let stopped = read_table(
@@ -694,51 +526,5 @@ mod columns_tests {
         fn any_text_is_read_or_refused(text in "[0-9a-z,;| \\t\\n\"#%.eE+\\-\\[\\]()]{0,200}") {
             let _ = read(&text);
         }
-    }
-}
-
-#[cfg(test)]
-mod layout_tests {
-    use super::*;
-
-    fn of(text: &str) -> Option<(Separator, bool, usize)> {
-        let layout = Layout::recognise(text, &ReadingBudget::new(1 << 20)).unwrap()?;
-        Some((layout.separator, layout.decimal_comma, layout.columns))
-    }
-
-    #[test]
-    fn the_separator_and_the_decimal_mark_are_recognised() {
-        assert_eq!(of("1,2,3\n4,5,6"), Some((Separator::Comma, false, 3)));
-        assert_eq!(of("1,5;2,5"), Some((Separator::Semicolon, true, 2)));
-        assert_eq!(of("1;2"), Some((Separator::Semicolon, false, 2)));
-        assert_eq!(of("1,5 2,5"), Some((Separator::Blanks, true, 2)));
-        assert_eq!(of("1,5\t2,5"), Some((Separator::Tab, true, 2)));
-        assert_eq!(of("1.5 | 2 |\n3 | 4 |"), Some((Separator::Pipe, false, 2)));
-        assert_eq!(of("\"1,5\",\"2,5\""), Some((Separator::Comma, true, 2)));
-        assert_eq!(of("1.5\n2.5"), Some((Separator::Tab, false, 1)));
-        assert_eq!(of("no numbers"), None);
-    }
-
-    #[test]
-    fn tabulators_that_only_align_are_blanks() {
-        assert_eq!(
-            of("1\t\t2\n100\t2\n3\t\t4\n400\t5"),
-            Some((Separator::Blanks, false, 2))
-        );
-        assert_eq!(of("1\t\t2\n3\t\t4"), Some((Separator::Tab, false, 3)));
-    }
-
-    #[test]
-    fn a_comment_behind_numbers_is_left_out() {
-        assert_eq!(
-            of("1 2 # first\n3 4 ! second"),
-            Some((Separator::Blanks, false, 2))
-        );
-        assert_eq!(without_comment("1 #N/A 50%"), "1 #N/A 50%");
-    }
-
-    #[test]
-    fn rules_are_seen() {
-        assert!(is_rule("|---|---|") && is_rule("====") && !is_rule("- - -") && !is_rule("-1"));
     }
 }

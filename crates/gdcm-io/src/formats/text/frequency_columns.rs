@@ -1,585 +1,130 @@
-//! Frequency responses among the columns of a table, recognised by column names and units.
+//! Frequency responses in a table, recognised by column names and units.
 
-use std::f64::consts::TAU;
-
-use crate::formats::text::column_meaning::{ColumnMeaning, KnownUnit, Quantity, ResponseLabel};
 use crate::formats::text::columns::TextTable;
+use crate::formats::text::response_columns::{RecognisedResponse, ResponsePoints, column_place};
+use crate::formats::text::response_recognition::{FrequencyColumn, Recognition};
+use crate::formats::text::unrecognised::{Unrecognised, units_missing, unrecognised};
 use crate::reading_budget::VariableFault;
 
-/// Meaning of the columns of a table.
+/// Meaning of the columns in a table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FrequencyColumns {
-    /// The column of frequencies, and its factor to rad/s.
-    frequency: (usize, f64),
+    frequency: FrequencyColumn,
     /// The responses, in column order.
     pub(crate) responses: Vec<RecognisedResponse>,
-    /// Each decision and its reason, in words.
+    /// Each decision with its reason.
     pub(crate) notes: Vec<String>,
-    /// Names of the unused columns, or their numbers if they have no name.
+    /// Unused columns: their names, or their numbers if they have no name.
     pub(crate) unused: Vec<String>,
-}
-
-/// A frequency response among the columns of a table.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct RecognisedResponse {
-    /// The output, if the names give it.
-    pub(crate) output: Option<String>,
-    /// The input, if the names give it.
-    pub(crate) input: Option<String>,
-    parts: ResponseParts,
-    pub(crate) coherence: Option<CoherenceColumn>,
-}
-
-/// A column of coherence; multiplication by the factor, then squaring for γ, gives γ² as a fraction
-/// of 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CoherenceColumn {
-    /// The column, from 0.
-    column: usize,
-    factor: f64,
-    is_gamma: bool,
-}
-
-impl CoherenceColumn {
-    fn squared(self, value: f64) -> f64 {
-        let part = self.factor * value;
-        if self.is_gamma { part * part } else { part }
-    }
-}
-
-/// The two columns, counted from 0, of a complex number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum ResponseParts {
-    Polar {
-        magnitude: usize,
-        in_db: bool,
-        phase: usize,
-        in_degrees: bool,
-    },
-    Rectangular {
-        re: usize,
-        im: usize,
-    },
-}
-
-/// A frequency response, point by point.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct ResponsePoints {
-    /// Frequencies \[rad/s\], strictly increasing.
-    pub(crate) omega: Vec<f64>,
-    /// Real parts.
-    pub(crate) re: Vec<f64>,
-    /// Imaginary parts.
-    pub(crate) im: Vec<f64>,
-    /// Coherence as a fraction of 1, NaN where it is missing.
-    pub(crate) coherence: Option<Vec<f64>>,
-}
-
-/// A column without a unit whose numbers allow two units.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct UnsaidUnit {
-    /// The column, from 0.
-    pub column: usize,
-    /// The possible units, as written in a heading.
-    pub units: [&'static str; 2],
-}
-
-/// Reason why a table is not a frequency response, and the missing units that would make it one.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Unrecognised {
-    pub(crate) fault: VariableFault,
-    pub(crate) unsaid: Vec<UnsaidUnit>,
 }
 
 impl FrequencyColumns {
     /// Recognises the columns by their names and units; ambiguities become questions.
     pub(crate) fn recognise(table: &TextTable) -> Result<Self, Unrecognised> {
-        let unit = |index: usize| table.units.get(index).and_then(|unit| unit.as_deref());
-        let meaning =
-            |index: usize| ColumnMeaning::of(table.name(index).unwrap_or_default(), unit(index));
-        let meanings: Vec<ColumnMeaning> = (0..table.columns.len()).map(meaning).collect();
-        let mut reading = Recognition {
-            table,
-            meanings: &meanings,
-            notes: Vec::new(),
-            unsaid: Vec::new(),
-            unused: Vec::new(),
-        };
-        let frequency = reading.frequency()?;
-        let responses = reading.responses();
-        if !reading.unsaid.is_empty() {
-            let ask = |of: &UnsaidUnit| {
-                let [one, other] = of.units;
-                format!("{} (write [{one}] or [{other}])", place(table, of.column))
-            };
-            let asked: Vec<String> = reading.unsaid.iter().map(ask).collect();
-            let of_units = unrecognised(&format!("no unit of {}", asked.join(", of ")));
-            return Err(Unrecognised {
-                unsaid: reading.unsaid,
-                ..of_units
-            });
+        let mut recognition = Recognition::new(table);
+        let frequency = recognition.frequency()?;
+        let responses = recognition.responses();
+        if !recognition.unsaid.is_empty() {
+            return Err(units_missing(table, recognition.unsaid));
         }
         if responses.is_empty() {
             return Err(unrecognised(
                 "no magnitude with a phase and no real part with an imaginary part",
             ));
         }
-        let Recognition { notes, unused, .. } = reading;
-        let mut found = Self {
+        let mut columns = Self {
             frequency,
             responses,
-            notes,
-            unused,
+            notes: recognition.notes,
+            unused: recognition.unused,
         };
-        if found.falls(table) {
-            found
-                .notes
-                .push("the frequencies fall: taken from the last line to the first".to_owned());
+        if columns.is_decreasing(table) {
+            let note = "the frequencies fall: taken from the last line to the first";
+            columns.notes.push(note.to_owned());
         }
-        Ok(found)
+        Ok(columns)
     }
 
-    /// Returns the points of every response, in rad/s and as complex numbers.
+    /// Returns the points for every response, in rad/s and as complex numbers.
     ///
     /// Decreasing frequencies are reversed. A frequency that is missing, negative, or not above the
     /// frequency before it is refused with its line, and so is half a complex number.
     pub(crate) fn values(&self, table: &TextTable) -> Result<Vec<ResponsePoints>, VariableFault> {
-        let falls = self.falls(table).then(|| {
-            let mut table = table.clone();
-            table.columns.iter_mut().for_each(|column| column.reverse());
-            table.lines.reverse();
-            table
-        });
-        let table = falls.as_ref().unwrap_or(table);
-        let omega = self.omega(table)?;
-        self.responses
-            .iter()
-            .map(|response| points(table, response, &omega))
-            .collect()
+        if self.is_decreasing(table) {
+            self.increasing_values(&reversed(table))
+        } else {
+            self.increasing_values(table)
+        }
     }
 
     /// Whether the frequencies decrease strictly.
-    fn falls(&self, table: &TextTable) -> bool {
-        let column = &table.columns[self.frequency.0];
-        column.len() > 1 && column.is_sorted_by(|one, next| one > next)
+    fn is_decreasing(&self, table: &TextTable) -> bool {
+        let frequencies = &table.columns[self.frequency.column];
+        frequencies.len() > 1 && frequencies.is_sorted_by(|above, below| above > below)
     }
 
+    fn increasing_values(&self, table: &TextTable) -> Result<Vec<ResponsePoints>, VariableFault> {
+        let omega = self.omega(table)?;
+        self.responses
+            .iter()
+            .map(|response| response.points(table, &omega))
+            .collect()
+    }
+
+    /// Returns the frequencies \[rad/s\], which must increase strictly.
     fn omega(&self, table: &TextTable) -> Result<Vec<f64>, VariableFault> {
-        let (index, factor) = self.frequency;
-        let column = &table.columns[index];
-        let place = place(table, index);
+        let FrequencyColumn { column, factor } = self.frequency;
+        let frequencies = &table.columns[column];
         let mut before = f64::NEG_INFINITY;
-        for (&value, &line) in column.iter().zip(&table.lines) {
-            let what = if !value.is_finite() {
-                "is missing or infinite; complete it or take the line out".to_owned()
-            } else if value < 0.0 {
-                format!("is negative ({value}); take the line out")
-            } else if value == before {
-                format!("stands twice ({value}); take one of the lines out")
-            } else if value < before {
-                format!(
-                    "is below the one before ({value} after {before}); sort the lines by frequency"
-                )
-            } else {
-                before = value;
-                continue;
-            };
-            return Err(VariableFault::line(
-                "",
-                line,
-                format!("the frequency in {place} {what}"),
-            ));
-        }
-        Ok(column.iter().map(|value| factor * value).collect())
-    }
-}
-
-/// Returns the reason why there is no frequency response, with a remedy.
-fn unrecognised(found: &str) -> Unrecognised {
-    let found = format!(
-        "a table with {found} among its columns; say what each column holds in its first line, by --headings, or under \
-         \"headings\" in the rules: \"omega [rad/s]\", \"mag Q/LON [dB]\", \"phase Q/LON [deg]\""
-    );
-    let fault = VariableFault::format("a frequency response in columns", found);
-    Unrecognised {
-        fault,
-        unsaid: Vec::new(),
-    }
-}
-
-/// A table during the assembly of its responses.
-struct Recognition<'t> {
-    table: &'t TextTable,
-    meanings: &'t [ColumnMeaning],
-    notes: Vec<String>,
-    /// Columns without a unit whose numbers allow several.
-    unsaid: Vec<UnsaidUnit>,
-    /// Names of the unused columns.
-    unused: Vec<String>,
-}
-
-/// Columns of one response, by quantity.
-#[derive(Default)]
-struct Group {
-    label: ResponseLabel,
-    columns: Vec<(Quantity, usize)>,
-}
-
-impl Group {
-    fn column(&self, quantity: Quantity) -> Option<usize> {
-        self.columns
-            .iter()
-            .find(|(known, _)| *known == quantity)
-            .map(|(_, column)| *column)
-    }
-}
-
-impl Recognition<'_> {
-    fn frequency(&mut self) -> Result<(usize, f64), Unrecognised> {
-        let named = self
-            .meanings
-            .iter()
-            .position(|meaning| meaning.quantity == Some(Quantity::Frequency));
-        let column = named.ok_or_else(|| unrecognised("no frequency"))?;
-        let meaning = &self.meanings[column];
-        let (factor, words) = match meaning.unit {
-            Some(KnownUnit::Hertz) => (TAU, "Hz"),
-            Some(KnownUnit::RadianPerSecond) => (1.0, "rad/s"),
-            _ => {
-                self.unsaid.push(UnsaidUnit {
-                    column,
-                    units: ["rad/s", "Hz"],
-                });
-                return Ok((column, 1.0));
+        for (&value, &line) in frequencies.iter().zip(&table.lines) {
+            if let Some(fault) = frequency_fault(value, before) {
+                let place = column_place(table, column);
+                let what = format!("the frequency in {place} {fault}");
+                return Err(VariableFault::line("", line, what));
             }
-        };
-        let known = match self.table.units.get(column).and_then(Option::as_ref) {
-            Some(unit) => format!("its unit says {unit}"),
-            None => "and with it the unit".to_owned(),
-        };
-        self.note(
-            column,
-            &format!("the frequency in {words}"),
-            &format!(", {known}"),
-        );
-        Ok((column, factor))
-    }
-
-    /// Notes the interpretation of a column and its reason.
-    fn note(&mut self, column: usize, what: &str, more: &str) {
-        let reason = &self.meanings[column].reason;
-        self.notes.push(format!(
-            "{} is read as {what}: {reason}{more}",
-            place(self.table, column)
-        ));
-    }
-
-    /// Returns the responses, in the order of their first columns.
-    fn responses(&mut self) -> Vec<RecognisedResponse> {
-        let mut responses = Vec::new();
-        for group in self.groups() {
-            if let Some(column) = group.column(Quantity::Error) {
-                self.note(column, "a standard deviation, which is not used", "");
-                self.unused.push(name_of(self.table, column));
-            }
-            let rectangular = group
-                .column(Quantity::Real)
-                .zip(group.column(Quantity::Imaginary));
-            let polar = group
-                .column(Quantity::Magnitude)
-                .zip(group.column(Quantity::Phase));
-            let parts = match (rectangular, polar) {
-                (Some((re, im)), polar) => {
-                    let parts = ResponseParts::Rectangular { re, im };
-                    self.note(re, "real part", "");
-                    self.note(im, "imaginary part", "");
-                    // Missing units are not needed here.
-                    match polar.map(|columns| self.polar(columns)) {
-                        Some((polar, unsaid)) if unsaid.is_empty() => self.compare(parts, polar),
-                        _ => {}
-                    }
-                    parts
-                }
-                (None, Some(columns)) => {
-                    let (parts, unsaid) = self.polar(columns);
-                    self.unsaid.extend(unsaid);
-                    parts
-                }
-                (None, None) => {
-                    let halves = group
-                        .columns
-                        .iter()
-                        .filter(|(quantity, _)| *quantity != Quantity::Error);
-                    for (_, column) in halves {
-                        let place = place(self.table, *column);
-                        self.notes
-                            .push(format!("{place} is left out: its other half is missing"));
-                        self.unused.push(name_of(self.table, *column));
-                    }
-                    continue;
-                }
-            };
-            let coherence = group
-                .column(Quantity::Coherence)
-                .map(|column| self.coherence(column));
-            let ResponseLabel { output, input } = group.label;
-            responses.push(RecognisedResponse {
-                output,
-                input,
-                parts,
-                coherence,
-            });
+            before = value;
         }
-        responses
-    }
-
-    /// Interprets a column of coherence: percent if its unit or its numbers above 1 require it. For
-    /// a column called gamma, γ or γ² is a question to the user.
-    fn coherence(&mut self, column: usize) -> CoherenceColumn {
-        /// Limit above 1 for coherence, for rounding and noise.
-        const MOST: f64 = 1.5;
-        let unit = self.meanings[column].unit;
-        if unit.is_none() {
-            self.unsaid.push(UnsaidUnit {
-                column,
-                units: ["gamma2", "gamma"],
-            });
-        }
-        let is_gamma = unit == Some(KnownUnit::Gamma);
-        let said = unit == Some(KnownUnit::Percent);
-        let above = self.table.columns[column].iter().any(|value| *value > MOST);
-        let (what, why, factor) = match (said, above) {
-            (true, _) => ("coherence in percent", ", its unit says %", 0.01),
-            (false, true) => (
-                "coherence in percent",
-                ", some of its numbers are above 1",
-                0.01,
-            ),
-            (false, false) => ("coherence", "", 1.0),
-        };
-        let why = if is_gamma {
-            ", its unit says γ: squared"
-        } else {
-            why
-        };
-        self.note(column, what, why);
-        CoherenceColumn {
-            column,
-            factor,
-            is_gamma,
-        }
-    }
-
-    fn groups(&mut self) -> Vec<Group> {
-        let mut groups: Vec<Group> = Vec::new();
-        for (column, meaning) in self.meanings.iter().enumerate() {
-            let Some(quantity) = meaning.quantity else {
-                let place = place(self.table, column);
-                self.notes
-                    .push(format!("{place} is left out: its name says nothing known"));
-                self.unused.push(name_of(self.table, column));
-                continue;
-            };
-            if quantity == Quantity::Frequency {
-                continue;
-            }
-            let unnamed = meaning.label == ResponseLabel::default();
-            let free = |group: &Group| group.column(quantity).is_none();
-            // The other words of an error's name give the quantity in error.
-            let beside = unnamed || quantity == Quantity::Error;
-            let known = match groups.last() {
-                Some(last) if beside && free(last) => Some(groups.len() - 1),
-                _ => groups
-                    .iter()
-                    .rposition(|group| group.label == meaning.label && free(group)),
-            };
-            let index = known.unwrap_or(groups.len());
-            if known.is_none() {
-                groups.push(Group {
-                    label: meaning.label.clone(),
-                    columns: Vec::new(),
-                });
-            }
-            groups[index].columns.push((quantity, column));
-        }
-        groups
-    }
-
-    /// Interprets a magnitude and a phase; also returns the columns whose units are neither given
-    /// nor evident.
-    fn polar(&mut self, (magnitude, phase): (usize, usize)) -> (ResponseParts, Vec<UnsaidUnit>) {
-        let mut unsaid = Vec::new();
-        let mut ask = |column: usize, units: [&'static str; 2]| {
-            unsaid.push(UnsaidUnit { column, units });
-            false
-        };
-        // A gain may be a level in dB, or a signed ratio.
-        let is_gain = self
-            .table
-            .name(magnitude)
-            .is_some_and(|name| name.to_lowercase().contains("gain"));
-        let is_negative = !is_gain
-            && self.table.columns[magnitude]
-                .iter()
-                .any(|value| *value < 0.0);
-        let (in_db, said) = match self.meanings[magnitude].unit {
-            Some(KnownUnit::Decibel) => (true, "its unit says dB"),
-            Some(_) => (false, "its unit is not dB"),
-            None if is_negative => (true, "some of its numbers are negative"),
-            None => (ask(magnitude, ["dB", "abs"]), ""),
-        };
-        let in_degrees = match self.meanings[phase].unit {
-            Some(KnownUnit::Degree) => true,
-            Some(KnownUnit::Radian) => false,
-            _ => ask(phase, ["deg", "rad"]),
-        };
-        if unsaid.is_empty() {
-            let size = if in_db {
-                "magnitude in dB"
-            } else {
-                "absolute magnitude"
-            };
-            self.note(magnitude, size, &format!(", {said}"));
-            let angle = if in_degrees { "deg" } else { "rad" };
-            self.note(
-                phase,
-                &format!("phase in {angle}"),
-                &format!(", its unit says {angle}"),
-            );
-        }
-        (
-            ResponseParts::Polar {
-                magnitude,
-                in_db,
-                phase,
-                in_degrees,
-            },
-            unsaid,
-        )
-    }
-
-    /// Compares a response given in both forms, to a hundredth of its magnitude: tables have few
-    /// digits.
-    fn compare(&mut self, rectangular: ResponseParts, polar: ResponseParts) {
-        let table = self.table;
-        let differs = |row: &usize| {
-            let (a, b) = rectangular.complex(table, *row);
-            let (c, d) = polar.complex(table, *row);
-            (a - c).hypot(b - d) > 0.01 * a.hypot(b).max(c.hypot(d))
-        };
-        let (magnitude, phase) = polar.columns();
-        let columns = format!(
-            "magnitude and phase in columns {} and {}",
-            magnitude + 1,
-            phase + 1
-        );
-        let taken = "the real and imaginary parts, which are taken";
-        self.notes.push(match (0..table.lines.len()).find(differs) {
-            None => format!("{columns} agree with {taken}"),
-            Some(row) => format!("{columns} differ from {taken} (line {})", table.lines[row]),
-        });
+        Ok(frequencies.iter().map(|value| factor * value).collect())
     }
 }
 
-/// Returns the name of a column, or "column 5" if it has none.
-fn name_of(table: &TextTable, column: usize) -> String {
+/// Returns a table with its rows in reverse order.
+fn reversed(table: &TextTable) -> TextTable {
+    let mut table = table.clone();
+    for column in &mut table.columns {
+        column.reverse();
+    }
+    table.lines.reverse();
     table
-        .name(column)
-        .map_or_else(|| format!("column {}", column + 1), str::to_owned)
 }
 
-/// Describes a column by its number, from 1, and its name.
-fn place(table: &TextTable, column: usize) -> String {
-    match table.name(column) {
-        Some(name) => format!("column {} (\"{name}\")", column + 1),
-        None => format!("column {}", column + 1),
-    }
-}
-
-/// Returns the points of a response, without the rows in which it has no numbers.
-fn points(
-    table: &TextTable,
-    response: &RecognisedResponse,
-    omega: &[f64],
-) -> Result<ResponsePoints, VariableFault> {
-    let (first, second) = response.parts.columns();
-    let coherence = response.coherence;
-    let mut points = ResponsePoints {
-        omega: Vec::with_capacity(omega.len()),
-        re: Vec::with_capacity(omega.len()),
-        im: Vec::with_capacity(omega.len()),
-        coherence: coherence.map(|_| Vec::with_capacity(omega.len())),
-    };
-    for (row, (&omega, &line)) in omega.iter().zip(&table.lines).enumerate() {
-        let values = [first, second].map(|index| (table.columns[index][row], index));
-        if values.iter().all(|(value, _)| value.is_nan()) {
-            continue;
-        }
-        if let Some((_, index)) = values.iter().find(|(value, _)| !value.is_finite()) {
-            let place = place(table, *index);
-            let what =
-                format!("{place} has no finite number; complete it or empty its other half too");
-            return Err(VariableFault::line("", line, what));
-        }
-        let (re, im) = response.parts.complex(table, row);
-        if !(re.is_finite() && im.is_finite()) {
-            let what = format!(
-                "{} is too large for a magnitude; is it in dB?",
-                place(table, first)
-            );
-            return Err(VariableFault::line("", line, what));
-        }
-        points.omega.push(omega);
-        points.re.push(re);
-        points.im.push(im);
-        if let (Some(all), Some(of)) = (&mut points.coherence, coherence) {
-            all.push(of.squared(table.columns[of.column][row]));
-        }
-    }
-    Ok(points)
-}
-
-impl ResponseParts {
-    fn columns(self) -> (usize, usize) {
-        match self {
-            ResponseParts::Polar {
-                magnitude, phase, ..
-            } => (magnitude, phase),
-            ResponseParts::Rectangular { re, im } => (re, im),
-        }
-    }
-
-    /// Returns real and imaginary part in a row of the table.
-    fn complex(self, table: &TextTable, row: usize) -> (f64, f64) {
-        let at = |column: usize| table.columns[column][row];
-        match self {
-            ResponseParts::Rectangular { re, im } => (at(re), at(im)),
-            ResponseParts::Polar {
-                magnitude,
-                in_db,
-                phase,
-                in_degrees,
-            } => {
-                let size = if in_db {
-                    10_f64.powf(at(magnitude) / 20.0)
-                } else {
-                    at(magnitude)
-                };
-                let angle = if in_degrees {
-                    at(phase).to_radians()
-                } else {
-                    at(phase)
-                };
-                (size * angle.cos(), size * angle.sin())
-            }
-        }
+/// Describes the fault in a frequency that follows `before`.
+fn frequency_fault(value: f64, before: f64) -> Option<String> {
+    if !value.is_finite() {
+        Some("is missing or infinite; complete it or take the line out".to_owned())
+    } else if value < 0.0 {
+        Some(format!("is negative ({value}); take the line out"))
+    } else if value == before {
+        Some(format!(
+            "occurs on two lines ({value}); take one of the lines out"
+        ))
+    } else if value < before {
+        Some(format!(
+            "is below the frequency before it ({value} after {before}); sort the lines by frequency"
+        ))
+    } else {
+        None
     }
 }
 
 #[cfg(test)]
-mod frequency_columns_tests {
+mod recognition_tests {
+    use std::f64::consts::TAU;
+
     use super::*;
     use crate::formats::text::columns::read_table;
+    use crate::formats::text::response_columns::{CoherenceColumn, ResponseParts};
+    use crate::formats::text::unrecognised::UnsaidUnit;
     use crate::reading_budget::ReadingBudget;
 
     fn recognise(text: &str) -> FrequencyColumns {
@@ -609,6 +154,11 @@ mod frequency_columns_tests {
         FrequencyColumns::recognise(&table).unwrap_err().unsaid
     }
 
+    /// The first column as the frequency.
+    fn frequency(factor: f64) -> FrequencyColumn {
+        FrequencyColumn { column: 0, factor }
+    }
+
     const POLAR: ResponseParts = ResponseParts::Polar {
         magnitude: 1,
         in_db: true,
@@ -617,11 +167,11 @@ mod frequency_columns_tests {
     };
 
     #[test]
-    fn names_and_units_say_it_all() {
+    fn names_and_units_identify_a_response() {
         let found = recognise(
             "omega [rad/s],mag P/LAT [dB],phase P/LAT [deg],coh P/LAT\n1,0,-90,1\n2,-6,-100,.9\n",
         );
-        assert_eq!(found.frequency, (0, 1.0));
+        assert_eq!(found.frequency, frequency(1.0));
         let [response] = found.responses.as_slice() else {
             panic!("one response")
         };
@@ -632,19 +182,19 @@ mod frequency_columns_tests {
         assert_eq!((response.parts, response.coherence), (POLAR, squared(3)));
         assert_eq!(
             found.notes[0],
-            "column 1 (\"omega\") is read as the frequency in rad/s: its name says omega, its unit says rad/s"
+            "column 1 (\"omega\") is read as the frequency in rad/s: its name contains omega, its unit is rad/s"
         );
         assert_eq!(
             found.notes[1],
-            "column 2 (\"mag P/LAT\") is read as magnitude in dB: its name says mag, its unit says dB"
+            "column 2 (\"mag P/LAT\") is read as magnitude in dB: its name contains mag, its unit is dB"
         );
     }
 
     #[test]
-    fn several_responses_stand_side_by_side() {
+    fn several_responses_are_side_by_side() {
         let found =
             recognise("f_Hz,P/LAT re,P/LAT im,re(PED->R),im(PED->R)\n1,2,3,4,5\n2,3,4,5,6\n");
-        assert_eq!(found.frequency, (0, TAU));
+        assert_eq!(found.frequency, frequency(TAU));
         let names: Vec<_> = found
             .responses
             .iter()
@@ -676,19 +226,22 @@ mod frequency_columns_tests {
 
     #[test]
     fn a_bare_f_rps_a_gain_and_gamma_are_asked_for_and_answered_by_a_unit() {
-        let one = |column, units| vec![UnsaidUnit { column, units }];
-        assert_eq!(asked("f,re,im\n1,1,2\n2,3,4\n"), one(0, ["rad/s", "Hz"]));
+        let question = |column, units| vec![UnsaidUnit { column, units }];
+        assert_eq!(
+            asked("f,re,im\n1,1,2\n2,3,4\n"),
+            question(0, ["rad/s", "Hz"])
+        );
         assert_eq!(
             asked("freq_rps,re,im\n1,1,2\n2,3,4\n"),
-            one(0, ["rad/s", "Hz"])
+            question(0, ["rad/s", "Hz"])
         );
         assert_eq!(
             asked("w,gain,phase_deg\n1,-3,-90\n2,-6,-100\n"),
-            one(1, ["dB", "abs"])
+            question(1, ["dB", "abs"])
         );
         assert_eq!(
             asked("w,re,im,gamma\n1,1,2,0.9\n2,3,4,0.8\n"),
-            one(3, ["gamma2", "gamma"])
+            question(3, ["gamma2", "gamma"])
         );
         let coherence = |unit: &str| {
             let text = format!("w,re,im,gamma [{unit}]\n1,1,2,0.9\n2,3,4,0.8\n");
@@ -701,7 +254,7 @@ mod frequency_columns_tests {
     }
 
     #[test]
-    fn standard_deviations_are_no_magnitude_and_no_phase_and_what_is_not_used_is_listed() {
+    fn standard_deviations_are_unused_and_listed() {
         let found = recognise(
             "w,mag_abs,phase_deg,COHER,sd_mag_dB,sd_phase_deg,torque\n1,0.5,-90,0.9,0.1,1,7\n2,0.4,-99,0.8,0.1,1,8\n",
         );
@@ -721,13 +274,13 @@ mod frequency_columns_tests {
     }
 
     #[test]
-    fn two_ways_that_disagree_are_told() {
+    fn differing_forms_are_noted() {
         let found = recognise("w,mag_db,phase_deg,re,im\n1,0,-90,0,1\n2,0,-90,0,1\n");
         assert!(found.notes.iter().any(|note| note.contains("differ")));
     }
 
     #[test]
-    fn what_names_and_units_do_not_say_is_asked_for() {
+    fn missing_units_are_asked_for() {
         let found = recognise("omega,mag,phase [deg]\n1,3,-90\n2,-6,-100\n");
         assert_eq!(found.responses[0].parts, POLAR, "no magnitude is negative");
         let size = fault("omega,mag,phase [deg]\n1,3,-90\n2,0.5,-100\n");
@@ -830,17 +383,17 @@ mod frequency_values_tests {
         let start = "the frequency in column 1 (\"omega\")";
         assert_eq!(
             message(["1", "2", "2"]),
-            format!("line 4: {start} stands twice (2); take one of the lines out")
+            format!("line 4: {start} occurs on two lines (2); take one of the lines out")
         );
         assert!(message(["1", "3", "2"]).starts_with(&format!(
-            "line 4: {start} is below the one before (2 after 3)"
+            "line 4: {start} is below the frequency before it (2 after 3)"
         )));
         assert!(message(["1", "", "2"]).starts_with(&format!("line 3: {start} is missing")));
         assert!(message(["-1", "1", "2"]).starts_with(&format!("line 2: {start} is negative")));
     }
 
     #[test]
-    fn frequencies_that_fall_are_turned_round() {
+    fn decreasing_frequencies_are_reversed() {
         let points = values("omega [rad/s],re,im\n3,1,2\n2,3,4\n1,5,6\n")
             .unwrap()
             .remove(0);
@@ -855,7 +408,7 @@ mod frequency_values_tests {
     }
 
     #[test]
-    fn coherence_in_percent_becomes_a_part_of_one() {
+    fn coherence_in_percent_becomes_a_fraction() {
         for text in [
             "w,re,im,coh [%]\n1,1,2,97\n2,3,4,1\n",
             "w,re,im,coh\n1,1,2,97\n2,3,4,1\n",

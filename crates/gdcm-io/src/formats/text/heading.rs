@@ -1,180 +1,227 @@
-//! Names and units of columns from the preceding lines.
+//! Column names and units from the preceding lines.
 
-use gdcm_model::names::signed_name::parse_direction;
+use crate::formats::text::cell_number::has_number;
+use crate::formats::text::heading_units::{is_unit, name_and_unit};
+use crate::formats::text::layout::Layout;
+use crate::formats::text::lines::{comment, is_rule};
+use crate::formats::text::separator::Separator;
 
-use crate::formats::text::columns::{Layout, comment, is_rule};
-use crate::formats::text::separator::{Separator, cell_number};
+/// Number of lines before the first row that are searched for names and units.
+const SEARCHED: usize = 100;
 
-/// The names and units of columns.
+/// A line and its number, from 1.
+pub(super) type NumberedLine = (usize, String);
+
+/// Column names and units.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Heading {
     /// A name for each column.
     pub(super) names: Option<Vec<String>>,
-    /// The unit of each column, if given.
+    /// Unit for each column, if given.
     pub(super) units: Vec<Option<String>>,
-    /// Decisions, in words.
+    /// Notes on the lines that were used.
     pub(super) notes: Vec<String>,
+}
+
+/// A line that has a cell for each column.
+struct FittingLine {
+    number: usize,
+    cells: Vec<String>,
 }
 
 impl Heading {
     /// Finds names and units in the lines before the numbers: the nearest line with a cell for each
-    /// column, preferably without a comment mark; a line of units may follow it.
-    pub(super) fn find(above: &[(usize, String)], layout: Layout) -> Self {
-        let candidates: Vec<_> = above
-            .iter()
-            .rev()
-            .filter(|(_, line)| !is_rule(line))
-            .take(100)
-            .collect();
-        let plain = candidates
-            .iter()
-            .filter(|(_, line)| comment(line).is_none());
-        let marked = candidates
-            .iter()
-            .filter(|(_, line)| comment(line).is_some());
-        let mut found: Vec<_> = plain
-            .chain(marked)
-            .filter_map(|(number, line)| {
-                Some((*number, split(comment(line).unwrap_or(line), layout)?))
-            })
-            .collect();
+    /// column, preferably without a comment mark; a line with units may follow it.
+    pub(super) fn find(above: &[NumberedLine], layout: Layout) -> Self {
         let mut heading = Heading {
             names: None,
             units: vec![None; layout.columns],
             notes: Vec::new(),
         };
-        if found.len() >= 2 && only_units(&found[0].1) && found[0].0 > found[1].0 {
-            let (number, units) = found.remove(0);
-            heading.units = units.iter().map(|unit| unit_of(unit)).collect();
-            heading.notes.push(format!("line {number} gives the units"));
-        }
-        if found.is_empty() {
+        let mut lines = fitting_lines(above, layout).into_iter();
+        let Some(mut names) = lines.next() else {
             heading.note_misfit(above, layout);
-        } else {
-            let (number, cells) = found.remove(0);
-            heading.take_names(&cells);
+            return heading;
+        };
+        if is_units_line(&names.cells)
+            && let Some(before) = lines.next()
+            && names.number > before.number
+        {
+            heading.units = names.cells.iter().map(|cell| unit_of(cell)).collect();
             heading
                 .notes
-                .push(format!("line {number} gives the names of the columns"));
+                .push(format!("line {} gives the units", names.number));
+            names = before;
         }
+        heading.take_names(&names.cells);
+        heading.notes.push(format!(
+            "line {} gives the names of the columns",
+            names.number
+        ));
         heading
     }
 
     fn take_names(&mut self, cells: &[String]) {
         let mut names = Vec::with_capacity(cells.len());
-        for (cell, known) in cells.iter().zip(&mut self.units) {
+        for (cell, known_unit) in cells.iter().zip(&mut self.units) {
             let (name, unit) = name_and_unit(cell);
-            *known = known.take().or(unit);
+            if known_unit.is_none() {
+                *known_unit = unit;
+            }
             names.push(name);
         }
         self.names = Some(names);
     }
 
-    /// Notes a line that looks like names but has a different number of cells.
-    fn note_misfit(&mut self, above: &[(usize, String)], layout: Layout) {
-        let Some((number, line)) = above
+    /// Notes a line that looks like names but has more or fewer cells.
+    fn note_misfit(&mut self, above: &[NumberedLine], layout: Layout) {
+        let nearest = above
             .iter()
             .rev()
-            .find(|(_, line)| comment(line).is_none() && !is_rule(line))
-        else {
+            .find(|(_, line)| comment(line).is_none() && !is_rule(line));
+        let Some((number, line)) = nearest else {
             return;
         };
         let found = layout.separator.cells(line).count();
         if found > 1 {
             let columns = layout.columns;
-            let note = format!(
-                "line {number} has {found} words for {columns} columns: not taken as their names"
-            );
-            self.notes.push(note);
+            self.notes.push(format!(
+                "line {number} has {found} words for {columns} columns: not read as their names"
+            ));
         }
     }
 }
 
-/// Splits a heading into a cell for each column; its separator may differ from that of the numbers.
-fn split(line: &str, layout: Layout) -> Option<Vec<String>> {
-    let columns = layout.columns;
-    let fitting = |mut cells: Vec<String>| {
-        if cells.len() == columns + 1 && cells.last().is_some_and(|cell| cell.trim().is_empty()) {
-            cells.pop();
+/// Returns the lines that have a cell for each column, nearest to the numbers first; lines with a
+/// comment mark follow the others.
+fn fitting_lines(above: &[NumberedLine], layout: Layout) -> Vec<FittingLine> {
+    let candidates: Vec<_> = above
+        .iter()
+        .rev()
+        .filter(|(_, line)| !is_rule(line))
+        .take(SEARCHED)
+        .collect();
+    let mut fitting = Vec::new();
+    for is_comment in [false, true] {
+        for (number, line) in &candidates {
+            let marked = comment(line);
+            if marked.is_some() != is_comment {
+                continue;
+            }
+            if let Some(cells) = heading_cells(marked.unwrap_or(line), layout) {
+                fitting.push(FittingLine {
+                    number: *number,
+                    cells,
+                });
+            }
         }
-        let words = cells
-            .iter()
-            .any(|cell| cell.chars().any(char::is_alphabetic));
-        (cells.len() == columns && words && !numbers_mostly(&cells, layout)).then_some(cells)
-    };
-    // One cell too many is enough to reject the separator.
-    let by = |separator: Separator| -> Vec<String> {
-        separator
-            .cells(line)
-            .take(columns + 2)
-            .map(|cell| cell.trim().to_owned())
-            .collect()
-    };
+    }
+    fitting
+}
+
+/// Splits a heading into a cell for each column; its separator may differ from the separator
+/// between the numbers.
+fn heading_cells(line: &str, layout: Layout) -> Option<Vec<String>> {
+    let columns = layout.columns;
     if layout.separator != Separator::Blanks
-        && let Some(cells) = fitting(by(layout.separator))
+        && let Some(cells) = fitted(trimmed_cells(line, layout.separator, columns), layout)
     {
         return Some(cells);
+    }
+    if columns == 1 {
+        return fitted(vec![line.trim().to_owned()], layout);
     }
     let others = [
         Separator::Tab,
         Separator::Semicolon,
         Separator::Pipe,
         Separator::Comma,
-    ]
-    .map(by);
-    let blanks = [
-        by_wide_blanks(line, columns),
-        with_brackets_joined(line, columns),
-        by(Separator::Blanks),
     ];
-    let ways: Vec<_> = if columns == 1 {
-        vec![vec![line.trim().to_owned()]]
-    } else {
-        [&others[..], &blanks[..]].concat()
-    };
-    ways.into_iter().find_map(fitting)
+    for separator in others {
+        if let Some(cells) = fitted(trimmed_cells(line, separator, columns), layout) {
+            return Some(cells);
+        }
+    }
+    fitted(cells_at_wide_blanks(line, columns), layout)
+        .or_else(|| fitted(cells_with_brackets_joined(line, columns), layout))
+        .or_else(|| fitted(trimmed_cells(line, Separator::Blanks, columns), layout))
 }
 
-/// Whether a line is probably a number line with an error.
-pub(super) fn numbers_mostly(cells: &[String], layout: Layout) -> bool {
-    let is_number = |cell: &&String| {
-        cell_number(cell, layout.decimal_comma).is_some_and(|number| !number.is_nan())
-    };
-    cells.first().is_some_and(|cell| is_number(&cell))
-        && 2 * cells.iter().filter(is_number).count() > cells.len()
+/// Returns the cells if there is one for each column, some contain letters, and the line is not a
+/// row with an error. An additional empty cell at the end is removed.
+fn fitted(mut cells: Vec<String>, layout: Layout) -> Option<Vec<String>> {
+    let ends_empty = cells.last().is_some_and(|cell| cell.trim().is_empty());
+    if cells.len() == layout.columns + 1 && ends_empty {
+        cells.pop();
+    }
+    let fits = cells.len() == layout.columns
+        && cells.iter().any(|cell| has_letters(cell))
+        && !is_mostly_numbers(&cells, layout);
+    if fits { Some(cells) } else { None }
 }
 
-/// Splits at two or more blanks, so that names can contain single blanks.
-fn by_wide_blanks(line: &str, columns: usize) -> Vec<String> {
-    let cells = line
-        .trim()
-        .split("  ")
-        .filter(|cell| !cell.trim().is_empty());
-    cells
+fn has_letters(cell: &str) -> bool {
+    cell.chars().any(char::is_alphabetic)
+}
+
+/// Splits a line at a separator, up to two cells more than there are columns: one additional cell
+/// that is not empty rejects the separator.
+fn trimmed_cells(line: &str, separator: Separator, columns: usize) -> Vec<String> {
+    separator
+        .cells(line)
         .take(columns + 2)
         .map(|cell| cell.trim().to_owned())
         .collect()
 }
 
+/// Whether a line is probably a number row with an error.
+pub(super) fn is_mostly_numbers(cells: &[String], layout: Layout) -> bool {
+    let Some(first) = cells.first() else {
+        return false;
+    };
+    let decimal_comma = layout.decimal_comma;
+    if !has_number(first, decimal_comma) {
+        return false;
+    }
+    let numbers = cells
+        .iter()
+        .filter(|cell| has_number(cell, decimal_comma))
+        .count();
+    2 * numbers > cells.len()
+}
+
+/// Splits at two or more blanks, so that names can contain single blanks.
+fn cells_at_wide_blanks(line: &str, columns: usize) -> Vec<String> {
+    line.trim()
+        .split("  ")
+        .map(str::trim)
+        .filter(|cell| !cell.is_empty())
+        .take(columns + 2)
+        .map(str::to_owned)
+        .collect()
+}
+
 /// Splits at blanks; text in brackets belongs to the cell before.
-fn with_brackets_joined(line: &str, columns: usize) -> Vec<String> {
+fn cells_with_brackets_joined(line: &str, columns: usize) -> Vec<String> {
+    const OPENING: [char; 3] = ['[', '(', '{'];
+    const CLOSING: [char; 3] = [']', ')', '}'];
     let mut cells: Vec<String> = Vec::new();
-    let mut open = false;
+    let mut is_open = false;
     for word in line.split_whitespace() {
         let count = cells.len();
         match cells.last_mut() {
-            Some(last) if open || word.starts_with(['[', '(', '{']) => {
+            Some(last) if is_open || word.starts_with(OPENING) => {
                 last.push(' ');
                 last.push_str(word);
             }
             _ if count > columns => break,
             _ => cells.push(word.to_owned()),
         }
-        let opened = |bracket| word.matches(bracket).count();
-        open = if open {
-            opened([']', ')', '}']) == 0
+        let closed = word.matches(CLOSING).count();
+        is_open = if is_open {
+            closed == 0
         } else {
-            opened(['[', '(', '{']) > opened([']', ')', '}'])
+            word.matches(OPENING).count() > closed
         };
     }
     cells
@@ -182,100 +229,35 @@ fn with_brackets_joined(line: &str, columns: usize) -> Vec<String> {
 
 /// Whether a heading names one column more than `layout` has: the empty cells after a trailing
 /// separator are then a column.
-pub(super) fn names_one_more(above: &[(usize, String)], layout: Layout) -> bool {
+pub(super) fn names_one_more_column(above: &[NumberedLine], layout: Layout) -> bool {
     above.iter().any(|(_, line)| {
-        let cells = layout
+        let named = layout
             .separator
             .cells(comment(line).unwrap_or(line))
-            .take(layout.columns + 2);
-        let named = cells
-            .filter(|cell| cell.chars().any(char::is_alphabetic))
+            .take(layout.columns + 2)
+            .filter(|cell| has_letters(cell))
             .count();
         named == layout.columns + 1
     })
 }
 
+/// Returns the unit in a cell, without its brackets; `None` if there is nothing else.
 fn unit_of(cell: &str) -> Option<String> {
     let unit = cell
         .trim()
         .trim_matches(['[', ']', '(', ')', '{', '}'])
         .trim();
-    (!unit.is_empty()).then(|| unit.to_owned())
+    if unit.is_empty() {
+        None
+    } else {
+        Some(unit.to_owned())
+    }
 }
 
-fn only_units(cells: &[String]) -> bool {
-    let said: Vec<_> = cells.iter().filter_map(|cell| unit_of(cell)).collect();
-    2 * said.len() >= cells.len() && said.iter().all(|unit| is_unit(unit))
-}
-
-// Units in column headings.
-
-/// Words of units, in lower case.
-const WORDS: [&str; 68] = [
-    "rad", "radian", "radians", "mrad", "deg", "degree", "degrees", "°", "s", "sec", "secs",
-    "second", "seconds", "ms", "us", "µs", "min", "h", "hr", "hz", "khz", "cps", "rps", "rpm",
-    "db", "m", "mm", "cm", "km", "ft", "in", "inch", "inches", "nm", "kt", "kts", "knot", "knots",
-    "kias", "ktas", "kcas", "keas", "ktgs", "mph", "fpm", "g", "n", "kn", "lb", "lbf", "lbs",
-    "slug", "kg", "pa", "hpa", "kpa", "psi", "bar", "v", "a", "w", "%", "pct", "percent", "ratio",
-    "norm", "abs", "unitless",
-];
-
-/// Whether a text consists only of unit words, numbers and signs: "deg/s", "rad/s^2", "%", "1/s".
-pub(super) fn is_unit(text: &str) -> bool {
-    let text = text.trim().to_lowercase();
-    if matches!(text.as_str(), "-" | "1" | "--" | "none") {
-        return true;
-    }
-    let mut words = 0;
-    for word in text
-        .split(['/', '*', '^', '·', ' ', '.', '-', '(', ')', '²', '³'])
-        .filter(|word| !word.is_empty())
-    {
-        if word.bytes().all(|byte| byte.is_ascii_digit()) {
-            continue;
-        }
-        if !WORDS.contains(&word.trim_end_matches(|c: char| c.is_ascii_digit())) {
-            return false;
-        }
-        words += 1;
-    }
-    words > 0
-}
-
-/// Splits a heading into name and unit: "omega \[rad/s\]", "P (deg/s)", "_Vind,_kias".
-///
-/// Square brackets hold a unit unless they contain an integer; round brackets and text after a
-/// comma only if they consist of known words, as "re(LAT->P)" names a response.
-pub(super) fn name_and_unit(heading: &str) -> (String, Option<String>) {
-    let heading = heading.trim().trim_matches(['"', '\'']).trim();
-    let clean = |text: &str| {
-        text.trim_matches(|c: char| c.is_whitespace() || c == '_')
-            .to_owned()
-    };
-    for (open, close, always) in [('[', ']', true), ('(', ')', false), ('{', '}', false)] {
-        let inner = heading
-            .strip_suffix(close)
-            .and_then(|rest| rest.rsplit_once(open));
-        // `xyz[0]` is an index.
-        let is_index =
-            |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()) && !text.is_empty();
-        if let Some((name, unit)) = inner
-            && ((always && !is_index(unit)) || is_unit(unit))
-            // "az [+down]" gives a sign convention.
-            && parse_direction(unit).is_none()
-        {
-            return (
-                clean(name),
-                Some(unit.trim().to_owned()).filter(|unit| !unit.is_empty()),
-            );
-        }
-    }
-    if let Some((name, unit)) = heading.rsplit_once(',')
-        && is_unit(&clean(unit))
-    {
-        return (clean(name), Some(clean(unit)));
-    }
-    (clean(heading), None)
+/// Whether at least half the cells are units and the others are empty.
+fn is_units_line(cells: &[String]) -> bool {
+    let units: Vec<_> = cells.iter().filter_map(|cell| unit_of(cell)).collect();
+    2 * units.len() >= cells.len() && units.iter().all(|unit| is_unit(unit))
 }
 
 #[cfg(test)]
@@ -342,7 +324,7 @@ mod heading_tests {
         assert_eq!(heading.names, None);
         assert_eq!(
             heading.notes,
-            ["line 2 has 2 words for 3 columns: not taken as their names"]
+            ["line 2 has 2 words for 3 columns: not read as their names"]
         );
     }
 
@@ -350,53 +332,5 @@ mod heading_tests {
     fn a_line_without_a_mark_goes_before_a_comment() {
         let heading = find(&["w,m,p", "# by, some, tool"], Separator::Comma, 3);
         assert_eq!(heading.names.as_deref().unwrap(), ["w", "m", "p"]);
-    }
-}
-
-#[cfg(test)]
-mod unit_word_tests {
-    use super::*;
-
-    #[test]
-    fn units_are_told_from_names() {
-        for unit in [
-            "rad/s",
-            "deg",
-            "[1/s]".trim_matches(['[', ']']),
-            "%",
-            "°",
-            "deg/s^2",
-            "m/s²",
-            "-",
-        ] {
-            assert!(is_unit(unit), "{unit}");
-        }
-        for name in ["LAT->P", "P/LAT", "omega", "", "12"] {
-            assert!(!is_unit(name), "{name}");
-        }
-    }
-
-    #[test]
-    fn a_heading_is_cut_into_name_and_unit() {
-        let cut = |heading| name_and_unit(heading);
-        assert_eq!(
-            cut("omega [rad/s]"),
-            ("omega".to_owned(), Some("rad/s".to_owned()))
-        );
-        assert_eq!(
-            cut("\"P (deg/s)\""),
-            ("P".to_owned(), Some("deg/s".to_owned()))
-        );
-        assert_eq!(
-            cut("_Vind,_kias"),
-            ("Vind".to_owned(), Some("kias".to_owned()))
-        );
-        assert_eq!(cut("re(LAT->P)"), ("re(LAT->P)".to_owned(), None));
-        assert_eq!(
-            cut("mag(P/LAT) [dB]"),
-            ("mag(P/LAT)".to_owned(), Some("dB".to_owned()))
-        );
-        assert_eq!(cut("az [+down]"), ("az [+down]".to_owned(), None));
-        assert_eq!(cut("x []"), ("x".to_owned(), None));
     }
 }

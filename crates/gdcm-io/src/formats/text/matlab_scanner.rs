@@ -1,8 +1,11 @@
 //! Scanner for MATLAB or Octave statements: blanks and comments, names, texts and numbers.
 
-use crate::formats::text::separator::excerpt;
+use crate::formats::text::lines::excerpt;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
+/// Remedy for unsupported statements.
+pub(super) const REMEDY: &str =
+    "write its numbers, or save the workspace in MATLAB: save -v7 workspace.mat";
 /// Deepest nesting of values; each level takes stack space.
 pub(super) const MOST_NESTED: usize = 64;
 
@@ -11,7 +14,7 @@ pub(super) fn is_of_word(character: char) -> bool {
     character.is_alphanumeric() || character == '_'
 }
 
-/// Whether a text begins with the first character of a name.
+/// Whether a text begins like a name.
 pub(super) fn begins_word(text: &str) -> bool {
     text.starts_with(|first: char| first.is_alphabetic() || first == '_')
 }
@@ -44,17 +47,25 @@ pub(super) struct Position {
     pub(super) column: usize,
 }
 
+/// An unsigned number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Number {
+    pub(super) value: f64,
+    pub(super) is_imaginary: bool,
+}
+
 /// A text with the current position.
 #[derive(Clone)]
 pub(super) struct Scanner<'t> {
     pub(super) text: &'t str,
+    /// Offset in the text \[bytes\].
     pub(super) at: usize,
     line: usize,
+    /// Offset at which the line begins \[bytes\].
     line_start: usize,
 }
 
 impl<'t> Scanner<'t> {
-    /// Starts at the beginning of a text.
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
@@ -76,35 +87,43 @@ impl<'t> Scanner<'t> {
         self.rest().chars().next()
     }
 
+    /// Moves past a sign if it is next; returns whether it was.
     pub(super) fn take(&mut self, sign: &str) -> bool {
         let is_next = self.rest().starts_with(sign);
-        self.at += if is_next { sign.len() } else { 0 };
+        if is_next {
+            self.at += sign.len();
+        }
         is_next
     }
 
     /// Returns the current position; in a very long line the column is counted in bytes.
     pub(super) fn position(&self) -> Position {
+        /// Longest line whose characters are counted \[bytes\].
+        const COUNTED: usize = 2000;
         let before = &self.text[self.line_start..self.at];
+        let characters = if before.len() > COUNTED {
+            before.len()
+        } else {
+            before.chars().count()
+        };
         Position {
             line: self.line,
-            column: 1 + if before.len() > 2000 {
-                before.len()
-            } else {
-                before.chars().count()
-            },
+            column: 1 + characters,
         }
     }
 
+    /// Moves past a line end.
     pub(super) fn new_line(&mut self) {
-        self.at += if self.rest().starts_with("\r\n") {
-            2
-        } else {
-            usize::from(!self.rest().is_empty())
-        };
+        if self.rest().starts_with("\r\n") {
+            self.at += 2;
+        } else if !self.rest().is_empty() {
+            self.at += 1;
+        }
         self.line += 1;
         self.line_start = self.at;
     }
 
+    /// Moves to the line end.
     fn pass_line(&mut self) {
         self.at += self.rest().find(['\n', '\r']).unwrap_or(self.rest().len());
     }
@@ -138,20 +157,25 @@ impl<'t> Scanner<'t> {
         self.text[self.line_start..self.at].trim().is_empty()
     }
 
-    /// Whether the rest of the line is a comment mark and this bracket, which begin or end a block
+    /// Whether the line continues with only a comment mark and this bracket, which begin or end a block
     /// comment.
     fn is_block_mark(&self, bracket: char) -> bool {
         let line = self.rest_of_line().trim();
-        line.strip_prefix(['%', '#'])
-            .is_some_and(|rest| rest.strip_prefix(bracket) == Some(""))
+        let Some(rest) = line.strip_prefix(['%', '#']) else {
+            return false;
+        };
+        rest.strip_prefix(bracket) == Some("")
     }
 
     fn pass_block_comment(&mut self) -> Result<(), VariableFault> {
         let line = self.line;
         let mut depth = 0_usize;
         loop {
-            depth =
-                depth + usize::from(self.is_block_mark('{')) - usize::from(self.is_block_mark('}'));
+            if self.is_block_mark('{') {
+                depth += 1;
+            } else if self.is_block_mark('}') {
+                depth -= 1;
+            }
             self.pass_line();
             if depth == 0 {
                 return Ok(());
@@ -167,10 +191,12 @@ impl<'t> Scanner<'t> {
     /// Reads a name, if there is one at this position.
     pub(super) fn name(&mut self) -> Option<&'t str> {
         let rest = self.rest();
+        if !begins_word(rest) {
+            return None;
+        }
         let end = rest.find(|c: char| !is_of_word(c)).unwrap_or(rest.len());
-        let is_name = begins_word(rest);
-        self.at += if is_name { end } else { 0 };
-        is_name.then_some(&rest[..end])
+        self.at += end;
+        Some(&rest[..end])
     }
 
     /// Reads names separated by points, if there are any at this position: "sys.A".
@@ -200,12 +226,10 @@ impl<'t> Scanner<'t> {
         let mut text = String::new();
         loop {
             let rest = self.rest();
-            let Some(end) = rest
-                .find([quote, '\n', '\r'])
-                .filter(|&end| rest[end..].starts_with(quote))
-            else {
+            let end = rest.find([quote, '\n', '\r']);
+            let Some(end) = end.filter(|&end| rest[end..].starts_with(quote)) else {
                 return refused(
-                    format!("a text begins here and has no end; write {quote} behind it"),
+                    format!("a text begins here and has no end; close it with {quote}"),
                     opening,
                 );
             };
@@ -220,41 +244,28 @@ impl<'t> Scanner<'t> {
         }
     }
 
-    /// Reads an unsigned number, and whether it is imaginary, if there is one at this position.
-    pub(super) fn number(&mut self) -> Result<Option<(f64, bool)>, ValueError> {
+    /// Reads an unsigned number, if there is one at this position.
+    pub(super) fn number(&mut self) -> Result<Option<Number>, ValueError> {
         let rest = self.rest();
         let place = self.position();
         let bytes = rest.as_bytes();
-        let digits = |from: usize| {
-            from + bytes[from..]
-                .iter()
-                .take_while(|byte| byte.is_ascii_digit())
-                .count()
-        };
-        let begins = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
-        if !(begins(0) || (rest.starts_with('.') && begins(1))) {
+        if !(is_digit(bytes, 0) || (rest.starts_with('.') && is_digit(bytes, 1))) {
             return Ok(None);
         }
-        let mut end = digits(0);
-        // A point before an operator belongs to the operator: "1./x", "2.^n", "1...".
-        let operator = |at: usize| bytes.get(at).is_some_and(|byte| b"*/\\^'.".contains(byte));
-        if bytes.get(end) == Some(&b'.') && !operator(end + 1) {
-            end = digits(end + 1);
-        }
-        if bytes.get(end).is_some_and(|byte| b"eEdD".contains(byte)) {
-            let signed =
-                end + 1 + usize::from(bytes.get(end + 1).is_some_and(|byte| b"+-".contains(byte)));
-            end = if begins(signed) { digits(signed) } else { end };
-        }
+        let mut end = past_mantissa(bytes);
+        end = past_exponent(bytes, end);
         let value = rest[..end].replace(['d', 'D'], "e").parse();
-        let imaginary = matches!(bytes.get(end), Some(b'i' | b'j'));
-        end += usize::from(imaginary);
+        let is_imaginary = matches!(bytes.get(end), Some(b'i' | b'j'));
+        end += usize::from(is_imaginary);
         let tail = rest[end..]
             .find(|c: char| !is_of_word(c))
             .unwrap_or(rest.len() - end);
         self.at += end + tail;
         match value {
-            Ok(value) if tail == 0 => Ok(Some((value, imaginary))),
+            Ok(value) if tail == 0 => Ok(Some(Number {
+                value,
+                is_imaginary,
+            })),
             _ => refused(
                 format!("\"{}\" is no number", excerpt(&rest[..end + tail])),
                 place,
@@ -265,22 +276,16 @@ impl<'t> Scanner<'t> {
     /// Moves to the end of the statement; an unclosed bracket is a fault, as it would include all
     /// that follows.
     pub(super) fn pass_statement(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
-        let mut open: Vec<(char, Position)> = Vec::new();
+        let mut open = OpenBrackets::default();
         loop {
             budget.work(1, "")?;
-            let spaced = self.pass_blanks()?;
-            let Some(character) = self.peek() else { break };
-            let before = self.text[..self.at].chars().next_back();
-            let is_operand = before.is_some_and(|c| c.is_alphanumeric() || "_)]}'.".contains(c));
-            let in_matrix = matches!(open.last(), Some(('[' | '{', _)));
+            let is_spaced = self.pass_blanks()?;
+            let Some(character) = self.peek() else {
+                return open.check_closed();
+            };
             match character {
                 '\n' | '\r' => {
-                    // A round bracket ends at the latest with its line.
-                    open.truncate(
-                        open.iter()
-                            .rposition(|(bracket, _)| *bracket != '(')
-                            .map_or(0, |last| last + 1),
-                    );
+                    open.end_line();
                     if open.is_empty() {
                         return Ok(());
                     }
@@ -288,72 +293,186 @@ impl<'t> Scanner<'t> {
                     continue;
                 }
                 ';' | ',' if open.is_empty() => return Ok(()),
-                '\'' | '"' if character == '"' || !is_operand || (spaced && in_matrix) => {
-                    match self.quoted(budget) {
-                        Err(ValueError::Fault(fault)) => return Err(fault),
-                        Err(ValueError::NotUnderstood { .. }) => self.pass_line(),
-                        Ok(_) => {}
-                    }
+                '\'' | '"' if self.begins_text(character, is_spaced, &open) => {
+                    self.pass_text(budget)?;
                     continue;
                 }
-                '(' | '[' | '{' if open.len() >= MOST_NESTED => {
-                    return Err(VariableFault::too_deep(""));
-                }
-                '(' | '[' | '{' => open.push((character, self.position())),
-                ')' | ']' | '}' => {
-                    let opening = if character == ')' {
-                        '('
-                    } else {
-                        char::from(character as u8 - 2)
-                    };
-                    open.truncate(
-                        open.iter()
-                            .rposition(|(bracket, _)| *bracket == opening)
-                            .unwrap_or(open.len()),
-                    );
-                }
+                '(' | '[' | '{' => open.open(character, self.position())?,
+                ')' | ']' | '}' => open.close(character),
                 _ => {}
             }
             self.at += character.len_utf8();
         }
-        match open.into_iter().rev().find(|(bracket, _)| *bracket != '(') {
-            None => Ok(()),
-            Some((bracket, Position { line, column })) => {
-                let what =
-                    format!("the bracket {bracket} in column {column} is never closed; close it");
-                Err(VariableFault::line("", line, what))
-            }
+    }
+
+    /// Whether a quote begins a text; a single quote after an operand transposes it.
+    fn begins_text(&self, quote: char, is_spaced: bool, open: &OpenBrackets) -> bool {
+        if quote == '"' || (is_spaced && open.is_in_matrix()) {
+            return true;
+        }
+        let before = self.text[..self.at].chars().next_back();
+        let is_operand = before.is_some_and(|c| c.is_alphanumeric() || "_)]}'.".contains(c));
+        !is_operand
+    }
+
+    /// Moves past a text, or past the whole line if the text has no end.
+    fn pass_text(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
+        match self.quoted(budget) {
+            Err(ValueError::Fault(fault)) => return Err(fault),
+            Err(ValueError::NotUnderstood { .. }) => self.pass_line(),
+            Ok(_) => {}
+        }
+        Ok(())
+    }
+
+    /// Whether the text after a name changes part of the value: "+= 1", "++", "(2,1) = 3".
+    pub(super) fn changes_part(&self) -> bool {
+        let line = self.rest_of_line();
+        match line.chars().next() {
+            Some(sign @ ('+' | '-' | '*' | '/' | '^')) => is_update(sign, &line[1..]),
+            Some('(') => is_indexed_assignment(line, '(', ')'),
+            Some('{') => is_indexed_assignment(line, '{', '}'),
+            _ => false,
+        }
+    }
+}
+
+/// Whether an operator and the text after it change a value: "+= 1", "++".
+fn is_update(sign: char, behind: &str) -> bool {
+    if behind.starts_with('=') {
+        return true;
+    }
+    let Some(rest) = behind.strip_prefix(sign) else {
+        return false;
+    };
+    rest.trim_start().is_empty() || rest.starts_with(';')
+}
+
+/// Whether a line that begins with an opening bracket assigns to an element or to its field:
+/// "(2,1) = 3", "{2}.name = 3".
+fn is_indexed_assignment(line: &str, open: char, close: char) -> bool {
+    let mut depth = 0_usize;
+    for (at, character) in line.char_indices() {
+        if character == open {
+            depth += 1;
+        } else if character == close {
+            depth -= 1;
+        }
+        if depth == 0 {
+            let behind = line[at + 1..]
+                .trim_start()
+                .trim_start_matches(|c: char| c == '.' || is_of_word(c))
+                .trim_start();
+            return behind.starts_with('=') && !behind.starts_with("==");
+        }
+    }
+    false
+}
+
+/// Open brackets in a statement, from the outermost.
+#[derive(Default)]
+struct OpenBrackets(Vec<OpenBracket>);
+
+struct OpenBracket {
+    bracket: char,
+    place: Position,
+}
+
+impl OpenBrackets {
+    fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    fn is_in_matrix(&self) -> bool {
+        matches!(
+            self.0.last(),
+            Some(OpenBracket {
+                bracket: '[' | '{',
+                ..
+            })
+        )
+    }
+
+    fn open(&mut self, bracket: char, place: Position) -> Result<(), VariableFault> {
+        if self.0.len() >= MOST_NESTED {
+            return Err(VariableFault::too_deep(""));
+        }
+        self.0.push(OpenBracket { bracket, place });
+        Ok(())
+    }
+
+    /// Closes the last matching bracket with all brackets inside it; ignores a closing bracket
+    /// without an opening bracket.
+    fn close(&mut self, closing: char) {
+        let opening = match closing {
+            ')' => '(',
+            ']' => '[',
+            _ => '{',
+        };
+        if let Some(at) = self.0.iter().rposition(|open| open.bracket == opening) {
+            self.0.truncate(at);
         }
     }
 
-    /// Whether the text after a name changes part of its value: "+= 1", "++", "(2,1) = 3".
-    pub(super) fn changes_part(&self) -> bool {
-        let line = self.rest_of_line();
-        let Some(sign) = line.chars().next() else {
-            return false;
-        };
-        if "+-*/^".contains(sign) {
-            return line[1..].starts_with('=')
-                || line[1..]
-                    .strip_prefix(sign)
-                    .is_some_and(|rest| rest.trim_start().is_empty() || rest.starts_with(';'));
+    /// Closes the round brackets after the last other bracket: they end at the latest with their
+    /// line.
+    fn end_line(&mut self) {
+        while self.0.last().is_some_and(|open| open.bracket == '(') {
+            self.0.pop();
         }
-        let close = match sign {
-            '(' => ')',
-            '{' => '}',
-            _ => return false,
+    }
+
+    /// Refuses a bracket other than a round bracket that is still open.
+    fn check_closed(self) -> Result<(), VariableFault> {
+        let unclosed = self.0.into_iter().rfind(|open| open.bracket != '(');
+        let Some(OpenBracket { bracket, place }) = unclosed else {
+            return Ok(());
         };
-        let mut open = 0_usize;
-        for (at, character) in line.char_indices() {
-            open = open + usize::from(character == sign) - usize::from(character == close);
-            if open == 0 {
-                let behind = line[at + 1..].trim_start();
-                let behind = behind
-                    .trim_start_matches(|c: char| c == '.' || is_of_word(c))
-                    .trim_start();
-                return behind.starts_with('=') && !behind.starts_with("==");
-            }
-        }
-        false
+        let what = format!(
+            "the bracket {bracket} in column {} is never closed; close it",
+            place.column
+        );
+        Err(VariableFault::line("", place.line, what))
+    }
+}
+
+fn is_digit(bytes: &[u8], at: usize) -> bool {
+    bytes.get(at).is_some_and(u8::is_ascii_digit)
+}
+
+/// Returns the offset after the digits that begin at `from`.
+fn past_digits(bytes: &[u8], from: usize) -> usize {
+    let mut at = from;
+    while is_digit(bytes, at) {
+        at += 1;
+    }
+    at
+}
+
+/// Returns the offset after digits with a decimal point.
+fn past_mantissa(bytes: &[u8]) -> usize {
+    let end = past_digits(bytes, 0);
+    // A point before an operator belongs to the operator: "1./x", "2.^n", "1...".
+    let is_operator = bytes
+        .get(end + 1)
+        .is_some_and(|byte| b"*/\\^'.".contains(byte));
+    if bytes.get(end) == Some(&b'.') && !is_operator {
+        past_digits(bytes, end + 1)
+    } else {
+        end
+    }
+}
+
+/// Returns the offset after the exponent that begins at `from`, or `from` if there is none.
+fn past_exponent(bytes: &[u8], from: usize) -> usize {
+    if !matches!(bytes.get(from), Some(b'e' | b'E' | b'd' | b'D')) {
+        return from;
+    }
+    let has_sign = matches!(bytes.get(from + 1), Some(b'+' | b'-'));
+    let digits = from + 1 + usize::from(has_sign);
+    if is_digit(bytes, digits) {
+        past_digits(bytes, digits)
+    } else {
+        from
     }
 }

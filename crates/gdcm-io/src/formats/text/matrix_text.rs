@@ -1,7 +1,11 @@
 //! Matrices as text: one in a file, or several with names, as programs print them.
 
-use crate::formats::text::columns::{TextTable, comment, is_rule, read_table};
-use crate::formats::text::separator::{cell_number, excerpt, is_number, lines, refuse_binary};
+use std::collections::HashSet;
+
+use crate::formats::text::cell_number::{cell_number, is_number};
+use crate::formats::text::columns::{TextTable, read_table};
+use crate::formats::text::encoding::refuse_binary;
+use crate::formats::text::lines::{comment, excerpt, is_rule, lines};
 use crate::formats::variables::{Array, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
@@ -10,29 +14,29 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 pub struct NamedMatrices {
     /// The matrices in their order.
     pub variables: Vec<Variable>,
-    /// Descriptions of skipped parts and of decisions.
+    /// Notes on skipped parts and on decisions.
     pub notes: Vec<String>,
 }
 
-/// Reads one matrix, a row on each line; skips a line of names above it.
+/// Reads a single matrix, a row on each line; skips a line with names above it.
 pub fn read_matrix(
     text: &str,
     name: &str,
     budget: &ReadingBudget,
 ) -> Result<Variable, VariableFault> {
     let table = read_table(text, budget)?;
-    if let Some((line, _)) = table
+    let single_number = table
         .skipped
         .iter()
-        .find(|(_, line)| cell_number(line, table.decimal_comma).is_some())
-    {
+        .find(|(_, line)| cell_number(line, table.decimal_comma).is_some());
+    if let Some((line, _)) = single_number {
         let what = format!(
-            "one number, where other rows have {}; complete the row",
+            "a single number, where other rows have {}; complete the row",
             table.columns.len()
         );
         return Err(VariableFault::line(name, *line, what));
     }
-    let value = matrix(&[table], 1.0, budget, name)?;
+    let value = joined(&[table], 1.0, budget, name)?;
     Ok(Variable {
         name: name.to_owned(),
         value,
@@ -42,11 +46,11 @@ pub fn read_matrix(
 /// Reads named matrices: "A =", "A:" or "A" on a line, the rows on the following lines.
 ///
 /// A common factor ("1.0e+03 *") is applied, columns printed in several parts ("Columns 1 through
-/// 6") are joined, and names of rows and columns are skipped.
+/// 6") are joined, and row and column names are skipped.
 pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices, VariableFault> {
     refuse_binary(text, "matrices under their names")?;
     let mut reading = Reading {
-        found: Vec::new(),
+        matrices: Vec::new(),
         notes: Vec::new(),
         budget,
     };
@@ -59,18 +63,22 @@ pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices
     reading.finish()
 }
 
-/// Line numbers and text of rows that are printed together.
+/// Rows that are printed together.
 #[derive(Default)]
 struct Part {
-    numbers: Vec<usize>,
+    /// Line number by row, in the whole text.
+    line_numbers: Vec<usize>,
     text: String,
 }
 
-struct Begun {
+/// A matrix whose rows are being read.
+struct OpenMatrix {
     name: String,
+    /// Line number of the name.
     line: usize,
     /// Whether an equals sign follows the name, so that a single word below it names a column.
     assigned: bool,
+    /// Common factor.
     scale: f64,
     /// Whether the rows have names.
     labelled: bool,
@@ -78,82 +86,89 @@ struct Begun {
 }
 
 struct Reading<'m> {
-    found: Vec<Begun>,
+    matrices: Vec<OpenMatrix>,
     notes: Vec<String>,
     budget: &'m ReadingBudget<'m>,
 }
 
 impl Reading<'_> {
     fn line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
-        let awaits_columns = self
-            .found
-            .last()
-            .is_some_and(|matrix| matrix.assigned && matrix.parts.is_empty());
-        match name_line(line) {
-            Some(NameLine {
-                assigned: false, ..
-            }) if awaits_columns => return self.columns(number, line),
-            Some(NameLine {
-                name,
-                assigned,
-                rest,
-            }) => return self.begin(number, name, assigned, rest),
-            None => {}
+        if let Some(name_line) = name_line(line) {
+            return if !name_line.assigned && self.awaits_columns() {
+                self.column_names(number, line)
+            } else {
+                self.begin(number, &name_line)
+            };
         }
         if is_columns_line(line) {
-            self.part();
+            self.begin_part();
             return Ok(());
         }
-        if let (Some(scale), Some(matrix)) = (scale_line(line), self.found.last_mut()) {
+        if let Some(scale) = scale_line(line)
+            && let Some(matrix) = self.matrices.last_mut()
+        {
             matrix.scale = scale;
             return Ok(());
         }
+        if is_row_of_numbers(line) {
+            return self.row(number, line);
+        }
+        let has_row_names = self.matrices.last().is_some_and(|matrix| matrix.labelled);
+        if has_row_names
+            && let Some((_, rest)) = line.trim_start().split_once(char::is_whitespace)
+            && is_row_of_numbers(rest)
+        {
+            return self.row(number, rest);
+        }
+        self.other_line(number, line, has_row_names)
+    }
+
+    /// Handles a line that holds neither a name nor a row: column names, a row with an error, or
+    /// words to be skipped.
+    fn other_line(
+        &mut self,
+        number: usize,
+        line: &str,
+        has_row_names: bool,
+    ) -> Result<(), VariableFault> {
+        let words = line.split_whitespace().count();
         let numbers = line
             .split_whitespace()
             .filter(|word| is_number_word(word))
             .count();
-        let words = line.split_whitespace().count();
-        let labelled = self.found.last().is_some_and(|matrix| matrix.labelled);
-        let cut = line
-            .trim_start()
-            .split_once(char::is_whitespace)
-            .map(|(_, rest)| rest);
-        match cut {
-            _ if row_of_numbers(line) => self.row(number, line),
-            Some(rest) if labelled && row_of_numbers(rest) => self.row(number, rest),
-            _ if numbers == 0 && awaits_columns | labelled => self.columns(number, line),
-            _ if 2 * numbers >= words => Err(VariableFault::line(
-                "",
-                number,
-                format!("\"{}\" is no row of numbers; correct it", excerpt(line)),
-            )),
-            _ => {
-                self.notes.push(format!(
-                    "line {number} (\"{}\") is passed over",
-                    excerpt(line)
-                ));
-                Ok(())
-            }
+        if numbers == 0 && (self.awaits_columns() || has_row_names) {
+            return self.column_names(number, line);
         }
+        if 2 * numbers >= words {
+            let what = format!("\"{}\" is no row of numbers; correct it", excerpt(line));
+            return Err(VariableFault::line("", number, what));
+        }
+        self.notes
+            .push(format!("line {number} (\"{}\") is skipped", excerpt(line)));
+        Ok(())
     }
 
-    fn begin(
-        &mut self,
-        number: usize,
-        name: &str,
-        assigned: bool,
-        rest: &str,
-    ) -> Result<(), VariableFault> {
-        self.budget.take(256 + name.len() as u64, 1, name)?;
-        let name = name.to_owned();
-        let parts = Vec::new();
-        self.found.push(Begun {
+    /// Whether column names may follow: the last matrix has an equals sign and no rows yet.
+    fn awaits_columns(&self) -> bool {
+        self.matrices
+            .last()
+            .is_some_and(|matrix| matrix.assigned && matrix.parts.is_empty())
+    }
+
+    fn begin(&mut self, number: usize, name_line: &NameLine<'_>) -> Result<(), VariableFault> {
+        let NameLine {
             name,
+            assigned,
+            rest,
+        } = *name_line;
+        self.budget.take(256 + name.len() as u64, 1, name)?;
+        self.matrices.push(OpenMatrix {
+            name: name.to_owned(),
             line: number,
             assigned,
             scale: 1.0,
             labelled: false,
-            parts,
+            parts: Vec::new(),
         });
         if rest.is_empty() {
             Ok(())
@@ -162,34 +177,34 @@ impl Reading<'_> {
         }
     }
 
-    /// Takes a line of column names: the rows below it have names too.
-    fn columns(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
-        if let Some(matrix) = self.found.last_mut() {
+    /// Takes a line with column names: the rows below it have names too.
+    fn column_names(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+        if let Some(matrix) = self.matrices.last_mut() {
             matrix.labelled = true;
         }
         self.notes.push(format!(
-            "line {number} (\"{}\") is taken as names of columns",
+            "line {number} (\"{}\") is read as column names",
             excerpt(line)
         ));
-        self.part();
+        self.begin_part();
         Ok(())
     }
 
-    fn part(&mut self) {
-        if let Some(matrix) = self.found.last_mut()
+    /// Begins another part for the last matrix, unless its last part is still empty.
+    fn begin_part(&mut self) {
+        if let Some(matrix) = self.matrices.last_mut()
             && matrix
                 .parts
                 .last()
-                .is_none_or(|part| !part.numbers.is_empty())
+                .is_none_or(|part| !part.line_numbers.is_empty())
         {
             matrix.parts.push(Part::default());
         }
     }
 
     fn row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
-        let Some(matrix) = self.found.last_mut() else {
-            let what = "numbers without a name; write the name of the matrix on a line above them"
-                .to_owned();
+        let Some(matrix) = self.matrices.last_mut() else {
+            let what = "numbers without a name; write the name of the matrix on a line above them";
             return Err(VariableFault::line("", number, what));
         };
         self.budget
@@ -198,50 +213,39 @@ impl Reading<'_> {
             matrix.parts.push(Part::default());
         }
         if let Some(part) = matrix.parts.last_mut() {
-            part.numbers.push(number);
+            part.line_numbers.push(number);
             part.text.push_str(line);
             part.text.push('\n');
         }
         Ok(())
     }
 
-    fn finish(self) -> Result<NamedMatrices, VariableFault> {
-        let Self {
-            found,
-            mut notes,
-            budget,
-        } = self;
-        let mut variables: Vec<Variable> = Vec::with_capacity(found.len());
-        let mut names = std::collections::HashSet::with_capacity(found.len());
-        for Begun {
-            name,
-            line,
-            scale,
-            mut parts,
-            ..
-        } in found
-        {
-            parts.retain(|part| !part.numbers.is_empty());
-            if parts.is_empty() {
-                notes.push(format!(
-                    "line {line} (\"{name}\") is passed over: no numbers follow"
+    fn finish(mut self) -> Result<NamedMatrices, VariableFault> {
+        let mut variables: Vec<Variable> = Vec::with_capacity(self.matrices.len());
+        let mut names = HashSet::with_capacity(self.matrices.len());
+        for mut matrix in self.matrices {
+            matrix.parts.retain(|part| !part.line_numbers.is_empty());
+            let OpenMatrix { name, line, .. } = &matrix;
+            if matrix.parts.is_empty() {
+                self.notes.push(format!(
+                    "line {line} (\"{name}\") is skipped: no numbers follow"
                 ));
                 continue;
             }
             if !names.insert(name.clone()) {
-                return Err(VariableFault::Duplicate { name });
+                return Err(VariableFault::Duplicate { name: matrix.name });
             }
-            if scale != 1.0 {
-                notes.push(format!(
-                    "{name} is printed with the factor {scale:e}, and so with few digits"
+            if matrix.scale != 1.0 {
+                self.notes.push(format!(
+                    "{name} is printed with the factor {:e}, and so with few digits",
+                    matrix.scale
                 ));
             }
-            let tables = parts
-                .iter()
-                .map(|part| table(part, &name, budget))
-                .collect::<Result<Vec<_>, _>>()?;
-            let value = matrix(&tables, scale, budget, &name)?;
-            variables.push(Variable { name, value });
+            let value = matrix.value(self.budget)?;
+            variables.push(Variable {
+                name: matrix.name,
+                value,
+            });
         }
         if variables.is_empty() {
             return Err(VariableFault::format(
@@ -249,7 +253,48 @@ impl Reading<'_> {
                 "no name with numbers below it",
             ));
         }
-        Ok(NamedMatrices { variables, notes })
+        Ok(NamedMatrices {
+            variables,
+            notes: self.notes,
+        })
+    }
+}
+
+impl OpenMatrix {
+    fn value(&self, budget: &ReadingBudget) -> Result<Value, VariableFault> {
+        let mut tables = Vec::with_capacity(self.parts.len());
+        for part in &self.parts {
+            tables.push(part.table(&self.name, budget)?);
+        }
+        joined(&tables, self.scale, budget, &self.name)
+    }
+}
+
+impl Part {
+    /// Reads the rows; faults give the line in the whole text.
+    fn table(&self, name: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
+        let table = read_table(&self.text, budget).map_err(|fault| match fault {
+            VariableFault::Line { line, what, .. } => {
+                VariableFault::line(name, self.line_number(line), what)
+            }
+            other => other,
+        })?;
+        match table.skipped.first() {
+            Some((line, text)) => {
+                let what = format!(
+                    "\"{}\" is no row like the others; complete it",
+                    excerpt(text)
+                );
+                Err(VariableFault::line(name, self.line_number(*line), what))
+            }
+            None => Ok(table),
+        }
+    }
+
+    /// Returns the line number in the whole text; `line` is the line number in the part.
+    fn line_number(&self, line: usize) -> usize {
+        let number = self.line_numbers.get(line.saturating_sub(1));
+        number.copied().unwrap_or(line)
     }
 }
 
@@ -258,40 +303,23 @@ fn is_number_word(word: &str) -> bool {
     !word.is_empty() && is_number(word)
 }
 
-/// Whether a line consists of numbers, with any separator.
-fn row_of_numbers(line: &str) -> bool {
-    let mut words = line
-        .split(|c: char| c.is_whitespace() || c == ',' || c == ';' || c == '|')
-        .filter(|w| !w.is_empty());
-    words.clone().next().is_some() && words.all(is_number_word)
-}
-
-/// Reads the rows of a part; faults give the line in the whole text.
-fn table(part: &Part, name: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
-    let place = |line: usize| {
-        part.numbers
-            .get(line.saturating_sub(1))
-            .copied()
-            .unwrap_or(line)
-    };
-    let table = read_table(&part.text, budget).map_err(|fault| match fault {
-        VariableFault::Line { line, what, .. } => VariableFault::line(name, place(line), what),
-        other => other,
-    })?;
-    match table.skipped.first() {
-        Some((line, text)) => {
-            let what = format!(
-                "\"{}\" is no row like the others; complete it",
-                excerpt(text)
-            );
-            Err(VariableFault::line(name, place(*line), what))
+/// Whether a line contains only numbers, with any separator.
+fn is_row_of_numbers(line: &str) -> bool {
+    let mut has_number = false;
+    for word in line.split(|c: char| c.is_whitespace() || matches!(c, ',' | ';' | '|')) {
+        if word.is_empty() {
+            continue;
         }
-        None => Ok(table),
+        if !is_number_word(word) {
+            return false;
+        }
+        has_number = true;
     }
+    has_number
 }
 
-/// Joins tables side by side to one matrix.
-fn matrix(
+/// Joins tables side by side to one matrix, multiplied by a factor.
+fn joined(
     tables: &[TextTable],
     scale: f64,
     budget: &ReadingBudget,
@@ -318,20 +346,20 @@ fn matrix(
     Ok(Value::Array(Array::matrix(rows, columns, values)))
 }
 
-// Lines that programs print above the rows of a matrix.
+// Lines that programs print above matrix rows.
 
 /// A line that names a matrix.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct NameLine<'t> {
-    pub(super) name: &'t str,
+struct NameLine<'t> {
+    name: &'t str,
     /// Whether an equals sign follows the name.
-    pub(super) assigned: bool,
+    assigned: bool,
     /// Numbers on the same line.
-    pub(super) rest: &'t str,
+    rest: &'t str,
 }
 
 /// Parses "A", "A =", "A:", "A (3x2)", "A = 5" and "A,,,".
-pub(super) fn name_line(line: &str) -> Option<NameLine<'_>> {
+fn name_line(line: &str) -> Option<NameLine<'_>> {
     let line = line.trim().trim_end_matches([',', ';', '\t', ' ']);
     let end = line
         .find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.'))
@@ -349,7 +377,10 @@ pub(super) fn name_line(line: &str) -> Option<NameLine<'_>> {
         });
     }
     let rest = without_size(behind.strip_prefix(':').unwrap_or(behind).trim());
-    rest.is_empty().then_some(NameLine {
+    if !rest.is_empty() {
+        return None;
+    }
+    Some(NameLine {
         name,
         assigned: false,
         rest,
@@ -363,27 +394,30 @@ fn without_size(text: &str) -> &str {
     let Some((rows, columns)) = size.split_once(['x', '×']) else {
         return text;
     };
-    let count = |word: &str| {
-        !word.trim().is_empty() && word.trim().bytes().all(|byte| byte.is_ascii_digit())
-    };
-    if count(rows) && count(columns) {
+    if is_count(rows.trim()) && is_count(columns.trim()) {
         rest.trim_start_matches([')', ']']).trim()
     } else {
         text
     }
 }
 
-/// Returns the factor of a line such as "1.0e+03 *".
-pub(super) fn scale_line(line: &str) -> Option<f64> {
+fn is_count(word: &str) -> bool {
+    !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// Returns the factor in a line such as "1.0e+03 *".
+fn scale_line(line: &str) -> Option<f64> {
     let factor = line.trim().strip_suffix('*')?.trim();
-    factor
-        .parse()
-        .ok()
-        .filter(|factor: &f64| factor.is_finite())
+    let factor: f64 = factor.parse().ok()?;
+    if factor.is_finite() {
+        Some(factor)
+    } else {
+        None
+    }
 }
 
 /// Whether a line announces columns: "Columns 1 through 6", "Column 7:".
-pub(super) fn is_columns_line(line: &str) -> bool {
+fn is_columns_line(line: &str) -> bool {
     let mut words = line.trim().trim_end_matches(':').split_whitespace();
     matches!(words.next(), Some("Columns" | "Column"))
         && words.all(|word| {
@@ -432,12 +466,12 @@ mod matrix_text_tests {
             .to_string();
         assert_eq!(
             ragged,
-            "variable A: line 1: one number, where other rows have 2; complete the row"
+            "variable A: line 1: a single number, where other rows have 2; complete the row"
         );
     }
 
     #[test]
-    fn matrices_stand_below_their_names() {
+    fn matrices_follow_their_names() {
         let found =
             arrays("# model\nA =\n\n  -1.0  2\n   0  1\n\nB:\n0\n1\nC (1x2)\n1;0,5\nx0 = 5\n");
         let matrix = |rows, columns, values: &[f64]| Array::matrix(rows, columns, values.to_vec());
@@ -451,7 +485,7 @@ mod matrix_text_tests {
     }
 
     #[test]
-    fn factors_and_parts_are_put_together() {
+    fn factors_are_applied_and_parts_joined() {
         let text = "A =\n\n   1.0e+03 *\n\n  Columns 1 through 2\n\n    0.001  2\n    0.003  4\n\n  Column 3\n\n    5\n    6\n";
         let found = arrays(text);
         assert_eq!(
@@ -479,10 +513,7 @@ mod matrix_text_tests {
         assert!(message("1 2\n").starts_with("line 1: numbers without a name"));
         assert!(message("A =\n1 2\n\n3\n").starts_with("variable A: line 4: "));
         assert!(message("A =\n1 2\n3 x\n").starts_with("line 3: \"3 x\" is no row of numbers"));
-        assert_eq!(
-            message("A\n1\nA\n2\n"),
-            "the name \"A\" stands twice; rename one"
-        );
+        assert_eq!(message("A\n1\nA\n2\n"), "duplicate name \"A\"; rename one");
         assert!(message("A =\n").contains("no name with numbers below it"));
     }
 
@@ -509,7 +540,7 @@ mod printed_line_tests {
     use super::*;
 
     #[test]
-    fn names_stand_alone_or_before_a_sign() {
+    fn names_are_alone_or_before_a_sign() {
         let line = |text| {
             name_line(text).map(
                 |NameLine {
@@ -531,7 +562,7 @@ mod printed_line_tests {
     }
 
     #[test]
-    fn factors_and_columns_are_seen() {
+    fn factors_and_column_lines_are_recognised() {
         assert_eq!(scale_line("   1.0e+03 *"), Some(1000.0));
         assert_eq!(scale_line("1 2"), None);
         assert!(

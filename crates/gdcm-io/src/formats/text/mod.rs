@@ -1,39 +1,58 @@
-//! Texts with numbers: tables in columns, frequency responses, matrices and MATLAB literals.
+//! Texts with numbers: tables in columns, frequency responses, matrices and MATLAB statements.
 
+mod cell_number;
+mod clock_time;
 mod column_meaning;
-pub(crate) mod columns;
-pub mod frequency_columns;
+mod columns;
+mod complex_columns;
+pub(crate) mod encoding;
+mod frequency_columns;
 mod heading;
+mod heading_units;
+mod layout;
+mod lines;
+mod literal_functions;
+mod literal_values;
 mod literals;
 mod matlab_scanner;
-pub(crate) mod matrix_text;
-pub(crate) mod separator;
-pub(crate) mod word_columns;
+mod matrix_text;
+mod response_columns;
+mod response_label;
+mod response_recognition;
+pub(crate) mod sections;
+mod separator;
+mod unrecognised;
+mod word_columns;
+mod workspace;
 
 use crate::file_error::FileError;
-use crate::formats::text::separator::decode;
+use crate::formats::text::encoding::decode;
+use crate::formats::text::literals::{Statements, read_literals};
 use crate::formats::{Contents, Importer};
 
 pub(crate) use columns::{TextTable, read_table};
-pub use frequency_columns::UnsaidUnit;
-pub(crate) use frequency_columns::{
-    FrequencyColumns, RecognisedResponse, ResponsePoints, Unrecognised,
-};
+pub(crate) use complex_columns::split_complex;
+pub(crate) use frequency_columns::FrequencyColumns;
 pub(crate) use matrix_text::{read_matrices, read_matrix};
-
-pub(crate) use word_columns::{NumberedText, numbered_words, split_complex};
+pub(crate) use response_columns::{RecognisedResponse, ResponsePoints};
+pub(crate) use unrecognised::Unrecognised;
+pub use unrecognised::UnsaidUnit;
+pub(crate) use word_columns::{NumberedText, numbered_words};
 
 /// MATLAB and Octave statements.
 pub(crate) const LITERALS: Importer = Importer {
     name: "MATLAB statements",
     endings: &["m"],
     recognises: |bytes, ending| {
-        ending == "m" && !begins_with_numbers(bytes)
-            || TEXT.endings.contains(&ending) && begins_with_statement(bytes)
+        if ending == "m" {
+            !begins_with_numbers(bytes)
+        } else {
+            TEXT.endings.contains(&ending) && begins_with_statement(bytes)
+        }
     },
     read: |bytes, path, budget| {
-        let read = decode(bytes, budget).and_then(|text| literals::read_literals(&text, budget));
-        let literals::Statements { variables, notes } =
+        let read = decode(bytes, budget).and_then(|text| read_literals(&text, budget));
+        let Statements { variables, notes } =
             read.map_err(|fault| FileError::variables(path, fault))?;
         Ok(Contents::Variables {
             variables,
@@ -42,49 +61,6 @@ pub(crate) const LITERALS: Importer = Importer {
         })
     },
 };
-
-/// Returns the first lines of a text, without MATLAB comments and empty lines.
-fn first_lines(bytes: &[u8]) -> impl Iterator<Item = String> {
-    /// Length of the examined beginning \[bytes\].
-    const HEAD: usize = 4000;
-    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]).into_owned();
-    let lines: Vec<String> = head.lines().map(|line| line.trim().to_owned()).collect();
-    lines
-        .into_iter()
-        .filter(|line| !line.is_empty() && !line.starts_with(['%', '#']))
-}
-
-/// Whether a text begins with an assignment of numbers or texts to a name, such as `A = [1 2` or
-/// `Ts = 0.02;`. A table may begin with `Fs = 50`.
-fn begins_with_statement(bytes: &[u8]) -> bool {
-    first_lines(bytes).next().is_some_and(|line| {
-        let Some((name, value)) = line.split_once('=') else {
-            return false;
-        };
-        let value = value.trim();
-        let begins_name = name.starts_with(|letter: char| letter.is_ascii_alphabetic());
-        let is_name = name
-            .trim()
-            .chars()
-            .all(|letter| letter.is_ascii_alphanumeric() || "_.(){}".contains(letter));
-        begins_name && is_name && (value.starts_with(['[', '{', '\'']) || value.ends_with(';'))
-    })
-}
-
-/// Whether a text begins with a row of numbers, or with column names and such a row; statements
-/// never do.
-fn begins_with_numbers(bytes: &[u8]) -> bool {
-    first_lines(bytes)
-        .take(2)
-        .take_while(|line| !line.contains('='))
-        .any(|line| {
-            let mut cells = line
-                .split([',', ';', '\t', ' '])
-                .filter(|cell| !cell.is_empty())
-                .peekable();
-            cells.peek().is_some() && cells.all(|cell| cell.parse::<f64>().is_ok())
-        })
-}
 
 /// Numbers in columns, or matrices.
 pub(crate) const TEXT: Importer = Importer {
@@ -97,3 +73,59 @@ pub(crate) const TEXT: Importer = Importer {
             .map_err(|fault| FileError::variables(path, fault))
     },
 };
+
+/// Returns the first lines in a text, without MATLAB comments and empty lines.
+fn first_lines(bytes: &[u8]) -> Vec<String> {
+    /// Length of the examined beginning \[bytes\].
+    const HEAD: usize = 4000;
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]);
+    head.lines()
+        .map(str::trim)
+        .filter(|line| !line.is_empty() && !line.starts_with(['%', '#']))
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Whether a text begins by assigning numbers or texts to a name, such as `A = [1 2` or
+/// `Ts = 0.02;`. A table may begin with `Fs = 50`.
+fn begins_with_statement(bytes: &[u8]) -> bool {
+    let lines = first_lines(bytes);
+    let Some((name, value)) = lines.first().and_then(|line| line.split_once('=')) else {
+        return false;
+    };
+    let value = value.trim();
+    let begins_name = name.starts_with(|letter: char| letter.is_ascii_alphabetic());
+    let is_name = name
+        .trim()
+        .chars()
+        .all(|letter| letter.is_ascii_alphanumeric() || "_.(){}".contains(letter));
+    begins_name && is_name && (value.starts_with(['[', '{', '\'']) || value.ends_with(';'))
+}
+
+/// Whether a text begins with a number row, or with column names and such a row; statements
+/// never do.
+fn begins_with_numbers(bytes: &[u8]) -> bool {
+    for line in first_lines(bytes).iter().take(2) {
+        if line.contains('=') {
+            return false;
+        }
+        if is_row_of_numbers(line) {
+            return true;
+        }
+    }
+    false
+}
+
+fn is_row_of_numbers(line: &str) -> bool {
+    let mut has_number = false;
+    for cell in line.split([',', ';', '\t', ' ']) {
+        if cell.is_empty() {
+            continue;
+        }
+        if cell.parse::<f64>().is_err() {
+            return false;
+        }
+        has_number = true;
+    }
+    has_number
+}

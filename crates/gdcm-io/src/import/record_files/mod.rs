@@ -26,7 +26,7 @@ use super::recognise::{Found, search};
 use crate::file_error::FileError;
 use crate::files::study_file::relative_folder;
 use crate::formats::recorded_columns::{Columns, MOST_RECORDS};
-use crate::formats::text::separator::sections;
+use crate::formats::text::sections::sections;
 use crate::formats::text::{NumberedText, TextTable, numbered_words, read_table};
 use crate::formats::variables::Variable;
 use crate::formats::{

@@ -456,7 +456,7 @@ fn a_study_that_holds_what_cannot_be_decided_is_refused_with_the_place() {
         ),
         (
             |file| file["conditions"][1]["id"] = json!(7),
-            "condition 7 (number 2 in the file): condition 7 stands twice",
+            "condition 7 (number 2 in the file): duplicate condition 7",
         ),
     ];
     for (change, words) in cases {

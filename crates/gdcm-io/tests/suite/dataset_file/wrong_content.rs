@@ -239,7 +239,7 @@ fn ids_and_names_that_stand_twice_are_refused() {
     assert_text_refused(
         "\"id\": 7",
         "\"id\": 7, \"id\": 8",
-        &["condition", "the key \"id\" stands twice"],
+        &["condition", "duplicate key \"id\""],
     );
 }
 

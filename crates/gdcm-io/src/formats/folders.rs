@@ -1,0 +1,195 @@
+//! Files in folders, in the order in which people count.
+
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use gdcm_model::message_text::sanitized;
+
+use crate::file_error::FileError;
+use crate::formats::text::TEXT;
+use crate::formats::{ending_of, importer_of, is_known};
+use crate::source::kind_of;
+
+/// Largest number of files examined.
+pub(crate) const MOST_FILES: usize = 20_000;
+/// Deepest nesting of folders.
+pub(crate) const DEEPEST: usize = 16;
+
+/// A file to be read.
+pub(super) struct ListedFile {
+    pub(super) path: PathBuf,
+    /// Name relative to the requested path.
+    pub(super) name: String,
+}
+
+/// Returns the folder to which the file names in models are relative: the first folder given, or
+/// the folder that contains a single file.
+pub fn sources_folder(sources: &[PathBuf]) -> &Path {
+    let here = Path::new(".");
+    let first = sources.first().map_or(here, PathBuf::as_path);
+    let folder = if first.is_dir() {
+        first
+    } else {
+        first.parent().unwrap_or(here)
+    };
+    if folder.as_os_str().is_empty() {
+        here
+    } else {
+        folder
+    }
+}
+
+/// Lists the requested files, and the files with known endings in folders, sorted by name. Pipes,
+/// sockets and devices are skipped with a message.
+pub(super) fn list_files(
+    paths: &[PathBuf],
+    skipped: &mut Vec<String>,
+) -> Result<Vec<ListedFile>, FileError> {
+    let mut files = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            let mut listing = Listing {
+                root: path,
+                files,
+                skipped,
+            };
+            listing.add_folder(path, DEEPEST)?;
+            files = listing.files;
+        } else {
+            let name = match path.file_name() {
+                Some(name) => name.to_string_lossy().into_owned(),
+                None => String::new(),
+            };
+            files.push(ListedFile {
+                path: path.clone(),
+                name,
+            });
+        }
+    }
+    Ok(files)
+}
+
+/// Files below a requested folder, while they are listed.
+struct Listing<'p> {
+    root: &'p Path,
+    /// All files so far, also from other requested paths.
+    files: Vec<ListedFile>,
+    /// Messages about entries that are no files.
+    skipped: &'p mut Vec<String>,
+}
+
+impl Listing<'_> {
+    /// Adds the files in a folder; up to `deeper` folders may be nested in it.
+    fn add_folder(&mut self, folder: &Path, deeper: usize) -> Result<(), FileError> {
+        let failed = |error: std::io::Error| FileError::reading(folder, &error);
+        let mut entries = fs::read_dir(folder)
+            .map_err(failed)?
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(failed)?;
+        entries.sort_by_key(|entry| natural_key(&entry.file_name().to_string_lossy()));
+        for entry in entries {
+            let path = entry.path();
+            let is_hidden = entry.file_name().to_string_lossy().starts_with('.');
+            let kind = entry.file_type().map_err(failed)?;
+            // Links could form cycles.
+            let is_linked_folder = kind.is_symlink() && path.is_dir();
+            if is_hidden || is_linked_folder {
+                continue;
+            }
+            if kind.is_dir() {
+                if deeper == 0 {
+                    return Err(FileError::FolderTooDeep { path });
+                }
+                self.add_folder(&path, deeper - 1)?;
+            } else if is_known(&path) && !is_other_log(&path) {
+                self.add_file(path, kind);
+            }
+            if self.files.len() > MOST_FILES {
+                return Err(FileError::TooManyFiles {
+                    path: self.root.to_owned(),
+                    most: MOST_FILES,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a file, or a message if the path or its link leads to a pipe, a socket or a device.
+    fn add_file(&mut self, path: PathBuf, kind: fs::FileType) {
+        let name = path
+            .strip_prefix(self.root)
+            .unwrap_or(&path)
+            .to_string_lossy()
+            .replace('\\', "/");
+        let target = fs::metadata(&path).map_or(kind, |metadata| metadata.file_type());
+        match kind_of(target) {
+            Some(kind) => self.skipped.push(format!(
+                "{}: skipped: this is {kind}, not a file",
+                sanitized(&name)
+            )),
+            None => self.files.push(ListedFile { path, name }),
+        }
+    }
+}
+
+/// Whether a file with a widely used ending (`.log`, `.bin`) has no supported format.
+fn is_other_log(path: &Path) -> bool {
+    /// Formats with these endings are recognised by their first bytes.
+    const FIRST: usize = 64;
+    if !["bin", "log"].contains(&ending_of(path).as_str()) || !path.is_file() {
+        return false;
+    }
+    let mut first = Vec::with_capacity(FIRST);
+    let read =
+        fs::File::open(path).and_then(|file| file.take(FIRST as u64).read_to_end(&mut first));
+    read.is_ok() && importer_of(&first, path).name == TEXT.name
+}
+
+/// Part of a name, in lower case, and the number after it.
+type TextAndNumber = (String, u64);
+
+/// Returns a sort key that puts "c2" before "c10".
+fn natural_key(name: &str) -> Vec<TextAndNumber> {
+    /// Longest number that fits in 64 bits \[digits\].
+    const LONGEST: usize = 18;
+    let mut parts = Vec::new();
+    let mut text = String::new();
+    let mut digits = String::new();
+    for letter in name.chars() {
+        if letter.is_ascii_digit() && digits.len() < LONGEST {
+            digits.push(letter);
+            continue;
+        }
+        if !digits.is_empty() {
+            parts.push(text_and_number(&mut text, &mut digits));
+        }
+        text.extend(letter.to_lowercase());
+    }
+    if !digits.is_empty() {
+        parts.push(text_and_number(&mut text, &mut digits));
+    }
+    // The end of a name sorts before any letter.
+    text.push('\0');
+    parts.push((text, 0));
+    parts
+}
+
+/// Returns a text and the number after it, and clears both.
+fn text_and_number(text: &mut String, digits: &mut String) -> TextAndNumber {
+    let number = digits.parse().unwrap_or(u64::MAX);
+    digits.clear();
+    (std::mem::take(text), number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_sorted_as_people_count() {
+        let mut names = ["c10", "c2", "C1b", "c1", "roll+5", "roll-5"];
+        names.sort_by_key(|name| natural_key(name));
+        assert_eq!(names, ["c1", "C1b", "c2", "c10", "roll+5", "roll-5"]);
+    }
+}

@@ -1,0 +1,70 @@
+//! Modes over time in a logging system.
+
+use gdcm_sysid::records::ModeSpan;
+
+/// Largest number of spans kept for a log.
+const MOST_SPANS: usize = 1000;
+/// Largest number of spans listed in a note.
+const SHOWN: usize = 8;
+
+/// Returns the time spans in which a state keeps a value that has a name.
+pub(super) fn mode_spans(
+    time_s: &[f64],
+    values: impl IntoIterator<Item = f64>,
+    name: impl Fn(f64) -> Option<String>,
+) -> Vec<ModeSpan> {
+    let mut spans: Vec<ModeSpan> = Vec::new();
+    let mut last: Option<f64> = None;
+    for (&time, value) in time_s.iter().zip(values) {
+        // A state lasts until the next state is logged, also while it repeats.
+        if let Some(open) = spans.last_mut()
+            && last.is_some_and(|last| name(last).is_some())
+        {
+            open.ends_s[1] = time;
+        }
+        let begins = last != Some(value);
+        if begins
+            && spans.len() < MOST_SPANS
+            && let Some(name) = name(value)
+        {
+            spans.push(ModeSpan {
+                name,
+                ends_s: [time, time],
+            });
+        }
+        last = Some(value);
+    }
+    spans
+}
+
+/// Describes spans: "armed 3.2 to 88.1 s".
+pub(super) fn modes_note(spans: &[ModeSpan]) -> Option<String> {
+    if spans.is_empty() {
+        return None;
+    }
+    let shown: Vec<String> = spans.iter().take(SHOWN).map(span_words).collect();
+    let mut note = shown.join(", ");
+    if spans.len() > SHOWN {
+        note.push_str(&format!(" and {} more", spans.len() - SHOWN));
+    }
+    Some(note)
+}
+
+fn span_words(span: &ModeSpan) -> String {
+    let [begin_s, end_s] = span.ends_s;
+    format!("{} {begin_s:.1} to {end_s:.1} s", span.name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_state_lasts_until_the_next_state_is_logged() {
+        let name = |value: f64| (value == 2.0).then(|| "armed".to_owned());
+        let spans = mode_spans(&[0.0, 1.0, 2.0, 5.0, 6.0], [1.0, 2.0, 2.0, 1.0, 2.0], name);
+        let ends: Vec<[f64; 2]> = spans.iter().map(|span| span.ends_s).collect();
+        assert_eq!(ends, [[1.0, 5.0], [6.0, 6.0]]);
+        assert_eq!(modes_note(&spans[..1]).unwrap(), "armed 1.0 to 5.0 s");
+    }
+}

@@ -1,0 +1,77 @@
+//! Topics in a log, each with its own clock, during reading.
+
+use std::sync::Arc;
+
+use gdcm_sysid::records::RecordColumn;
+use gdcm_sysid::records::record_table::TopicClock;
+
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// A topic with fewer samples is ignored.
+const FEWEST_SAMPLES: usize = 3;
+
+/// A topic with its samples.
+pub(super) struct TopicSamples {
+    pub(super) name: String,
+    pub(super) fields: Vec<TopicField>,
+    pub(super) time_s: Vec<f64>,
+}
+
+/// A topic field with its samples.
+pub(super) struct TopicField {
+    pub(super) name: String,
+    pub(super) unit: Option<String>,
+    pub(super) values: Vec<f64>,
+}
+
+impl TopicSamples {
+    /// Creates a topic with these fields and no samples.
+    pub(super) fn new(name: String, fields: Vec<TopicField>) -> Self {
+        Self {
+            name,
+            fields,
+            time_s: Vec::new(),
+        }
+    }
+
+    /// Returns the field with a name.
+    pub(super) fn field(&self, name: &str) -> Option<&TopicField> {
+        self.fields.iter().find(|field| field.name == name)
+    }
+
+    /// Appends a sample: a value for each field, in order.
+    pub(super) fn push(
+        &mut self,
+        time_s: f64,
+        values: impl IntoIterator<Item = f64>,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<(), VariableFault> {
+        budget.take(self.fields.len() as u64 + 1, 8, &self.name)?;
+        self.time_s.push(time_s);
+        for (field, value) in self.fields.iter_mut().zip(values) {
+            field.values.push(value);
+        }
+        Ok(())
+    }
+
+    /// Returns the columns; none if there are too few samples.
+    pub(super) fn columns(self) -> Vec<RecordColumn> {
+        if self.time_s.len() < FEWEST_SAMPLES {
+            return Vec::new();
+        }
+        let clock = Arc::new(TopicClock {
+            name: self.name,
+            time_s: self.time_s,
+        });
+        let mut columns = Vec::with_capacity(self.fields.len());
+        for field in self.fields {
+            let name = format!("{}.{}", clock.name, field.name);
+            columns.push(RecordColumn {
+                unit: field.unit,
+                topic: Some(Arc::clone(&clock)),
+                ..RecordColumn::new(name, field.values)
+            });
+        }
+        columns
+    }
+}

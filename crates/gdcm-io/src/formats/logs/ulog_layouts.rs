@@ -1,0 +1,250 @@
+//! Message layouts in ULog: fields that are numbers, arrays or other layouts, flattened to a list.
+
+use std::collections::BTreeMap;
+
+use crate::formats::strides::{NumberClass, StoredNumber};
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Largest message, limited by its 16-bit length \[bytes\].
+const LARGEST: usize = 65_535;
+/// Deepest nesting of layouts.
+const DEEPEST: usize = 8;
+
+/// A number in the data part of a message.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Place {
+    /// For example `xyz[0]`, `esc[1].esc_rpm`.
+    pub(super) name: String,
+    stored: StoredNumber,
+    /// Offset in the message \[bytes\].
+    offset: usize,
+}
+
+impl Place {
+    /// Whether this is the time stamp, in microseconds.
+    pub(super) fn is_stamp(&self) -> bool {
+        self.name == "timestamp" && Some(self.stored) == number_type("uint64_t")
+    }
+
+    /// Returns the offset after the number \[bytes\].
+    pub(super) fn end(&self) -> usize {
+        self.offset + self.stored.size()
+    }
+
+    /// Reads the number, unless the data are too short.
+    pub(super) fn read(&self, data: &[u8]) -> Option<f64> {
+        self.stored.at(data, self.offset)
+    }
+}
+
+/// Layouts by message name, as written in the file: `uint64_t timestamp;float[3] xyz`.
+pub(super) type Formats<'b> = BTreeMap<&'b str, &'b str>;
+
+/// Returns the numbers in a message with this name.
+///
+/// # Errors
+/// A layout that is missing, recursive, or longer than the largest message.
+pub(super) fn places_in_message(
+    name: &str,
+    formats: &Formats<'_>,
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<Place>, VariableFault> {
+    let mut flattening = Flattening {
+        formats,
+        budget,
+        message: name,
+        places: Vec::new(),
+        offset: 0,
+    };
+    flattening.add_layout(name, "", DEEPEST)?;
+    Ok(flattening.places)
+}
+
+/// A layout while it is flattened.
+struct Flattening<'a> {
+    formats: &'a Formats<'a>,
+    budget: &'a ReadingBudget<'a>,
+    message: &'a str,
+    places: Vec<Place>,
+    /// Offset of the next field \[bytes\].
+    offset: usize,
+}
+
+/// A layout field: `float[3] xyz`.
+struct LayoutField<'f> {
+    /// Name of a number type or of another layout.
+    kind: &'f str,
+    name: &'f str,
+    /// Element count in an array.
+    length: Option<usize>,
+}
+
+impl Flattening<'_> {
+    fn damaged(&self, what: String) -> VariableFault {
+        VariableFault::damaged(self.message, what, 0)
+    }
+
+    /// Adds the numbers in a layout; up to `deeper` layouts may be nested from here.
+    fn add_layout(&mut self, name: &str, prefix: &str, deeper: usize) -> Result<(), VariableFault> {
+        if deeper == 0 {
+            return Err(VariableFault::too_deep(self.message));
+        }
+        let Some(fields) = self.formats.get(name) else {
+            return Err(self.damaged(format!("the layout of \"{}\" is missing", short(name))));
+        };
+        for field in fields.split(';').map(str::trim) {
+            if !field.is_empty() {
+                let field = self.parse_field(field)?;
+                self.add_field(&field, prefix, deeper)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn parse_field<'f>(&self, field: &'f str) -> Result<LayoutField<'f>, VariableFault> {
+        let Some((kind, name)) = field.split_once(' ') else {
+            return Err(self.damaged(format!("\"{}\" is no field", short(field))));
+        };
+        let array = kind.strip_suffix(']').and_then(|kind| kind.split_once('['));
+        let Some((kind, length)) = array else {
+            return Ok(LayoutField {
+                kind,
+                name,
+                length: None,
+            });
+        };
+        match length.parse() {
+            Ok(length) if length <= LARGEST => Ok(LayoutField {
+                kind,
+                name,
+                length: Some(length),
+            }),
+            _ => Err(self.damaged(format!("\"{}\" has no length", short(name)))),
+        }
+    }
+
+    /// Adds the numbers in a field, or in each array element.
+    fn add_field(
+        &mut self,
+        field: &LayoutField<'_>,
+        prefix: &str,
+        deeper: usize,
+    ) -> Result<(), VariableFault> {
+        let name = field.name;
+        for index in 0..field.length.unwrap_or(1) {
+            let label = if field.length.is_some() {
+                format!("{prefix}{name}[{index}]")
+            } else {
+                format!("{prefix}{name}")
+            };
+            let begin = self.offset;
+            self.budget.work(1, self.message)?;
+            match number_type(field.kind) {
+                Some(stored) => self.add_number(label, name, stored)?,
+                None if field.kind == "char" => self.offset += 1,
+                None => self.add_layout(field.kind, &format!("{label}."), deeper - 1)?,
+            }
+            // Fields without bytes could be repeated without limit.
+            if self.offset == begin || self.offset > LARGEST {
+                return Err(self.damaged(format!(
+                    "the field \"{}\" has no length, or too much",
+                    short(name)
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a number, unless its field only fills space.
+    fn add_number(
+        &mut self,
+        label: String,
+        field: &str,
+        stored: StoredNumber,
+    ) -> Result<(), VariableFault> {
+        if !field.starts_with("_padding") {
+            self.budget
+                .take(1, (size_of::<Place>() + label.len()) as u64, self.message)?;
+            self.places.push(Place {
+                name: label,
+                stored,
+                offset: self.offset,
+            });
+        }
+        self.offset += stored.size();
+        Ok(())
+    }
+}
+
+/// Returns the number with a C type name, or nothing if the type is unknown.
+fn number_type(name: &str) -> Option<StoredNumber> {
+    use NumberClass::{Float, Signed, Unsigned};
+    let (class, size) = match name {
+        "int8_t" => (Signed, 1),
+        "uint8_t" | "bool" => (Unsigned, 1),
+        "int16_t" => (Signed, 2),
+        "uint16_t" => (Unsigned, 2),
+        "int32_t" => (Signed, 4),
+        "uint32_t" => (Unsigned, 4),
+        "int64_t" => (Signed, 8),
+        "uint64_t" => (Unsigned, 8),
+        "float" => (Float, 4),
+        "double" => (Float, 8),
+        _ => return None,
+    };
+    Some(StoredNumber::little_endian(class, size))
+}
+
+/// Shortens a name for a message.
+fn short(name: &str) -> String {
+    name.chars()
+        .take(60)
+        .filter(|letter| !letter.is_control())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nested_layouts_become_a_flat_list() {
+        let formats = Formats::from([
+            (
+                "esc",
+                "uint64_t timestamp;one[2] esc;uint8_t[3] _padding0;bool last",
+            ),
+            ("one", "int16_t rpm;char[4] name;float v"),
+        ]);
+        let places = places_in_message("esc", &formats, &ReadingBudget::new(1 << 20)).unwrap();
+        let found: Vec<(&str, usize)> = places
+            .iter()
+            .map(|place| (place.name.as_str(), place.offset))
+            .collect();
+        let expected = [
+            ("timestamp", 0),
+            ("esc[0].rpm", 8),
+            ("esc[0].v", 14),
+            ("esc[1].rpm", 18),
+            ("esc[1].v", 24),
+            ("last", 31),
+        ];
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn circles_and_layouts_without_bytes_are_refused() {
+        let formats = Formats::from([
+            ("a", "a x"),
+            ("b", "none[60000] x"),
+            ("none", ""),
+            ("c", "float[99999999] x"),
+        ]);
+        for name in ["a", "b", "c", "d"] {
+            assert!(
+                places_in_message(name, &formats, &ReadingBudget::new(1 << 20)).is_err(),
+                "{name}"
+            );
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Complex columns, `(1.5-2j)`, as columns with real and imaginary parts.
+
+use crate::formats::text::cell_number::{cell_number, has_number};
+use crate::formats::text::lines::{comment, lines};
+use crate::formats::text::separator::Separator;
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Number of lines examined.
+const SAMPLE: usize = 200;
+
+/// Replaces each complex column by two columns, with "re" and "im" before their headings; returns
+/// nothing if there is none. Line numbers are kept.
+pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String>, VariableFault> {
+    let Some(columns) = ComplexColumns::recognise(text) else {
+        return Ok(None);
+    };
+    budget.take(text.len() as u64, 3, "")?;
+    let mut split = String::with_capacity(2 * text.len());
+    for (_, line) in lines(text) {
+        budget.work(1, "")?;
+        match columns.split_line(comment(line).unwrap_or(line)) {
+            Some(line) => split.push_str(&line),
+            None => split.push_str(line),
+        }
+        split.push('\n');
+    }
+    // An empty line follows the last line end.
+    split.pop();
+    Ok(Some(split))
+}
+
+/// Separator and complex columns in a text.
+struct ComplexColumns {
+    separator: Separator,
+    /// Whether each column is complex.
+    is_complex: Vec<bool>,
+}
+
+impl ComplexColumns {
+    /// Finds the first number row with a complex number.
+    fn recognise(text: &str) -> Option<Self> {
+        lines(text)
+            .filter(|(_, line)| comment(line).is_none())
+            .take(SAMPLE)
+            .find_map(|(_, line)| Self::from_line(line))
+    }
+
+    fn from_line(line: &str) -> Option<Self> {
+        Separator::ALL
+            .into_iter()
+            .find_map(|separator| Self::from_separated_line(line, separator))
+    }
+
+    /// Interprets the cells in a line; `None` unless there are at least two, all are
+    /// numbers, and some are complex.
+    fn from_separated_line(line: &str, separator: Separator) -> Option<Self> {
+        let mut is_complex = Vec::new();
+        for cell in separator.cells(line) {
+            if ComplexText::parse(&cell).is_some() {
+                is_complex.push(true);
+            } else {
+                cell_number(&cell, false)?;
+                is_complex.push(false);
+            }
+        }
+        if is_complex.len() > 1 && is_complex.contains(&true) {
+            Some(Self {
+                separator,
+                is_complex,
+            })
+        } else {
+            None
+        }
+    }
+
+    /// Splits the complex cells in a line; `None` if the cell count differs.
+    fn split_line(&self, line: &str) -> Option<String> {
+        let cells: Vec<_> = self.separator.cells(line).collect();
+        if cells.len() != self.is_complex.len() {
+            return None;
+        }
+        let mut split = Vec::with_capacity(2 * cells.len());
+        for (cell, is_complex) in cells.into_iter().zip(&self.is_complex) {
+            if *is_complex {
+                let ComplexText { re, im } = self.parts_or_headings(&cell);
+                split.push(re);
+                split.push(im);
+            } else {
+                split.push(cell.into_owned());
+            }
+        }
+        Some(self.separator.line(split.into_iter()))
+    }
+
+    /// Returns both parts of a number, or two headings for a heading.
+    fn parts_or_headings(&self, cell: &str) -> ComplexText {
+        if let Some(parts) = ComplexText::parse(cell) {
+            return parts;
+        }
+        let cell = cell.trim();
+        match cell_number(cell, false) {
+            Some(number) if number.is_nan() => ComplexText::new(cell, cell),
+            Some(_) => ComplexText::new(cell, "0"),
+            None => {
+                let joint = if self.separator == Separator::Blanks {
+                    "_"
+                } else {
+                    " "
+                };
+                ComplexText {
+                    re: format!("re{joint}{cell}"),
+                    im: format!("im{joint}{cell}"),
+                }
+            }
+        }
+    }
+}
+
+/// Real and imaginary part, as text.
+struct ComplexText {
+    re: String,
+    im: String,
+}
+
+impl ComplexText {
+    fn new(re: &str, im: &str) -> Self {
+        Self {
+            re: re.to_owned(),
+            im: im.to_owned(),
+        }
+    }
+
+    /// Parses "(1.5-2j)", "1.5 + 2i", "2e-3j", "(1+-2j)".
+    fn parse(cell: &str) -> Option<Self> {
+        let cell: String = cell
+            .chars()
+            .filter(|letter| !letter.is_whitespace())
+            .collect();
+        let inner = cell
+            .strip_prefix('(')
+            .and_then(|cell| cell.strip_suffix(')'))
+            .unwrap_or(&cell);
+        let inner = inner
+            .strip_suffix(['i', 'j'])?
+            .trim_end_matches('*')
+            .replace("+-", "-");
+        let (re, im) = match last_sign(&inner) {
+            Some(at) => inner.split_at(at),
+            None => ("0", inner.as_str()),
+        };
+        let im = im.trim_start_matches('+');
+        if is_filled_number(re) && is_filled_number(im) {
+            Some(Self::new(re, im))
+        } else {
+            None
+        }
+    }
+}
+
+/// Returns the offset of the sign between real and imaginary part: the last sign that is neither at
+/// the beginning nor in an exponent.
+fn last_sign(number: &str) -> Option<usize> {
+    let (at, _) = number.char_indices().rfind(|(at, letter)| {
+        *at > 0 && matches!(letter, '+' | '-') && !number[..*at].ends_with(['e', 'E', 'd', 'D'])
+    })?;
+    Some(at)
+}
+
+fn is_filled_number(text: &str) -> bool {
+    !text.is_empty() && has_number(text, false)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn split(text: &str) -> Option<String> {
+        split_complex(text, &ReadingBudget::new(1 << 20)).unwrap()
+    }
+
+    #[test]
+    fn complex_numbers_of_python_and_matlab_become_two_columns() {
+        let text = "omega,H\n1,(1.5-2j)\n2,3e-2+4e+1i\n3,-2j\n4,7\n";
+        assert_eq!(
+            split(text).unwrap(),
+            "omega,re H,im H\n1,1.5,-2\n2,3e-2,4e+1\n3,0,-2\n4,7,0\n"
+        );
+        let blanks = "# w H\n 1.0e+00 (1.0e+00+-2.0e+00j)\n";
+        assert_eq!(
+            split(blanks).unwrap(),
+            "w re_H im_H\n1.0e+00 1.0e+00 -2.0e+00\n"
+        );
+    }
+
+    #[test]
+    fn other_tables_and_words_are_left_alone() {
+        for text in ["w,re,im\n1,2,3\n", "t;mode\n1;j\n", "", "a,i\nb,j\n"] {
+            assert_eq!(split(text), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! Line layout in a table: separator, decimal mark, and column count.
+
+use std::collections::BTreeMap;
+
+use crate::formats::text::cell_number::cell_number;
+use crate::formats::text::lines::{comment, lines, without_comment};
+use crate::formats::text::separator::{Cells, Separator};
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Number of rows examined to recognise the layout.
+const SAMPLE: usize = 200;
+
+/// Line layout in a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Layout {
+    pub(super) separator: Separator,
+    pub(super) decimal_comma: bool,
+    /// Column count, without the empty column after a trailing separator on every line.
+    pub(super) columns: usize,
+    /// Whether a trailing separator on the examined lines leaves an empty cell.
+    pub(super) trailing: bool,
+}
+
+/// Cells in a line that holds numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct RowShape {
+    /// Cell count.
+    pub(super) width: usize,
+    /// Whether the last cell is empty.
+    pub(super) ends_empty: bool,
+}
+
+impl Layout {
+    /// Finds the separator and the decimal mark for which most lines are rows with the same width;
+    /// prefers the wider table in a tie; returns nothing if no line is a row.
+    pub(super) fn recognise(
+        text: &str,
+        budget: &ReadingBudget,
+    ) -> Result<Option<Self>, VariableFault> {
+        let mut tallies = candidates();
+        for (_, line) in lines(text) {
+            budget.work(1, "")?;
+            if line.trim().is_empty() || comment(line).is_some() {
+                continue;
+            }
+            for tally in &mut tallies {
+                tally.count(line);
+            }
+            if tallies.iter().any(|tally| tally.rows >= SAMPLE) {
+                break;
+            }
+        }
+        let mut best: Option<Score> = None;
+        for score in tallies.iter().filter_map(Tally::score) {
+            if best.is_none_or(|best| score.beats(best)) {
+                best = Some(score);
+            }
+        }
+        Ok(best.map(|best| best.layout))
+    }
+
+    /// Returns the cells in a row, without a trailing comment.
+    pub(super) fn cells(self, line: &str) -> Cells<'_> {
+        self.separator.cells(without_comment(line))
+    }
+
+    /// Returns the shape of a line if all cells are numbers or missing, and not all are missing.
+    pub(super) fn row_shape(self, line: &str) -> Option<RowShape> {
+        let mut shape = RowShape {
+            width: 0,
+            ends_empty: false,
+        };
+        let mut has_number = false;
+        for cell in self.cells(line) {
+            let number = cell_number(&cell, self.decimal_comma)?;
+            shape.width += 1;
+            shape.ends_empty = cell.trim().is_empty();
+            has_number |= !number.is_nan();
+        }
+        if has_number { Some(shape) } else { None }
+    }
+
+    /// Whether a row has this layout: an additional empty cell may follow a trailing separator. If
+    /// all lines end in a separator, the empty cell after it is not counted.
+    pub(super) fn fits(self, row: RowShape) -> bool {
+        let expected = if self.trailing && row.ends_empty {
+            self.columns + 1
+        } else {
+            self.columns
+        };
+        row.width == expected || (row.width == self.columns + 1 && row.ends_empty)
+    }
+}
+
+/// Returns a tally for each separator and decimal mark; the decimal point goes first.
+fn candidates() -> Vec<Tally> {
+    let mut tallies = Vec::with_capacity(2 * Separator::ALL.len());
+    for decimal_comma in [false, true] {
+        for separator in Separator::ALL {
+            tallies.push(Tally {
+                separator,
+                decimal_comma,
+                widths: BTreeMap::new(),
+                rows: 0,
+            });
+        }
+    }
+    tallies
+}
+
+/// Rows found with one separator and decimal mark.
+struct Tally {
+    separator: Separator,
+    decimal_comma: bool,
+    /// Rows by their width.
+    widths: BTreeMap<usize, RowCount>,
+    rows: usize,
+}
+
+/// Rows with the same width.
+#[derive(Clone, Copy, Default)]
+struct RowCount {
+    rows: usize,
+    /// Rows whose last cell is empty.
+    ending_empty: usize,
+}
+
+/// A layout and how many examined rows have it.
+#[derive(Clone, Copy)]
+struct Score {
+    rows: usize,
+    layout: Layout,
+}
+
+impl Score {
+    /// Whether this layout has more rows, or as many rows and more columns.
+    fn beats(self, other: Score) -> bool {
+        (self.rows, self.layout.columns) > (other.rows, other.layout.columns)
+    }
+}
+
+impl Tally {
+    fn count(&mut self, line: &str) {
+        let layout = Layout {
+            separator: self.separator,
+            decimal_comma: self.decimal_comma,
+            columns: 0,
+            trailing: false,
+        };
+        if let Some(RowShape { width, ends_empty }) = layout.row_shape(line) {
+            let count = self.widths.entry(width).or_default();
+            count.rows += 1;
+            count.ending_empty += usize::from(ends_empty);
+            self.rows += 1;
+        }
+    }
+
+    /// Returns the layout with the most frequent width, the larger width in a tie.
+    fn score(&self) -> Option<Score> {
+        let (&width, count) = self
+            .widths
+            .iter()
+            .max_by_key(|(width, count)| (count.rows, **width))?;
+        let trailing = count.ending_empty == count.rows && width > 1;
+        let columns = if trailing { width - 1 } else { width };
+        Some(Score {
+            rows: count.rows,
+            layout: Layout {
+                separator: self.separator,
+                decimal_comma: self.decimal_comma,
+                columns,
+                trailing,
+            },
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn layout(text: &str) -> Option<(Separator, bool, usize)> {
+        let layout = Layout::recognise(text, &ReadingBudget::new(1 << 20)).unwrap()?;
+        Some((layout.separator, layout.decimal_comma, layout.columns))
+    }
+
+    #[test]
+    fn the_separator_and_the_decimal_mark_are_recognised() {
+        assert_eq!(layout("1,2,3\n4,5,6"), Some((Separator::Comma, false, 3)));
+        assert_eq!(layout("1,5;2,5"), Some((Separator::Semicolon, true, 2)));
+        assert_eq!(layout("1;2"), Some((Separator::Semicolon, false, 2)));
+        assert_eq!(layout("1,5 2,5"), Some((Separator::Blanks, true, 2)));
+        assert_eq!(layout("1,5\t2,5"), Some((Separator::Tab, true, 2)));
+        let strokes = layout("1.5 | 2 |\n3 | 4 |");
+        assert_eq!(strokes, Some((Separator::Pipe, false, 2)));
+        let quoted = layout("\"1,5\",\"2,5\"");
+        assert_eq!(quoted, Some((Separator::Comma, true, 2)));
+        assert_eq!(layout("1.5\n2.5"), Some((Separator::Tab, false, 1)));
+        assert_eq!(layout("no numbers"), None);
+    }
+
+    #[test]
+    fn tabulators_that_only_align_are_blanks() {
+        assert_eq!(
+            layout("1\t\t2\n100\t2\n3\t\t4\n400\t5"),
+            Some((Separator::Blanks, false, 2))
+        );
+        assert_eq!(layout("1\t\t2\n3\t\t4"), Some((Separator::Tab, false, 3)));
+    }
+
+    #[test]
+    fn trailing_comments_are_left_out() {
+        assert_eq!(
+            layout("1 2 # first\n3 4 ! second"),
+            Some((Separator::Blanks, false, 2))
+        );
+    }
+}

@@ -1,0 +1,175 @@
+//! MATLAB functions that create values from their arguments: models, structs, and filled matrices.
+
+use crate::formats::text::matlab_scanner::{Position, REMEDY, ValueError, refused};
+use crate::formats::variables::{Array, StructArray, Value};
+use crate::reading_budget::ReadingBudget;
+
+/// A function whose value is understood.
+#[derive(Clone, Copy)]
+pub(super) enum Function {
+    /// Creates a record with these fields from the first arguments. Name-value pairs follow, after
+    /// an optional sample time except for `struct`.
+    Record(&'static [&'static str]),
+    /// Creates a matrix with equal numbers, or the identity.
+    Fill(Fill),
+    /// `string` and `char`: returns a text unchanged.
+    Text,
+}
+
+#[derive(Clone, Copy)]
+pub(super) enum Fill {
+    Zeros,
+    Ones,
+    Identity,
+}
+
+/// A function call in the text.
+#[derive(Clone, Copy)]
+pub(super) struct Call<'n> {
+    pub(super) name: &'n str,
+    pub(super) function: Function,
+    /// Position of the name.
+    pub(super) place: Position,
+}
+
+impl Function {
+    /// Returns the function with a name; `None` for functions that are not read.
+    pub(super) fn find(name: &str) -> Option<Self> {
+        Some(match name {
+            "ss" => Self::Record(&["A", "B", "C", "D"]),
+            "tf" => Self::Record(&["num", "den"]),
+            "zpk" => Self::Record(&["z", "p", "k"]),
+            "struct" => Self::Record(&[]),
+            "zeros" => Self::Fill(Fill::Zeros),
+            "ones" => Self::Fill(Fill::Ones),
+            "eye" => Self::Fill(Fill::Identity),
+            "string" | "char" => Self::Text,
+            _ => return None,
+        })
+    }
+}
+
+impl Call<'_> {
+    /// Creates the value that the function returns.
+    pub(super) fn value(
+        self,
+        arguments: Vec<Value>,
+        budget: &ReadingBudget,
+    ) -> Result<Value, ValueError> {
+        match self.function {
+            Function::Record(fields) => match record(self.name, fields, arguments) {
+                Ok(record) => Ok(record),
+                Err(what) => refused(what, self.place),
+            },
+            Function::Text => match arguments.as_slice() {
+                [text @ Value::Text(_)] => Ok(text.clone()),
+                // Without a text, the arguments are read as in `zeros`.
+                sizes => self.filled(Fill::Zeros, sizes, budget),
+            },
+            Function::Fill(fill) => self.filled(fill, &arguments, budget),
+        }
+    }
+
+    /// Builds a matrix from its row and column counts.
+    fn filled(
+        self,
+        fill: Fill,
+        sizes: &[Value],
+        budget: &ReadingBudget,
+    ) -> Result<Value, ValueError> {
+        let size = match sizes {
+            [both] => MatrixSize::parse(both, both),
+            [rows, columns] => MatrixSize::parse(rows, columns),
+            _ => None,
+        };
+        let Some(MatrixSize { rows, columns }) = size else {
+            return refused(
+                format!(
+                    "{}(…) is read with its numbers of rows and columns only; {REMEDY}",
+                    self.name
+                ),
+                self.place,
+            );
+        };
+        budget.take((rows as u64).saturating_mul(columns as u64), 8, "")?;
+        let mut values = match fill {
+            Fill::Ones => vec![1.0; rows * columns],
+            Fill::Zeros | Fill::Identity => vec![0.0; rows * columns],
+        };
+        if let Fill::Identity = fill {
+            for index in 0..rows.min(columns) {
+                values[index * rows + index] = 1.0;
+            }
+        }
+        Ok(Value::Array(Array::matrix(rows, columns, values)))
+    }
+}
+
+/// Row and column counts.
+struct MatrixSize {
+    rows: usize,
+    columns: usize,
+}
+
+impl MatrixSize {
+    fn parse(rows: &Value, columns: &Value) -> Option<Self> {
+        Some(Self {
+            rows: count_from(rows)?,
+            columns: count_from(columns)?,
+        })
+    }
+}
+
+/// Parses a row or column count; negative numbers count as 0, as in MATLAB.
+fn count_from(value: &Value) -> Option<usize> {
+    let Value::Array(array) = value else {
+        return None;
+    };
+    if array.len() != 1 || array.re[0].fract() != 0.0 || array.re[0] >= 1e15 {
+        return None;
+    }
+    Some(array.re[0].max(0.0) as usize)
+}
+
+/// Builds a record from arguments and field names, followed by the optional sample time Ts \[s\]
+/// and name-value pairs.
+fn record(function: &str, names: &[&str], arguments: Vec<Value>) -> Result<Value, String> {
+    let mut rest = arguments.into_iter().peekable();
+    let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
+    for name in names {
+        match rest.next() {
+            Some(value @ (Value::Array(_) | Value::Cell(_))) => {
+                fields.push(((*name).to_owned(), vec![value]));
+            }
+            _ => {
+                return Err(format!(
+                    "{function}(…) needs numbers for {}",
+                    names.join(", ")
+                ));
+            }
+        }
+    }
+    let has_sample_time = !names.is_empty()
+        && rest
+            .peek()
+            .is_some_and(|value| !matches!(value, Value::Text(_)));
+    if has_sample_time && let Some(step) = rest.next() {
+        fields.push(("Ts".to_owned(), vec![step]));
+    }
+    while let Some(name) = rest.next() {
+        let (Value::Text(name), Some(value)) = (name, rest.next()) else {
+            return Err(format!(
+                "names and values must alternate: {function}(…,'InputName',{{'LAT'}})"
+            ));
+        };
+        if names.is_empty() && matches!(value, Value::Cell(_)) {
+            return Err(
+                "struct(…) of cells is an array of records; write s.name = {…} instead".to_owned(),
+            );
+        }
+        let name = name.texts.concat();
+        fields.retain(|(known, _)| *known != name);
+        fields.push((name, vec![value]));
+    }
+    Ok(Value::Struct(StructArray::one(fields)))
+}

@@ -1,0 +1,358 @@
+//! Values in MATLAB or Octave statements: numbers, texts, matrices, cells, and models.
+
+use crate::formats::strides::first_index_fastest;
+use crate::formats::text::literal_functions::{Call, Function};
+use crate::formats::text::matlab_scanner::{
+    MOST_NESTED, Number, Position, REMEDY, Scanner, ValueError, refused,
+};
+use crate::formats::text::workspace::Workspace;
+use crate::formats::variables::{Array, CellArray, ElementKind, TextArray, Value};
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Operators between blanks; with a blank only before it, a sign begins an element: `[1 -2]`.
+const OPERATORS: &str = "+-*/^:.\\";
+/// Operators directly after an element; the quote transposes.
+const ATTACHED_OPERATORS: &str = "+-*/^:.\\'";
+
+/// Reads values at the scanner position.
+pub(super) struct ValueReader<'r, 't, 'm> {
+    pub(super) scanner: &'r mut Scanner<'t>,
+    pub(super) budget: &'r ReadingBudget<'m>,
+    /// The variables assigned so far.
+    pub(super) workspace: &'r Workspace<'t>,
+}
+
+struct ComplexNumber {
+    re: f64,
+    im: f64,
+}
+
+/// Elements between brackets, row by row.
+struct Rows<T> {
+    rows: usize,
+    columns: usize,
+    elements: Vec<T>,
+}
+
+/// A matrix element.
+enum Element {
+    Number { re: f64, im: f64 },
+    Text(String),
+}
+
+impl ValueReader<'_, '_, '_> {
+    /// Reads a value that is followed by nothing else in its statement.
+    pub(super) fn whole_value(&mut self) -> Result<Value, ValueError> {
+        let value = self.value(0)?;
+        self.scanner.pass_blanks()?;
+        match self.scanner.peek() {
+            None | Some(';' | ',' | '\n' | '\r') => Ok(value),
+            Some(_) => not_computed(self.scanner.position()),
+        }
+    }
+
+    /// Reads a value inside `depth` others.
+    fn value(&mut self, depth: usize) -> Result<Value, ValueError> {
+        if depth > MOST_NESTED {
+            return Err(VariableFault::too_deep("").into());
+        }
+        self.scanner.pass_blanks()?;
+        let place = self.scanner.position();
+        if let Some(ComplexNumber { re, im }) = self.complex(false)? {
+            let im = if im == 0.0 { None } else { Some(vec![im]) };
+            return Ok(Value::Array(Array {
+                im,
+                ..Array::matrix(1, 1, vec![re])
+            }));
+        }
+        match self.scanner.peek() {
+            Some('[') => self.matrix(),
+            Some('{') => self.cell_array(place, depth),
+            Some('\'' | '"') => Ok(Value::text(self.scanner.quoted(self.budget)?)),
+            Some('@') => refused(format!("functions are not read; {REMEDY}"), place),
+            None | Some('\n' | '\r' | ';' | ',') => {
+                refused("a value is missing here; write it", place)
+            }
+            Some(_) => self.named_value(place, depth),
+        }
+    }
+
+    /// Reads a function call, or copies a variable or a field.
+    fn named_value(&mut self, place: Position, depth: usize) -> Result<Value, ValueError> {
+        let path = self.scanner.path(self.budget)?;
+        let before = self.scanner.clone();
+        self.scanner.pass_blanks()?;
+        match path.as_slice() {
+            [] => refused(
+                format!("this is no number, text or matrix; {REMEDY}"),
+                place,
+            ),
+            [function] if self.scanner.take("(") => self.call(function, place, depth),
+            path => {
+                *self.scanner = before;
+                self.workspace.copy(path, place, self.budget)
+            }
+        }
+    }
+
+    /// Reads a signed number, or a complex number such as `1 - 2i`, if there is one at this
+    /// position.
+    fn complex(&mut self, in_matrix: bool) -> Result<Option<ComplexNumber>, ValueError> {
+        let before = self.scanner.clone();
+        let Some(Number {
+            value,
+            is_imaginary,
+        }) = self.signed()?
+        else {
+            *self.scanner = before;
+            return Ok(None);
+        };
+        let behind = self.scanner.clone();
+        let is_spaced = self.scanner.pass_blanks()?;
+        let is_sign = matches!(self.scanner.peek(), Some('+' | '-'));
+        // In `[1 -2i]` the blank separates two elements; in `[1 - 2i]` it does not.
+        let is_separate = in_matrix
+            && is_spaced
+            && !self.scanner.rest()[usize::from(is_sign)..].starts_with([' ', '\t']);
+        if is_sign
+            && !is_imaginary
+            && !is_separate
+            && let Ok(Some(Number {
+                value: im,
+                is_imaginary: true,
+            })) = self.signed()
+        {
+            return Ok(Some(ComplexNumber { re: value, im }));
+        }
+        *self.scanner = behind;
+        Ok(Some(if is_imaginary {
+            ComplexNumber { re: 0.0, im: value }
+        } else {
+            ComplexNumber { re: value, im: 0.0 }
+        }))
+    }
+
+    /// Reads a number, with or without signs before it.
+    fn signed(&mut self) -> Result<Option<Number>, ValueError> {
+        let mut sign = 1.0;
+        loop {
+            match self.scanner.peek() {
+                Some('-') => sign = -sign,
+                Some('+') => {}
+                _ => break,
+            }
+            self.scanner.at += 1;
+            self.scanner.pass_blanks()?;
+            self.budget.work(1, "")?;
+        }
+        if let Some(number) = self.scanner.number()? {
+            return Ok(Some(Number {
+                value: sign * number.value,
+                ..number
+            }));
+        }
+        let value = match self.scanner.name() {
+            Some("inf" | "Inf") => sign * f64::INFINITY,
+            Some("nan" | "NaN") => f64::NAN,
+            _ => return Ok(None),
+        };
+        Ok(Some(Number {
+            value,
+            is_imaginary: false,
+        }))
+    }
+
+    /// Reads elements in rows after an opening bracket up to the closing bracket; blanks separate
+    /// elements.
+    fn rows<T>(
+        &mut self,
+        close: char,
+        opening: Position,
+        mut element: impl FnMut(&mut Self) -> Result<T, ValueError>,
+    ) -> Result<Rows<T>, ValueError> {
+        self.scanner.at += 1;
+        let mut elements = Vec::new();
+        let mut columns = 0;
+        let mut rows = 0;
+        // Element count in the current row.
+        let mut row = 0;
+        loop {
+            let is_spaced = self.scanner.pass_blanks()?;
+            let place = self.scanner.position();
+            let next = self.scanner.peek();
+            let ends_row = matches!(next, Some(';' | '\n' | '\r')) || next == Some(close);
+            if ends_row && row > 0 {
+                if rows == 0 {
+                    columns = row;
+                }
+                rows += 1;
+                if row != columns {
+                    let what = format!(
+                        "row {rows} has {row} columns, the first {columns}; complete the shorter"
+                    );
+                    return refused(what, opening);
+                }
+                row = 0;
+            }
+            match next {
+                None => return refused("the bracket is never closed; close it", opening),
+                Some('\n' | '\r') => self.scanner.new_line(),
+                Some(';' | ',') => self.scanner.at += 1,
+                Some(sign) if sign == close => {
+                    self.scanner.at += 1;
+                    return Ok(Rows {
+                        rows,
+                        columns,
+                        elements,
+                    });
+                }
+                Some(sign) => {
+                    if row > 0 && self.is_operator(sign, is_spaced) {
+                        return not_computed(place);
+                    }
+                    self.budget.take(2, size_of::<T>() as u64, "")?;
+                    elements.push(element(self)?);
+                    row += 1;
+                }
+            }
+        }
+    }
+
+    /// Whether a character after an element in brackets is an operator, which would have to be
+    /// computed: `[1 - 2]`, `[1-2]`, but not `[1 -2]` or `[1, - 2]`.
+    fn is_operator(&self, sign: char, is_spaced: bool) -> bool {
+        let before = self.scanner.text[..self.scanner.at]
+            .trim_end()
+            .chars()
+            .next_back();
+        if before == Some(',') {
+            return false;
+        }
+        if !is_spaced {
+            return ATTACHED_OPERATORS.contains(sign);
+        }
+        let behind = &self.scanner.rest()[sign.len_utf8()..];
+        behind.starts_with([' ', '\t']) && OPERATORS.contains(sign)
+    }
+
+    fn cell_array(&mut self, opening: Position, depth: usize) -> Result<Value, ValueError> {
+        let Rows {
+            rows,
+            columns,
+            elements,
+        } = self.rows('}', opening, |reader| {
+            reader.budget.take(4, 64, "")?;
+            reader.value(depth + 1)
+        })?;
+        Ok(Value::Cell(CellArray {
+            shape: vec![rows, columns],
+            values: first_index_fastest(&[rows, columns], elements),
+        }))
+    }
+
+    /// Reads a matrix with numbers, transposed if a quote follows it, or with texts in double quotes.
+    fn matrix(&mut self) -> Result<Value, ValueError> {
+        let opening = self.scanner.position();
+        let Rows {
+            rows,
+            columns,
+            elements,
+        } = self.rows(']', opening, Self::matrix_element)?;
+        let count = elements.len();
+        self.budget
+            .take(count as u64, 2 * size_of::<Element>() as u64, "")?;
+        let is_transposed = self.scanner.take("'");
+        // Values are stored column by column: the rows become the columns of the transpose.
+        let (shape, elements) = if is_transposed {
+            (vec![columns, rows], elements)
+        } else {
+            let by_column = first_index_fastest(&[rows, columns], elements);
+            (vec![rows, columns], by_column)
+        };
+        let mut real_parts = Vec::new();
+        let mut imaginary_parts = Vec::new();
+        let mut texts = Vec::new();
+        for element in elements {
+            match element {
+                Element::Number { re, im } => {
+                    real_parts.push(re);
+                    // The quote transposes and conjugates.
+                    imaginary_parts.push(if is_transposed { -im } else { im });
+                }
+                Element::Text(text) => texts.push(text),
+            }
+        }
+        if texts.is_empty() {
+            let is_complex = imaginary_parts.iter().any(|part| *part != 0.0);
+            return Ok(Value::Array(Array {
+                shape,
+                kind: ElementKind::Float,
+                re: real_parts,
+                im: if is_complex {
+                    Some(imaginary_parts)
+                } else {
+                    None
+                },
+            }));
+        }
+        if texts.len() < count || is_transposed {
+            return refused(
+                "numbers and texts cannot be in the same brackets; write {…} instead of […]",
+                opening,
+            );
+        }
+        Ok(Value::Text(TextArray { shape, texts }))
+    }
+
+    fn matrix_element(&mut self) -> Result<Element, ValueError> {
+        let place = self.scanner.position();
+        if let Some(ComplexNumber { re, im }) = self.complex(true)? {
+            return Ok(Element::Number { re, im });
+        }
+        match self.scanner.peek() {
+            Some('"') => Ok(Element::Text(self.scanner.quoted(self.budget)?)),
+            Some('\'') => refused("texts in brackets are not joined; write {'A', 'B'}", place),
+            _ => refused(
+                format!("only numbers are read in brackets; {REMEDY}"),
+                place,
+            ),
+        }
+    }
+
+    /// Reads the arguments after an opening bracket, and creates the value of the function.
+    fn call(&mut self, name: &str, place: Position, depth: usize) -> Result<Value, ValueError> {
+        let Some(function) = Function::find(name) else {
+            return refused(format!("{name}(…) is not computed here; {REMEDY}"), place);
+        };
+        let mut arguments = Vec::new();
+        loop {
+            self.scanner.pass_blanks()?;
+            if arguments.is_empty() && self.scanner.take(")") {
+                break;
+            }
+            self.budget.take(2, size_of::<Value>() as u64, "")?;
+            arguments.push(self.value(depth + 1)?);
+            self.scanner.pass_blanks()?;
+            if self.scanner.take(")") {
+                break;
+            }
+            if !self.scanner.take(",") {
+                return not_computed(self.scanner.position());
+            }
+        }
+        let call = Call {
+            name,
+            function,
+            place,
+        };
+        call.value(arguments, self.budget)
+    }
+}
+
+/// Refuses an expression.
+fn not_computed<T>(place: Position) -> Result<T, ValueError> {
+    refused(
+        format!("expressions are not computed here; {REMEDY}"),
+        place,
+    )
+}

@@ -1,0 +1,165 @@
+//! Frequency responses among table columns, and their points.
+
+use crate::formats::text::columns::TextTable;
+use crate::reading_budget::VariableFault;
+
+/// A frequency response among table columns.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct RecognisedResponse {
+    /// The output, if the names give it.
+    pub(crate) output: Option<String>,
+    /// The input, if the names give it.
+    pub(crate) input: Option<String>,
+    pub(super) parts: ResponseParts,
+    pub(crate) coherence: Option<CoherenceColumn>,
+}
+
+/// A coherence column; multiplication by the factor, then squaring for γ, gives γ² as a fraction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CoherenceColumn {
+    /// The column, from 0.
+    pub(super) column: usize,
+    pub(super) factor: f64,
+    pub(super) is_gamma: bool,
+}
+
+/// The two columns, counted from 0, for a complex number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ResponseParts {
+    Polar {
+        magnitude: usize,
+        in_db: bool,
+        phase: usize,
+        in_degrees: bool,
+    },
+    Rectangular {
+        re: usize,
+        im: usize,
+    },
+}
+
+/// A frequency response, point by point.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ResponsePoints {
+    /// Frequencies \[rad/s\], strictly increasing.
+    pub(crate) omega: Vec<f64>,
+    /// Real parts.
+    pub(crate) re: Vec<f64>,
+    /// Imaginary parts.
+    pub(crate) im: Vec<f64>,
+    /// Coherence γ² as a fraction, NaN where it is missing.
+    pub(crate) coherence: Option<Vec<f64>>,
+}
+
+impl CoherenceColumn {
+    /// Returns γ² in a row as a fraction.
+    fn gamma_squared(self, table: &TextTable, row: usize) -> f64 {
+        let value = self.factor * table.columns[self.column][row];
+        if self.is_gamma { value * value } else { value }
+    }
+}
+
+impl RecognisedResponse {
+    /// Returns the points of the response, without rows in which both its numbers are missing;
+    /// `omega` is the frequency in each row \[rad/s\].
+    ///
+    /// # Errors
+    /// Half a complex number is missing or infinite, or the magnitude is too large.
+    pub(super) fn points(
+        &self,
+        table: &TextTable,
+        omega: &[f64],
+    ) -> Result<ResponsePoints, VariableFault> {
+        let columns = self.parts.columns();
+        let mut points = ResponsePoints {
+            omega: Vec::with_capacity(omega.len()),
+            re: Vec::with_capacity(omega.len()),
+            im: Vec::with_capacity(omega.len()),
+            coherence: self.coherence.map(|_| Vec::with_capacity(omega.len())),
+        };
+        for (row, &omega) in omega.iter().enumerate() {
+            let line = table.lines[row];
+            let number = |column: usize| table.columns[column][row];
+            if columns.iter().all(|&column| number(column).is_nan()) {
+                continue;
+            }
+            for column in columns {
+                if !number(column).is_finite() {
+                    let place = column_place(table, column);
+                    let what = format!(
+                        "{place} has no finite number; complete it or empty its other half too"
+                    );
+                    return Err(VariableFault::line("", line, what));
+                }
+            }
+            let (re, im) = self.parts.complex(table, row);
+            if !(re.is_finite() && im.is_finite()) {
+                let place = column_place(table, columns[0]);
+                let what = format!("{place} is too large for a magnitude; is it in dB?");
+                return Err(VariableFault::line("", line, what));
+            }
+            points.omega.push(omega);
+            points.re.push(re);
+            points.im.push(im);
+            if let Some(column) = self.coherence
+                && let Some(values) = &mut points.coherence
+            {
+                values.push(column.gamma_squared(table, row));
+            }
+        }
+        Ok(points)
+    }
+}
+
+impl ResponseParts {
+    /// Returns the two columns: magnitude and phase, or real and imaginary part.
+    pub(super) fn columns(self) -> [usize; 2] {
+        match self {
+            ResponseParts::Polar {
+                magnitude, phase, ..
+            } => [magnitude, phase],
+            ResponseParts::Rectangular { re, im } => [re, im],
+        }
+    }
+
+    /// Returns real and imaginary part in a row.
+    pub(super) fn complex(self, table: &TextTable, row: usize) -> (f64, f64) {
+        match self {
+            ResponseParts::Rectangular { re, im } => {
+                (table.columns[re][row], table.columns[im][row])
+            }
+            ResponseParts::Polar {
+                magnitude,
+                in_db,
+                phase,
+                in_degrees,
+            } => {
+                let mut magnitude = table.columns[magnitude][row];
+                if in_db {
+                    magnitude = 10_f64.powf(magnitude / 20.0);
+                }
+                let mut phase_rad = table.columns[phase][row];
+                if in_degrees {
+                    phase_rad = phase_rad.to_radians();
+                }
+                (magnitude * phase_rad.cos(), magnitude * phase_rad.sin())
+            }
+        }
+    }
+}
+
+/// Returns a column name, or "column 5" without a name.
+pub(super) fn column_name(table: &TextTable, column: usize) -> String {
+    match table.name(column) {
+        Some(name) => name.to_owned(),
+        None => format!("column {}", column + 1),
+    }
+}
+
+/// Describes a column by its number, from 1, and its name.
+pub(super) fn column_place(table: &TextTable, column: usize) -> String {
+    match table.name(column) {
+        Some(name) => format!("column {} (\"{name}\")", column + 1),
+        None => format!("column {}", column + 1),
+    }
+}

@@ -1,0 +1,116 @@
+//! Output and input named in a column heading.
+
+use gdcm_model::names::response_name::{KnownChannels, ResponseName};
+
+/// Output and input of a response, as far as its name gives them.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct ResponseLabel {
+    pub(super) output: Option<String>,
+    pub(super) input: Option<String>,
+}
+
+/// Response names that identify no channel.
+const ANY_RESPONSE: [&str; 9] = [
+    "h", "g", "frf", "tf", "fr", "resp", "response", "h(jw)", "g(jw)",
+];
+/// Separators between an input and the following output.
+const FORWARD: [&str; 5] = ["->", "→", "=>", ">", " to "];
+/// Separators between an output and its input.
+const BACKWARD: [&str; 6] = ["<-", "←", "/", " due to ", " from ", " over "];
+
+impl ResponseLabel {
+    /// Parses "P/LAT", "LAT->P", "LAT to P", "P_LAT"; any other text names the output.
+    pub(super) fn parse(text: &str) -> Self {
+        let text = clean(text);
+        if ANY_RESPONSE.contains(&text.to_lowercase().as_str()) {
+            return Self::default();
+        }
+        for separator in BACKWARD {
+            if let Some((output, input)) = text.split_once(separator) {
+                return Self::from_parts(output, input);
+            }
+        }
+        for separator in FORWARD {
+            if let Some((input, output)) = text.split_once(separator) {
+                return Self::from_parts(output, input);
+            }
+        }
+        if let Some(label) = Self::from_field_name(text) {
+            return label;
+        }
+        match text.split_once('_') {
+            Some((output, input)) if !input.contains('_') => Self::from_parts(output, input),
+            _ => Self::from_parts(text, ""),
+        }
+    }
+
+    fn from_parts(output: &str, input: &str) -> Self {
+        Self {
+            output: channel(output),
+            input: channel(input),
+        }
+    }
+
+    /// Parses a common name in the field: "q_delta_lon", "roll_rate".
+    fn from_field_name(text: &str) -> Option<Self> {
+        let ResponseName { output, input } = ResponseName::find(text, KnownChannels::Field).ok()?;
+        let names_both = output.is_some() && input.is_some();
+        let is_channel = output.as_deref() == Some(text) || input.as_deref() == Some(text);
+        if names_both || is_channel {
+            Some(Self { output, input })
+        } else {
+            None
+        }
+    }
+}
+
+/// Returns the channel in a part of a name; `None` without any letters or digits.
+fn channel(part: &str) -> Option<String> {
+    let channel = clean(part);
+    if channel.is_empty() {
+        None
+    } else {
+        Some(channel.to_owned())
+    }
+}
+
+/// Returns a text without surrounding brackets, strokes and blanks.
+fn clean(text: &str) -> &str {
+    text.trim_matches(|c: char| c.is_whitespace() || "_-.,:;(){}[]|∠=\"'".contains(c))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn response_names_are_parsed() {
+        let read = |text| {
+            let ResponseLabel { output, input } = ResponseLabel::parse(text);
+            (output.unwrap_or_default(), input.unwrap_or_default())
+        };
+        let expected = ("P".to_owned(), "LAT".to_owned());
+        for text in [
+            "P/LAT",
+            "(LAT->P)",
+            "LAT → P",
+            "LAT to P",
+            "P <- LAT",
+            "P due to LAT",
+            "|P / LAT|",
+        ] {
+            assert_eq!(read(text), expected, "{text}");
+        }
+        assert_eq!(read("P_LAT"), expected);
+        assert_eq!(
+            read("q_delta_lon"),
+            ("q".to_owned(), "delta_lon".to_owned())
+        );
+        assert_eq!(read("q per lon"), ("q".to_owned(), "lon".to_owned()));
+        assert_eq!(read("roll_rate"), ("roll_rate".to_owned(), String::new()));
+        assert_eq!(read("delta_lon"), (String::new(), "delta_lon".to_owned()));
+        assert_eq!(read(" P_"), ("P".to_owned(), String::new()));
+        assert_eq!(read("a_b_c").0, "a_b_c");
+        assert_eq!(ResponseLabel::parse("()"), ResponseLabel::default());
+    }
+}

@@ -1,0 +1,368 @@
+//! Assembly of frequency responses from table columns.
+
+use std::f64::consts::TAU;
+
+use crate::formats::text::column_meaning::{ColumnMeaning, KnownUnit, Quantity};
+use crate::formats::text::columns::TextTable;
+use crate::formats::text::response_columns::{
+    CoherenceColumn, RecognisedResponse, ResponseParts, column_name, column_place,
+};
+use crate::formats::text::response_label::ResponseLabel;
+use crate::formats::text::unrecognised::{Unrecognised, UnsaidUnit, unrecognised};
+
+/// Largest difference between the rectangular and the polar form of a response, relative to its
+/// magnitude: tables have few digits.
+const FORM_TOLERANCE: f64 = 0.01;
+/// Coherence above this value is in percent; the margin above 1 is for rounding and noise.
+const LARGEST_COHERENCE: f64 = 1.5;
+
+/// The frequency column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct FrequencyColumn {
+    /// The column, from 0.
+    pub(super) column: usize,
+    /// Factor to rad/s.
+    pub(super) factor: f64,
+}
+
+/// A table while its responses are assembled.
+pub(super) struct Recognition<'t> {
+    table: &'t TextTable,
+    meanings: Vec<ColumnMeaning>,
+    /// Each decision with its reason.
+    pub(super) notes: Vec<String>,
+    /// Columns without a unit whose numbers allow several.
+    pub(super) unsaid: Vec<UnsaidUnit>,
+    /// Unused column names.
+    pub(super) unused: Vec<String>,
+}
+
+/// Columns that belong to one response.
+#[derive(Default)]
+struct Group {
+    label: ResponseLabel,
+    columns: Vec<GroupColumn>,
+}
+
+struct GroupColumn {
+    quantity: Quantity,
+    column: usize,
+}
+
+/// Columns in polar form.
+#[derive(Clone, Copy)]
+struct PolarColumns {
+    magnitude: usize,
+    phase: usize,
+}
+
+/// A magnitude and a phase, interpreted.
+struct PolarReading {
+    parts: ResponseParts,
+    /// Columns whose units are neither given nor evident.
+    unsaid: Vec<UnsaidUnit>,
+}
+
+impl Group {
+    fn column(&self, quantity: Quantity) -> Option<usize> {
+        let found = self.columns.iter().find(|known| known.quantity == quantity);
+        found.map(|known| known.column)
+    }
+
+    fn polar(&self) -> Option<PolarColumns> {
+        Some(PolarColumns {
+            magnitude: self.column(Quantity::Magnitude)?,
+            phase: self.column(Quantity::Phase)?,
+        })
+    }
+}
+
+impl<'t> Recognition<'t> {
+    pub(super) fn new(table: &'t TextTable) -> Self {
+        Self {
+            table,
+            meanings: column_meanings(table),
+            notes: Vec::new(),
+            unsaid: Vec::new(),
+            unused: Vec::new(),
+        }
+    }
+
+    /// Finds the frequency column and its unit.
+    pub(super) fn frequency(&mut self) -> Result<FrequencyColumn, Unrecognised> {
+        let named = self
+            .meanings
+            .iter()
+            .position(|meaning| meaning.quantity == Some(Quantity::Frequency));
+        let Some(column) = named else {
+            return Err(unrecognised("no frequency"));
+        };
+        let (factor, unit) = match self.meanings[column].unit {
+            Some(KnownUnit::Hertz) => (TAU, "Hz"),
+            Some(KnownUnit::RadianPerSecond) => (1.0, "rad/s"),
+            _ => {
+                self.unsaid.push(UnsaidUnit {
+                    column,
+                    units: ["rad/s", "Hz"],
+                });
+                return Ok(FrequencyColumn {
+                    column,
+                    factor: 1.0,
+                });
+            }
+        };
+        let reason = match self.table.units.get(column).and_then(Option::as_ref) {
+            Some(unit) => format!(", its unit is {unit}"),
+            None => ", and with it the unit".to_owned(),
+        };
+        self.note(column, &format!("the frequency in {unit}"), &reason);
+        Ok(FrequencyColumn { column, factor })
+    }
+
+    /// Notes the interpretation of a column and its reason; `more` is added to the reason.
+    fn note(&mut self, column: usize, interpretation: &str, more: &str) {
+        let place = column_place(self.table, column);
+        let reason = &self.meanings[column].reason;
+        self.notes.push(format!(
+            "{place} is read as {interpretation}: {reason}{more}"
+        ));
+    }
+
+    /// Returns the responses, ordered by their first columns.
+    pub(super) fn responses(&mut self) -> Vec<RecognisedResponse> {
+        let mut responses = Vec::new();
+        for group in self.groups() {
+            if let Some(column) = group.column(Quantity::Error) {
+                self.note(column, "a standard deviation, which is not used", "");
+                self.unused.push(column_name(self.table, column));
+            }
+            let Some(parts) = self.parts(&group) else {
+                self.leave_out(&group);
+                continue;
+            };
+            let mut coherence = None;
+            if let Some(column) = group.column(Quantity::Coherence) {
+                coherence = Some(self.coherence(column));
+            }
+            responses.push(RecognisedResponse {
+                output: group.label.output,
+                input: group.label.input,
+                parts,
+                coherence,
+            });
+        }
+        responses
+    }
+
+    /// Finds the columns with the complex numbers; real and imaginary parts go before magnitude and
+    /// phase.
+    fn parts(&mut self, group: &Group) -> Option<ResponseParts> {
+        let polar = group.polar();
+        if let Some(re) = group.column(Quantity::Real)
+            && let Some(im) = group.column(Quantity::Imaginary)
+        {
+            let parts = ResponseParts::Rectangular { re, im };
+            self.note(re, "real part", "");
+            self.note(im, "imaginary part", "");
+            if let Some(columns) = polar {
+                let polar = self.polar(columns);
+                // Missing units in the second form are not asked for.
+                if polar.unsaid.is_empty() {
+                    self.compare(parts, polar.parts);
+                }
+            }
+            return Some(parts);
+        }
+        let polar = self.polar(polar?);
+        self.unsaid.extend(polar.unsaid);
+        Some(polar.parts)
+    }
+
+    /// Notes that a group is unused because half the response is missing.
+    fn leave_out(&mut self, group: &Group) {
+        for known in &group.columns {
+            if known.quantity == Quantity::Error {
+                continue;
+            }
+            let place = column_place(self.table, known.column);
+            self.notes
+                .push(format!("{place} is left out: its other half is missing"));
+            self.unused.push(column_name(self.table, known.column));
+        }
+    }
+
+    /// Interprets a coherence column: percent if its unit or its numbers above 1 require it. For a
+    /// column called gamma, γ or γ² is a question to the user.
+    fn coherence(&mut self, column: usize) -> CoherenceColumn {
+        let unit = self.meanings[column].unit;
+        if unit.is_none() {
+            self.unsaid.push(UnsaidUnit {
+                column,
+                units: ["gamma2", "gamma"],
+            });
+        }
+        let mut factor = 1.0;
+        let mut interpretation = "coherence";
+        let mut reason = "";
+        let numbers = &self.table.columns[column];
+        if unit == Some(KnownUnit::Percent) {
+            factor = 0.01;
+            interpretation = "coherence in percent";
+            reason = ", its unit is %";
+        } else if numbers.iter().any(|value| *value > LARGEST_COHERENCE) {
+            factor = 0.01;
+            interpretation = "coherence in percent";
+            reason = ", some of its numbers are above 1";
+        }
+        let is_gamma = unit == Some(KnownUnit::Gamma);
+        if is_gamma {
+            reason = ", its unit is γ: squared";
+        }
+        self.note(column, interpretation, reason);
+        CoherenceColumn {
+            column,
+            factor,
+            is_gamma,
+        }
+    }
+
+    /// Collects the columns for each response, and notes columns with an unknown meaning.
+    fn groups(&mut self) -> Vec<Group> {
+        let mut groups: Vec<Group> = Vec::new();
+        for (column, meaning) in self.meanings.iter().enumerate() {
+            let Some(quantity) = meaning.quantity else {
+                let place = column_place(self.table, column);
+                self.notes
+                    .push(format!("{place} is left out: its name is not known"));
+                self.unused.push(column_name(self.table, column));
+                continue;
+            };
+            if quantity == Quantity::Frequency {
+                continue;
+            }
+            let member = GroupColumn { quantity, column };
+            match group_for(&groups, quantity, &meaning.label) {
+                Some(index) => groups[index].columns.push(member),
+                None => groups.push(Group {
+                    label: meaning.label.clone(),
+                    columns: vec![member],
+                }),
+            }
+        }
+        groups
+    }
+
+    /// Interprets a magnitude and a phase.
+    fn polar(&mut self, columns: PolarColumns) -> PolarReading {
+        let PolarColumns { magnitude, phase } = columns;
+        let mut unsaid = Vec::new();
+        let mut in_db = false;
+        let mut reason = "";
+        match self.meanings[magnitude].unit {
+            Some(KnownUnit::Decibel) => {
+                in_db = true;
+                reason = "its unit is dB";
+            }
+            Some(_) => reason = "its unit is not dB",
+            None if self.has_negative_levels(magnitude) => {
+                in_db = true;
+                reason = "some of its numbers are negative";
+            }
+            None => unsaid.push(UnsaidUnit {
+                column: magnitude,
+                units: ["dB", "abs"],
+            }),
+        }
+        let mut in_degrees = false;
+        match self.meanings[phase].unit {
+            Some(KnownUnit::Degree) => in_degrees = true,
+            Some(KnownUnit::Radian) => {}
+            _ => unsaid.push(UnsaidUnit {
+                column: phase,
+                units: ["deg", "rad"],
+            }),
+        }
+        if unsaid.is_empty() {
+            let interpretation = if in_db {
+                "magnitude in dB"
+            } else {
+                "absolute magnitude"
+            };
+            self.note(magnitude, interpretation, &format!(", {reason}"));
+            let unit = if in_degrees { "deg" } else { "rad" };
+            self.note(
+                phase,
+                &format!("phase in {unit}"),
+                &format!(", its unit is {unit}"),
+            );
+        }
+        PolarReading {
+            parts: ResponseParts::Polar {
+                magnitude,
+                in_db,
+                phase,
+                in_degrees,
+            },
+            unsaid,
+        }
+    }
+
+    /// Whether negative numbers show that a magnitude is in dB. A gain may be a level in dB, or a
+    /// signed ratio.
+    fn has_negative_levels(&self, magnitude: usize) -> bool {
+        let name = self.table.name(magnitude).unwrap_or_default();
+        let is_gain = name.to_lowercase().contains("gain");
+        !is_gain
+            && self.table.columns[magnitude]
+                .iter()
+                .any(|&value| value < 0.0)
+    }
+
+    /// Notes whether both forms of a response agree.
+    fn compare(&mut self, rectangular: ResponseParts, polar: ResponseParts) {
+        let table = self.table;
+        let differing = (0..table.lines.len()).find(|&row| {
+            let (re, im) = rectangular.complex(table, row);
+            let (polar_re, polar_im) = polar.complex(table, row);
+            let difference = (re - polar_re).hypot(im - polar_im);
+            difference > FORM_TOLERANCE * re.hypot(im).max(polar_re.hypot(polar_im))
+        });
+        let [magnitude, phase] = polar.columns();
+        let columns = format!(
+            "magnitude and phase in columns {} and {}",
+            magnitude + 1,
+            phase + 1
+        );
+        let taken = "the real and imaginary parts, which are taken";
+        self.notes.push(match differing {
+            None => format!("{columns} agree with {taken}"),
+            Some(row) => format!("{columns} differ from {taken} (line {})", table.lines[row]),
+        });
+    }
+}
+
+/// Returns the group to which a column belongs: the last group for a column without a label, else
+/// the last group with the same label; only groups that lack the quantity are considered.
+fn group_for(groups: &[Group], quantity: Quantity, label: &ResponseLabel) -> Option<usize> {
+    // The other words in an error's name give the quantity in error.
+    let joins_last = *label == ResponseLabel::default() || quantity == Quantity::Error;
+    if joins_last
+        && let Some(last) = groups.last()
+        && last.column(quantity).is_none()
+    {
+        return Some(groups.len() - 1);
+    }
+    groups
+        .iter()
+        .rposition(|group| group.label == *label && group.column(quantity).is_none())
+}
+
+fn column_meanings(table: &TextTable) -> Vec<ColumnMeaning> {
+    let mut meanings = Vec::with_capacity(table.columns.len());
+    for column in 0..table.columns.len() {
+        let name = table.name(column).unwrap_or_default();
+        let unit = table.units.get(column).and_then(Option::as_deref);
+        meanings.push(ColumnMeaning::interpret(name, unit));
+    }
+    meanings
+}

@@ -1,0 +1,71 @@
+//! Consecutive tables in one text, each with a heading.
+
+use crate::formats::text::cell_number::has_number;
+use crate::formats::text::lines::{comment, is_rule, lines};
+
+/// Separators that may surround blanks within a cell.
+const STRONG_SEPARATORS: [char; 4] = ['|', ';', '\t', ','];
+
+/// Splits a text before every heading that follows rows; returns the number of the first line and
+/// the text of each part. A log that is restarted with other columns is split where they change.
+pub fn sections(text: &str) -> Vec<(usize, &str)> {
+    let mut sections = Vec::new();
+    let mut first_line = 1;
+    let mut start = 0;
+    let mut has_rows = false;
+    for (number, line) in lines(text) {
+        if line.trim().is_empty() || comment(line).is_some() || is_rule(line) {
+            continue;
+        }
+        let is_heading = is_heading(line);
+        if is_heading && has_rows {
+            // Each line is a slice from the text.
+            let end = line.as_ptr() as usize - text.as_ptr() as usize;
+            sections.extend(text.get(start..end).map(|part| (first_line, part)));
+            first_line = number;
+            start = end;
+        }
+        has_rows = !is_heading;
+    }
+    sections.extend(text.get(start..).map(|part| (first_line, part)));
+    sections
+}
+
+/// Whether a line contains letters, and no cell in it is a number.
+fn is_heading(line: &str) -> bool {
+    if !line.chars().any(char::is_alphabetic) {
+        return false;
+    }
+    let is_strong = line.contains(STRONG_SEPARATORS);
+    let mut cells = line.split(|character: char| {
+        if is_strong {
+            STRONG_SEPARATORS.contains(&character)
+        } else {
+            character.is_whitespace()
+        }
+    });
+    !cells.any(|cell| has_number(cell, false))
+}
+
+#[cfg(test)]
+mod sections_tests {
+    use super::*;
+
+    #[test]
+    fn a_text_is_cut_where_a_heading_stands_behind_rows() {
+        let text = "\nt | P |\n1 | 2 |\n2 | nan |\n\nt | P | Q |\n\nt | P | Q |\n1 | 2 | 3 |\n";
+        let found = sections(text);
+        assert_eq!(
+            found,
+            [
+                (1, "\nt | P |\n1 | 2 |\n2 | nan |\n\n"),
+                (6, "t | P | Q |\n\nt | P | Q |\n1 | 2 | 3 |\n")
+            ]
+        );
+        assert_eq!(
+            sections("# by hand\na b\n1 2\n# middle\n3 4"),
+            [(1, "# by hand\na b\n1 2\n# middle\n3 4")]
+        );
+        assert_eq!(sections(""), [(1, "")]);
+    }
+}

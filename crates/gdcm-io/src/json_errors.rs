@@ -1,0 +1,230 @@
+//! serde_json errors in the words of engineers.
+
+use std::path::Path;
+
+use serde::de::IgnoredAny;
+use serde_json::error::Category;
+
+use gdcm_model::dataset::location::Location;
+use gdcm_model::message_text::{sanitized, shortened};
+use gdcm_model::units::number;
+
+use crate::file_error::{ContentError, ContentFault, FileError};
+
+/// Position in a text, counted from 1; the column in bytes.
+#[derive(Clone, Copy)]
+struct Position {
+    line: usize,
+    column: usize,
+}
+
+/// Translates a serde_json error at a place in a file.
+pub(super) fn json_error(
+    text: &[u8],
+    path: &Path,
+    place: Location,
+    error: &serde_json::Error,
+) -> FileError {
+    let position = Position {
+        line: error.line(),
+        column: error.column(),
+    };
+    let full = error.to_string();
+    let reason = match full.rsplit_once(" at line ") {
+        Some((reason, _)) => reason,
+        None => &full,
+    };
+    match error.classify() {
+        Category::Eof => FileError::CutOff {
+            path: path.to_owned(),
+            place: Box::new(place),
+            line: position.line,
+            column: position.column,
+        },
+        Category::Data => {
+            FileError::content(path, ContentError::new(place, data_fault(reason, position)))
+        }
+        _ => syntax_error(text, path, place, reason, position),
+    }
+}
+
+/// Translates an error in the JSON itself.
+fn syntax_error(
+    text: &[u8],
+    path: &Path,
+    place: Location,
+    reason: &str,
+    position: Position,
+) -> FileError {
+    let Position { line, column } = position;
+    if reason.starts_with("recursion limit") {
+        let fault = ContentFault::TooDeep { line, column };
+        return FileError::content(path, ContentError::new(place, fault));
+    }
+    if let Some(found) = token_at(text, position)
+        && is_number_like(&found)
+    {
+        let fault = ContentFault::NotFinite {
+            found,
+            line,
+            column,
+        };
+        return FileError::content(path, ContentError::new(place, fault));
+    }
+    // serde_json also classifies a value as a syntax error if it is not among the known words.
+    if is_json_so_far(text) {
+        let fault = ContentFault::Type {
+            expected: "a text in quotation marks".to_owned(),
+            found: "something else".to_owned(),
+            line,
+            column,
+        };
+        return FileError::content(path, ContentError::new(place, fault));
+    }
+    FileError::NotJson {
+        path: path.to_owned(),
+        place: Box::new(place),
+        line,
+        column,
+        reason: syntax_words(reason),
+    }
+}
+
+/// Whether a text is JSON, or could become JSON with more text.
+fn is_json_so_far(text: &[u8]) -> bool {
+    match serde_json::from_slice::<IgnoredAny>(text) {
+        Ok(_) => true,
+        Err(error) => error.is_eof(),
+    }
+}
+
+/// Translates serde_json's syntax errors that mention its internals.
+fn syntax_words(reason: &str) -> String {
+    match reason {
+        "expected ident" => "a word that JSON does not know".to_owned(),
+        "expected value" => "expected a number, a text, a list or an object".to_owned(),
+        "invalid unicode code point" => "the text is not UTF-8".to_owned(),
+        _ if reason.starts_with("control character") => {
+            "a text in quotation marks goes over the end of a line".to_owned()
+        }
+        _ => reason.replace('`', "\""),
+    }
+}
+
+/// Translates an error about a value with the wrong type.
+fn data_fault(reason: &str, position: Position) -> ContentFault {
+    let Position { line, column } = position;
+    if let Some(key) = text_between(reason, "missing field `", "`") {
+        return ContentFault::MissingKey { key };
+    }
+    if let Some(key) = text_between(reason, "duplicate field `", "`") {
+        return ContentFault::DuplicateKey { key };
+    }
+    if let Some(rest) = reason.strip_prefix("unknown variant `")
+        && let Some((found, expected)) = rest.split_once("`, expected ")
+    {
+        return ContentFault::Word {
+            expected: expected.replace('`', "\""),
+            found: found.to_owned(),
+        };
+    }
+    for start in ["invalid type: ", "invalid value: ", INVALID_LENGTH] {
+        if let Some(rest) = reason.strip_prefix(start)
+            && let Some((found, expected)) = rest.rsplit_once(", expected ")
+        {
+            let found = found_words(found, start == INVALID_LENGTH);
+            return ContentFault::Type {
+                expected: expected_words(expected),
+                found: shortened(&sanitized(&found)),
+                line,
+                column,
+            };
+        }
+    }
+    ContentFault::Text {
+        reason: shortened(&sanitized(reason)),
+        line,
+        column,
+    }
+}
+
+/// Text that begins serde errors about the length of a list.
+const INVALID_LENGTH: &str = "invalid length ";
+
+/// Returns the text between a beginning and an end.
+fn text_between(text: &str, start: &str, end: &str) -> Option<String> {
+    let inner = text.strip_prefix(start)?.strip_suffix(end)?;
+    Some(inner.to_owned())
+}
+
+/// Translates serde's words for the value found into JSON terms.
+fn found_words(found: &str, is_length: bool) -> String {
+    if is_length {
+        return format!("{found} entries");
+    }
+    let unquoted = found.replace('`', "");
+    // serde writes all digits.
+    if let Some(Ok(value)) = unquoted.strip_prefix("floating point ").map(str::parse) {
+        return number(value);
+    }
+    for (start, word) in [("string ", "the text "), ("integer ", ""), ("boolean ", "")] {
+        if let Some(rest) = unquoted.strip_prefix(start) {
+            return format!("{word}{rest}");
+        }
+    }
+    match unquoted.as_str() {
+        "sequence" => "a list".to_owned(),
+        "map" => "an object".to_owned(),
+        _ => unquoted,
+    }
+}
+
+/// Translates serde's words for the expected value into JSON terms.
+fn expected_words(expected: &str) -> String {
+    match expected {
+        "f64" => "a number (without quotation marks)".to_owned(),
+        "i64" => "a whole number".to_owned(),
+        "u64" | "usize" => "a whole number not below 0".to_owned(),
+        "a string" => "a text in quotation marks".to_owned(),
+        "a sequence" => "a list".to_owned(),
+        "a map" => "an object".to_owned(),
+        "a tuple of size 2" | "an array of length 2" => "a list of 2 entries".to_owned(),
+        _ if expected.starts_with("struct ") => "an object".to_owned(),
+        _ => expected.to_owned(),
+    }
+}
+
+/// Returns the bare word around a position: `NaN`, `1e999`.
+fn token_at(text: &[u8], position: Position) -> Option<String> {
+    /// Longest word returned \[bytes\], longer than any number that a program writes.
+    const LONGEST: usize = 60;
+    let line = text
+        .split(|byte| *byte == b'\n')
+        .nth(position.line.checked_sub(1)?)?;
+    let at = position.column.saturating_sub(1).min(line.len());
+    let start = line[..at]
+        .iter()
+        .rposition(|byte| !is_word_byte(*byte))
+        .map_or(0, |before| before + 1);
+    let end = line[at..]
+        .iter()
+        .position(|byte| !is_word_byte(*byte))
+        .map_or(line.len(), |after| at + after);
+    let token: String = line[start..end]
+        .iter()
+        .take(LONGEST)
+        .map(|&byte| char::from(byte))
+        .collect();
+    if token.is_empty() { None } else { Some(token) }
+}
+
+fn is_word_byte(byte: u8) -> bool {
+    byte.is_ascii_alphanumeric() || b"+-.".contains(&byte)
+}
+
+/// Whether a word is an infinite number, or a number in other programs but not in JSON.
+fn is_number_like(token: &str) -> bool {
+    // Rust reads NaN, inf and infinity in any case and with any sign, as C and Python write them;
+    // 1e999 is read as infinite.
+    token.parse::<f64>().is_ok_and(|value| !value.is_finite())
+}

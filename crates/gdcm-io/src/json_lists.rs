@@ -1,0 +1,328 @@
+//! Lists and objects in JSON: numbers in nested lists, as in matrices and tables, and limits on
+//! lengths, so that content rejected for its length never occupies memory.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::marker::PhantomData;
+
+use nalgebra::DMatrix;
+use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::ser::{SerializeSeq, Serializer};
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_FREQUENCIES, MOST_STATES};
+
+/// A rectangular array with `DEPTH` dimensions, the last running fastest: `[[1, 2], [3, 4]]` has
+/// the shape 2 x 2.
+///
+/// Read flat, so that a file with empty lists cannot take more memory than its own length. The
+/// largest number of states limits a matrix; the largest numbers of channels and frequencies limit a
+/// response table.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Nested<const DEPTH: usize> {
+    /// Entries along each dimension; 0 if a previous dimension is empty.
+    pub(super) shape: [usize; DEPTH],
+    pub(super) values: Vec<f64>,
+}
+
+impl<const DEPTH: usize> Nested<DEPTH> {
+    /// Returns the largest number of entries in a list at a depth, 0 being the outermost.
+    const fn most(depth: usize) -> usize {
+        match (DEPTH, depth) {
+            (2, _) => MOST_STATES,
+            (_, 0 | 1) => MOST_CHANNELS,
+            _ => MOST_FREQUENCIES,
+        }
+    }
+}
+
+impl Nested<2> {
+    /// Converts a matrix; its values are in row order.
+    pub(super) fn of_matrix(matrix: &DMatrix<f64>) -> Self {
+        // nalgebra stores columns, a file has rows.
+        Self {
+            shape: [matrix.nrows(), matrix.ncols()],
+            values: matrix.transpose().as_slice().to_vec(),
+        }
+    }
+}
+
+impl<'de, const DEPTH: usize> Deserialize<'de> for Nested<DEPTH> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut filling = Filling {
+            lengths: [None; DEPTH],
+            values: Vec::new(),
+        };
+        List {
+            filling: &mut filling,
+            depth: 0,
+        }
+        .deserialize(deserializer)?;
+        Ok(Self {
+            shape: filling.lengths.map(Option::unwrap_or_default),
+            values: filling.values,
+        })
+    }
+}
+
+/// An array being read.
+struct Filling<const DEPTH: usize> {
+    /// List length at each depth, known once the first list has ended.
+    lengths: [Option<usize>; DEPTH],
+    values: Vec<f64>,
+}
+
+/// A list at a depth, 0 being the outermost.
+struct List<'f, const DEPTH: usize> {
+    filling: &'f mut Filling<DEPTH>,
+    depth: usize,
+}
+
+impl<'de, const DEPTH: usize> DeserializeSeed<'de> for List<'_, DEPTH> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_seq(self)
+    }
+}
+
+impl<'de, const DEPTH: usize> Visitor<'de> for List<'_, DEPTH> {
+    type Value = ();
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(if self.depth + 1 == DEPTH {
+            "a list of numbers"
+        } else {
+            "a list of lists of numbers"
+        })
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<(), A::Error> {
+        let mut length = 0;
+        let depth = self.depth + 1;
+        loop {
+            if depth == DEPTH {
+                let Some(value) = entries.next_element::<f64>()? else {
+                    break;
+                };
+                self.filling.values.push(value);
+            } else if entries
+                .next_element_seed(List {
+                    filling: &mut *self.filling,
+                    depth,
+                })?
+                .is_none()
+            {
+                break;
+            }
+            length += 1;
+            if length > Nested::<DEPTH>::most(self.depth) {
+                return Err(too_long(length - 1));
+            }
+        }
+        let expected = *self.filling.lengths[self.depth].get_or_insert(length);
+        if length != expected {
+            return Err(A::Error::custom(format!(
+                "expected {expected} entries, as in the first of these lists, found {length}"
+            )));
+        }
+        Ok(())
+    }
+}
+
+impl<const DEPTH: usize> Serialize for Nested<DEPTH> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Part {
+            shape: &self.shape,
+            values: &self.values,
+        }
+        .serialize(serializer)
+    }
+}
+
+/// A list in an array being written.
+struct Part<'v> {
+    shape: &'v [usize],
+    values: &'v [f64],
+}
+
+impl Serialize for Part<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.shape {
+            [] | [_] => self.values.serialize(serializer),
+            [length, shape @ ..] => {
+                let size: usize = shape.iter().product();
+                let mut list = serializer.serialize_seq(Some(*length))?;
+                for part in 0..*length {
+                    list.serialize_element(&Part {
+                        shape,
+                        values: &self.values[part * size..(part + 1) * size],
+                    })?;
+                }
+                list.end()
+            }
+        }
+    }
+}
+
+/// Reads a list with at most `MOST` entries.
+pub(super) fn list<'de, const MOST: usize, T, D>(deserializer: D) -> Result<Vec<T>, D::Error>
+where
+    T: Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    list_while(deserializer, MOST, |_| Ok(()))
+}
+
+/// A list with at most `MOST` entries.
+#[derive(Clone, Debug, Default, Serialize)]
+#[serde(transparent)]
+pub(super) struct Limited<T, const MOST: usize>(pub(super) Vec<T>);
+
+impl<'de, T: Deserialize<'de>, const MOST: usize> Deserialize<'de> for Limited<T, MOST> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        list::<MOST, T, D>(deserializer).map(Self)
+    }
+}
+
+impl<T, const MOST: usize> Limited<T, MOST> {
+    /// Wraps a list; `None` if it is empty.
+    pub(super) fn some(list: Vec<T>) -> Option<Self> {
+        if list.is_empty() {
+            None
+        } else {
+            Some(Self(list))
+        }
+    }
+
+    /// Returns the entries in an optional list.
+    pub(super) fn entries(list: Option<Self>) -> Vec<T> {
+        list.map(|list| list.0).unwrap_or_default()
+    }
+}
+
+/// Reads a list with at most `most` entries, as long as `check` accepts the next.
+pub(super) fn list_while<'de, T, D>(
+    deserializer: D,
+    most: usize,
+    check: impl FnMut(&T) -> Result<(), String>,
+) -> Result<Vec<T>, D::Error>
+where
+    T: Deserialize<'de>,
+    D: Deserializer<'de>,
+{
+    deserializer.deserialize_seq(LimitedList {
+        most,
+        check,
+        entry: PhantomData,
+    })
+}
+
+/// Creates the error that a list or an object exceeds its limit.
+fn too_long<E: Error>(most: usize) -> E {
+    E::custom(format_args!("expected at most {most} entries, found more"))
+}
+
+struct LimitedList<T, C> {
+    most: usize,
+    check: C,
+    entry: PhantomData<T>,
+}
+
+impl<'de, T, C> Visitor<'de> for LimitedList<T, C>
+where
+    T: Deserialize<'de>,
+    C: FnMut(&T) -> Result<(), String>,
+{
+    type Value = Vec<T>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("a list")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(mut self, mut entries: A) -> Result<Vec<T>, A::Error> {
+        let mut list = Vec::new();
+        while list.len() < self.most {
+            let Some(entry) = entries.next_element()? else {
+                return Ok(list);
+            };
+            (self.check)(&entry).map_err(A::Error::custom)?;
+            list.push(entry);
+        }
+        match entries.next_element::<IgnoredAny>()? {
+            None => Ok(list),
+            Some(_) => Err(too_long(self.most)),
+        }
+    }
+}
+
+/// Numbers by name, at most `MOST`; among numbers with the same name the last counts.
+pub(super) struct Numbers<const MOST: usize>(pub(super) BTreeMap<String, f64>);
+
+impl<'de, const MOST: usize> Deserialize<'de> for Numbers<MOST> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(Object::<MOST>)
+    }
+}
+
+struct Object<const MOST: usize>;
+
+impl<'de, const MOST: usize> Visitor<'de> for Object<MOST> {
+    type Value = Numbers<MOST>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Numbers<MOST>, A::Error> {
+        let mut numbers = BTreeMap::new();
+        while let Some((name, number)) = entries.next_entry()? {
+            if numbers.len() == MOST {
+                return Err(too_long(MOST));
+            }
+            numbers.insert(name, number);
+        }
+        Ok(Numbers(numbers))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read<const DEPTH: usize>(text: &str) -> Result<Nested<DEPTH>, String> {
+        serde_json::from_str(text).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn written_lists_are_read_back() {
+        for text in ["[[1.0,2.0,3.0],[4.0,5.0,6.0]]", "[]", "[[],[]]"] {
+            assert_eq!(
+                serde_json::to_string(&read::<2>(text).unwrap()).unwrap(),
+                text
+            );
+        }
+        let text = "[[[1.0],[2.0]],[[3.0],[4.0]]]";
+        let table = read::<3>(text).unwrap();
+        assert_eq!(
+            (table.shape, table.values.as_slice()),
+            ([2, 2, 1], [1.0, 2.0, 3.0, 4.0].as_slice())
+        );
+        assert_eq!(serde_json::to_string(&table).unwrap(), text);
+    }
+
+    #[test]
+    fn a_ragged_list_is_refused_at_any_depth() {
+        for text in ["[[1, 2], [3]]", "[[], [3]]", "[[1], []]"] {
+            assert!(
+                read::<2>(text).unwrap_err().contains("as in the first"),
+                "{text}"
+            );
+        }
+        assert!(
+            read::<3>("[[[1], [2]], [[3]]]")
+                .unwrap_err()
+                .contains("expected 2 entries")
+        );
+    }
+}

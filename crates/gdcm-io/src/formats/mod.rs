@@ -16,6 +16,7 @@ pub(crate) mod mat73;
 pub mod npy;
 pub(crate) mod octave;
 pub(crate) mod recorded_columns;
+pub(crate) mod sparse_matrix;
 pub mod strides;
 pub mod text;
 pub mod variables;

@@ -22,6 +22,9 @@ pub mod text;
 pub mod variables;
 pub(crate) mod zip_files;
 
+#[cfg(test)]
+mod limits_tests;
+
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};

@@ -14,7 +14,7 @@ pub(crate) struct SparseEntries {
     pub(crate) columns: Vec<usize>,
     /// Real parts.
     pub(crate) re: Vec<f64>,
-    /// Imaginary parts of complex numbers.
+    /// Imaginary parts if the numbers are complex.
     pub(crate) im: Option<Vec<f64>>,
 }
 
@@ -65,11 +65,11 @@ pub(crate) struct CompressedColumns {
     pub(crate) kind: ElementKind,
     /// Row of each number, from 0.
     pub(crate) rows: Vec<usize>,
-    /// For each column the index of its first number, then the end of the last column.
+    /// For each column the index at which its numbers begin, then the end of the last column.
     pub(crate) starts: Vec<usize>,
     /// Real parts; there may be room for further numbers after the last.
     pub(crate) re: Vec<f64>,
-    /// Imaginary parts of complex numbers.
+    /// Imaginary parts if the numbers are complex.
     pub(crate) im: Option<Vec<f64>>,
 }
 

@@ -1,9 +1,9 @@
-//! Element order of arrays in files, and the numbers in binary files.
+//! Element order in files, and the numbers in binary files.
 
 use crate::formats::variables::ElementKind;
 
-/// Positions in a file of the elements of an array, in the order used by this program: the first
-/// index running fastest.
+/// Positions of array elements in a file, in the order used by this program: the first index
+/// running fastest.
 pub(crate) struct Places {
     shape: Vec<usize>,
     /// Distance in the file between neighbours along each dimension.
@@ -50,7 +50,7 @@ impl Places {
     }
 }
 
-/// Counts the elements of an array; `None` on overflow.
+/// Counts the elements; `None` on overflow.
 ///
 /// The sides beside a zero are multiplied all the same: an empty array whose other sides overflow
 /// is rejected too.
@@ -201,7 +201,7 @@ impl StoredNumber {
         Some(self.decode(bytes.get(offset..offset.checked_add(self.size)?)?))
     }
 
-    /// Returns the bits of the number, with zeros for missing bytes.
+    /// Returns the bits, with zeros for missing bytes.
     fn bits(self, bytes: &[u8]) -> u64 {
         let mut eight = [0; 8];
         let count = bytes.len().min(self.size);
@@ -239,14 +239,14 @@ mod places_tests {
     }
 
     #[test]
-    fn columns_stay_as_they_are_and_a_number_alone_has_one_place() {
+    fn columns_stay_in_order_and_a_scalar_has_a_single_place() {
         assert!(Places::column_major(&[2, 3, 4]).unwrap().eq(0..24));
         assert!(Places::row_major(&[]).unwrap().eq(0..1));
         assert!(Places::row_major(&[0, 5]).unwrap().eq(0..0));
     }
 
     #[test]
-    fn what_cannot_be_counted_is_refused() {
+    fn overflowing_counts_are_refused() {
         assert!(Places::row_major(&[usize::MAX, 2]).is_none());
         assert!(Places::column_major(&[usize::MAX, 2, 0]).is_none());
     }

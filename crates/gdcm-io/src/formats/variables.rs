@@ -1,11 +1,12 @@
-//! Named variables in files of other programs; their meaning is determined elsewhere.
+//! Named variables in files from other programs; their meaning is determined elsewhere.
 //!
-//! All readers of such files (MATLAB, NumPy, text) return these values and know nothing of models.
+//! All readers of such files (MATLAB, NumPy, text) return these values and know nothing about
+//! models.
 
-/// Type of the numbers in the file.
+/// Number type in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ElementKind {
-    /// IEEE 754 numbers of 32 or 64 bits.
+    /// IEEE 754 numbers with 32 or 64 bits.
     Float,
     /// Signed or unsigned integers.
     Integer,
@@ -19,10 +20,10 @@ pub struct Array {
     /// Side lengths, at least two (a scalar is 1 x 1).
     pub shape: Vec<usize>,
     pub kind: ElementKind,
-    /// The numbers, or their real parts. NaN and infinities are kept: the user of the numbers
+    /// The numbers, or their real parts. NaN and infinities are kept: code that uses the numbers
     /// rejects them with their place.
     pub re: Vec<f64>,
-    /// Imaginary parts of complex numbers, of the same length.
+    /// Imaginary parts if the numbers are complex; as many as real parts.
     pub im: Option<Vec<f64>>,
 }
 
@@ -56,15 +57,13 @@ pub struct Variable {
     pub value: Value,
 }
 
-/// A value from any kind of file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// Numbers; sparse arrays are expanded with zeros.
     Array(Array),
     Text(TextArray),
-    /// An array of values of any kind.
+    /// Values of any kind.
     Cell(CellArray),
-    /// An array of records with the same fields.
     Struct(StructArray),
     /// An object of a class, as far as it could be decoded.
     Object(Object),
@@ -86,7 +85,7 @@ pub struct TextArray {
     pub texts: Vec<String>,
 }
 
-/// An array of values, the first index running fastest.
+/// Values of any kind, the first index running fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellArray {
     /// Side lengths.
@@ -94,7 +93,7 @@ pub struct CellArray {
     pub values: Vec<Value>,
 }
 
-/// An array of records, the first index running fastest.
+/// Records with the same fields, the first index running fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StructArray {
     /// Side lengths.
@@ -110,7 +109,7 @@ pub(crate) const RECORD: u64 = 64;
 /// Memory charged for a field besides its name and values \[bytes\].
 const FIELD: usize = 48;
 
-/// An object of a class, or an array of objects of the same class.
+/// An object of a class, or an array of such objects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
     /// Class name: "ss", "idss", "string".

@@ -9,14 +9,13 @@ use crate::formats::strides;
 use crate::formats::variables::ElementKind;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Flag of logical numbers.
+/// Flag for logical numbers.
 const LOGICAL: u32 = 0x0200;
-/// Flag of complex numbers.
+/// Flag for complex numbers.
 const COMPLEX: u32 = 0x0800;
-/// Class number of unsigned 64-bit integers.
+/// Class number for unsigned 64-bit integers.
 const UINT64: u32 = 15;
 
-/// Class of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ArrayClass {
     Cell,
@@ -30,7 +29,6 @@ pub(super) enum ArrayClass {
     Opaque,
 }
 
-/// Header of an array.
 #[derive(Clone, Debug)]
 pub(super) struct ArrayHeader {
     pub(super) class: ArrayClass,
@@ -68,7 +66,7 @@ impl ArrayHeader {
         } else {
             read_shape(contents, budget)?
         };
-        // The product of the sides must not overflow, even if a further side is zero.
+        // The product of all nonzero sides must not overflow.
         if strides::count(&shape).is_none() {
             budget.take(u64::MAX, 1, "")?;
         }
@@ -83,7 +81,6 @@ impl ArrayHeader {
         })
     }
 
-    /// Returns the element kind of the numbers.
     pub(super) fn element_kind(&self) -> ElementKind {
         if self.is_logical {
             return ElementKind::Logical;
@@ -112,7 +109,7 @@ impl ArrayClass {
     }
 }
 
-/// Counts the elements of an array with these sides; saturates at the largest integer.
+/// Counts the elements in an array with these sides; saturates at the largest integer.
 pub(super) fn saturating_count(shape: &[usize]) -> usize {
     if shape.contains(&0) {
         return 0;

@@ -6,7 +6,7 @@ use crate::formats::mat::numbers::read_numbers;
 use crate::formats::variables::TextArray;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Reads the rows of a character array, stored as text or as character codes.
+/// Reads a character array, stored as text or as character codes.
 pub(super) fn read_text(
     element: &Element<'_>,
     shape: &[usize],

@@ -1,8 +1,7 @@
-//! Sequential reading of bytes in the byte order of the file.
+//! Sequential reading in the byte order of the file.
 
 use crate::reading_budget::VariableFault;
 
-/// Byte order of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ByteOrder {
     Little,
@@ -35,24 +34,23 @@ pub(super) struct Cursor<'b> {
     /// The bytes from the position to the end of the section.
     bytes: &'b [u8],
     pub(super) order: ByteOrder,
-    /// Offset in the file of the next byte.
+    /// Offset of the position in the file.
     pub(super) offset: u64,
     section: Section,
 }
 
-/// Origin of a section, which decides the fault when the section ends too early.
+/// Origin of a section, which decides the fault if it ends too early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Section {
     /// The whole file: it is cut off.
     File,
     /// An element of the file: its size is wrong.
     Element,
-    /// Unpacked or embedded bytes: every position is given as the offset of the packed element.
+    /// Unpacked or embedded bytes: every position is reported as the start of the packed element.
     Unpacked,
 }
 
 impl<'b> Cursor<'b> {
-    /// Starts at the beginning of a file.
     pub(super) fn file(bytes: &'b [u8], order: ByteOrder) -> Self {
         Self {
             bytes,

@@ -147,7 +147,7 @@ impl<'b> Element<'b> {
         }
     }
 
-    /// Returns the contents of an element that must be an array.
+    /// Returns the contents; refuses elements that are no arrays.
     pub(super) fn array_contents(self) -> Result<Cursor<'b>, VariableFault> {
         match self.kind {
             DataKind::Matrix => Ok(self.data),
@@ -165,7 +165,7 @@ fn known_kind(number: u32, tag: Cursor<'_>) -> Result<DataKind, VariableFault> {
 /// An array that was read, for finding the element after it.
 #[derive(Clone, Copy)]
 pub(super) struct ReadArray<'b> {
-    /// Position of the tag.
+    /// Position before the tag.
     pub(super) start: Cursor<'b>,
     pub(super) element: Element<'b>,
     /// Contents that were not read.
@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn an_array_begins_where_its_tag_fits_what_follows() {
+    fn an_array_begins_at_a_tag_that_fits_the_remaining_bytes() {
         let begins = |bytes: &[u8]| begins_array(&Cursor::file(bytes, ByteOrder::Little));
         assert!(begins(&[]) && begins(&[14, 0, 0, 0, 0, 0, 0, 0]));
         for bytes in [

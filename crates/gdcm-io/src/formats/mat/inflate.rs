@@ -13,7 +13,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 const MOST_EXPANSION: u64 = 1040;
 /// Unpacked data between two checks against the budget \[bytes\].
 const CHUNK: u64 = 1 << 20;
-/// Length of the tag before the unpacked data \[bytes\].
+/// Tag before the unpacked data \[bytes\].
 const TAG_BYTES: u64 = 8;
 
 /// Unpacks an element: its tag, and the bytes announced by the tag.

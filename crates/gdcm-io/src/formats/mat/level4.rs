@@ -1,4 +1,4 @@
-//! Files at level 4: consecutive matrices of numbers or characters.
+//! Files of level 4: consecutive matrices of numbers or characters.
 //!
 //! Source: "MAT-File Format", The MathWorks, "Level 4 MAT-File Format".
 
@@ -16,9 +16,9 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Header of a matrix. The source writes its first word as the decimal digits MOPT.
 struct MatrixHeader {
-    /// Number type: digit P.
+    /// Number type, digit P.
     number_type: StoredNumber,
-    /// Meaning of the numbers: digit T.
+    /// Meaning of the numbers, digit T.
     meaning: Meaning,
     rows: usize,
     columns: usize,
@@ -26,7 +26,6 @@ struct MatrixHeader {
     name_length: usize,
 }
 
-/// Meaning of the numbers.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Meaning {
     Numbers,
@@ -39,7 +38,6 @@ pub(super) fn begins(bytes: &[u8]) -> bool {
     MatrixHeader::read(&mut Cursor::file(bytes, ByteOrder::Little)).is_ok()
 }
 
-/// Reads all variables of a file.
 pub(super) fn read(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
@@ -63,7 +61,7 @@ pub(super) fn read(
 }
 
 impl MatrixHeader {
-    /// Reads the header of the next matrix; the byte order may change from matrix to matrix.
+    /// Reads the next header; the byte order may change from matrix to matrix.
     fn read(file: &mut Cursor<'_>) -> Result<Self, VariableFault> {
         let start = *file;
         let Some(order) = detect_order(start.rest()) else {
@@ -149,7 +147,7 @@ impl MatrixHeader {
     }
 
     /// Interprets stored columns as row indices, column indices, real parts and imaginary parts;
-    /// their last row gives the size of the sparse matrix. Returns `None` if they do not fit.
+    /// their last row gives the size of the matrix. Returns `None` if they do not fit.
     fn sparse_entries(&self, stored: &[f64]) -> Option<SparseEntries> {
         let columns: Vec<&[f64]> = stored.chunks_exact(self.rows.max(1)).collect();
         let (rows, columns, re, im) = match *columns.as_slice() {
@@ -170,7 +168,7 @@ impl MatrixHeader {
     }
 }
 
-/// Returns the fault for `found` at the start of a matrix.
+/// Returns the fault for `found` at `start`, where a matrix should begin.
 fn no_matrix(start: Cursor<'_>, found: &str) -> VariableFault {
     start.damaged(format!("{found} at the expected start of a matrix"))
 }
@@ -308,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_matrix_of_level_4_is_not_taken_for_one() {
+    fn other_bytes_are_no_level_4_matrix() {
         assert!(!begins(&[0; 20]));
         assert!(!begins(&matrix(
             4000,

@@ -15,18 +15,18 @@ use crate::formats::mat::value_path::ValuePath;
 use crate::formats::variables::Variable;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Length of the file header, text and numbers \[bytes\].
+/// Length, including text and numbers \[bytes\].
 const HEADER_BYTES: usize = 128;
-/// Offset in the header of the version.
+/// Offset of the version in the header.
 const VERSION_AT: usize = 124;
-/// Offset in the header of the position of the objects.
+/// Offset of the object position in the header.
 const OBJECTS_AT: usize = 116;
 
-/// End of the file header.
+/// Byte order and version at the end of the file header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct FileVersion {
     pub(super) order: ByteOrder,
-    /// Major version: 1 for levels 5 to 7.
+    /// Major version, 1 for levels 5 to 7.
     pub(super) major: u8,
 }
 
@@ -47,7 +47,6 @@ impl FileVersion {
     }
 }
 
-/// Reads all variables of a file.
 pub(super) fn read(
     bytes: &[u8],
     order: ByteOrder,
@@ -131,7 +130,7 @@ fn read_variable(
     read_named_array(&mut contents, reader)
 }
 
-/// Reads the contents of an array with its name; skips an array without a name.
+/// Reads an array with its name; skips an array without a name.
 fn read_named_array(
     contents: &mut Cursor<'_>,
     reader: &ArrayReader<'_>,

@@ -1,4 +1,4 @@
-//! Contents of an array.
+//! Contents of arrays, including nested arrays.
 //!
 //! Source: "MAT-File Format", The MathWorks, "miMATRIX Format".
 
@@ -16,7 +16,7 @@ use crate::formats::sparse_matrix::CompressedColumns;
 use crate::formats::variables::{Array, CellArray, Object, RECORD, StructArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Reads arrays, including nested arrays.
+/// Reads arrays within a budget.
 #[derive(Clone, Copy)]
 pub(super) struct ArrayReader<'a> {
     pub(super) budget: &'a ReadingBudget<'a>,
@@ -208,7 +208,7 @@ impl ArrayReader<'_> {
         let names = read_field_names(contents, self.budget)?;
         let count = header.count;
         self.take_values(count.saturating_mul(names.len()), contents)?;
-        // A few bytes can announce any number of records without fields.
+        // A few bytes can announce arbitrarily many records without fields.
         self.budget.take(count as u64, RECORD, "")?;
         let mut fields: Vec<(String, Vec<Value>)> = Vec::with_capacity(names.len());
         for name in names {

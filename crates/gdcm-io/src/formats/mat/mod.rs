@@ -27,9 +27,9 @@ pub(crate) use crate::formats::mat::characters::text_rows;
 pub(crate) use crate::formats::mat::subsystem::{LongWords, Subsystem};
 pub use crate::formats::mat::writer::{write, write_packed};
 
-/// Signature of HDF5 files, at the beginning or after MATLAB's header.
+/// HDF5 signature, at the beginning or after MATLAB's header.
 const HDF5_SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
-/// Major version of files at levels 5 to 7.
+/// Major version of levels 5 to 7.
 const LEVEL_5: u8 = 1;
 /// Expected format in error messages of [`read`].
 const EXPECTED: &str = "a .mat file of MATLAB up to version 7";
@@ -44,7 +44,7 @@ pub(crate) const MAT: Importer = Importer {
     read: |bytes, path, budget| Contents::variables(read(bytes, budget), path),
 };
 
-/// Reads the variables of a file, in file order.
+/// Reads the variables in file order.
 ///
 /// Parts of a variable that cannot be decoded become [`super::variables::Value::Opaque`]; bytes
 /// that contradict the format are a fault of the whole file.
@@ -55,7 +55,7 @@ pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, V
             "an HDF5 file, as MATLAB writes with -v7.3",
         ));
     }
-    // The leading text of a level-5 file has no zero in its first four bytes, unlike level 4.
+    // A level-5 file begins with text, so its first four bytes are not zero, unlike at level 4.
     let begins_with_text = bytes.get(..4).is_some_and(|start| !start.contains(&0));
     match FileVersion::read(bytes) {
         Some(FileVersion {
@@ -91,7 +91,7 @@ pub fn is_hdf5(bytes: &[u8]) -> bool {
     false
 }
 
-/// Describes the first bytes of a file with an unknown format.
+/// Describes the first bytes of a file in an unknown format.
 fn describe_start(bytes: &[u8]) -> String {
     let start = bytes.get(..bytes.len().min(8)).unwrap_or_default();
     if start.is_empty() {

@@ -1,5 +1,5 @@
-//! Finds the object part of a level-5 file: an array of bytes that form a small embedded file, whose
-//! cells describe all objects.
+//! Finds the object part of a level-5 file: an array of bytes that form a small embedded file,
+//! whose cells describe all objects.
 //!
 //! The format is not published by The MathWorks; it is known from the descriptions by the
 //! MatFileHandler, matio (Python) and MAT.jl projects.
@@ -15,10 +15,10 @@ use crate::formats::mat::value_path::{Step, ValuePath};
 use crate::formats::variables::Value;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Class of the object that holds all other objects.
+/// Class whose single object holds all other objects.
 const WRAPPER: &str = "FileWrapper__";
 
-/// Reads the objects at byte `at` of the file.
+/// Reads the objects at byte `at`.
 pub(super) fn read_objects(
     bytes: &[u8],
     at: Option<usize>,
@@ -102,8 +102,8 @@ fn read_wrapper(
     Ok(Subsystem::new(cells, budget)?.with_long_words(long_words))
 }
 
-/// Reads the integers of a cell exactly if they are unsigned 64-bit integers; `value` is the value
-/// of the cell.
+/// Reads a cell exactly if it holds unsigned 64-bit integers; `value` holds them rounded to 53
+/// bits.
 fn read_exact_words(
     mut cell: Cursor<'_>,
     value: &Value,

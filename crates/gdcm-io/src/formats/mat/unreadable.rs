@@ -15,8 +15,8 @@ pub(super) fn unreadable(class: &str, reason: &str, variable: &str) -> Value {
     Value::opaque(class, why)
 }
 
-/// Returns a MATLAB command that writes the contents of `variable`, an object of `class`, to a file
-/// as plain arrays.
+/// Returns a MATLAB command that writes `variable`, an object of `class`, to a file as plain
+/// arrays.
 ///
 /// Source: the reference pages in the manuals for MATLAB, the Control System Toolbox and the System
 /// Identification Toolbox.

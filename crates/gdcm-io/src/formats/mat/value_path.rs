@@ -13,10 +13,9 @@ pub(super) struct ValuePath<'p> {
     depth: usize,
 }
 
-/// A step of a path.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Step<'p> {
-    /// The variable, or the text of a whole path.
+    /// The variable, or a whole path as text.
     Start(&'p str),
     Field(&'p str),
     /// A record of an array, counted from 0.

@@ -15,7 +15,7 @@ use crate::reading_budget::VariableFault;
 
 /// Header text, padded with blanks: MATLAB checks the first words.
 const HEADER_TEXT: &str = "MATLAB 5.0 MAT-file, written by gdcm";
-/// Length of the header text \[bytes\].
+/// Length to which the header text is padded \[bytes\].
 const HEADER_TEXT_BYTES: usize = 116;
 /// Largest variable \[bytes\].
 const MOST_BYTES: u64 = u32::MAX as u64;
@@ -120,9 +120,9 @@ enum Class {
     I64 = 14,
 }
 
-/// Flag of complex numbers.
+/// Flag for complex numbers.
 const COMPLEX: u32 = 0x0800;
-/// Flag of logical numbers.
+/// Flag for logical numbers.
 const LOGICAL: u32 = 0x0200;
 /// Lengths of field names in MATLAB, including the zero at the end.
 const FIELD_NAME_LENGTHS: [usize; 2] = [32, 64];
@@ -164,7 +164,7 @@ struct NumberForm {
 }
 
 impl NumberForm {
-    /// Chooses the form for an array: that of its kind if all numbers fit, otherwise `double`.
+    /// Chooses the form of the array's kind if all numbers fit, otherwise `double`.
     fn for_array(array: &Array) -> Self {
         match array.kind {
             ElementKind::Logical if all_numbers(array, is_truth_value) => Self {
@@ -331,7 +331,8 @@ fn record_contents(records: &StructArray, name: &str) -> Vec<u8> {
     bytes
 }
 
-/// Appends the length and the names of the fields, padded with zeros to the same length.
+/// Appends the field names, padded with zeros to the same length, after an element with this
+/// length.
 fn append_field_names(bytes: &mut Vec<u8>, records: &StructArray) {
     let longest = records
         .fields
@@ -447,7 +448,7 @@ mod writer_tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
         #[test]
-        fn what_is_written_is_read_again(value in value()) {
+        fn written_values_are_read_again(value in value()) {
             let variables = [named("first", value.clone()), named("x", value)];
             prop_assert_eq!(back(&write(&variables).unwrap()), &variables);
             prop_assert_eq!(back(&write_packed(&variables).unwrap()), &variables);
@@ -494,7 +495,7 @@ mod writer_tests {
     }
 
     #[test]
-    fn numbers_that_are_not_what_they_are_said_to_be_become_floating_point() {
+    fn numbers_that_contradict_their_kind_become_floating_point() {
         for kind in [ElementKind::Integer, ElementKind::Logical] {
             let array = Array {
                 kind,
@@ -512,7 +513,7 @@ mod writer_tests {
     }
 
     #[test]
-    fn objects_become_structs_and_what_was_not_read_is_empty() {
+    fn objects_become_structs_and_unread_values_are_empty() {
         let fields = vec![(
             "a".to_owned(),
             vec![Value::Opaque {
@@ -544,7 +545,7 @@ mod block_tests {
     use super::*;
 
     #[test]
-    fn short_data_stand_in_the_tag_and_long_ones_are_filled_up() {
+    fn short_data_is_within_the_tag_and_longer_data_is_padded() {
         let mut bytes = Vec::new();
         append_element(&mut bytes, DataKind::I8, b"abc");
         assert_eq!(bytes, [1, 0, 3, 0, b'a', b'b', b'c', 0]);

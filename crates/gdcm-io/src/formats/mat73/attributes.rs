@@ -9,12 +9,11 @@ use crate::reading_budget::VariableFault;
 
 /// `MATLAB_object_decode` of a function handle.
 pub(super) const FUNCTION_HANDLE: u64 = 1;
-/// `MATLAB_object_decode` of an object of an `@`-folder class, stored as a struct.
+/// `MATLAB_object_decode` of an `@`-folder object, stored as a struct.
 pub(super) const FOLDER_OBJECT: u64 = 2;
 /// `MATLAB_object_decode` of a `classdef` object, stored as a reference.
 pub(super) const OBJECT: u64 = 3;
 
-/// MATLAB's attributes of a group or dataset.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MatlabAttributes {
     /// Class name (`MATLAB_class`); `None` if MATLAB did not write the object.
@@ -26,7 +25,7 @@ pub(super) struct MatlabAttributes {
     pub(super) sparse_height: Option<u64>,
     /// Field names of a struct in order (`MATLAB_fields`).
     pub(super) fields: Vec<String>,
-    /// Encoding of the value (`MATLAB_object_decode`); 0 for a plain value.
+    /// Encoding (`MATLAB_object_decode`); 0 for a plain value.
     pub(super) encoding: u64,
 }
 

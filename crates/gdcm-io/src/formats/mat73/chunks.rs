@@ -1,4 +1,4 @@
-//! Checks on the chunks of a packed dataset.
+//! Checks on the chunks of packed datasets.
 
 use hdf5_pure::{Chunk, ChunkIndex, Dataset};
 
@@ -11,10 +11,10 @@ const CHUNK: u64 = 128;
 const OVERHEAD: u64 = 4096;
 
 /// Takes the memory for reading a dataset in chunks (an unpacked chunk, and the bookkeeping for
-/// each chunk) and checks that the claimed chunks are possible: the library allocates memory for the
-/// claimed sizes and adds up their offsets unchecked.
+/// each chunk) and checks that the claimed chunks are possible: the library allocates memory for
+/// the claimed sizes and adds up their offsets unchecked.
 ///
-/// `sides` are the side lengths of the dataset; `size` is that of an element \[bytes\].
+/// `sides` are the dataset's side lengths; `size` is the element size \[bytes\].
 pub(super) fn check_chunks(
     dataset: &Dataset,
     sides: &[usize],

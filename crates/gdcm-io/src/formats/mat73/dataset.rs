@@ -19,7 +19,7 @@ pub(super) enum Order {
 }
 
 impl Order {
-    /// Returns the shape of an array, with at least two dimensions, for the sides in the file.
+    /// Returns the shape of the array, with at least two dimensions, for the sides in the file.
     fn shape(self, sides: &[usize]) -> Vec<usize> {
         match self {
             Order::Rows => matrix_shape(sides),
@@ -96,7 +96,7 @@ impl Elements {
         self.bytes.len().checked_div(self.size).unwrap_or(0)
     }
 
-    /// Returns the positions in the file of the elements, in the order used by this program.
+    /// Returns the positions of the elements in the file, in the order used by this program.
     pub(super) fn places(&self) -> Box<dyn Iterator<Item = usize>> {
         match (self.order, Places::row_major(&self.shape)) {
             (Order::Rows, Some(places)) => Box::new(places),
@@ -165,7 +165,7 @@ impl Elements {
     }
 }
 
-/// Whether the elements of a dataset are references to datasets and groups.
+/// Whether elements of this type are references to datasets and groups.
 pub(super) fn is_object_reference(datatype: &Datatype) -> bool {
     matches!(
         datatype,

@@ -1,4 +1,4 @@
-//! File bytes that can be read only a limited number of times.
+//! File bytes with a limit on reading.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -13,10 +13,10 @@ const ADDITIONAL: u64 = 16 << 20;
 /// Smallest charge for a read \[bytes\].
 const LEAST: u64 = 16;
 
-/// Bytes in memory with a limited amount of reading.
+/// Bytes in memory with a limit on how much is read.
 ///
-/// The nodes of an index may refer to one another so that a file with a few kilobytes has more paths
-/// than can ever be visited; the library follows them all. The limit ends such reading.
+/// Index nodes may refer to one another so that a file with a few kilobytes has more paths than can
+/// ever be visited; the library follows them all. The limit ends such reading.
 pub(super) struct LimitedSource {
     bytes: Vec<u8>,
     /// Remaining reading \[bytes\].

@@ -1,16 +1,16 @@
 //! MATLAB 7.3 files, and plain HDF5 files such as those written by h5py.
 //!
-//! The container follows the HDF5 File Format Specification 3.0. MATLAB's use of it is not
-//! published by The MathWorks; it is known from its files and from the descriptions by the matio,
-//! hdf5storage and MAT.jl projects: attributes give the classes, arrays are stored by columns, with
-//! their shapes reversed, and the elements of cells and struct arrays are references into a group
-//! `#refs#`.
+//! The container follows the HDF5 File Format Specification 3.0. MATLAB's conventions are not
+//! published by The MathWorks; they are known from its files and from the descriptions by the
+//! matio, hdf5storage and MAT.jl projects: attributes give the classes, arrays are stored by
+//! columns, with their shapes reversed, and the elements of cells and struct arrays are references
+//! into a group `#refs#`.
 //!
 //! Arrays without MATLAB's attributes are stored by rows, as in C and Python: a dataset with r x c
 //! elements becomes an r x c array, a scalar 1 x 1, n elements without a second dimension the row 1
 //! x n. (MATLAB's own `h5write` writes such datasets from its columns; they are read transposed.)
-//! Groups become structs. Members of groups are sorted by name, unless MATLAB gives an order;
-//! symbolic links, including links to other files, are skipped.
+//! Groups become structs. Group members are sorted by name, unless MATLAB gives an order; symbolic
+//! links, including links to other files, are skipped.
 
 mod attributes;
 mod chunks;

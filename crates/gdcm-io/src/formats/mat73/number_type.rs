@@ -1,4 +1,4 @@
-//! Numeric types of HDF5 datasets.
+//! Numeric types of HDF5.
 
 use hdf5_pure::{CompoundMember, Datatype, DatatypeByteOrder, EnumMember, FloatingPointLayout};
 
@@ -18,16 +18,16 @@ const HALF: FloatingPointLayout = FloatingPointLayout {
 /// A numeric type, real or complex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct NumberType {
-    /// Type of the number, or of each part.
+    /// Type of the number, or of each complex part.
     pub(super) number: StoredNumber,
-    /// Offset in an element of the number or its real part \[bytes\].
+    /// Offset of the number, or of its real part, in an element \[bytes\].
     re: usize,
-    /// Offset in an element of the imaginary part \[bytes\].
+    /// Offset of the imaginary part in an element \[bytes\].
     im: Option<usize>,
 }
 
 impl NumberType {
-    /// Returns the numeric type of a dataset's type, if it has one.
+    /// Returns the numeric type; `None` if the elements are no numbers.
     pub(super) fn from_datatype(datatype: &Datatype) -> Option<Self> {
         let Datatype::Compound { members, size } = datatype else {
             return Some(Self {
@@ -36,7 +36,7 @@ impl NumberType {
                 im: None,
             });
         };
-        // MATLAB names the parts of complex numbers real and imag, h5py r and i.
+        // MATLAB names the complex parts real and imag, h5py r and i.
         let [re, im] = members.as_slice() else {
             return None;
         };
@@ -61,12 +61,12 @@ impl NumberType {
         self.im.is_some()
     }
 
-    /// Decodes the number, or its real part, in the bytes of an element.
+    /// Decodes the number, or its real part, in an element.
     pub(super) fn real_part(self, element: &[u8]) -> f64 {
         self.part_at(self.re, element)
     }
 
-    /// Decodes the imaginary part in the bytes of an element, if the numbers are complex.
+    /// Decodes the imaginary part in an element, if the numbers are complex.
     pub(super) fn imaginary_part(self, element: &[u8]) -> Option<f64> {
         Some(self.part_at(self.im?, element))
     }
@@ -77,7 +77,7 @@ impl NumberType {
     }
 }
 
-/// Returns the offset of a part if the part is within an element with `size` bytes.
+/// Returns the offset of a part if the part is within an element of `size` bytes.
 fn offset_within(part: &CompoundMember, number: StoredNumber, size: usize) -> Option<usize> {
     let offset = usize::try_from(part.byte_offset).ok()?;
     if offset + number.size() <= size {
@@ -87,7 +87,7 @@ fn offset_within(part: &CompoundMember, number: StoredNumber, size: usize) -> Op
     }
 }
 
-/// Returns the type of a real number.
+/// Returns the number type; `None` if the elements are no real numbers.
 fn stored_number(datatype: &Datatype) -> Option<StoredNumber> {
     match datatype {
         Datatype::FixedPoint {

@@ -1,4 +1,4 @@
-//! Objects of MATLAB's classes, in a separate part of the file (`#subsystem#/MCOS`), as in files up
+//! Objects of MATLAB classes, in a separate part of the file (`#subsystem#/MCOS`), as in files up
 //! to version 7.
 
 use hdf5_pure::{Dataset, File, Object};
@@ -11,7 +11,7 @@ use crate::formats::mat73::reader::Reader;
 use crate::formats::variables::Value;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Size of the elements that may be 64-bit integers \[bytes\].
+/// Size of elements that may be 64-bit integers \[bytes\].
 const LONG_WORD: u64 = 8;
 
 /// Cells of the object part.
@@ -46,7 +46,6 @@ fn read_subsystem(part: &Dataset, budget: &ReadingBudget<'_>) -> Result<Subsyste
     Ok(Subsystem::new(cells, budget)?.with_long_words(long_words))
 }
 
-/// Reads the cells of the object part.
 pub(super) fn read_cells(
     part: &Dataset,
     budget: &ReadingBudget<'_>,

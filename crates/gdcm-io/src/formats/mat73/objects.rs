@@ -15,7 +15,7 @@ pub(super) enum Objects {
 }
 
 impl Objects {
-    /// Returns the value of a reference with a class.
+    /// Returns the value of a reference; `class` is the class of its objects.
     pub(super) fn value(
         &self,
         class: &str,
@@ -34,7 +34,7 @@ impl Objects {
     }
 }
 
-/// Returns the words of a reference; `None` if a number is no 32-bit integer.
+/// Returns the words of a reference; `None` if a number is no unsigned 32-bit integer.
 fn reference_words(reference: &Array) -> Option<Vec<u32>> {
     let mut words = Vec::new();
     for &number in &reference.re {

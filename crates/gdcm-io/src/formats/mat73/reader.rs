@@ -19,7 +19,7 @@ const DEEPEST: usize = 64;
 /// Memory of a value while it is read, without its elements: the library's view of its header, and
 /// the value itself \[bytes\].
 const HEADER: u64 = 1024;
-/// Memory that the library takes for each member of a group while it reads \[bytes\].
+/// Memory that the library takes for each group member while it reads \[bytes\].
 const MEMBER: u64 = 256;
 
 /// Reads values within a budget.
@@ -45,7 +45,7 @@ impl Reader<'_> {
         Ok(variables)
     }
 
-    /// Reads the value of a dataset or group.
+    /// Reads a dataset or group.
     pub(super) fn value(
         &self,
         object: &Object,
@@ -167,8 +167,8 @@ impl Reader<'_> {
             .map_err(|error| library_fault(&error, path))
     }
 
-    /// Reads the value of a group: a struct, a struct array, a sparse matrix, or an object of an
-    /// `@`-folder class.
+    /// Reads a group: a struct, a struct array, a sparse matrix, or an object of an `@`-folder
+    /// class.
     fn group_value(&self, group: &Group, path: &str, depth: usize) -> Result<Value, VariableFault> {
         let attributes = MatlabAttributes::read(group.attrs(), path)?;
         let members = self.members(group, path)?;
@@ -349,7 +349,7 @@ fn restore_octave_empty(value: &mut Value) {
     }
 }
 
-/// Returns the path of a field, or of a variable in the root group.
+/// Returns the path to a field, or to a variable in the root group.
 fn field_path(path: &str, name: &str) -> String {
     if path.is_empty() {
         name.to_owned()

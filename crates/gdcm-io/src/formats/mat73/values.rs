@@ -1,5 +1,4 @@
-//! Values that need more than the numbers of a dataset: texts, empty arrays, compound records and
-//! sparse matrices.
+//! Values that need more than numbers: texts, empty arrays, compound records and sparse matrices.
 
 use hdf5_pure::{CompoundMember, Dataset, Datatype, Object, StringPadding, VlenStringReadOptions};
 
@@ -13,7 +12,7 @@ use crate::formats::strides::count;
 use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Returns the texts in the rows of an array with UTF-16 codes, MATLAB's characters.
+/// Returns the rows of a character array, stored as UTF-16 codes, as texts.
 pub(super) fn character_rows(
     codes: &Array,
     path: &str,
@@ -28,7 +27,7 @@ pub(super) fn character_rows(
     text_rows(&units, &codes.shape, path, budget)
 }
 
-/// Reads the strings of a dataset, if it has one of HDF5's two string types.
+/// Reads the strings of a dataset, if its type is a string type of fixed or variable length.
 pub(super) fn strings(
     dataset: &Dataset,
     elements: &Elements,
@@ -224,7 +223,7 @@ fn member_value(
 pub(super) struct SparseGroup<'g> {
     pub(super) height: u64,
     pub(super) is_logical: bool,
-    /// Members of the group with their names: row indices `ir`, column starts `jc` and `data`.
+    /// Members of the group by name: row indices `ir`, column starts `jc` and numbers `data`.
     pub(super) members: &'g [(String, Object)],
     pub(super) path: &'g str,
     pub(super) budget: &'g ReadingBudget<'g>,

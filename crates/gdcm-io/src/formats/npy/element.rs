@@ -28,7 +28,6 @@ pub(super) enum Element {
     },
 }
 
-/// Field of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Field {
     /// Empty for padding bytes.
@@ -110,7 +109,7 @@ impl Element {
         })
     }
 
-    /// Parses the fields of a record, which follow one another without gaps.
+    /// Parses the fields of a record, which are stored without gaps.
     fn parse_record(list: &[Json]) -> Result<Self, VariableFault> {
         let mut fields = Vec::with_capacity(list.len());
         let mut size = 0_usize;
@@ -168,7 +167,7 @@ impl Field {
         })
     }
 
-    /// Returns the offset of the end \[bytes\]; `None` on overflow.
+    /// Returns the offset after the field \[bytes\]; `None` on overflow.
     fn end(&self) -> Option<usize> {
         let length = count(&self.shape)?.checked_mul(self.element.size())?;
         self.offset.checked_add(length)

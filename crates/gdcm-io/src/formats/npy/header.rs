@@ -6,13 +6,13 @@ use crate::formats::npy::element::{Element, parse_sides};
 use crate::formats::npy::python_literal::parse_literal;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Signature of every `.npy` file.
+/// Signature at the beginning.
 pub(super) const MAGIC: &[u8; 6] = b"\x93NUMPY";
 /// Offset of the version in the file.
 const VERSION_AT: usize = 6;
-/// Offset of the header length in the file, given as the position of faults in the header.
+/// Offset of the header length in the file, reported as the position of faults in the header.
 const LENGTH_AT: usize = 8;
-/// Fault of a header with other keys.
+/// Fault in a header with other keys.
 const MISSING_KEY: &str = "the header has not the keys descr, fortran_order and shape";
 
 /// Header of a `.npy` file (`numpy.lib.format`, versions 1.0 to 3.0).
@@ -22,19 +22,19 @@ pub(super) struct Header {
     pub(super) column_major: bool,
     /// Shape as stored: any number of dimensions, including none.
     pub(super) shape: Vec<usize>,
-    /// Offset of the elements \[bytes\].
+    /// Offset at which the elements begin \[bytes\].
     pub(super) length: usize,
 }
 
 /// Text of a header, a Python dictionary.
 struct HeaderText {
     text: String,
-    /// Offset of its end \[bytes\].
+    /// Offset of the end of the text \[bytes\].
     end: usize,
 }
 
 impl Header {
-    /// Parses the header; `name` is the name of the array in errors.
+    /// Parses the header; `name` is the array name in errors.
     pub(super) fn parse(
         bytes: &[u8],
         name: &str,

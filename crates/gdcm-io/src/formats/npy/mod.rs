@@ -87,7 +87,7 @@ struct StoredArray<'a> {
 }
 
 impl<'a> StoredArray<'a> {
-    /// Returns the bytes of an element.
+    /// Returns the bytes of the element at a position.
     fn at(&self, place: usize) -> &'a [u8] {
         let size = self.element.size();
         self.data
@@ -96,7 +96,7 @@ impl<'a> StoredArray<'a> {
     }
 }
 
-/// Reads values within a budget; `name` is the name of the variable in faults.
+/// Reads values within a budget; `name` is the variable in faults.
 struct ArrayReader<'r> {
     name: &'r str,
     budget: &'r ReadingBudget<'r>,
@@ -134,7 +134,7 @@ impl ArrayReader<'_> {
                 Ok(Value::Text(TextArray { shape, texts }))
             }
             Element::Record { fields, .. } => {
-                // A header can announce any number of records without fields, or fields without
+                // A header can announce arbitrarily many records without fields, or fields without
                 // elements, that take no bytes in the file.
                 self.budget.take(count, RECORD, self.name)?;
                 let mut values = Vec::new();
@@ -149,7 +149,7 @@ impl ArrayReader<'_> {
         }
     }
 
-    /// Returns the positions in the file of the elements, in the order used by this program.
+    /// Returns the positions of the elements in the file, in the order used by this program.
     fn places(&self, stored: &StoredArray<'_>) -> Result<Places, VariableFault> {
         let places = if stored.column_major {
             Places::column_major(stored.shape)
@@ -193,7 +193,7 @@ impl ArrayReader<'_> {
         Ok(texts)
     }
 
-    /// Reads the values of a field, one for each record.
+    /// Reads the values of a field, in the order of the records.
     fn field_values(
         &self,
         records: &StoredArray<'_>,

@@ -13,7 +13,7 @@ use crate::reading_budget::VariableFault;
 
 /// Alignment of the elements, required by `numpy.lib.format` \[bytes\].
 const ALIGNMENT: usize = 64;
-/// Bytes before the text of the header: signature, version and length.
+/// Bytes before the header text: signature, version and length.
 const BEFORE_TEXT: usize = 10;
 /// Largest integer up to which all integers are exact floats.
 const LARGEST_EXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
@@ -251,7 +251,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read_back(values in prop::collection::vec(value(), 0..4)) {
+        fn written_values_are_read_back(values in prop::collection::vec(value(), 0..4)) {
             let mut variables = Vec::new();
             for (index, value) in values.into_iter().enumerate() {
                 variables.push(Variable { name: format!("x{index}"), value });

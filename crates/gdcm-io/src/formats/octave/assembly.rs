@@ -9,34 +9,32 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 /// Deepest nesting of values.
 const DEEPEST: usize = 64;
 
-/// Sides of an array, and whether its numbers are stored by rows.
+/// Side lengths, and whether numbers are stored by rows.
 pub(super) struct Sides {
     pub(super) shape: Vec<usize>,
     pub(super) by_rows: bool,
 }
 
-/// Name and type of a value, which precede it.
+/// Name and type, which precede a value.
 pub(super) struct ValueHeading {
     pub(super) name: String,
-    /// Name of the type.
     pub(super) type_name: String,
 }
 
-/// Reads the consecutive parts of values in one of the encodings; `variable` is the name of the
-/// value in faults.
+/// Reads the consecutive parts of values in the text or binary encoding; `variable` is the name of
+/// the value in faults.
 pub(super) trait Parts {
     fn budget(&self) -> &ReadingBudget<'_>;
-    /// Reads name and type of the next value.
+    /// Reads the next name and type.
     fn heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault>;
     fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault>;
-    /// Reads `count` numbers, or pairs of complex parts.
+    /// Reads `count` numbers; a complex number is a pair.
     fn numbers(
         &mut self,
         element: Element,
         count: usize,
         variable: &str,
     ) -> Result<Vec<f64>, VariableFault>;
-    /// Reads the nonzero entries of a sparse matrix.
     fn sparse(&mut self, element: Element, variable: &str) -> Result<SparseEntries, VariableFault>;
     fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault>;
     /// Reads how many fields a record has.
@@ -46,7 +44,7 @@ pub(super) trait Parts {
     fn fault(&self, variable: &str, what: &str) -> VariableFault;
 }
 
-/// Reads a variable of the named type.
+/// Reads the value of a variable after its name and type.
 pub(super) fn read_value(
     parts: &mut dyn Parts,
     type_name: &str,
@@ -61,7 +59,6 @@ struct Assembler<'p> {
 }
 
 impl Assembler<'_> {
-    /// Reads a value of the named type.
     fn value(
         &mut self,
         type_name: &str,
@@ -108,7 +105,7 @@ impl Assembler<'_> {
         })
     }
 
-    /// Counts the elements of an array and takes `size` bytes for each.
+    /// Counts the elements and takes `size` bytes for each.
     fn take_elements(
         &self,
         shape: &[usize],
@@ -181,7 +178,7 @@ impl Assembler<'_> {
         Ok(CellArray { shape, values })
     }
 
-    /// Reads the records of a struct or an object. Fields that can have several records are cells
+    /// Reads the records in a struct or an object. Fields that can have several records are cells
     /// with a value for each record.
     fn records(
         &mut self,
@@ -220,7 +217,7 @@ pub(super) struct Range {
 }
 
 impl Range {
-    /// Returns the row of numbers.
+    /// Returns the numbers as a row.
     pub(super) fn array(
         self,
         variable: &str,
@@ -241,7 +238,7 @@ impl Range {
     }
 }
 
-/// Returns the texts in the rows of a byte array stored by columns.
+/// Returns the rows of a byte array, stored by columns, as texts.
 pub(super) fn text_rows(letters: &[u8], height: usize) -> TextArray {
     if letters.is_empty() {
         return TextArray::one("");

@@ -13,7 +13,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Signature before the letter of the byte order.
 const MAGIC: &[u8] = b"Octave-1-";
-/// Length of the header: signature, byte order and float format \[bytes\].
+/// Header length: signature, byte order and float format \[bytes\].
 const HEADER: usize = MAGIC.len() + 2;
 /// Marks a type with a name.
 const NAMED_TYPE: u8 = 0xff;
@@ -26,7 +26,7 @@ pub(crate) const OCTAVE_BINARY: Importer = Importer {
     read: |bytes, path, budget| Contents::variables(read_variables(bytes, budget), path),
 };
 
-/// Reads the variables of a file, up to a variable with an unknown type.
+/// Reads the variables, up to a variable with an unknown type.
 fn read_variables(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
@@ -121,7 +121,7 @@ impl<'b> BinaryReader<'b> {
     }
 }
 
-/// Returns the storage type of floats for the byte before the numbers.
+/// Returns the storage type for floats, given the byte before the numbers.
 fn float_storage(code: u8) -> Option<StorageType> {
     let (class, size) = match code {
         0 => (NumberClass::Unsigned, 1),

@@ -1,4 +1,4 @@
-//! Storage forms of values, from the names of their types.
+//! Storage forms of values, given by the names of their types.
 
 use crate::formats::strides::NumberClass;
 use crate::formats::variables::{Array, ElementKind};
@@ -21,7 +21,7 @@ pub(super) struct Element {
     pub(super) is_complex: bool,
 }
 
-/// Real parts, and imaginary parts of complex numbers.
+/// Real parts, and imaginary parts if the numbers are complex.
 pub(super) struct NumberParts {
     pub(super) re: Vec<f64>,
     pub(super) im: Option<Vec<f64>>,
@@ -87,8 +87,8 @@ pub(super) enum Form {
 }
 
 impl Form {
-    /// Returns the form for the name of a type, such as "matrix", "float complex scalar", "uint8
-    /// matrix" or "sparse bool matrix".
+    /// Returns the form for a type name, such as "matrix", "float complex scalar", "uint8 matrix"
+    /// or "sparse bool matrix".
     pub(super) fn from_type_name(name: &str) -> Option<Self> {
         match name {
             "string" | "sq_string" | "null_string" | "null_sq_string" => Some(Self::Text),
@@ -101,7 +101,7 @@ impl Form {
         }
     }
 
-    /// Returns the form for the name of a numeric type, word by word.
+    /// Interprets the name of a numeric type word by word.
     fn from_number_words(name: &str) -> Option<Self> {
         let mut element = Element::FLOAT;
         let mut form: Option<fn(Element) -> Self> = None;
@@ -132,7 +132,7 @@ impl Form {
     }
 }
 
-/// Returns the storage type for the name of an integer type, such as "int8" or "uint64".
+/// Returns the storage type for an integer type name, such as "int8" or "uint64".
 fn integer_storage(name: &str) -> Option<StorageType> {
     let size = match name.trim_start_matches('u').strip_prefix("int")? {
         "8" => 1,

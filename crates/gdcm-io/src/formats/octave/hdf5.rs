@@ -12,7 +12,7 @@ use crate::formats::variables::{
 };
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Fault of a field in a struct array.
+/// Fault in a field of a struct array.
 const FIELD_LENGTH: &str = "the value count of a field differs from the record count";
 
 /// Converts the groups of a file written by Octave to values; returns the values of other files
@@ -42,7 +42,7 @@ struct OctaveGroup<'v> {
 }
 
 impl<'v> OctaveGroup<'v> {
-    /// Returns type and value of a group, if it has exactly these members.
+    /// Returns type and value, if the group has exactly these members.
     fn from_value(value: &'v Value) -> Option<Self> {
         let Value::Struct(records) = value else {
             return None;
@@ -63,7 +63,7 @@ impl<'v> OctaveGroup<'v> {
     }
 }
 
-/// Converts the group of a value; `variable` is its name in faults.
+/// Converts a group to its value; `variable` is the name in faults.
 fn convert_group(
     group: &Value,
     variable: &str,
@@ -143,7 +143,7 @@ fn in_file_order(values: &[f64], places: &[usize]) -> Vec<f64> {
     moved
 }
 
-/// Returns the texts in the rows of a byte array.
+/// Returns the rows of a byte array as texts.
 fn texts(codes: &Array) -> TextArray {
     let letters: Vec<u8> = codes.re.iter().map(|&code| code as i64 as u8).collect();
     text_rows(&letters, codes.shape.first().copied().unwrap_or(0))
@@ -217,8 +217,8 @@ impl<'v> GroupParts<'v> {
         })
     }
 
-    /// Converts the fields of a struct; `in_cells` is set if they can have several records: then a
-    /// cell holds a value for each record.
+    /// Converts struct fields; `in_cells` is set if they can have several records: then a cell
+    /// holds a value for each record.
     fn records(&self, in_cells: bool) -> Result<StructArray, VariableFault> {
         let mut records = StructArray::one(Vec::new());
         for (name, values) in &self.parts.fields {
@@ -277,7 +277,6 @@ impl<'v> GroupParts<'v> {
         damaged(self.variable, what)
     }
 
-    /// Returns the value of a member.
     fn member(&self, name: &str) -> Option<&'v Value> {
         self.parts.field(name)?.first()
     }

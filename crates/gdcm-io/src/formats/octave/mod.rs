@@ -1,10 +1,10 @@
 //! Files written by GNU Octave's `save`: `-text` (the default), `-binary` and `-hdf5`, with or
 //! without `-zip`.
 //!
-//! The formats are documented only by the source of Octave 7 (`ls-oct-text.cc`, `ls-oct-binary.cc`,
-//! `ls-hdf5.cc` and the `ov-*.cc` files). Each value follows its name and the name of its type; its
-//! form depends on the type. Text and binary encodings give the parts of a value in the same order,
-//! so both share the assembly.
+//! The formats are documented only by the Octave 7 source (`ls-oct-text.cc`, `ls-oct-binary.cc`,
+//! `ls-hdf5.cc` and the `ov-*.cc` files). Each value follows its name and type name; its form
+//! depends on the type. Text and binary encodings give the parts in the same order, so both share
+//! the assembly.
 
 mod assembly;
 mod binary;

@@ -9,7 +9,7 @@ use crate::formats::variables::{TextArray, Value, Variable};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Largest offset of the first variable in a file \[bytes\].
+/// Largest offset of the first variable \[bytes\].
 const HEAD: usize = 2000;
 
 /// Files written by `save -text`.
@@ -23,7 +23,7 @@ pub(crate) const OCTAVE_TEXT: Importer = Importer {
     },
 };
 
-/// Whether the first lines are comments or empty, up to name and type of a variable.
+/// Whether the first lines are comments or empty, up to a variable's name and type.
 fn begins_with_variable(bytes: &[u8]) -> bool {
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]);
     for line in head.lines() {
@@ -41,7 +41,6 @@ fn begins_with_variable(bytes: &[u8]) -> bool {
             .is_some_and(|line| line.starts_with("# type: "))
 }
 
-/// Reads the variables of a text.
 fn read_variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let mut reader = TextReader {
         text,

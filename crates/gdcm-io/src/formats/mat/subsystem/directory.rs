@@ -5,7 +5,7 @@ use crate::formats::mat::element::decode_name;
 use crate::formats::mat::subsystem::damaged;
 use crate::reading_budget::VariableFault;
 
-/// Bytes before the names: version, name count, and the offsets of eight regions.
+/// Bytes before the names: version, name count, and eight region offsets.
 const HEADER_BYTES: usize = 40;
 /// Newest known layout version.
 const NEWEST: u32 = 4;
@@ -19,10 +19,9 @@ enum Region {
     PlainProperties = 3,
 }
 
-/// Directory of the objects and their property values.
 #[derive(Clone, Debug)]
 pub(super) struct Directory {
-    /// Names of properties and classes, counted from 1; 0 means none.
+    /// Property and class names, counted from 1; 0 means none.
     names: Vec<String>,
     /// Class names by class number; number 0 is unused.
     classes: Vec<String>,
@@ -35,7 +34,6 @@ pub(super) struct Directory {
     pub(super) cells_after_values: usize,
 }
 
-/// Entry of an object.
 #[derive(Clone, Copy, Debug)]
 struct ObjectEntry {
     /// Class number.
@@ -54,7 +52,6 @@ pub(super) struct ObjectProperties<'d> {
     pub(super) properties: &'d [Property],
 }
 
-/// A property of an object.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Property {
     /// Number of the name.
@@ -62,7 +59,7 @@ pub(super) struct Property {
     pub(super) content: Content,
 }
 
-/// Location of a property value.
+/// Where a property value is found.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Content {
     /// The value is the name with this number.
@@ -79,7 +76,7 @@ struct DirectoryBytes<'b> {
     order: ByteOrder,
     version: u32,
     name_count: usize,
-    /// Offsets of the regions \[bytes\]; a region ends where the next begins.
+    /// Region offsets \[bytes\]; a region ends where the next begins.
     regions: Vec<u32>,
 }
 
@@ -108,7 +105,7 @@ impl Directory {
         Ok(directory)
     }
 
-    /// Returns the class name for the number of its package name and that of its own name.
+    /// Returns the full name of a class, from the numbers of its package name and its own name.
     fn qualified_name(&self, words: &[u32]) -> String {
         let package = self.name_or_empty(words.first());
         let name = self.name_or_empty(words.get(1));
@@ -125,14 +122,14 @@ impl Directory {
             .unwrap_or_default()
     }
 
-    /// Returns the name of a property or a class by its number.
+    /// Returns the name of a property or class by its number.
     pub(super) fn name(&self, number: u32) -> Option<&str> {
         self.names
             .get((number as usize).checked_sub(1)?)
             .map(String::as_str)
     }
 
-    /// Returns the name of a class by the class number.
+    /// Returns a class name by the class number.
     pub(super) fn class(&self, number: u32) -> Option<&str> {
         if number == 0 {
             None
@@ -207,7 +204,6 @@ impl<'b> DirectoryBytes<'b> {
             .collect())
     }
 
-    /// Reads the words of a region.
     fn words(&self, region: Region) -> Result<Vec<u32>, VariableFault> {
         let number = region as usize;
         let words = match self.regions.get(number..number + 2) {

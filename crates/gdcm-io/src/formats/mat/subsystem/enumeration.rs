@@ -1,4 +1,4 @@
-//! Enumeration members, saved as a record with indices into a list of names.
+//! Enumeration members, saved as a record with indices into a name list.
 
 use crate::formats::mat::subsystem::directory::Directory;
 use crate::formats::variables::{Object, StructArray, Value};

@@ -159,8 +159,7 @@ impl<'s> Assembly<'s> {
         Ok(())
     }
 
-    /// Collects the properties of an object: its saved values, and the defaults of its class for
-    /// the others.
+    /// Collects the saved properties of an object, and the defaults of its class for the others.
     fn properties(
         &mut self,
         object: u32,
@@ -236,7 +235,7 @@ impl<'s> Assembly<'s> {
         }
     }
 
-    /// Copies the value of a cell, with references replaced by their objects.
+    /// Copies a value, with references replaced by their objects.
     fn copy(&mut self, value: &Value, path: &ValuePath<'_>) -> Result<Value, VariableFault> {
         self.budget.take(1, value.own_memory(), "")?;
         if let Some(reference) = self.reference(value) {
@@ -306,7 +305,7 @@ impl<'s> Assembly<'s> {
     }
 }
 
-/// Returns the numbers of an array as integers; `None` if a number may have lost digits.
+/// Returns the numbers as integers; `None` if a number may have lost digits.
 fn exact_words(array: &Array) -> Option<Vec<u64>> {
     const MOST: f64 = (1_u64 << 53) as f64;
     let mut words = Vec::with_capacity(array.re.len());

@@ -1,9 +1,9 @@
-//! MATLAB class objects, which have a separate part of the file: the cells of a `FileWrapper__`.
+//! Objects of MATLAB classes, in a separate part of the file: the cells of a `FileWrapper__`.
 //!
 //! The first cell is a directory that lists the objects and the cell of each property; the last
-//! cells are shared by all objects of a class. The format is not published by The MathWorks; it is
-//! known from the descriptions by the MatFileHandler, matio (Python) and MAT.jl projects. It is the
-//! same in files up to version 7 and in files at version 7.3 (HDF5).
+//! cells are shared by all objects with the same class. The format is not published by The
+//! MathWorks; it is known from the descriptions by the MatFileHandler, matio (Python) and MAT.jl
+//! projects. It is the same in files up to version 7 and in files at version 7.3 (HDF5).
 
 mod directory;
 mod enumeration;
@@ -23,7 +23,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 
 pub(in crate::formats::mat) use crate::formats::mat::subsystem::reference::Reference;
 
-/// Name of the class system that holds the objects of MATLAB's own classes.
+/// Class system for the objects of MATLAB's own classes.
 pub(super) const CLASS_SYSTEM: &str = "MCOS";
 /// Cells before the property values.
 const CELLS_BEFORE_VALUES: usize = 2;
@@ -31,15 +31,14 @@ const CELLS_BEFORE_VALUES: usize = 2;
 /// Exact integers of cells that hold unsigned 64-bit integers, by cell index from 0.
 pub type LongWords = HashMap<usize, Vec<u64>>;
 
-/// The objects of a file.
 #[derive(Clone, Debug)]
 pub struct Subsystem {
     directory: Directory,
-    /// Values of all properties, in the order of the directory.
+    /// Property values, in directory order.
     values: Vec<Value>,
     /// Default property values, a record for each class.
     defaults: Vec<Value>,
-    /// Exact integers of property values, by index in `values`.
+    /// Exact integers, by index in `values`.
     long_words: LongWords,
 }
 
@@ -76,7 +75,7 @@ impl Subsystem {
         self
     }
 
-    /// Returns the object, or the array of objects, for the words of a reference.
+    /// Returns the object, or the object array, for the words of a reference.
     ///
     /// Parts that cannot be decoded are [`Value::Opaque`]; only the budget causes a fault.
     pub fn object(
@@ -101,8 +100,8 @@ impl Subsystem {
         Assembly::new(self, budget).resolve(reference, path)
     }
 
-    /// Converts enumeration members to objects whose only property is the name of the member;
-    /// `class` is used if the records do not name a class.
+    /// Converts enumeration members to objects whose only property is the member name; `class` is
+    /// used if the records do not name a class.
     pub(super) fn enumeration(
         &self,
         records: &StructArray,
@@ -126,7 +125,7 @@ impl Subsystem {
     }
 }
 
-/// Returns the bytes of the directory, which are the numbers of a cell.
+/// Returns the directory bytes, stored as the numbers in a cell.
 fn directory_bytes(cell: Option<&Value>) -> Result<Vec<u8>, VariableFault> {
     let Some(Value::Array(array)) = cell else {
         return Err(damaged("the directory of objects is missing"));

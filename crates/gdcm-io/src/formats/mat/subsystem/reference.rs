@@ -37,7 +37,8 @@ impl Reference {
         })
     }
 
-    /// Returns the reference in a value, which is a column of integers.
+    /// Returns the reference in a value, if the value is a column of integers that forms a
+    /// reference.
     pub(in crate::formats::mat) fn from_value(value: &Value) -> Option<Self> {
         let Value::Array(array) = value else {
             return None;

@@ -27,7 +27,7 @@ pub(super) fn read_objects(
 ) -> Result<Subsystem, VariableFault> {
     let mut file = Cursor::file(bytes, order);
     let Some(at) = at.filter(|&at| at < bytes.len()) else {
-        return Err(file.damaged("the file does not hold them"));
+        return Err(file.damaged("the file has no object part"));
     };
     file.pass(at)?;
     let element = Element::read(&mut file)?;
@@ -50,13 +50,13 @@ fn read_embedded_file(
     let order = match data.rest().get(2..4) {
         Some(b"IM") => ByteOrder::Little,
         Some(b"MI") => ByteOrder::Big,
-        _ => return Err(data.damaged("their part of the file has no header")),
+        _ => return Err(data.damaged("the object part has no header")),
     };
     let mut embedded = Cursor::unpacked(data.rest(), order, data.offset);
     embedded.pass(8)?;
     let mut systems = Element::read(&mut embedded)?.array_contents()?;
     if ArrayHeader::read(&mut systems, budget)?.class != ArrayClass::Struct {
-        return Err(systems.damaged("they are not in a record"));
+        return Err(systems.damaged("the class systems are not in a record"));
     }
     for name in read_field_names(&mut systems, budget)? {
         let system = Element::read(&mut systems)?.array_contents()?;
@@ -64,7 +64,7 @@ fn read_embedded_file(
             return read_wrapper(system, budget);
         }
     }
-    Err(systems.damaged("none has a class of MATLAB's own"))
+    Err(systems.damaged("the class systems do not include MCOS"))
 }
 
 /// Reads the objects in a `FileWrapper__`.
@@ -76,12 +76,12 @@ fn read_wrapper(
     let system = Element::read(&mut wrapper)?.name()?;
     let class = Element::read(&mut wrapper)?.name()?;
     if !is_opaque || system != CLASS_SYSTEM || class != WRAPPER {
-        return Err(wrapper.damaged("they are not in a FileWrapper__"));
+        return Err(wrapper.damaged("the class system MCOS has no FileWrapper__"));
     }
     let mut contents = Element::read(&mut wrapper)?.array_contents()?;
     let header = ArrayHeader::read(&mut contents, budget)?;
     if header.class != ArrayClass::Cell {
-        return Err(contents.damaged("they are not in cells"));
+        return Err(contents.damaged("the FileWrapper__ has no cells"));
     }
     let path = ValuePath::start(WRAPPER);
     let reader = ArrayReader {

@@ -32,7 +32,7 @@ pub(super) fn read_objects(
         .group("#subsystem#")
         .and_then(|group| group.dataset("MCOS"));
     let Ok(part) = part else {
-        return Ok(Objects::Unread("the file does not hold objects".to_owned()));
+        return Ok(Objects::Unread("the file has no object part".to_owned()));
     };
     match read_subsystem(&part, budget) {
         Ok(subsystem) => Ok(Objects::Read(subsystem)),

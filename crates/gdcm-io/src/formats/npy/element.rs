@@ -56,7 +56,7 @@ impl Element {
         match descr {
             Json::String(code) => Self::parse_code(code),
             Json::Array(fields) => Self::parse_record(fields),
-            _ => Err(damaged("the element type is no text and no list")),
+            _ => Err(damaged("the element type is neither a text nor a list")),
         }
     }
 

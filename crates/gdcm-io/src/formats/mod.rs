@@ -18,10 +18,14 @@ pub(crate) mod mat73;
 pub mod npy;
 pub(crate) mod octave;
 pub(crate) mod recorded_columns;
+pub(crate) mod sparse_matrix;
 pub mod strides;
 pub mod text;
 pub mod variables;
 pub(crate) mod zip_files;
+
+#[cfg(test)]
+mod limits_tests;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,21 +1,24 @@
-//! The order of an array's elements in a file.
+//! Element order in files, and the numbers in binary files.
 
-use super::variables::{Array, ElementKind};
-use crate::reading_budget::{ReadingBudget, VariableFault};
+use crate::formats::variables::ElementKind;
 
-/// Positions of the elements of an array in a file, in the order of this program: the first index
+/// Positions of array elements in a file, in the order used by this program: the first index
 /// running fastest.
 pub(crate) struct Places {
     shape: Vec<usize>,
+    /// Distance in the file between neighbours along each dimension.
     strides: Vec<usize>,
+    /// Index of the next element.
     index: Vec<usize>,
+    /// Position of the next element.
     place: usize,
+    /// Count of the remaining elements.
     left: usize,
 }
 
 impl Places {
-    /// For a file in which the last index runs fastest (row by row); `None` if the number of
-    /// elements overflows.
+    /// Creates the positions for a file in which the last index runs fastest (row by row); `None`
+    /// if the element count overflows.
     pub(crate) fn row_major(shape: &[usize]) -> Option<Self> {
         let left = count(shape)?;
         let mut strides = vec![1; shape.len()];
@@ -25,8 +28,8 @@ impl Places {
         Some(Self::new(shape, strides, left))
     }
 
-    /// For a file in which the first index runs fastest (column by column); `None` if the number of
-    /// elements overflows.
+    /// Creates the positions for a file in which the first index runs fastest (column by column);
+    /// `None` if the element count overflows.
     pub(crate) fn column_major(shape: &[usize]) -> Option<Self> {
         let left = count(shape)?;
         let mut strides = vec![1; shape.len()];
@@ -47,14 +50,15 @@ impl Places {
     }
 }
 
-/// Returns the number of elements of an array; `None` on overflow.
+/// Counts the elements; `None` on overflow.
 ///
-/// Lengths beside a zero are multiplied all the same: an empty array with sides whose product
-/// overflows is rejected too.
+/// The sides beside a zero are multiplied all the same: an empty array whose other sides overflow
+/// is rejected too.
 pub(crate) fn count(shape: &[usize]) -> Option<usize> {
-    shape
-        .iter()
-        .try_fold(1usize, |product, &side| product.checked_mul(side.max(1)))?;
+    let mut product = 1_usize;
+    for &side in shape {
+        product = product.checked_mul(side.max(1))?;
+    }
     Some(shape.iter().product())
 }
 
@@ -85,14 +89,16 @@ impl ExactSizeIterator for Places {}
 
 /// Reorders elements from the last index running fastest to the first index running fastest.
 pub(crate) fn first_index_fastest<T>(shape: &[usize], elements: Vec<T>) -> Vec<T> {
+    let Some(places) = Places::row_major(shape) else {
+        return Vec::new();
+    };
     let mut elements: Vec<Option<T>> = elements.into_iter().map(Some).collect();
-    let places = Places::row_major(shape).into_iter().flatten();
     places
         .filter_map(|place| elements.get_mut(place)?.take())
         .collect()
 }
 
-/// Returns a shape with at least two dimensions: scalars are 1 x 1, lists are rows.
+/// Extends a shape to at least two dimensions: a scalar becomes 1 x 1, a list becomes a row.
 pub(crate) fn matrix_shape(shape: &[usize]) -> Vec<usize> {
     match *shape {
         [] => vec![1, 1],
@@ -100,98 +106,6 @@ pub(crate) fn matrix_shape(shape: &[usize]) -> Vec<usize> {
         _ => shape.to_vec(),
     }
 }
-
-// Sparse matrices, expanded.
-
-/// The nonzero elements with their places.
-pub(crate) struct Entries {
-    /// Number of rows and columns.
-    pub(crate) shape: [usize; 2],
-    /// Type of the numbers.
-    pub(crate) kind: ElementKind,
-    /// Row of each number, counted from 0.
-    pub(crate) rows: Vec<usize>,
-    /// Column of each number, counted from 0.
-    pub(crate) columns: Vec<usize>,
-    /// Real part of each number.
-    pub(crate) re: Vec<f64>,
-    /// Imaginary part of each number, if complex.
-    pub(crate) im: Option<Vec<f64>>,
-}
-
-impl Entries {
-    /// Creates the entries from numbers stored by columns, `starts` containing the index at which
-    /// each column begins and that at which the last ends; `None` if it does not match the numbers.
-    /// There may be room for further numbers after the last.
-    pub(crate) fn of_columns(
-        shape: [usize; 2],
-        kind: ElementKind,
-        mut rows: Vec<usize>,
-        starts: &[usize],
-        (re, im): (Vec<f64>, Option<Vec<f64>>),
-    ) -> Option<Self> {
-        let stored = *starts.last()?;
-        let short = stored > rows.len()
-            || stored > re.len()
-            || im.as_ref().is_some_and(|im| stored > im.len());
-        if starts.len() != shape[1].checked_add(1)?
-            || starts[0] != 0
-            || !starts.is_sorted()
-            || short
-        {
-            return None;
-        }
-        rows.truncate(stored);
-        let runs = starts.windows(2).enumerate();
-        let columns = runs
-            .flat_map(|(column, ends)| std::iter::repeat_n(column, ends[1] - ends[0]))
-            .collect();
-        Some(Self {
-            shape,
-            kind,
-            rows,
-            columns,
-            re,
-            im,
-        })
-    }
-
-    /// Returns the full matrix; entries at the same place are added.
-    ///
-    /// `outside` is the fault for a number outside the matrix.
-    pub(crate) fn filled(
-        &self,
-        variable: &str,
-        budget: &ReadingBudget<'_>,
-        outside: impl Fn() -> VariableFault,
-    ) -> Result<Array, VariableFault> {
-        let [height, width] = self.shape;
-        let count = (height as u64).saturating_mul(width as u64);
-        budget.take(count, if self.im.is_some() { 16 } else { 8 }, variable)?;
-        let fill = |values: &[f64]| {
-            let mut filled = vec![0.0; height.saturating_mul(width)];
-            for ((&row, &column), value) in self.rows.iter().zip(&self.columns).zip(values) {
-                let inside = row < height && column < width;
-                let place = if inside {
-                    filled.get_mut(column * height + row)
-                } else {
-                    None
-                };
-                *place.ok_or_else(&outside)? += value;
-            }
-            Ok(filled)
-        };
-        let im = self.im.as_deref().map(fill).transpose()?;
-        Ok(Array {
-            shape: self.shape.to_vec(),
-            kind: self.kind,
-            re: fill(&self.re)?,
-            im,
-        })
-    }
-}
-
-// Numbers in binary files.
 
 /// Interpretation of the bits of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -206,29 +120,33 @@ pub(crate) enum NumberClass {
     Float,
 }
 
-/// A number in a file: the interpretation of its bits, its size in bytes, and the byte order.
+/// Number type in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct StoredNumber {
     class: NumberClass,
+    /// Size \[bytes\].
     size: usize,
     big_endian: bool,
 }
 
 impl StoredNumber {
-    /// Creates a number of `size` bytes; `None` if there is no such number.
+    /// Creates a type with `size` bytes; `None` if no number has this size.
     pub(crate) fn new(class: NumberClass, size: usize, big_endian: bool) -> Option<Self> {
         let sizes: &[usize] = match class {
             NumberClass::Float => &[2, 4, 8],
             _ => &[1, 2, 4, 8],
         };
-        sizes.contains(&size).then_some(Self {
+        if !sizes.contains(&size) {
+            return None;
+        }
+        Some(Self {
             class,
             size,
             big_endian,
         })
     }
 
-    /// Creates a number of a valid size, the lowest byte first.
+    /// Creates a type with a valid size, the lowest byte first.
     pub(crate) const fn little_endian(class: NumberClass, size: usize) -> Self {
         Self {
             class,
@@ -237,12 +155,12 @@ impl StoredNumber {
         }
     }
 
-    /// Returns the number of bytes.
+    /// Returns the size \[bytes\].
     pub(crate) fn size(self) -> usize {
         self.size
     }
 
-    /// Returns the element kind of an array of such numbers.
+    /// Returns the element kind for an array of such numbers.
     pub(crate) fn kind(self) -> ElementKind {
         match self.class {
             NumberClass::Logical => ElementKind::Logical,
@@ -270,11 +188,20 @@ impl StoredNumber {
         }
     }
 
+    /// Decodes consecutive numbers; an incomplete number at the end is ignored.
+    pub(crate) fn decode_all(self, bytes: &[u8]) -> Vec<f64> {
+        bytes
+            .chunks_exact(self.size)
+            .map(|number| self.decode(number))
+            .collect()
+    }
+
     /// Decodes the number at an offset; `None` if the bytes end too early.
     pub(crate) fn at(self, bytes: &[u8], offset: usize) -> Option<f64> {
         Some(self.decode(bytes.get(offset..offset.checked_add(self.size)?)?))
     }
 
+    /// Returns the bits, with zeros for missing bytes.
     fn bits(self, bytes: &[u8]) -> u64 {
         let mut eight = [0; 8];
         let count = bytes.len().min(self.size);
@@ -286,7 +213,7 @@ impl StoredNumber {
     }
 }
 
-/// Returns the value of a 16-bit float (IEEE 754, binary16).
+/// Decodes a 16-bit float (IEEE 754, binary16).
 fn half(bits: u16) -> f64 {
     let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
     let exponent = i32::from(bits >> 10 & 31);
@@ -312,14 +239,14 @@ mod places_tests {
     }
 
     #[test]
-    fn columns_stay_as_they_are_and_a_number_alone_has_one_place() {
+    fn columns_stay_in_order_and_a_scalar_has_a_single_place() {
         assert!(Places::column_major(&[2, 3, 4]).unwrap().eq(0..24));
         assert!(Places::row_major(&[]).unwrap().eq(0..1));
         assert!(Places::row_major(&[0, 5]).unwrap().eq(0..0));
     }
 
     #[test]
-    fn what_cannot_be_counted_is_refused() {
+    fn overflowing_counts_are_refused() {
         assert!(Places::row_major(&[usize::MAX, 2]).is_none());
         assert!(Places::column_major(&[usize::MAX, 2, 0]).is_none());
     }
@@ -371,46 +298,5 @@ mod stored_number_tests {
             -1.0
         );
         assert_eq!(StoredNumber::new(NumberClass::Float, 16, false), None);
-    }
-}
-
-#[cfg(test)]
-mod sparse_tests {
-    use super::*;
-
-    fn entries(shape: [usize; 2]) -> Entries {
-        let rows = vec![0, 1];
-        let columns = vec![1, 0];
-        Entries {
-            shape,
-            kind: ElementKind::Float,
-            rows,
-            columns,
-            re: vec![2.0, 3.0],
-            im: Some(vec![0.0, 1.0]),
-        }
-    }
-
-    #[test]
-    fn what_is_not_stored_is_zero() {
-        let budget = ReadingBudget::new(1000);
-        let array = entries([2, 2])
-            .filled("", &budget, || VariableFault::Stopped)
-            .unwrap();
-        assert_eq!(
-            (array.re, array.im),
-            (vec![0.0, 3.0, 2.0, 0.0], Some(vec![0.0, 1.0, 0.0, 0.0]))
-        );
-    }
-
-    #[test]
-    fn places_outside_and_sizes_beyond_the_limit_are_refused() {
-        let budget = ReadingBudget::new(1000);
-        assert_eq!(
-            entries([1, 2]).filled("", &budget, || VariableFault::Stopped),
-            Err(VariableFault::Stopped)
-        );
-        let large = entries([usize::MAX, 1]).filled("", &budget, || VariableFault::Stopped);
-        assert!(matches!(large, Err(VariableFault::TooLarge { .. })));
     }
 }

@@ -4,26 +4,28 @@
 
 use std::collections::HashSet;
 
-use crate::formats::mat::level5::{ByteOrder, Cursor, name_of};
-use crate::formats::mat::matrix::rows;
-use crate::formats::mat::{FieldPath, count};
-use crate::formats::strides::{Entries, NumberClass, StoredNumber};
+use crate::formats::mat::array_header::saturating_count;
+use crate::formats::mat::characters::text_rows;
+use crate::formats::mat::cursor::{ByteOrder, Cursor};
+use crate::formats::mat::element::decode_name;
+use crate::formats::mat::value_path::ValuePath;
+use crate::formats::sparse_matrix::SparseEntries;
+use crate::formats::strides::{NumberClass, StoredNumber};
 use crate::formats::variables::{Array, Value, Variable};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Header of a matrix.
-struct Header {
-    /// Number type: P of the type MOPT.
-    stored: StoredNumber,
-    /// T of the type MOPT.
+/// Header of a matrix. The source writes its first word as the decimal digits MOPT.
+struct MatrixHeader {
+    /// Number type, digit P.
+    number_type: StoredNumber,
+    /// Meaning of the numbers, digit T.
     meaning: Meaning,
     rows: usize,
     columns: usize,
-    complex: bool,
+    is_complex: bool,
     name_length: usize,
 }
 
-/// Meaning of the numbers.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Meaning {
     Numbers,
@@ -33,10 +35,9 @@ enum Meaning {
 
 /// Whether a file begins with a level-4 header.
 pub(super) fn begins(bytes: &[u8]) -> bool {
-    header(&mut Cursor::file(bytes, ByteOrder::Little)).is_ok()
+    MatrixHeader::read(&mut Cursor::file(bytes, ByteOrder::Little)).is_ok()
 }
 
-/// Reads all variables of a file.
 pub(super) fn read(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
@@ -46,11 +47,11 @@ pub(super) fn read(
     let mut names = HashSet::new();
     while !file.is_empty() {
         budget.take(1, 2 * size_of::<Variable>() as u64, "")?;
-        let header = header(&mut file)?;
-        let name = name_of(file.take(header.name_length)?.rest());
+        let header = MatrixHeader::read(&mut file)?;
+        let name = decode_name(file.take(header.name_length)?.rest());
         let value = header
             .value(&mut file, budget)
-            .map_err(|fault| FieldPath::start(&name).name(fault))?;
+            .map_err(|fault| ValuePath::start(&name).locate(fault))?;
         if !names.insert(name.clone()) {
             return Err(VariableFault::Duplicate { name });
         }
@@ -59,56 +60,157 @@ pub(super) fn read(
     Ok(variables)
 }
 
-fn header(file: &mut Cursor<'_>) -> Result<Header, VariableFault> {
-    let start = *file;
-    let damaged = |what: &str| start.damaged(format!("{what} where the next matrix should begin"));
-    let order = order(start.rest()).ok_or_else(|| damaged("no type of a matrix"))?;
-    file.order = order;
-    let kind = file.u32()?;
-    let mut sizes = [0; 4];
-    for size in &mut sizes {
-        *size = i32::try_from(file.u32()?).map_err(|_| damaged("a negative size"))? as usize;
+impl MatrixHeader {
+    /// Reads the next header; the byte order may change from matrix to matrix.
+    fn read(file: &mut Cursor<'_>) -> Result<Self, VariableFault> {
+        let start = *file;
+        let Some(order) = detect_order(start.rest()) else {
+            return Err(no_matrix(start, "no matrix type"));
+        };
+        file.order = order;
+        let kind = file.u32()?;
+        let mut sizes = [0; 4];
+        for size in &mut sizes {
+            let number = file.u32()?;
+            *size =
+                i32::try_from(number).map_err(|_| no_matrix(start, "a negative size"))? as usize;
+        }
+        let [rows, columns, complex, name_length] = sizes;
+        let Some(number_type) = number_type(kind / 10 % 10, order) else {
+            return Err(no_matrix(start, "an unknown number type"));
+        };
+        let meaning = match kind % 10 {
+            0 => Meaning::Numbers,
+            1 => Meaning::Text,
+            2 => Meaning::Sparse,
+            _ => return Err(no_matrix(start, "an unknown matrix type")),
+        };
+        if complex > 1 || name_length == 0 {
+            return Err(no_matrix(start, "no matrix"));
+        }
+        Ok(Self {
+            number_type,
+            meaning,
+            rows,
+            columns,
+            is_complex: complex == 1,
+            name_length,
+        })
     }
-    let [rows, columns, complex, name_length] = sizes;
-    let stored = stored_number(kind / 10 % 10, order)
-        .ok_or_else(|| damaged("an unknown kind of numbers"))?;
-    let meaning = match kind % 10 {
-        0 => Meaning::Numbers,
-        1 => Meaning::Text,
-        2 => Meaning::Sparse,
-        _ => return Err(damaged("an unknown kind of matrix")),
-    };
-    if complex > 1 || name_length == 0 {
-        return Err(damaged("no matrix"));
+
+    /// Reads the value after header and name.
+    fn value(
+        &self,
+        file: &mut Cursor<'_>,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Value, VariableFault> {
+        let start = *file;
+        let re = self.numbers(file, budget)?;
+        let im = if self.is_complex {
+            Some(self.numbers(file, budget)?)
+        } else {
+            None
+        };
+        let shape = vec![self.rows, self.columns];
+        match self.meaning {
+            Meaning::Numbers => Ok(Value::Array(Array {
+                shape,
+                kind: self.number_type.kind(),
+                re,
+                im,
+            })),
+            Meaning::Text => {
+                budget.take(re.len() as u64, 16, "")?;
+                let codes: Vec<u32> = re.iter().map(|&number| number as u32).collect();
+                Ok(Value::Text(text_rows(&codes, &shape, "", budget)?))
+            }
+            Meaning::Sparse => {
+                budget.take(re.len() as u64, 8, "")?;
+                let entries = self
+                    .sparse_entries(&re)
+                    .ok_or_else(|| sparse_damage(start))?;
+                let full = entries.full_matrix("", budget, || sparse_damage(start))?;
+                Ok(Value::Array(full))
+            }
+        }
     }
-    Ok(Header {
-        stored,
-        meaning,
-        rows,
-        columns,
-        complex: complex == 1,
-        name_length,
-    })
+
+    fn numbers(
+        &self,
+        file: &mut Cursor<'_>,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Vec<f64>, VariableFault> {
+        let count = saturating_count(&[self.rows, self.columns]);
+        let bytes = file.take(count.saturating_mul(self.number_type.size()))?;
+        budget.take(count as u64, 8, "")?;
+        Ok(self.number_type.decode_all(bytes.rest()))
+    }
+
+    /// Interprets stored columns as row indices, column indices, real parts and imaginary parts;
+    /// their last row gives the size of the matrix. Returns `None` if they do not fit.
+    fn sparse_entries(&self, stored: &[f64]) -> Option<SparseEntries> {
+        let columns: Vec<&[f64]> = stored.chunks_exact(self.rows.max(1)).collect();
+        let (rows, columns, re, im) = match *columns.as_slice() {
+            [rows, columns, re] => (rows, columns, re, None),
+            [rows, columns, re, im] => (rows, columns, re, Some(im)),
+            _ => return None,
+        };
+        let (&height, rows) = rows.split_last()?;
+        let (&width, columns) = columns.split_last()?;
+        Some(SparseEntries {
+            shape: [nonnegative(height)?, nonnegative(width)?],
+            kind: self.number_type.kind(),
+            rows: indices_from_zero(rows)?,
+            columns: indices_from_zero(columns)?,
+            re: re.to_vec(),
+            im: im.map(<[f64]>::to_vec),
+        })
+    }
 }
 
-/// Determines the byte order: read in the correct order the type is below 2000, with 0 (little) or
-/// 1 (big) as its thousands digit and 0 as its hundreds digit.
-fn order(bytes: &[u8]) -> Option<ByteOrder> {
-    let first = *bytes.first_chunk::<4>()?;
-    let fits = |order: ByteOrder, thousands: u32| order.u32(first) / 100 == thousands * 10;
-    if fits(ByteOrder::Little, 0) {
-        return Some(ByteOrder::Little);
+/// Returns the fault for `found` at `start`, where a matrix should begin.
+fn no_matrix(start: Cursor<'_>, found: &str) -> VariableFault {
+    start.damaged(format!("{found} at the expected start of a matrix"))
+}
+
+/// Returns the fault for a sparse matrix at `start`.
+fn sparse_damage(start: Cursor<'_>) -> VariableFault {
+    start.damaged("a sparse matrix whose numbers do not fit it")
+}
+
+/// Converts indices that count from 1; `None` if one is negative, zero or NaN.
+fn indices_from_zero(indices: &[f64]) -> Option<Vec<usize>> {
+    let mut converted = Vec::with_capacity(indices.len());
+    for &index in indices {
+        converted.push(nonnegative(index)?.checked_sub(1)?);
     }
-    if fits(ByteOrder::Big, 1) {
+    Some(converted)
+}
+
+fn nonnegative(number: f64) -> Option<usize> {
+    if number >= 0.0 {
+        Some(number as usize)
+    } else {
+        None
+    }
+}
+
+/// Determines the byte order: in the correct order the type is below 2000, its thousands digit is 0
+/// (little endian) or 1 (big endian), and its hundreds digit is 0.
+fn detect_order(bytes: &[u8]) -> Option<ByteOrder> {
+    let first = *bytes.first_chunk::<4>()?;
+    if ByteOrder::Little.u32(first) / 100 == 0 {
+        Some(ByteOrder::Little)
+    } else if ByteOrder::Big.u32(first) / 100 == 10 {
         Some(ByteOrder::Big)
     } else {
         None
     }
 }
 
-/// Number type for P of the type MOPT.
-fn stored_number(kind: u32, order: ByteOrder) -> Option<StoredNumber> {
-    let (class, size) = match kind {
+/// Returns the number type for digit P.
+fn number_type(digit: u32, order: ByteOrder) -> Option<StoredNumber> {
+    let (class, size) = match digit {
         0 => (NumberClass::Float, 8),
         1 => (NumberClass::Float, 4),
         2 => (NumberClass::Signed, 4),
@@ -118,101 +220,6 @@ fn stored_number(kind: u32, order: ByteOrder) -> Option<StoredNumber> {
         _ => return None,
     };
     StoredNumber::new(class, size, order == ByteOrder::Big)
-}
-
-impl Header {
-    fn value(
-        &self,
-        file: &mut Cursor<'_>,
-        budget: &ReadingBudget<'_>,
-    ) -> Result<Value, VariableFault> {
-        let start = *file;
-        let re = self.numbers(file, budget)?;
-        let im = if self.complex {
-            Some(self.numbers(file, budget)?)
-        } else {
-            None
-        };
-        let shape = vec![self.rows, self.columns];
-        match self.meaning {
-            Meaning::Numbers => Ok(Value::Array(Array {
-                shape,
-                kind: self.stored.kind(),
-                re,
-                im,
-            })),
-            Meaning::Text => {
-                budget.take(re.len() as u64, 16, "")?;
-                let characters: Vec<u32> = re.iter().map(|&number| number as u32).collect();
-                Ok(Value::Text(rows(&characters, &shape, "", budget)?))
-            }
-            Meaning::Sparse => self.sparse(&re, start, budget).map(Value::Array),
-        }
-    }
-
-    fn numbers(
-        &self,
-        file: &mut Cursor<'_>,
-        budget: &ReadingBudget<'_>,
-    ) -> Result<Vec<f64>, VariableFault> {
-        let count = count(&[self.rows, self.columns]);
-        let bytes = file.take(count.saturating_mul(self.stored.size()))?;
-        budget.take(count as u64, 8, "")?;
-        Ok(bytes
-            .rest()
-            .chunks_exact(self.stored.size())
-            .map(|number| self.stored.decode(number))
-            .collect())
-    }
-
-    /// Reads columns of row indices, column indices, real parts and imaginary parts; the last row
-    /// gives the size of the matrix.
-    fn sparse(
-        &self,
-        columns: &[f64],
-        start: Cursor<'_>,
-        budget: &ReadingBudget<'_>,
-    ) -> Result<Array, VariableFault> {
-        let damaged = || start.damaged("a sparse matrix whose numbers do not fit it");
-        budget.take(columns.len() as u64, 8, "")?;
-        let parts: Vec<&[f64]> = columns.chunks_exact(self.rows.max(1)).collect();
-        let (rows, columns, re, im) = match *parts.as_slice() {
-            [rows, columns, re] => (rows, columns, re, None),
-            [rows, columns, re, im] => (rows, columns, re, Some(im)),
-            _ => return Err(damaged()),
-        };
-        let whole = |number: f64| {
-            if number >= 0.0 {
-                Some(number as usize)
-            } else {
-                None
-            }
-        };
-        let (&height, rows) = rows.split_last().ok_or_else(damaged)?;
-        let (&width, columns) = columns.split_last().ok_or_else(damaged)?;
-        let shape = whole(height)
-            .zip(whole(width))
-            .map(|(height, width)| [height, width])
-            .ok_or_else(damaged)?;
-        let place = |&number: &f64| whole(number)?.checked_sub(1);
-        let entries = Entries {
-            shape,
-            kind: self.stored.kind(),
-            rows: rows
-                .iter()
-                .map(place)
-                .collect::<Option<_>>()
-                .ok_or_else(damaged)?,
-            columns: columns
-                .iter()
-                .map(place)
-                .collect::<Option<_>>()
-                .ok_or_else(damaged)?,
-            re: re.to_vec(),
-            im: im.map(<[f64]>::to_vec),
-        };
-        entries.filled("", budget, damaged)
-    }
 }
 
 #[cfg(test)]
@@ -299,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_matrix_of_level_4_is_not_taken_for_one() {
+    fn other_bytes_are_no_level_4_matrix() {
         assert!(!begins(&[0; 20]));
         assert!(!begins(&matrix(
             4000,

@@ -1,4 +1,4 @@
-//! Level-5 files for MATLAB, GNU Octave and SciPy.
+//! Writes level-5 files for MATLAB, GNU Octave and SciPy.
 //!
 //! Source: "MAT-File Format", The MathWorks, "Level 5 MAT-File Format".
 
@@ -7,7 +7,7 @@ use std::io::Write;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
-use crate::formats::mat::level5::DataKind as Kind;
+use crate::formats::mat::element::DataKind;
 use crate::formats::variables::{
     Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable,
 };
@@ -15,7 +15,7 @@ use crate::reading_budget::VariableFault;
 
 /// Header text, padded with blanks: MATLAB checks the first words.
 const HEADER_TEXT: &str = "MATLAB 5.0 MAT-file, written by gdcm";
-/// Length of the header text.
+/// Length to which the header text is padded \[bytes\].
 const HEADER_TEXT_BYTES: usize = 116;
 /// Largest variable \[bytes\].
 const MOST_BYTES: u64 = u32::MAX as u64;
@@ -26,40 +26,56 @@ const MOST_BYTES: u64 = u32::MAX as u64;
 /// if a value does not fit, as `int64`, and logical values as `logical`. Texts become a character
 /// array if all rows have the same length, otherwise cells. Objects become structs, and unreadable
 /// values an empty array.
+///
+/// # Errors
+///
+/// [`VariableFault::TooLarge`] for a variable beyond 4 GiB.
 pub fn write(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
-    file(variables, |element| element)
+    let mut bytes = file_header();
+    for variable in variables {
+        bytes.extend(variable_element(variable)?);
+    }
+    Ok(bytes)
 }
 
 /// Writes a packed file, which is smaller and requires MATLAB 7 or later.
+///
+/// # Errors
+///
+/// As for [`write`].
 pub fn write_packed(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
-    file(variables, packed)
+    let mut bytes = file_header();
+    for variable in variables {
+        bytes.extend(pack(variable_element(variable)?));
+    }
+    Ok(bytes)
 }
 
-fn file(
-    variables: &[Variable],
-    packing: impl Fn(Vec<u8>) -> Vec<u8>,
-) -> Result<Vec<u8>, VariableFault> {
+fn file_header() -> Vec<u8> {
     let mut bytes = HEADER_TEXT.as_bytes().to_vec();
     bytes.resize(HEADER_TEXT_BYTES, b' ');
     // No objects, version 1.0, and the byte-order mark.
     bytes.extend([0; 8]);
     bytes.extend([0, 1, b'I', b'M']);
-    for variable in variables {
-        let contents = contents(&variable.value, &variable.name);
-        if contents.len() as u64 > MOST_BYTES {
-            return Err(VariableFault::TooLarge {
-                variable: variable.name.clone(),
-                most_mib: MOST_BYTES >> 20,
-            });
-        }
-        let mut plain = Vec::new();
-        element(&mut plain, Kind::Matrix, &contents);
-        bytes.extend(packing(plain));
-    }
-    Ok(bytes)
+    bytes
 }
 
-fn packed(plain: Vec<u8>) -> Vec<u8> {
+/// Returns the array element for a variable.
+fn variable_element(variable: &Variable) -> Result<Vec<u8>, VariableFault> {
+    let contents = array_contents(&variable.value, &variable.name);
+    if contents.len() as u64 > MOST_BYTES {
+        return Err(VariableFault::TooLarge {
+            variable: variable.name.clone(),
+            most_mib: MOST_BYTES >> 20,
+        });
+    }
+    let mut element = Vec::new();
+    append_element(&mut element, DataKind::Matrix, &contents);
+    Ok(element)
+}
+
+/// Packs an element.
+fn pack(plain: Vec<u8>) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
     // Writing to memory does not fail; the plain bytes would be equivalent.
     if encoder.write_all(&plain).is_err() {
@@ -69,18 +85,16 @@ fn packed(plain: Vec<u8>) -> Vec<u8> {
         return plain;
     };
     let mut bytes = Vec::with_capacity(packed.len() + 8);
-    element(&mut bytes, Kind::Packed, &packed);
+    append_element(&mut bytes, DataKind::Packed, &packed);
     bytes
 }
 
-// Elements of a file: data type, length and data.
-
 /// Appends an element, padded to eight bytes. Up to four bytes go into the tag itself, which MATLAB
 /// requires for some names.
-pub(super) fn element(bytes: &mut Vec<u8>, kind: Kind, data: &[u8]) {
-    // The writer refuses a variable whose length does not fit; its elements are shorter.
+fn append_element(bytes: &mut Vec<u8>, kind: DataKind, data: &[u8]) {
+    // A variable whose length does not fit is refused; its elements are shorter.
     let length = data.len() as u32;
-    if (1..=4).contains(&length) && kind != Kind::Packed {
+    if (1..=4).contains(&length) && kind != DataKind::Packed {
         bytes.extend((length << 16 | kind as u32).to_le_bytes());
         bytes.extend(data);
         bytes.resize(bytes.len() + 4 - data.len(), 0);
@@ -89,14 +103,12 @@ pub(super) fn element(bytes: &mut Vec<u8>, kind: Kind, data: &[u8]) {
     bytes.extend((kind as u32).to_le_bytes());
     bytes.extend(length.to_le_bytes());
     bytes.extend(data);
-    if kind != Kind::Packed {
+    if kind != DataKind::Packed {
         bytes.resize(bytes.len().next_multiple_of(8), 0);
     }
 }
 
-// Contents of an array element.
-
-/// Array classes that are written.
+/// Array classes that are written, with their numbers in the flags.
 #[derive(Clone, Copy)]
 enum Class {
     Cell = 1,
@@ -108,69 +120,118 @@ enum Class {
     I64 = 14,
 }
 
+/// Flag for complex numbers.
 const COMPLEX: u32 = 0x0800;
+/// Flag for logical numbers.
 const LOGICAL: u32 = 0x0200;
 /// Lengths of field names in MATLAB, including the zero at the end.
-const NAME_LENGTHS: [usize; 2] = [32, 64];
+const FIELD_NAME_LENGTHS: [usize; 2] = [32, 64];
 
 /// Returns the contents of an array element; the name is empty within another array.
-pub(super) fn contents(value: &Value, name: &str) -> Vec<u8> {
+fn array_contents(value: &Value, name: &str) -> Vec<u8> {
     match value {
-        Value::Array(numbers) => array(numbers, name),
-        Value::Text(texts) => text(texts, name),
-        Value::Cell(values) => cell(values, name),
-        Value::Struct(fields) => records(fields, name),
-        Value::Object(object) => records(&object.records, name),
-        Value::Opaque { .. } => contents(&Value::empty(), name),
+        Value::Array(array) => number_contents(array, name),
+        Value::Text(texts) => text_contents(texts, name),
+        Value::Cell(cell) => cell_contents(cell, name),
+        Value::Struct(records) => record_contents(records, name),
+        Value::Object(object) => record_contents(&object.records, name),
+        Value::Opaque { .. } => array_contents(&Value::empty(), name),
     }
 }
 
-fn begun(class: Class, flags: u32, shape: &[usize], name: &str) -> Vec<u8> {
+/// Begins the contents of an array element with flags, shape and name.
+fn begin_contents(class: Class, flags: u32, shape: &[usize], name: &str) -> Vec<u8> {
     let mut bytes = Vec::new();
     let words = [(class as u32 | flags).to_le_bytes(), [0; 4]];
-    element(&mut bytes, Kind::U32, words.as_flattened());
-    // A length that does not fit belongs to an array that is refused for its size, or to an empty
+    append_element(&mut bytes, DataKind::U32, words.as_flattened());
+    // A side that does not fit belongs to an array that is refused for its size, or to an empty
     // array.
     let sides: Vec<u8> = shape
         .iter()
         .flat_map(|&side| i32::try_from(side).unwrap_or(i32::MAX).to_le_bytes())
         .collect();
-    element(&mut bytes, Kind::I32, &sides);
-    element(&mut bytes, Kind::I8, name.as_bytes());
+    append_element(&mut bytes, DataKind::I32, &sides);
+    append_element(&mut bytes, DataKind::I8, name.as_bytes());
     bytes
 }
 
-fn array(array: &Array, name: &str) -> Vec<u8> {
-    let within =
-        |most: f64| move |&number: &f64| number.fract() == 0.0 && (-most..most).contains(&number);
-    let all =
-        |fits: &dyn Fn(&f64) -> bool| array.re.iter().chain(array.im.iter().flatten()).all(fits);
-    let (class, flags, kind) = match array.kind {
-        ElementKind::Logical if all(&|&number| number == 0.0 || number == 1.0) => {
-            (Class::U8, LOGICAL, Kind::U8)
+/// Class, flags and data type for numbers.
+#[derive(Clone, Copy)]
+struct NumberForm {
+    class: Class,
+    flags: u32,
+    kind: DataKind,
+}
+
+impl NumberForm {
+    /// Chooses the form of the array's kind if all numbers fit, otherwise `double`.
+    fn for_array(array: &Array) -> Self {
+        match array.kind {
+            ElementKind::Logical if all_numbers(array, is_truth_value) => Self {
+                class: Class::U8,
+                flags: LOGICAL,
+                kind: DataKind::U8,
+            },
+            ElementKind::Integer if all_numbers(array, fits_i32) => Self {
+                class: Class::I32,
+                flags: 0,
+                kind: DataKind::I32,
+            },
+            ElementKind::Integer if all_numbers(array, fits_i64) => Self {
+                class: Class::I64,
+                flags: 0,
+                kind: DataKind::I64,
+            },
+            _ => Self {
+                class: Class::Double,
+                flags: 0,
+                kind: DataKind::F64,
+            },
         }
-        ElementKind::Integer if all(&within(2_147_483_648.0)) => (Class::I32, 0, Kind::I32),
-        ElementKind::Integer if all(&within(9_223_372_036_854_775_808.0)) => {
-            (Class::I64, 0, Kind::I64)
-        }
-        _ => (Class::Double, 0, Kind::F64),
-    };
+    }
+}
+
+/// Whether all numbers, real and imaginary parts, fit.
+fn all_numbers(array: &Array, fits: impl Fn(f64) -> bool) -> bool {
+    let numbers = array.re.iter().chain(array.im.iter().flatten());
+    numbers.copied().all(fits)
+}
+
+fn is_truth_value(number: f64) -> bool {
+    number == 0.0 || number == 1.0
+}
+
+fn fits_i32(number: f64) -> bool {
+    is_integer_below(number, 2_147_483_648.0)
+}
+
+fn fits_i64(number: f64) -> bool {
+    is_integer_below(number, 9_223_372_036_854_775_808.0)
+}
+
+/// Whether a number is an integer from `-most` up to, but excluding, `most`.
+fn is_integer_below(number: f64, most: f64) -> bool {
+    number.fract() == 0.0 && (-most..most).contains(&number)
+}
+
+fn number_contents(array: &Array, name: &str) -> Vec<u8> {
+    let form = NumberForm::for_array(array);
     let complex = if array.im.is_some() { COMPLEX } else { 0 };
-    let mut bytes = begun(class, flags | complex, &array.shape, name);
+    let mut bytes = begin_contents(form.class, form.flags | complex, &array.shape, name);
     for part in std::iter::once(&array.re).chain(&array.im) {
-        element(&mut bytes, kind, &stored(kind, part));
+        append_element(&mut bytes, form.kind, &encode_numbers(form.kind, part));
     }
     bytes
 }
 
-fn stored(kind: Kind, numbers: &[f64]) -> Vec<u8> {
+fn encode_numbers(kind: DataKind, numbers: &[f64]) -> Vec<u8> {
     match kind {
-        Kind::U8 => numbers.iter().map(|&number| number as u8).collect(),
-        Kind::I32 => numbers
+        DataKind::U8 => numbers.iter().map(|&number| number as u8).collect(),
+        DataKind::I32 => numbers
             .iter()
             .flat_map(|&number| (number as i32).to_le_bytes())
             .collect(),
-        Kind::I64 => numbers
+        DataKind::I64 => numbers
             .iter()
             .flat_map(|&number| (number as i64).to_le_bytes())
             .collect(),
@@ -181,86 +242,76 @@ fn stored(kind: Kind, numbers: &[f64]) -> Vec<u8> {
     }
 }
 
-fn text(text: &TextArray, name: &str) -> Vec<u8> {
-    let units: Vec<Vec<u16>> = text
+/// Returns a character array if all texts have the same length, otherwise cells.
+fn text_contents(texts: &TextArray, name: &str) -> Vec<u8> {
+    let rows: Vec<Vec<u16>> = texts
         .texts
         .iter()
         .map(|text| text.encode_utf16().collect())
         .collect();
-    let length = units.first().map_or(0, Vec::len);
-    let even = units.iter().all(|row| row.len() == length);
-    let &[height, 1, ref pages @ ..] = text.shape.as_slice() else {
-        return texts(text, name);
+    let length = rows.first().map_or(0, Vec::len);
+    let &[height, 1, ref pages @ ..] = texts.shape.as_slice() else {
+        return text_cell_contents(texts, name);
     };
-    if !even || units.is_empty() || units.len() != height.saturating_mul(pages.iter().product()) {
-        return texts(text, name);
+    let is_even = rows.iter().all(|row| row.len() == length);
+    let count = height.saturating_mul(pages.iter().product());
+    if !is_even || rows.is_empty() || rows.len() != count {
+        return text_cell_contents(texts, name);
     }
     // `''` has no rows.
-    let empty = units.len() == 1 && length == 0;
-    let shape: Vec<usize> = [if empty { 0 } else { height }, length]
-        .iter()
-        .chain(pages)
-        .copied()
-        .collect();
-    let columns = |page: &[Vec<u16>]| -> Vec<u16> {
-        (0..length)
-            .flat_map(|column| page.iter().filter_map(move |row| row.get(column).copied()))
-            .collect()
-    };
-    let characters: Vec<u16> = units.chunks(height.max(1)).flat_map(columns).collect();
-    let mut bytes = begun(Class::Char, 0, &shape, name);
-    // SciPy and Octave read UTF-8 most reliably. Rows with surrogate pairs could not be separated
-    // again.
-    match char::decode_utf16(characters.iter().copied()).collect::<Result<String, _>>() {
+    let is_single_empty = rows.len() == 1 && length == 0;
+    let mut shape = vec![if is_single_empty { 0 } else { height }, length];
+    shape.extend(pages);
+    let mut characters: Vec<u16> = Vec::new();
+    for page in rows.chunks(height.max(1)) {
+        for column in 0..length {
+            characters.extend(page.iter().filter_map(|row| row.get(column)));
+        }
+    }
+    let mut bytes = begin_contents(Class::Char, 0, &shape, name);
+    append_characters(&mut bytes, &characters);
+    bytes
+}
+
+/// Appends the element with UTF-16 characters.
+///
+/// SciPy and Octave read UTF-8 most reliably. But rows with surrogate pairs could not be separated
+/// again: they stay in UTF-16.
+fn append_characters(bytes: &mut Vec<u8>, characters: &[u16]) {
+    match String::from_utf16(characters) {
         Ok(letters) if letters.chars().count() == characters.len() => {
-            element(&mut bytes, Kind::Utf8, letters.as_bytes());
+            append_element(bytes, DataKind::Utf8, letters.as_bytes());
         }
         _ => {
-            let units = characters.into_iter().flat_map(u16::to_le_bytes);
-            element(&mut bytes, Kind::U16, &units.collect::<Vec<u8>>());
+            let units: Vec<u8> = characters
+                .iter()
+                .flat_map(|unit| unit.to_le_bytes())
+                .collect();
+            append_element(bytes, DataKind::U16, &units);
         }
     }
-    bytes
 }
 
-/// Returns texts of different lengths, each in a cell.
-fn texts(texts: &TextArray, name: &str) -> Vec<u8> {
-    cell(
-        &CellArray {
-            shape: texts.shape.clone(),
-            values: texts.texts.iter().map(Value::text).collect(),
-        },
-        name,
-    )
+/// Returns texts with different lengths, each in a cell.
+fn text_cell_contents(texts: &TextArray, name: &str) -> Vec<u8> {
+    let cell = CellArray {
+        shape: texts.shape.clone(),
+        values: texts.texts.iter().map(Value::text).collect(),
+    };
+    cell_contents(&cell, name)
 }
 
-fn cell(cell: &CellArray, name: &str) -> Vec<u8> {
-    let mut bytes = begun(Class::Cell, 0, &cell.shape, name);
+fn cell_contents(cell: &CellArray, name: &str) -> Vec<u8> {
+    let mut bytes = begin_contents(Class::Cell, 0, &cell.shape, name);
     for value in &cell.values {
-        element(&mut bytes, Kind::Matrix, &contents(value, ""));
+        append_element(&mut bytes, DataKind::Matrix, &array_contents(value, ""));
     }
     bytes
 }
 
-fn records(records: &StructArray, name: &str) -> Vec<u8> {
-    let mut bytes = begun(Class::Struct, 0, &records.shape, name);
-    let longest = records
-        .fields
-        .iter()
-        .map(|(field, _)| field.len() + 1)
-        .max()
-        .unwrap_or(1);
-    let length = NAME_LENGTHS
-        .into_iter()
-        .find(|&length| longest <= length)
-        .unwrap_or(longest);
-    element(&mut bytes, Kind::I32, &(length as u32).to_le_bytes());
-    let mut names = Vec::with_capacity(length * records.fields.len());
-    for (at, (field, _)) in records.fields.iter().enumerate() {
-        names.extend(field.as_bytes());
-        names.resize(length * (at + 1), 0);
-    }
-    element(&mut bytes, Kind::I8, &names);
+fn record_contents(records: &StructArray, name: &str) -> Vec<u8> {
+    let mut bytes = begin_contents(Class::Struct, 0, &records.shape, name);
+    append_field_names(&mut bytes, records);
     let count = records
         .fields
         .iter()
@@ -270,14 +321,36 @@ fn records(records: &StructArray, name: &str) -> Vec<u8> {
     for at in 0..count {
         for (_, values) in &records.fields {
             // An element without bytes is an empty array.
-            let value = values
-                .get(at)
-                .map(|value| contents(value, ""))
-                .unwrap_or_default();
-            element(&mut bytes, Kind::Matrix, &value);
+            let value = match values.get(at) {
+                Some(value) => array_contents(value, ""),
+                None => Vec::new(),
+            };
+            append_element(&mut bytes, DataKind::Matrix, &value);
         }
     }
     bytes
+}
+
+/// Appends the field names, padded with zeros to the same length, after an element with this
+/// length.
+fn append_field_names(bytes: &mut Vec<u8>, records: &StructArray) {
+    let longest = records
+        .fields
+        .iter()
+        .map(|(field, _)| field.len() + 1)
+        .max()
+        .unwrap_or(1);
+    let length = FIELD_NAME_LENGTHS
+        .into_iter()
+        .find(|&length| longest <= length)
+        .unwrap_or(longest);
+    append_element(bytes, DataKind::I32, &(length as u32).to_le_bytes());
+    let mut names = Vec::with_capacity(length * records.fields.len());
+    for (at, (field, _)) in records.fields.iter().enumerate() {
+        names.extend(field.as_bytes());
+        names.resize(length * (at + 1), 0);
+    }
+    append_element(bytes, DataKind::I8, &names);
 }
 
 #[cfg(test)]
@@ -375,7 +448,7 @@ mod writer_tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
         #[test]
-        fn what_is_written_is_read_again(value in value()) {
+        fn written_values_are_read_again(value in value()) {
             let variables = [named("first", value.clone()), named("x", value)];
             prop_assert_eq!(back(&write(&variables).unwrap()), &variables);
             prop_assert_eq!(back(&write_packed(&variables).unwrap()), &variables);
@@ -422,7 +495,7 @@ mod writer_tests {
     }
 
     #[test]
-    fn numbers_that_are_not_what_they_are_said_to_be_become_floating_point() {
+    fn numbers_that_contradict_their_kind_become_floating_point() {
         for kind in [ElementKind::Integer, ElementKind::Logical] {
             let array = Array {
                 kind,
@@ -440,7 +513,7 @@ mod writer_tests {
     }
 
     #[test]
-    fn objects_become_structs_and_what_was_not_read_is_empty() {
+    fn objects_become_structs_and_unread_values_are_empty() {
         let fields = vec![(
             "a".to_owned(),
             vec![Value::Opaque {
@@ -472,11 +545,11 @@ mod block_tests {
     use super::*;
 
     #[test]
-    fn short_data_stand_in_the_tag_and_long_ones_are_filled_up() {
+    fn short_data_is_within_the_tag_and_longer_data_is_padded() {
         let mut bytes = Vec::new();
-        element(&mut bytes, Kind::I8, b"abc");
+        append_element(&mut bytes, DataKind::I8, b"abc");
         assert_eq!(bytes, [1, 0, 3, 0, b'a', b'b', b'c', 0]);
-        element(&mut bytes, Kind::U8, &[7; 5]);
+        append_element(&mut bytes, DataKind::U8, &[7; 5]);
         assert_eq!(bytes[8..], [2, 0, 0, 0, 5, 0, 0, 0, 7, 7, 7, 7, 7, 0, 0, 0]);
     }
 }

@@ -1,34 +1,40 @@
 //! MATLAB 7.3 files, and plain HDF5 files such as those written by h5py.
 //!
-//! The container follows the HDF5 File Format Specification 3.0. MATLAB's use of it is not
-//! published by The MathWorks; it is known from its files and from the descriptions of the matio,
-//! hdf5storage and MAT.jl projects: attributes give the classes, arrays are stored by columns, with
-//! their shapes reversed, and the elements of cells and struct arrays are references into a group
-//! `#refs#`.
+//! The container follows the HDF5 File Format Specification 3.0. MATLAB's conventions are not
+//! published by The MathWorks; they are known from its files and from the descriptions by the
+//! matio, hdf5storage and MAT.jl projects: attributes give the classes, arrays are stored by
+//! columns, with their shapes reversed, and the elements of cells and struct arrays are references
+//! into a group `#refs#`.
 //!
-//! Arrays without MATLAB's attributes are stored by rows, as in C and Python: a dataset of r x c
+//! Arrays without MATLAB's attributes are stored by rows, as in C and Python: a dataset with r x c
 //! elements becomes an r x c array, a scalar 1 x 1, n elements without a second dimension the row 1
 //! x n. (MATLAB's own `h5write` writes such datasets from its columns; they are read transposed.)
-//! Groups become structs. Members of groups are sorted by name, unless MATLAB gives an order;
-//! symbolic links, including links to other files, are skipped.
+//! Groups become structs. Group members are sorted by name, unless MATLAB gives an order; symbolic
+//! links, including links to other files, are skipped.
 
+mod attributes;
+mod chunks;
 mod dataset;
+mod library_fault;
+mod limited_source;
+mod number_type;
+mod object_part;
+mod objects;
+mod reader;
 mod values;
 
-use std::collections::HashMap;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use hdf5_pure::{
-    AttrValue, Dataset, Datatype, Error, File, FileAccessProperties, FormatError, Group,
-    MetadataCacheConfig, Object, ReferenceType, Source, is_hdf5_bytes,
-};
+use hdf5_pure::{File, FileAccessProperties, MetadataCacheConfig, is_hdf5_bytes};
 
-use super::variables::{self, Array, CellArray, ElementKind, StructArray, Value, Variable};
 use crate::formats::mat::is_hdf5;
-use crate::formats::mat73::dataset::{Elements, Order};
-use crate::formats::mat73::values::{Objects, empty, records, rows, sparse, strings};
-use crate::formats::{Contents, Importer, octave};
+use crate::formats::mat73::library_fault::library_fault;
+use crate::formats::mat73::limited_source::LimitedSource;
+use crate::formats::mat73::object_part::read_objects;
+use crate::formats::mat73::reader::Reader;
+use crate::formats::octave::convert_hdf5_groups;
+use crate::formats::variables::Variable;
+use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// MATLAB 7.3 and HDF5.
@@ -36,157 +42,28 @@ pub(crate) const HDF5: Importer = Importer {
     name: "an HDF5 file, as MATLAB writes with -v7.3",
     endings: &["mat", "h5", "hdf5"],
     recognises: |bytes, _| is_hdf5(bytes),
-    read: |bytes, path, budget| {
-        let read = open(bytes, budget).and_then(|file| {
-            let objects = Objects::read(&file, budget)?;
-            Reader {
-                budget,
-                objects: &objects,
-            }
-            .variables(&file.root())
-        });
-        // The library reports a stop as an unreadable file.
-        Contents::variables(
-            budget
-                .work(0, "")
-                .and(read)
-                .and_then(|variables| octave::unwrapped(variables, budget)),
-            path,
-        )
-    },
+    read: |bytes, path, budget| Contents::variables(read(bytes, budget), path),
 };
 
-// Values in datasets and groups, including nested values.
-
-/// Deepest nesting of values.
-const DEEPEST: usize = 64;
-/// Memory of a value during reading, without its elements: the library's view of its header, and
-/// the value itself \[bytes\].
-const HEADER: u64 = 1024;
-
-/// Reads values within a budget.
-struct Reader<'r> {
-    budget: &'r ReadingBudget<'r>,
-    objects: &'r Objects,
+/// Reads all variables, also those in the groups that GNU Octave writes.
+fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+    let variables = read_variables(bytes, budget);
+    // The library reports a stop as an unreadable file: check for it first.
+    budget.work(0, "")?;
+    convert_hdf5_groups(variables?, budget)
 }
 
-impl Reader<'_> {
-    /// Reads the variables in the root group.
-    fn variables(&self, root: &Group) -> Result<Vec<Variable>, VariableFault> {
-        let mut variables = Vec::new();
-        for (name, object) in members(root, "", self.budget)? {
-            // Contents referenced by other variables.
-            if name != "#refs#" && name != "#subsystem#" {
-                let value = self.value(&object, &name, 0)?;
-                variables.push(Variable { name, value });
-            }
-        }
-        Ok(variables)
-    }
-
-    /// Reads the value of a dataset or group; `path` is its name in faults.
-    fn value(&self, object: &Object, path: &str, depth: usize) -> Result<Value, VariableFault> {
-        if depth >= DEEPEST {
-            return Err(VariableFault::too_deep(path));
-        }
-        self.budget.take(1, HEADER, path)?;
-        let value = match object {
-            Object::Dataset(dataset) => self.dataset(dataset, path, depth),
-            Object::Group(group) => group_value(self, group, path, depth),
-            _ => Ok(Value::opaque(
-                "an HDF5 object",
-                "it is neither a dataset nor a group",
-            )),
-        };
-        match value {
-            // The other variables remain readable.
-            Err(VariableFault::Unsupported { what, remedy, .. }) => Ok(Value::opaque(what, remedy)),
-            value => value,
-        }
-    }
-
-    fn dataset(&self, dataset: &Dataset, path: &str, depth: usize) -> Result<Value, VariableFault> {
-        let marks = MatlabAttributes::of(dataset.attrs(), path)?;
-        let order = if marks.class.is_some() {
-            Order::Columns
-        } else {
-            Order::Rows
-        };
-        let elements = Elements::read(dataset, order, path, self.budget)?;
-        if marks.empty {
-            return empty(&marks, &elements, path, self.budget);
-        }
-        if marks.decode == FUNCTION_HANDLE {
-            return Ok(Value::opaque("function_handle", "functions are not data"));
-        }
-        if is_reference(&elements.datatype) {
-            return self.cell(dataset, &elements, path, depth);
-        }
-        if let Some(mut array) = elements.numbers(path, self.budget)? {
-            return match (marks.decode, marks.class()) {
-                (OBJECT, class) => self.objects.value(class, array, path, self.budget),
-                (_, "char") => Ok(Value::Text(rows(&array, path, self.budget)?)),
-                (_, "logical") => {
-                    array.kind = ElementKind::Logical;
-                    Ok(Value::Array(array))
-                }
-                _ => Ok(Value::Array(array)),
-            };
-        }
-        if let Some(texts) = strings(dataset, &elements, path, self.budget)? {
-            return Ok(Value::Text(texts));
-        }
-        let records = records(&elements, path, self.budget)?;
-        Ok(records.map_or_else(
-            || Value::opaque("an HDF5 dataset", "it holds neither numbers nor texts"),
-            Value::Struct,
-        ))
-    }
-
-    /// Reads a cell for each reference.
-    fn cell(
-        &self,
-        dataset: &Dataset,
-        elements: &Elements,
-        path: &str,
-        depth: usize,
-    ) -> Result<Value, VariableFault> {
-        let objects = self.referred(dataset, path)?;
-        let mut values = Vec::with_capacity(objects.len());
-        for (index, place) in elements.places().enumerate() {
-            if let Some(object) = objects.get(place) {
-                values.push(self.value(object, &format!("{path}{{{}}}", index + 1), depth + 1)?);
-            }
-        }
-        Ok(Value::Cell(CellArray {
-            shape: elements.shape.clone(),
-            values,
-        }))
-    }
-
-    /// Resolves the references of a dataset, in file order.
-    fn referred(&self, dataset: &Dataset, path: &str) -> Result<Vec<Object>, VariableFault> {
-        let failed = |error| fault(&error, path);
-        let elements = dataset
-            .shape()
-            .map_err(failed)?
-            .iter()
-            .copied()
-            .fold(1, u64::saturating_mul);
-        self.budget.take(elements, HEADER, path)?;
-        dataset.dereference().map_err(failed)
-    }
-}
-
-/// Whether the elements of a dataset are references to datasets and groups.
-fn is_reference(datatype: &Datatype) -> bool {
-    matches!(
-        datatype,
-        Datatype::Reference {
-            ref_type: ReferenceType::Object,
-            ..
-        }
-    )
+/// Reads all variables, with groups as structs.
+fn read_variables(
+    bytes: &[u8],
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<Variable>, VariableFault> {
+    let file = open(bytes, budget)?;
+    let reader = Reader {
+        budget,
+        objects: &read_objects(&file, budget)?,
+    };
+    reader.variables(&file.root())
 }
 
 /// Opens a copy of the file and checks that it is complete; a user block such as MATLAB's may
@@ -202,9 +79,9 @@ fn open(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<File, VariableFault>
     // Reads from a cache would not be counted.
     let properties =
         FileAccessProperties::new().with_metadata_cache(MetadataCacheConfig::disabled());
-    let source = Rationed::new(bytes.to_vec(), Arc::clone(budget.stop()));
-    let file =
-        File::from_source_with_options(source, properties).map_err(|error| fault(&error, ""))?;
+    let source = LimitedSource::new(bytes.to_vec(), Arc::clone(budget.stop()));
+    let file = File::from_source_with_options(source, properties)
+        .map_err(|error| library_fault(&error, ""))?;
     // Chunks may be missing at the end without any structure extending beyond it.
     if file.superblock().eof_address > bytes.len() as u64 {
         return Err(VariableFault::cut_off("", bytes.len()));
@@ -212,339 +89,20 @@ fn open(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<File, VariableFault>
     Ok(file)
 }
 
-// Errors of the HDF5 library in the words of this program.
-
-/// Converts an error of the library to a fault; `path` is the variable.
-///
-/// The library does not report the position of the error in the file.
-fn fault(error: &Error, path: &str) -> VariableFault {
-    match error {
-        Error::Format(FormatError::NestingDepthExceeded) => VariableFault::too_deep(path),
-        Error::Format(FormatError::UnexpectedEof { .. }) => {
-            damaged(path, "something lies beyond the end of the file")
-        }
-        Error::Format(
-            FormatError::UnsupportedFilter(_)
-            | FormatError::UnsupportedVirtualLayout
-            | FormatError::UnsupportedExternalStorage
-            | FormatError::UnsupportedMessage(_)
-            | FormatError::UnsupportedFilteredHeapObject
-            | FormatError::UnsupportedVersion(_)
-            | FormatError::InvalidLayoutVersion(_)
-            | FormatError::UnsupportedZfp(_),
-        ) => {
-            // HDF5 2.0 uses a new chunk layout if its latest format is requested.
-            let remedy = "write it with compression gzip or none, in one file, in the format of HDF5 1.14 or earlier";
-            VariableFault::unsupported(path, format!("a dataset of this kind ({error})"), remedy)
-        }
-        _ => damaged(path, &error.to_string()),
-    }
-}
-
-/// Returns the fault for bytes that contradict the format.
-fn damaged(path: &str, what: &str) -> VariableFault {
-    VariableFault::damaged(path, what, 0)
-}
-
-// File bytes with a limited amount of reading.
-
-/// Number of times a file may be read: headers and indices are read several times, once for each
-/// query.
-const TIMES: u64 = 16;
-/// Additional amount that may be read from a small file \[bytes\].
-const BESIDES: u64 = 16 << 20;
-/// Smallest charge for a read \[bytes\].
-const LEAST: u64 = 16;
-
-/// Bytes in memory with a limited amount of reading.
-///
-/// The nodes of an index may refer to one another so that a file of a few kilobytes has more paths
-/// than can ever be visited; the library follows them all. The limit ends such reading.
-struct Rationed {
-    bytes: Vec<u8>,
-    left: AtomicU64,
-    stop: Arc<AtomicBool>,
-}
-
-impl Rationed {
-    fn new(bytes: Vec<u8>, stop: Arc<AtomicBool>) -> Self {
-        let left = AtomicU64::new(
-            (bytes.len() as u64)
-                .saturating_mul(TIMES)
-                .saturating_add(BESIDES),
-        );
-        Self { bytes, left, stop }
-    }
-}
-
-impl Source for Rationed {
-    fn len(&self) -> u64 {
-        self.bytes.len() as u64
-    }
-
-    fn read_at(&self, offset: u64, buffer: &mut [u8]) -> Result<(), FormatError> {
-        let cost = (buffer.len() as u64).max(LEAST);
-        let paid = self
-            .left
-            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
-                left.checked_sub(cost)
-            });
-        if self.stop.load(Ordering::Relaxed) {
-            return Err(FormatError::Source("stopped".to_owned()));
-        }
-        if paid.is_err() {
-            return Err(FormatError::Source(
-                "its parts lead to one another too often".to_owned(),
-            ));
-        }
-        let start = usize::try_from(offset).unwrap_or(usize::MAX);
-        let found = self.bytes.get(start..start.saturating_add(buffer.len()));
-        let end = FormatError::UnexpectedEof {
-            expected: start.saturating_add(buffer.len()),
-            available: self.bytes.len(),
-        };
-        buffer.copy_from_slice(found.ok_or(end)?);
-        Ok(())
-    }
-}
-
-// MATLAB's attributes of groups and datasets.
-
-/// `MATLAB_object_decode` of a function handle.
-const FUNCTION_HANDLE: u64 = 1;
-/// `MATLAB_object_decode` of an object of an `@`-folder class, stored as a struct.
-const OLD_OBJECT: u64 = 2;
-/// `MATLAB_object_decode` of a `classdef` object, stored as a reference.
-const OBJECT: u64 = 3;
-
-/// MATLAB's attributes of a group or dataset.
-#[derive(Clone, Debug, PartialEq)]
-struct MatlabAttributes {
-    /// Class name (`MATLAB_class`); `None` for objects not written by MATLAB.
-    class: Option<String>,
-    /// The dataset holds the shape of an empty array (`MATLAB_empty`, `OCTAVE_EMPTY_MATRIX`).
-    empty: bool,
-    /// Number of rows of a sparse matrix (`MATLAB_sparse`).
-    sparse: Option<u64>,
-    /// Field names of a struct in order (`MATLAB_fields`).
-    fields: Vec<String>,
-    /// Encoding of the value (`MATLAB_object_decode`); 0 for a plain value.
-    decode: u64,
-}
-
-impl MatlabAttributes {
-    fn of(
-        attributes: Result<HashMap<String, AttrValue>, Error>,
-        path: &str,
-    ) -> Result<Self, VariableFault> {
-        let attributes = attributes.map_err(|error| fault(&error, path))?;
-        let number = |name| attributes.get(name).and_then(AttrValue::as_u64);
-        let class = attributes.get("MATLAB_class").and_then(AttrValue::as_str);
-        let fields = attributes
-            .get("MATLAB_fields")
-            .and_then(AttrValue::as_strings);
-        Ok(Self {
-            class: class.map(str::to_owned),
-            empty: number("MATLAB_empty").is_some_and(|empty| empty != 0)
-                || attributes.contains_key("OCTAVE_EMPTY_MATRIX"),
-            sparse: number("MATLAB_sparse"),
-            fields: fields.unwrap_or_default().to_vec(),
-            decode: number("MATLAB_object_decode").unwrap_or(0),
-        })
-    }
-
-    /// Returns the class, or an empty text.
-    fn class(&self) -> &str {
-        self.class.as_deref().unwrap_or_default()
-    }
-}
-
-// Groups: structs, struct arrays, sparse matrices and other values.
-
-/// Memory of the library for each member of a group during reading \[bytes\].
-const MEMBER: u64 = 256;
-
-/// Returns the datasets and groups in a group, sorted by name.
-fn members(
-    group: &Group,
-    path: &str,
-    budget: &ReadingBudget<'_>,
-) -> Result<Vec<(String, Object)>, VariableFault> {
-    let failed = |error| fault(&error, path);
-    let datasets = group.iter_datasets().map_err(failed)?;
-    let groups = group.iter_groups().map_err(failed)?;
-    budget.take((datasets.len() + groups.len()) as u64, MEMBER, path)?;
-    let datasets = datasets.map(|(name, dataset)| (name, Object::Dataset(Box::new(dataset))));
-    let mut members: Vec<_> = datasets
-        .chain(groups.map(|(name, group)| (name, Object::Group(group))))
-        .collect();
-    members.sort_by(|(one, _), (other, _)| one.cmp(other));
-    match members.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-        Some(pair) => Err(VariableFault::Duplicate {
-            name: within(path, &pair[0].0),
-        }),
-        None => Ok(members),
-    }
-}
-
-/// Octave stores the sides of an empty array in its place and marks this at the group that contains
-/// it.
-fn without_elements(value: &mut Value) {
-    if let Value::Array(sides) = value
-        && sides.re.contains(&0.0)
-    {
-        *sides = Array {
-            shape: sides.re.iter().rev().map(|side| *side as usize).collect(),
-            ..Array::matrix(0, 0, vec![])
-        };
-    }
-}
-
-/// Reads the value of a group.
-fn group_value(
-    reader: &Reader<'_>,
-    group: &Group,
-    path: &str,
-    depth: usize,
-) -> Result<Value, VariableFault> {
-    let marks = MatlabAttributes::of(group.attrs(), path)?;
-    let mut members = members(group, path, reader.budget)?;
-    if let Some(rows) = marks.sparse {
-        return Ok(Value::Array(sparse(
-            rows,
-            &marks,
-            &members,
-            path,
-            reader.budget,
-        )?));
-    }
-    match (marks.decode, marks.class()) {
-        (FUNCTION_HANDLE, _) | (_, "function_handle") => {
-            return Ok(Value::opaque("function_handle", "functions are not data"));
-        }
-        (OBJECT, class) => return Ok(Value::opaque(class, "enumerations are not read")),
-        _ => {}
-    }
-    // MATLAB stores the field order only if it differs from the name order.
-    reader.budget.work(
-        (members.len() as u64).saturating_mul(marks.fields.len() as u64),
-        path,
-    )?;
-    let order = |name: &str| {
-        marks
-            .fields
-            .iter()
-            .position(|field| field == name)
-            .unwrap_or(usize::MAX)
-    };
-    members.sort_by_cached_key(|(name, _)| order(name));
-    let records = if is_array(&marks, &members, path)? {
-        array(reader, &members, path, depth)?
-    } else {
-        let mut fields = Vec::with_capacity(members.len());
-        for (name, object) in members {
-            let value = reader.value(&object, &within(path, &name), depth + 1)?;
-            fields.push((name, vec![value]));
-        }
-        if marks.empty {
-            fields
-                .iter_mut()
-                .flat_map(|(_, values)| values)
-                .for_each(without_elements);
-        }
-        StructArray::one(fields)
-    };
-    Ok(match marks.decode {
-        OLD_OBJECT => Value::Object(variables::Object {
-            class: marks.class().to_owned(),
-            records,
-        }),
-        _ => Value::Struct(records),
-    })
-}
-
-/// Whether a struct has several records: its fields are references not marked as cells.
-fn is_array(
-    marks: &MatlabAttributes,
-    members: &[(String, Object)],
-    path: &str,
-) -> Result<bool, VariableFault> {
-    if marks.class.is_none() || members.is_empty() {
-        return Ok(false);
-    }
-    for (_, object) in members {
-        let Object::Dataset(dataset) = object else {
-            return Ok(false);
-        };
-        let marked = MatlabAttributes::of(dataset.attrs(), path)?.class.is_some();
-        if marked || !is_reference(&dataset.datatype().map_err(|error| fault(&error, path))?) {
-            return Ok(false);
-        }
-    }
-    Ok(true)
-}
-
-fn array(
-    reader: &Reader<'_>,
-    members: &[(String, Object)],
-    path: &str,
-    depth: usize,
-) -> Result<StructArray, VariableFault> {
-    let mut records = StructArray {
-        shape: Vec::new(),
-        fields: Vec::with_capacity(members.len()),
-    };
-    for (name, object) in members {
-        let Object::Dataset(dataset) = object else {
-            continue;
-        };
-        let shape = Elements::read(dataset, Order::Columns, path, reader.budget)?.shape;
-        if !records.fields.is_empty() && records.shape != shape {
-            return Err(damaged(
-                &within(path, name),
-                "a field has not as many values as there are records",
-            ));
-        }
-        records.shape = shape;
-        records
-            .fields
-            .push((name.clone(), values(reader, dataset, (path, name), depth)?));
-    }
-    Ok(records)
-}
-
-/// Reads the values of one field, one for each record.
-fn values(
-    reader: &Reader<'_>,
-    dataset: &Dataset,
-    (path, name): (&str, &str),
-    depth: usize,
-) -> Result<Vec<Value>, VariableFault> {
-    let objects = reader.referred(dataset, path)?;
-    let value =
-        |(index, object)| reader.value(object, &format!("{path}({}).{name}", index + 1), depth + 1);
-    objects.iter().enumerate().map(value).collect()
-}
-
-fn within(path: &str, name: &str) -> String {
-    if path.is_empty() {
-        name.to_owned()
-    } else {
-        format!("{path}.{name}")
-    }
-}
-
 #[cfg(test)]
-mod mat73_tests {
+mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::formats::mat::LongWords;
+    use crate::formats::mat73::object_part::{ObjectCells, read_cells};
+    use crate::formats::mat73::objects::Objects;
     use crate::formats::variables::{Array, CellArray, ElementKind, TextArray, Value};
 
     /// Reads all variables of a MATLAB 7.3 file or a plain HDF5 file; unreadable objects of
     /// MATLAB's classes are [`Value::Opaque`](crate::formats::variables::Value::Opaque).
     fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
-        let objects = Objects::Unread("objects of classes are not read".to_owned());
+        let objects = Objects::Unread("objects are not read".to_owned());
         Reader {
             budget,
             objects: &objects,
@@ -738,7 +296,7 @@ mod mat73_tests {
     }
 
     #[test]
-    fn the_part_in_which_objects_lie_is_read_with_whole_numbers_to_the_last_digit() {
+    fn the_object_part_is_read_with_exact_integers() {
         let budget = ReadingBudget::new(1 << 24);
         let opened = open(&file("objects.mat"), &budget).unwrap();
         let dataset = opened
@@ -746,10 +304,10 @@ mod mat73_tests {
             .group("#subsystem#")
             .and_then(|group| group.dataset("MCOS"))
             .unwrap();
-        let (cells, long_words) = values::wrapper(&dataset, &budget).unwrap();
+        let ObjectCells { cells, long_words } = read_cells(&dataset, &budget).unwrap();
         assert_eq!(cells.len(), 3);
         assert!(matches!(&cells[0], Value::Array(bytes) if bytes.re == [4.0, 0.0, 0.0, 0.0]));
-        assert_eq!(long_words, [(2, vec![u64::MAX])]);
+        assert_eq!(long_words, LongWords::from([(2, vec![u64::MAX])]));
         let variables = Reader {
             budget: &budget,
             objects: &Objects::References,
@@ -765,7 +323,7 @@ mod mat73_tests {
     }
 
     #[test]
-    fn other_variables_are_read_where_the_objects_are_damaged() {
+    fn other_variables_are_read_if_the_objects_are_damaged() {
         // The directory of this file is cut off after its version.
         let read = (HDF5.read)(
             &file("objects.mat"),
@@ -855,7 +413,7 @@ mod mat73_tests {
     }
 
     #[test]
-    fn other_variables_are_read_beside_one_of_a_newer_format() {
+    fn other_variables_are_read_beside_a_variable_in_a_newer_format() {
         let variables = read_file("hdf5_2.h5").unwrap();
         assert!(
             matches!(value(&variables, "packed"), Value::Opaque { why, .. } if why.contains("HDF5 1.14"))
@@ -864,7 +422,7 @@ mod mat73_tests {
     }
 
     #[test]
-    fn links_to_elsewhere_are_passed_over_and_names_that_are_not_utf8_refused() {
+    fn links_to_other_files_are_skipped_and_names_that_are_not_utf8_refused() {
         let variables = read_file("links.h5").unwrap();
         assert_eq!((variables.len(), value(&variables, "x")), (1, number(1.0)));
         assert!(
@@ -873,7 +431,7 @@ mod mat73_tests {
     }
 
     #[test]
-    fn values_that_contain_themselves_or_lie_too_deep_are_refused() {
+    fn values_that_contain_themselves_or_are_too_deep_are_refused() {
         for name in ["circle.mat", "circle.h5", "deep.h5"] {
             assert!(
                 matches!(read_file(name), Err(VariableFault::TooDeep { .. })),
@@ -883,7 +441,7 @@ mod mat73_tests {
     }
 
     #[test]
-    fn what_would_take_too_much_memory_is_refused() {
+    fn values_that_take_too_much_memory_are_refused() {
         for name in ["laughs.mat", "huge.mat", "huge_sparse.mat"] {
             assert!(
                 matches!(read_file(name), Err(VariableFault::TooLarge { .. })),
@@ -897,7 +455,7 @@ mod mat73_tests {
     }
 
     #[test]
-    fn what_is_no_hdf5_is_named_and_what_is_cut_off_is_said_to_be() {
+    fn other_formats_and_cut_off_files_are_refused() {
         let read = |bytes: &[u8]| read(bytes, &ReadingBudget::new(1 << 24));
         assert!(matches!(read(b""), Err(VariableFault::Format { .. })));
         assert!(matches!(
@@ -930,30 +488,5 @@ mod mat73_tests {
                 let _ = read(&bytes);
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod rationed_tests {
-    use super::*;
-
-    #[test]
-    fn a_file_can_be_read_only_so_often() {
-        let source = Rationed::new(vec![7; 1 << 20], Arc::default());
-        let mut buffer = vec![0; 1 << 20];
-        for _ in 0..32 {
-            source.read_at(0, &mut buffer).unwrap();
-        }
-        assert!(matches!(
-            source.read_at(0, &mut buffer),
-            Err(FormatError::Source(_))
-        ));
-    }
-
-    #[test]
-    fn nothing_is_read_beyond_the_end() {
-        let source = Rationed::new(vec![1, 2, 3], Arc::default());
-        assert!(source.read_at(2, &mut [0; 2]).is_err());
-        assert!(source.read_at(u64::MAX, &mut [0; 2]).is_err());
     }
 }

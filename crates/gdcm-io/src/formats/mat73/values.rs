@@ -1,19 +1,19 @@
-//! Texts: MATLAB's characters, and HDF5 strings.
+//! Values that need more than numbers: texts, empty arrays, compound records and sparse matrices.
 
-use hdf5_pure::{
-    CompoundMember, Dataset, Datatype, File, Object, StringPadding, VlenStringReadOptions,
-};
+use hdf5_pure::{CompoundMember, Dataset, Datatype, Object, StringPadding, VlenStringReadOptions};
 
-use crate::formats::mat;
-use crate::formats::mat::Subsystem;
-use crate::formats::mat73::dataset::{Elements, NumberType, Order};
-use crate::formats::mat73::{MatlabAttributes, Reader, damaged, fault};
-use crate::formats::strides::{Entries, count};
+use crate::formats::mat::text_rows;
+use crate::formats::mat73::attributes::MatlabAttributes;
+use crate::formats::mat73::dataset::{Elements, Order};
+use crate::formats::mat73::library_fault::{damaged, library_fault};
+use crate::formats::mat73::number_type::NumberType;
+use crate::formats::sparse_matrix::CompressedColumns;
+use crate::formats::strides::count;
 use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Returns the texts in the rows of an array of UTF-16 codes.
-pub(super) fn rows(
+/// Returns the rows of a character array, stored as UTF-16 codes, as texts.
+pub(super) fn character_rows(
     codes: &Array,
     path: &str,
     budget: &ReadingBudget<'_>,
@@ -24,42 +24,30 @@ pub(super) fn rows(
         .iter()
         .map(|&code| u32::from(code as u16))
         .collect();
-    mat::rows(&units, &codes.shape, path, budget)
+    text_rows(&units, &codes.shape, path, budget)
 }
 
-/// Decodes a fixed-length text without its padding.
-pub(super) fn fixed(bytes: &[u8], padding: &StringPadding) -> String {
-    let text = String::from_utf8_lossy(bytes);
-    let end = text.find('\0').unwrap_or(text.len());
-    let text = &text[..end];
-    if matches!(padding, StringPadding::SpacePad) {
-        text.trim_end_matches(' ')
-    } else {
-        text
-    }
-    .to_owned()
-}
-
-/// Reads the strings of a dataset, if it has one of HDF5's two string types.
+/// Reads the strings of a dataset, if its type is a string type of fixed or variable length.
 pub(super) fn strings(
     dataset: &Dataset,
     elements: &Elements,
     path: &str,
     budget: &ReadingBudget<'_>,
 ) -> Result<Option<TextArray>, VariableFault> {
-    budget.take(elements.count() as u64, (size_of::<String>()) as u64, path)?;
+    let count = elements.count();
+    budget.take(count as u64, size_of::<String>() as u64, path)?;
     let texts = match &elements.datatype {
         Datatype::String { padding, size, .. } => {
-            budget.take(elements.count() as u64, u64::from(*size), path)?;
+            budget.take(count as u64, u64::from(*size), path)?;
             elements
                 .places()
-                .map(|place| fixed(elements.at(place), padding))
+                .map(|place| decode_fixed_text(elements.at(place), padding))
                 .collect()
         }
         Datatype::VariableLength {
             is_string: true, ..
         } => {
-            let mut texts = variable(dataset, elements.count(), path, budget)?;
+            let mut texts = variable_strings(dataset, count, path, budget)?;
             elements
                 .places()
                 .filter_map(|place| texts.get_mut(place).map(std::mem::take))
@@ -73,7 +61,19 @@ pub(super) fn strings(
     }))
 }
 
-fn variable(
+/// Decodes a fixed-length text without its padding.
+fn decode_fixed_text(bytes: &[u8], padding: &StringPadding) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    let end = text.find('\0').unwrap_or(text.len());
+    let text = &text[..end];
+    match padding {
+        StringPadding::SpacePad => text.trim_end_matches(' ').to_owned(),
+        _ => text.to_owned(),
+    }
+}
+
+/// Reads `count` variable-length strings, in file order.
+fn variable_strings(
     dataset: &Dataset,
     count: usize,
     path: &str,
@@ -82,15 +82,17 @@ fn variable(
     if count == 0 {
         return Ok(Vec::new());
     }
-    let failed = |error| fault(&error, path);
     // Every string may refer to the same long string.
-    let length = dataset.vlen_string_payload_size().map_err(failed)?;
+    let length = dataset
+        .vlen_string_payload_size()
+        .map_err(|error| library_fault(&error, path))?;
     budget.take(length, 1, path)?;
-    let most = usize::try_from(length).unwrap_or(usize::MAX);
     let options = VlenStringReadOptions::new()
         .with_max_elements(count)
-        .with_max_payload_bytes(most);
-    let texts = dataset.read_vlen_strings(options).map_err(failed)?;
+        .with_max_payload_bytes(usize::try_from(length).unwrap_or(usize::MAX));
+    let texts = dataset
+        .read_vlen_strings(options)
+        .map_err(|error| library_fault(&error, path))?;
     if texts.len() == count {
         Ok(texts)
     } else {
@@ -98,60 +100,73 @@ fn variable(
     }
 }
 
-// Empty arrays, whose shape MATLAB stores.
-
-/// Returns the empty value for the attributes and a stored shape.
-pub(super) fn empty(
-    marks: &MatlabAttributes,
+/// Returns an empty value, whose shape is stored as elements.
+pub(super) fn empty_value(
+    attributes: &MatlabAttributes,
     elements: &Elements,
     path: &str,
     budget: &ReadingBudget<'_>,
 ) -> Result<Value, VariableFault> {
-    let wrong = || damaged(path, "the shape of an array without elements is wrong");
-    let sides = elements.words(path, budget)?.ok_or_else(wrong)?;
-    let shape: Vec<usize> = sides
-        .iter()
-        .map(|&side| usize::try_from(side).ok())
-        .collect::<Option<_>>()
-        .ok_or_else(wrong)?;
-    if shape.len() < 2 || count(&shape) != Some(0) {
-        return Err(wrong());
-    }
-    let numbers = |kind| Array {
-        shape: shape.clone(),
-        kind,
-        re: Vec::new(),
-        im: None,
+    let Some(shape) = stored_shape(elements, path, budget)? else {
+        return Err(damaged(path, "the shape of an empty array is wrong"));
     };
-    Ok(match marks.class() {
+    if shape.len() < 2 || count(&shape) != Some(0) {
+        return Err(damaged(path, "the shape of an empty array is wrong"));
+    }
+    Ok(match attributes.class_name() {
         "cell" => Value::Cell(CellArray {
             shape,
             values: Vec::new(),
         }),
         "struct" => {
-            let fields = marks
+            let fields = attributes
                 .fields
                 .iter()
                 .map(|name| (name.clone(), Vec::new()))
                 .collect();
             Value::Struct(StructArray { shape, fields })
         }
-        "char" => Value::Text(rows(&numbers(ElementKind::Integer), path, budget)?),
+        "char" => {
+            let codes = empty_array(shape, ElementKind::Integer);
+            Value::Text(character_rows(&codes, path, budget)?)
+        }
         // GNU Octave writes no class here.
-        "double" | "single" | "" => Value::Array(numbers(ElementKind::Float)),
-        "logical" => Value::Array(numbers(ElementKind::Logical)),
+        "double" | "single" | "" => Value::Array(empty_array(shape, ElementKind::Float)),
+        "logical" => Value::Array(empty_array(shape, ElementKind::Logical)),
         "int8" | "int16" | "int32" | "int64" | "uint8" | "uint16" | "uint32" | "uint64" => {
-            Value::Array(numbers(ElementKind::Integer))
+            Value::Array(empty_array(shape, ElementKind::Integer))
         }
         class => Value::opaque(class, "it is empty"),
     })
 }
 
-// HDF5 compound types.
+/// Returns the elements as side lengths; `None` if they are no 64-bit integers or too long.
+fn stored_shape(
+    elements: &Elements,
+    path: &str,
+    budget: &ReadingBudget<'_>,
+) -> Result<Option<Vec<usize>>, VariableFault> {
+    let Some(sides) = elements.words(path, budget)? else {
+        return Ok(None);
+    };
+    Ok(sides
+        .iter()
+        .map(|&side| usize::try_from(side).ok())
+        .collect())
+}
 
-/// Returns a record for each element, if the type is compound: numbers, fixed-length texts, and the
-/// names of other members.
-pub(super) fn records(
+fn empty_array(shape: Vec<usize>, kind: ElementKind) -> Array {
+    Array {
+        shape,
+        kind,
+        re: Vec::new(),
+        im: None,
+    }
+}
+
+/// Returns a record for each element of a compound type: numbers, fixed-length texts, and opaque
+/// values for other members. Returns `None` for other types.
+pub(super) fn compound_records(
     elements: &Elements,
     path: &str,
     budget: &ReadingBudget<'_>,
@@ -162,15 +177,13 @@ pub(super) fn records(
     let mut fields = Vec::with_capacity(members.len());
     for member in members {
         // A value, its shape and its single number.
-        budget.take(
-            elements.count() as u64,
-            size_of::<Value>() as u64 + 24,
-            path,
-        )?;
-        let values = elements
-            .places()
-            .map(|place| value(member, elements.at(place), path, budget));
-        fields.push((member.name.clone(), values.collect::<Result<_, _>>()?));
+        let size = size_of::<Value>() as u64 + 24;
+        budget.take(elements.count() as u64, size, path)?;
+        let mut values = Vec::new();
+        for place in elements.places() {
+            values.push(member_value(member, elements.at(place), path, budget)?);
+        }
+        fields.push((member.name.clone(), values));
     }
     Ok(Some(StructArray {
         shape: elements.shape.clone(),
@@ -178,7 +191,8 @@ pub(super) fn records(
     }))
 }
 
-fn value(
+/// Decodes a member of a compound record.
+fn member_value(
     member: &CompoundMember,
     record: &[u8],
     path: &str,
@@ -186,176 +200,110 @@ fn value(
 ) -> Result<Value, VariableFault> {
     let offset = usize::try_from(member.byte_offset).unwrap_or(usize::MAX);
     let bytes = record.get(offset..).unwrap_or_default();
-    if let Some(numbers) = NumberType::of(&member.datatype) {
-        let part = |offset: usize| {
-            vec![
-                numbers
-                    .number
-                    .decode(bytes.get(offset..).unwrap_or_default()),
-            ]
-        };
-        let re = part(numbers.re);
-        let im = numbers.im.map(part);
+    if let Some(number_type) = NumberType::from_datatype(&member.datatype) {
         return Ok(Value::Array(Array {
             shape: vec![1, 1],
-            kind: numbers.number.kind(),
-            re,
-            im,
+            kind: number_type.number.kind(),
+            re: vec![number_type.real_part(bytes)],
+            im: number_type.imaginary_part(bytes).map(|im| vec![im]),
         }));
     }
     if let Datatype::String { size, padding, .. } = &member.datatype {
         let bytes = &bytes[..bytes.len().min(*size as usize)];
         budget.take(bytes.len() as u64, 1, path)?;
-        return Ok(Value::text(fixed(bytes, padding)));
+        return Ok(Value::text(decode_fixed_text(bytes, padding)));
     }
     Ok(Value::opaque(
         "a field of a record",
-        "it is neither a number nor a text of fixed length",
+        "it is neither a number nor a text with a fixed length",
     ))
 }
 
-// Sparse matrices (`MATLAB_sparse`), in compressed columns.
+/// A group with a sparse matrix in compressed columns (`MATLAB_sparse`).
+pub(super) struct SparseGroup<'g> {
+    pub(super) height: u64,
+    pub(super) is_logical: bool,
+    /// Members of the group by name: row indices `ir`, column starts `jc` and numbers `data`.
+    pub(super) members: &'g [(String, Object)],
+    pub(super) path: &'g str,
+    pub(super) budget: &'g ReadingBudget<'g>,
+}
 
-/// Returns the full matrix of a group's members.
-pub(super) fn sparse(
-    height: u64,
-    marks: &MatlabAttributes,
-    members: &[(String, Object)],
-    path: &str,
-    budget: &ReadingBudget<'_>,
-) -> Result<Array, VariableFault> {
-    let wrong = || damaged(path, "the sparse matrix contradicts itself");
-    let member = |name: &str| {
-        let found = members.iter().find(|(member, _)| member == name);
-        let Some((_, Object::Dataset(dataset))) = found else {
+impl SparseGroup<'_> {
+    /// Returns the full matrix.
+    pub(super) fn full_matrix(&self) -> Result<Array, VariableFault> {
+        let starts = self.integers("jc")?.ok_or_else(|| self.contradiction())?;
+        let rows = self.integers("ir")?.unwrap_or_default();
+        let data = self.data()?;
+        let height = usize::try_from(self.height).map_err(|_| self.contradiction())?;
+        let width = starts
+            .len()
+            .checked_sub(1)
+            .ok_or_else(|| self.contradiction())?;
+        let kind = if self.is_logical {
+            ElementKind::Logical
+        } else {
+            data.kind
+        };
+        self.budget.take(rows.len() as u64, 8, self.path)?;
+        let columns = CompressedColumns {
+            shape: [height, width],
+            kind,
+            rows,
+            starts,
+            re: data.re,
+            im: data.im,
+        };
+        columns
+            .into_entries()
+            .ok_or_else(|| self.contradiction())?
+            .full_matrix(self.path, self.budget, || self.contradiction())
+    }
+
+    /// Reads the nonzero numbers; their dataset is absent if there are none.
+    fn data(&self) -> Result<Array, VariableFault> {
+        let Some(elements) = self.member("data")? else {
+            return Ok(Array::matrix(0, 0, Vec::new()));
+        };
+        match elements.numbers(self.path, self.budget)? {
+            Some(numbers) => Ok(numbers),
+            None => Err(damaged(
+                self.path,
+                "the elements of a sparse matrix are no numbers",
+            )),
+        }
+    }
+
+    /// Reads the integers of a member, if the group has it.
+    fn integers(&self, name: &str) -> Result<Option<Vec<usize>>, VariableFault> {
+        let Some(elements) = self.member(name)? else {
             return Ok(None);
         };
-        Elements::read(dataset, Order::Columns, path, budget).map(Some)
-    };
-    let places = |name: &str| -> Result<Option<Vec<usize>>, VariableFault> {
-        let Some(elements) = member(name)? else {
-            return Ok(None);
+        let Some(words) = elements.words(self.path, self.budget)? else {
+            return Err(damaged(
+                self.path,
+                "the indices of a sparse matrix are no integers",
+            ));
         };
-        let words = elements.words(path, budget)?;
-        let words = words
-            .ok_or_else(|| damaged(path, "the places of a sparse matrix are no whole numbers"))?;
         Ok(Some(
             words
                 .into_iter()
                 .map(|word| usize::try_from(word).unwrap_or(usize::MAX))
                 .collect(),
         ))
-    };
-    let starts = places("jc")?.ok_or_else(wrong)?;
-    let rows = places("ir")?.unwrap_or_default();
-    // The dataset is absent if there are no nonzero numbers.
-    let data = match member("data")? {
-        None => Array::matrix(0, 0, Vec::new()),
-        Some(elements) => elements
-            .numbers(path, budget)?
-            .ok_or_else(|| damaged(path, "the elements of a sparse matrix are no numbers"))?,
-    };
-    let shape = [
-        usize::try_from(height).map_err(|_| wrong())?,
-        starts.len().checked_sub(1).ok_or_else(wrong)?,
-    ];
-    let kind = if marks.class() == "logical" {
-        ElementKind::Logical
-    } else {
-        data.kind
-    };
-    budget.take(rows.len() as u64, 8, path)?;
-    let entries =
-        Entries::of_columns(shape, kind, rows, &starts, (data.re, data.im)).ok_or_else(wrong)?;
-    entries.filled(path, budget, wrong)
-}
-
-// Objects of MATLAB's classes, in a separate part of the file (`#subsystem#/MCOS`), as in files of
-// earlier versions.
-
-/// Treatment of references to objects.
-pub(super) enum Objects {
-    /// References remain integers, within the object part itself.
-    References,
-    /// Objects cannot be read, with the reason.
-    Unread(String),
-    /// References are resolved.
-    Read(Subsystem),
-}
-
-impl Objects {
-    /// Reads the object part, if there is one.
-    pub(super) fn read(file: &File, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
-        let Ok(dataset) = file
-            .root()
-            .group("#subsystem#")
-            .and_then(|group| group.dataset("MCOS"))
-        else {
-            return Ok(Self::Unread(
-                "the file has no part in which objects lie".to_owned(),
-            ));
-        };
-        let subsystem = wrapper(&dataset, budget).and_then(|(cells, long_words)| {
-            Ok(Subsystem::new(cells, budget)?.with_long_words(long_words))
-        });
-        match subsystem {
-            Ok(subsystem) => Ok(Self::Read(subsystem)),
-            Err(fault) if fault.is_of_the_budget() => Err(fault),
-            // The other variables remain readable.
-            Err(fault) => Ok(Self::Unread(fault.to_string())),
-        }
     }
 
-    /// Returns the value of a reference with a class.
-    pub(super) fn value(
-        &self,
-        class: &str,
-        reference: Array,
-        path: &str,
-        budget: &ReadingBudget<'_>,
-    ) -> Result<Value, VariableFault> {
-        let opaque = |why: &str| Ok(Value::opaque(class, why));
-        match self {
-            Self::References => Ok(Value::Array(reference)),
-            Self::Unread(why) => opaque(why),
-            Self::Read(subsystem) => {
-                let word = |&number: &f64| {
-                    (0.0..=f64::from(u32::MAX))
-                        .contains(&number)
-                        .then_some(number as u32)
-                };
-                match reference.re.iter().map(word).collect::<Option<Vec<u32>>>() {
-                    Some(words) => subsystem.object(&words, path, budget),
-                    None => opaque("what refers to it is damaged"),
-                }
+    fn member(&self, name: &str) -> Result<Option<Elements>, VariableFault> {
+        let found = self.members.iter().find(|(member, _)| member == name);
+        match found {
+            Some((_, Object::Dataset(dataset))) => {
+                Elements::read(dataset, Order::Columns, self.path, self.budget).map(Some)
             }
+            _ => Ok(None),
         }
     }
-}
 
-/// The cells of the objects, and the exact 64-bit integers of cells.
-pub(super) type Wrapper = (Vec<Value>, Vec<(usize, Vec<u64>)>);
-
-/// Reads the cells of the objects, the first of which holds the bytes of their directory, and the
-/// exact 64-bit integers of cells, each with the index of its cell, counted from 0.
-pub(super) fn wrapper(
-    dataset: &Dataset,
-    budget: &ReadingBudget<'_>,
-) -> Result<Wrapper, VariableFault> {
-    let reader = Reader {
-        budget,
-        objects: &Objects::References,
-    };
-    let mut cells = Vec::new();
-    let mut long_words = Vec::new();
-    for (index, object) in reader.referred(dataset, "")?.iter().enumerate() {
-        if let Object::Dataset(dataset) = object
-            && dataset.element_size().map_err(|error| fault(&error, ""))? == 8
-        {
-            let words = Elements::read(dataset, Order::Columns, "", budget)?.words("", budget)?;
-            long_words.extend(words.map(|words| (index, words)));
-        }
-        cells.push(reader.value(object, "", 0)?);
+    fn contradiction(&self) -> VariableFault {
+        damaged(self.path, "the sparse matrix contradicts itself")
     }
-    Ok((cells, long_words))
 }

@@ -1,30 +1,21 @@
 //! GNU Octave's `save -binary`: after "Octave-1-L" or "Octave-1-B", values with the lengths of
 //! their names and parts.
 
-use super::{Element, Form, Parts, Sides, rows, texts_in_pages, value};
-use crate::formats::strides::{Entries, NumberClass, StoredNumber};
+use crate::formats::octave::assembly::{
+    Parts, Sides, ValueHeading, read_value, text_rows, texts_in_pages,
+};
+use crate::formats::octave::form::{Element, Form, NumberParts, StorageType};
+use crate::formats::sparse_matrix::{CompressedColumns, SparseEntries};
+use crate::formats::strides::{NumberClass, StoredNumber};
 use crate::formats::variables::{TextArray, Value, Variable};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Signature before the letter of the byte order.
 const MAGIC: &[u8] = b"Octave-1-";
-/// Length of the header: signature, byte order and float format \[bytes\].
+/// Header length: signature, byte order and float format \[bytes\].
 const HEADER: usize = MAGIC.len() + 2;
-/// Storage types of floats, by the preceding byte.
-const FLOATS: [(NumberClass, usize); 10] = [
-    (NumberClass::Unsigned, 1),
-    (NumberClass::Unsigned, 2),
-    (NumberClass::Unsigned, 4),
-    (NumberClass::Signed, 1),
-    (NumberClass::Signed, 2),
-    (NumberClass::Signed, 4),
-    (NumberClass::Float, 4),
-    (NumberClass::Float, 8),
-    (NumberClass::Unsigned, 8),
-    (NumberClass::Signed, 8),
-];
-/// Marks a named type.
+/// Marks a type with a name.
 const NAMED_TYPE: u8 = 0xff;
 
 /// Files written by `save -binary`.
@@ -32,63 +23,61 @@ pub(crate) const OCTAVE_BINARY: Importer = Importer {
     name: "a file of GNU Octave, as it writes with -binary",
     endings: &["bin", "mat"],
     recognises: |bytes, _| bytes.starts_with(MAGIC),
-    read: |bytes, path, budget| {
-        let big_endian = bytes.get(MAGIC.len()) == Some(&b'B');
-        let mut bytes = Bytes {
-            bytes,
-            at: HEADER,
-            big_endian,
-            budget,
-        };
-        Contents::variables(variables(&mut bytes), path)
-    },
+    read: |bytes, path, budget| Contents::variables(read_variables(bytes, budget), path),
 };
 
-fn variables(bytes: &mut Bytes<'_>) -> Result<Vec<Variable>, VariableFault> {
+/// Reads the variables, up to a variable with an unknown type.
+fn read_variables(
+    bytes: &[u8],
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<Variable>, VariableFault> {
+    let mut reader = BinaryReader {
+        bytes,
+        at: HEADER,
+        big_endian: bytes.get(MAGIC.len()) == Some(&b'B'),
+        budget,
+    };
     let mut variables = Vec::new();
-    while bytes.at < bytes.bytes.len() {
-        bytes.budget.take(1, size_of::<Variable>() as u64, "")?;
-        let (name, kind) = bytes.member("")?;
-        match value(bytes, &kind, &name, 0) {
-            // The value has no length, so the following values cannot be found.
+    while reader.at < bytes.len() {
+        budget.take(1, size_of::<Variable>() as u64, "")?;
+        let ValueHeading { name, type_name } = reader.heading("")?;
+        match read_value(&mut reader, &type_name, &name) {
+            Ok(value) => variables.push(Variable { name, value }),
             Err(VariableFault::Unsupported { what, remedy, .. }) => {
-                let why = format!("neither it nor what stands behind it can be read; {remedy}");
-                variables.push(Variable {
-                    name,
-                    value: Value::opaque(what, why),
-                });
+                // The value has no length, so the following values cannot be found.
+                let why = format!("this value and all later values cannot be read; {remedy}");
+                let value = Value::opaque(what, why);
+                variables.push(Variable { name, value });
                 break;
             }
-            value => variables.push(Variable {
-                name,
-                value: value?,
-            }),
+            Err(fault) => return Err(fault),
         }
     }
     Ok(variables)
 }
 
-/// A file during reading.
-struct Bytes<'b> {
+/// A file while it is read.
+struct BinaryReader<'b> {
     bytes: &'b [u8],
+    /// Position of the next byte.
     at: usize,
     big_endian: bool,
     budget: &'b ReadingBudget<'b>,
 }
 
-impl<'b> Bytes<'b> {
-    fn next(&mut self, count: usize, variable: &str) -> Result<&'b [u8], VariableFault> {
+impl<'b> BinaryReader<'b> {
+    /// Takes the next `count` bytes.
+    fn take(&mut self, count: usize, variable: &str) -> Result<&'b [u8], VariableFault> {
         let end = self.at.saturating_add(count);
-        let found = self
-            .bytes
-            .get(self.at..end)
-            .ok_or_else(|| VariableFault::cut_off(variable, self.bytes.len()))?;
+        let Some(found) = self.bytes.get(self.at..end) else {
+            return Err(VariableFault::cut_off(variable, self.bytes.len()));
+        };
         self.at = end;
         Ok(found)
     }
 
     fn int(&mut self, variable: &str) -> Result<i32, VariableFault> {
-        let bytes = self.next(4, variable)?.try_into().unwrap_or_default();
+        let bytes = self.take(4, variable)?.try_into().unwrap_or_default();
         Ok(if self.big_endian {
             i32::from_be_bytes(bytes)
         } else {
@@ -98,63 +87,94 @@ impl<'b> Bytes<'b> {
 
     fn length(&mut self, variable: &str) -> Result<usize, VariableFault> {
         let length = self.int(variable)?;
-        usize::try_from(length).map_err(|_| self.wrong(variable, "a length is below zero"))
+        usize::try_from(length).map_err(|_| self.fault(variable, "a length is below zero"))
+    }
+
+    /// Reads `count` lengths or indices.
+    fn lengths(&mut self, count: usize, variable: &str) -> Result<Vec<usize>, VariableFault> {
+        let mut lengths = Vec::new();
+        for _ in 0..count {
+            lengths.push(self.length(variable)?);
+        }
+        Ok(lengths)
     }
 
     fn string(&mut self, variable: &str) -> Result<String, VariableFault> {
         let length = self.length(variable)?;
-        Ok(String::from_utf8_lossy(self.next(length, variable)?).into_owned())
+        Ok(String::from_utf8_lossy(self.take(length, variable)?).into_owned())
     }
 
     /// Returns the stored number type: floats may be stored as integers or shorter floats if
     /// nothing is lost.
-    fn stored(&mut self, element: Element, variable: &str) -> Result<StoredNumber, VariableFault> {
-        let unknown = |bytes: &Self| bytes.wrong(variable, "numbers are of an unknown kind");
-        let stored = match element.stored {
-            None => FLOATS.get(usize::from(self.next(1, variable)?[0])).copied(),
-            stored => stored,
+    fn number_type(
+        &mut self,
+        element: Element,
+        variable: &str,
+    ) -> Result<StoredNumber, VariableFault> {
+        let storage = match element.storage {
+            Some(storage) => Some(storage),
+            None => float_storage(self.take(1, variable)?[0]),
         };
-        let (class, size) = stored.ok_or_else(|| unknown(self))?;
-        StoredNumber::new(class, size, self.big_endian).ok_or_else(|| unknown(self))
+        storage
+            .and_then(|storage| StoredNumber::new(storage.class, storage.size, self.big_endian))
+            .ok_or_else(|| self.fault(variable, "the number type is unknown"))
     }
 }
 
-impl Parts for Bytes<'_> {
+/// Returns the storage type for floats, given the byte before the numbers.
+fn float_storage(code: u8) -> Option<StorageType> {
+    let (class, size) = match code {
+        0 => (NumberClass::Unsigned, 1),
+        1 => (NumberClass::Unsigned, 2),
+        2 => (NumberClass::Unsigned, 4),
+        3 => (NumberClass::Signed, 1),
+        4 => (NumberClass::Signed, 2),
+        5 => (NumberClass::Signed, 4),
+        6 => (NumberClass::Float, 4),
+        7 => (NumberClass::Float, 8),
+        8 => (NumberClass::Unsigned, 8),
+        9 => (NumberClass::Signed, 8),
+        _ => return None,
+    };
+    Some(StorageType { class, size })
+}
+
+impl Parts for BinaryReader<'_> {
     fn budget(&self) -> &ReadingBudget<'_> {
         self.budget
     }
 
-    fn member(&mut self, variable: &str) -> Result<(String, String), VariableFault> {
+    fn heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault> {
         let name = self.string(variable)?;
-        let _doc = self.string(variable)?;
-        // Flag of a global variable.
-        self.next(1, variable)?;
-        if self.next(1, variable)? != [NAMED_TYPE] {
-            return Err(self.wrong(&name, "the type of the value has no name"));
+        let _documentation = self.string(variable)?;
+        let _is_global = self.take(1, variable)?;
+        if self.take(1, variable)? != [NAMED_TYPE] {
+            return Err(self.fault(&name, "the type of the value has no name"));
         }
-        Ok((name, self.string(variable)?))
+        Ok(ValueHeading {
+            name,
+            type_name: self.string(variable)?,
+        })
     }
 
     fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault> {
-        let count = self.int(variable)?;
-        // Some matrices store two sides without the number of dimensions.
-        let shape = match usize::try_from(count) {
+        // A negative dimension count precedes the sides; some matrices store two sides without it.
+        let first = self.int(variable)?;
+        let shape = match usize::try_from(first) {
             Ok(rows) => vec![rows, self.length(variable)?],
             Err(_) => {
-                let count = count.unsigned_abs() as usize;
+                let count = first.unsigned_abs() as usize;
                 self.budget.take(count as u64, 8, variable)?;
-                (0..count)
-                    .map(|_| self.length(variable))
-                    .collect::<Result<_, _>>()?
+                self.lengths(count, variable)?
             }
         };
-        match shape.len() {
-            0 | 1 => Err(self.wrong(variable, "an array has fewer than two dimensions")),
-            _ => Ok(Sides {
-                shape,
-                by_rows: false,
-            }),
+        if shape.len() < 2 {
+            return Err(self.fault(variable, "an array has fewer than two dimensions"));
         }
+        Ok(Sides {
+            shape,
+            by_rows: false,
+        })
     }
 
     fn numbers(
@@ -163,33 +183,34 @@ impl Parts for Bytes<'_> {
         count: usize,
         variable: &str,
     ) -> Result<Vec<f64>, VariableFault> {
-        let stored = self.stored(element, variable)?;
-        let count = if element.complex {
+        let number_type = self.number_type(element, variable)?;
+        let count = if element.is_complex {
             count.saturating_mul(2)
         } else {
             count
         };
-        let bytes = self.next(count.saturating_mul(stored.size()), variable)?;
-        Ok(bytes
-            .chunks(stored.size())
-            .map(|number| stored.decode(number))
-            .collect())
+        let bytes = self.take(count.saturating_mul(number_type.size()), variable)?;
+        Ok(number_type.decode_all(bytes))
     }
 
-    fn sparse(&mut self, element: Element, variable: &str) -> Result<Entries, VariableFault> {
+    fn sparse(&mut self, element: Element, variable: &str) -> Result<SparseEntries, VariableFault> {
         let shape = self.sides(variable)?.shape;
         let count = self.length(variable)?;
-        let starts = (0..=shape[1])
-            .map(|_| self.length(variable))
-            .collect::<Result<Vec<_>, _>>()?;
-        let rows = (0..count)
-            .map(|_| self.length(variable))
-            .collect::<Result<Vec<_>, _>>()?;
-        let numbers = element.parts(self.numbers(element, count, variable)?);
+        let starts = self.lengths(shape[1].saturating_add(1), variable)?;
+        let rows = self.lengths(count, variable)?;
+        let NumberParts { re, im } = element.parts(self.numbers(element, count, variable)?);
         self.budget.take(count as u64, 8, variable)?;
-        let stored =
-            Entries::of_columns([shape[0], shape[1]], element.kind(), rows, &starts, numbers);
-        stored.ok_or_else(|| self.wrong(variable, "the sparse matrix contradicts itself"))
+        let columns = CompressedColumns {
+            shape: [shape[0], shape[1]],
+            kind: element.kind(),
+            rows,
+            starts,
+            re,
+            im,
+        };
+        columns
+            .into_entries()
+            .ok_or_else(|| self.fault(variable, "the sparse matrix contradicts itself"))
     }
 
     fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault> {
@@ -197,16 +218,14 @@ impl Parts for Bytes<'_> {
         let &[height, columns] = shape.as_slice() else {
             return Err(texts_in_pages(variable));
         };
-        let letters = self.next(height.saturating_mul(columns), variable)?;
-        self.budget.take(
-            if letters.is_empty() { 0 } else { height as u64 },
-            size_of::<String>() as u64,
-            variable,
-        )?;
-        Ok(rows(letters, height))
+        let letters = self.take(height.saturating_mul(columns), variable)?;
+        let texts = if letters.is_empty() { 0 } else { height as u64 };
+        self.budget
+            .take(texts, size_of::<String>() as u64, variable)?;
+        Ok(text_rows(letters, height))
     }
 
-    fn members(&mut self, _: Form, variable: &str) -> Result<usize, VariableFault> {
+    fn field_count(&mut self, _: Form, variable: &str) -> Result<usize, VariableFault> {
         self.length(variable)
     }
 
@@ -214,7 +233,7 @@ impl Parts for Bytes<'_> {
         self.string(variable)
     }
 
-    fn wrong(&self, variable: &str, what: &str) -> VariableFault {
+    fn fault(&self, variable: &str, what: &str) -> VariableFault {
         VariableFault::damaged(variable, what, self.at as u64)
     }
 }

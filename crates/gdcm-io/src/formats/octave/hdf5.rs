@@ -1,102 +1,114 @@
 //! GNU Octave's `save -hdf5`: each value is a group with its type and parts.
 //!
-//! The container is read as any HDF5 file, with groups as structs, which are converted here to the
+//! The container is read as any HDF5 file, with groups as structs; here they are converted to the
 //! values they represent. Arrays are stored by columns, with their sides reversed.
 
-use super::{Form, rows};
-use crate::formats::strides::{Entries, Places, count};
+use crate::formats::octave::assembly::{Range, text_rows};
+use crate::formats::octave::form::Form;
+use crate::formats::sparse_matrix::CompressedColumns;
+use crate::formats::strides::{Places, count};
 use crate::formats::variables::{
     Array, CellArray, ElementKind, Object, StructArray, TextArray, Value, Variable,
 };
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Converts the values of a file written by Octave; returns the values of other files unchanged.
-pub(crate) fn unwrapped(
+/// Fault in a field of a struct array.
+const FIELD_LENGTH: &str = "the value count of a field differs from the record count";
+
+/// Converts the groups of a file written by Octave to values; returns the values of other files
+/// unchanged.
+pub(crate) fn convert_hdf5_groups(
     variables: Vec<Variable>,
     budget: &ReadingBudget<'_>,
 ) -> Result<Vec<Variable>, VariableFault> {
-    if variables.is_empty()
-        || !variables
-            .iter()
-            .all(|variable| typed(&variable.value).is_some())
-    {
+    let is_from_octave = variables
+        .iter()
+        .all(|variable| OctaveGroup::from_value(&variable.value).is_some());
+    if !is_from_octave {
         return Ok(variables);
     }
-    let value = |variable: Variable| {
-        let value = decoded(&variable.value, &variable.name, budget)?;
-        Ok(Variable {
-            name: variable.name,
-            value,
-        })
-    };
-    variables.into_iter().map(value).collect()
+    let mut converted = Vec::new();
+    for Variable { name, value } in variables {
+        let value = convert_group(&value, &name, budget)?;
+        converted.push(Variable { name, value });
+    }
+    Ok(converted)
 }
 
-/// Returns the type of a group, and its parts.
-fn typed(value: &Value) -> Option<(&str, &Value)> {
-    let Value::Struct(records) = value else {
-        return None;
-    };
-    let [(first, kind), (second, value)] = records.fields.as_slice() else {
-        return None;
-    };
-    match (kind.as_slice(), value.as_slice()) {
-        ([Value::Text(kind)], [value]) if first == "type" && second == "value" => {
-            Some((kind.texts.first()?, value))
+/// A group with a value: members `type` and `value`.
+struct OctaveGroup<'v> {
+    type_name: &'v str,
+    value: &'v Value,
+}
+
+impl<'v> OctaveGroup<'v> {
+    /// Returns type and value, if the group has exactly these members.
+    fn from_value(value: &'v Value) -> Option<Self> {
+        let Value::Struct(records) = value else {
+            return None;
+        };
+        let [(first, kinds), (second, values)] = records.fields.as_slice() else {
+            return None;
+        };
+        if first != "type" || second != "value" {
+            return None;
         }
-        _ => None,
+        match (kinds.as_slice(), values.as_slice()) {
+            ([Value::Text(kind)], [value]) => Some(Self {
+                type_name: kind.texts.first()?,
+                value,
+            }),
+            _ => None,
+        }
     }
 }
 
-fn decoded(
+/// Converts a group to its value; `variable` is the name in faults.
+fn convert_group(
     group: &Value,
     variable: &str,
     budget: &ReadingBudget<'_>,
 ) -> Result<Value, VariableFault> {
-    let Some((kind, value)) = typed(group) else {
+    let Some(OctaveGroup { type_name, value }) = OctaveGroup::from_value(group) else {
         return Err(damaged(variable, "a group has no type and no value"));
     };
     budget.take(1, size_of::<Value>() as u64, variable)?;
-    Ok(match (Form::of(kind), value) {
-        (Some(Form::Text), Value::Array(codes)) => {
-            Value::Text(texts(&turned(codes, variable, budget)?))
+    let Some(form) = Form::from_type_name(type_name) else {
+        return Ok(unknown_value(type_name));
+    };
+    Ok(match (form, value) {
+        (Form::Scalar(_) | Form::Matrix(_) | Form::Diagonal(_), Value::Array(array)) => {
+            Value::Array(with_reversed_sides(array, variable, budget)?)
         }
-        (Some(Form::Range), Value::Struct(parts)) => Value::Array(range(parts, variable, budget)?),
-        (Some(Form::Cell), Value::Struct(parts)) => Value::Cell(cell(parts, variable, budget)?),
-        (Some(Form::Cell), Value::Array(empty)) => Value::Cell(CellArray {
+        (Form::Text, Value::Array(codes)) => {
+            Value::Text(texts(&with_reversed_sides(codes, variable, budget)?))
+        }
+        (Form::Cell, Value::Array(empty)) => Value::Cell(CellArray {
             shape: empty.shape.clone(),
             values: Vec::new(),
         }),
-        (Some(Form::Sparse(_)), Value::Struct(parts)) => {
-            Value::Array(sparse(parts, variable, budget)?)
-        }
-        (Some(Form::Struct | Form::Structs), Value::Struct(parts)) => Value::Struct(records(
-            parts,
-            Form::of(kind) == Some(Form::Structs),
-            variable,
-            budget,
-        )?),
-        (Some(Form::Class), Value::Struct(parts)) => {
-            let class = parts.field("classname").and_then(<[Value]>::first);
-            let Some(Value::Text(class)) = class else {
-                return Err(damaged(variable, "an object has no class"));
+        (form, Value::Struct(parts)) => {
+            let parts = GroupParts {
+                parts,
+                variable,
+                budget,
             };
-            let class = class.texts.first().cloned().unwrap_or_default();
-            // The fields are in a separate group beside the class name.
-            let Some(Value::Struct(fields)) = parts.field("value").and_then(<[Value]>::first)
-            else {
-                return Err(damaged(variable, "an object has no fields"));
-            };
-            Value::Object(Object {
-                class,
-                records: records(fields, true, variable, budget)?,
-            })
+            match form {
+                Form::Range => Value::Array(parts.range()?),
+                Form::Cell => Value::Cell(parts.cell()?),
+                Form::Sparse(_) => Value::Array(parts.sparse()?),
+                Form::ScalarStruct => Value::Struct(parts.records(false)?),
+                Form::StructArray => Value::Struct(parts.records(true)?),
+                Form::Class => Value::Object(parts.object()?),
+                _ => unknown_value(type_name),
+            }
         }
-        (Some(Form::Scalar(_) | Form::Matrix(_) | Form::Diagonal(_)), Value::Array(array)) => {
-            Value::Array(turned(array, variable, budget)?)
-        }
-        _ => Value::opaque(format!("a {kind} of GNU Octave"), "save it with -v7"),
+        _ => unknown_value(type_name),
     })
+}
+
+fn unknown_value(type_name: &str) -> Value {
+    Value::opaque(format!("a {type_name} of GNU Octave"), "save it with -v7")
 }
 
 fn damaged(variable: &str, what: &str) -> VariableFault {
@@ -104,165 +116,188 @@ fn damaged(variable: &str, what: &str) -> VariableFault {
 }
 
 /// Returns the array with its sides reversed.
-fn turned(
+fn with_reversed_sides(
     array: &Array,
     variable: &str,
     budget: &ReadingBudget<'_>,
 ) -> Result<Array, VariableFault> {
     budget.take(array.len() as u64, 16, variable)?;
     let Some(places) = Places::row_major(&array.shape) else {
-        return Err(damaged(
-            variable,
-            "there are more elements than can be counted",
-        ));
+        return Err(damaged(variable, "the element count overflows"));
     };
-    // Each element moves to its position in the file.
     let places: Vec<usize> = places.collect();
-    let part = |values: &Vec<f64>| {
-        let mut part = vec![0.0; values.len()];
-        places
-            .iter()
-            .zip(values)
-            .for_each(|(place, value)| part[*place] = *value);
-        part
-    };
-    let shape = array.shape.iter().rev().copied().collect();
     Ok(Array {
-        shape,
+        shape: array.shape.iter().rev().copied().collect(),
         kind: array.kind,
-        re: part(&array.re),
-        im: array.im.as_ref().map(part),
+        re: in_file_order(&array.re, &places),
+        im: array.im.as_ref().map(|im| in_file_order(im, &places)),
     })
 }
 
-/// Returns the texts in the rows of a byte array.
+/// Moves each value to its position in the file.
+fn in_file_order(values: &[f64], places: &[usize]) -> Vec<f64> {
+    let mut moved = vec![0.0; values.len()];
+    for (&place, &value) in places.iter().zip(values) {
+        moved[place] = value;
+    }
+    moved
+}
+
+/// Returns the rows of a byte array as texts.
 fn texts(codes: &Array) -> TextArray {
-    let letters: Vec<u8> = codes.re.iter().map(|code| *code as i64 as u8).collect();
-    rows(&letters, codes.shape.first().copied().unwrap_or(0))
+    let letters: Vec<u8> = codes.re.iter().map(|&code| code as i64 as u8).collect();
+    text_rows(&letters, codes.shape.first().copied().unwrap_or(0))
 }
 
-fn number(parts: &StructArray, name: &str) -> Option<f64> {
-    match parts.field(name)?.first()? {
-        Value::Array(array) => array.re.first().copied(),
-        _ => None,
-    }
+/// Parts of a value, the members of its group.
+struct GroupParts<'v> {
+    parts: &'v StructArray,
+    /// Name of the value in faults.
+    variable: &'v str,
+    budget: &'v ReadingBudget<'v>,
 }
 
-fn numbers<'p>(parts: &'p StructArray, name: &str) -> &'p [f64] {
-    match parts.field(name).and_then(<[Value]>::first) {
-        Some(Value::Array(array)) => &array.re,
-        _ => &[],
-    }
-}
-
-fn range(
-    parts: &StructArray,
-    variable: &str,
-    budget: &ReadingBudget<'_>,
-) -> Result<Array, VariableFault> {
-    let part = |name: &str| {
-        number(parts, name).ok_or_else(|| damaged(variable, "a range has no base, limit and step"))
-    };
-    super::steps(
-        [part("base")?, part("limit")?, part("increment")?],
-        variable,
-        budget,
-    )
-}
-
-fn cell(
-    parts: &StructArray,
-    variable: &str,
-    budget: &ReadingBudget<'_>,
-) -> Result<CellArray, VariableFault> {
-    let shape: Vec<usize> = numbers(parts, "dims")
-        .iter()
-        .rev()
-        .map(|side| *side as usize)
-        .collect();
-    let members = parts
-        .fields
-        .iter()
-        .filter(|(name, _)| name.starts_with('_'));
-    let values = members.flat_map(|(_, values)| values).enumerate();
-    let values: Vec<Value> = values
-        .map(|(index, value)| decoded(value, &format!("{variable}{{{}}}", index + 1), budget))
-        .collect::<Result<_, _>>()?;
-    if count(&shape) != Some(values.len()) {
-        return Err(damaged(
-            variable,
-            "a cell array has not as many values as its sides say",
-        ));
-    }
-    Ok(CellArray { shape, values })
-}
-
-/// Returns records; fields that can have several values are cells with one value for each record.
-fn records(
-    parts: &StructArray,
-    in_cells: bool,
-    variable: &str,
-    budget: &ReadingBudget<'_>,
-) -> Result<StructArray, VariableFault> {
-    let mut records = StructArray::one(Vec::new());
-    for (name, values) in &parts.fields {
-        let inner = format!("{variable}.{name}");
-        let value = values
-            .first()
-            .map(|value| decoded(value, &inner, budget))
-            .transpose()?;
-        let values = match value {
-            Some(Value::Cell(cell)) if in_cells => {
-                if !records.fields.is_empty() && records.shape != cell.shape {
-                    return Err(damaged(
-                        &inner,
-                        "a field has not as many values as there are records",
-                    ));
-                }
-                records.shape = cell.shape;
-                cell.values
-            }
-            value => value.into_iter().collect(),
+impl<'v> GroupParts<'v> {
+    fn range(&self) -> Result<Array, VariableFault> {
+        let range = Range {
+            first: self.range_number("base")?,
+            limit: self.range_number("limit")?,
+            step: self.range_number("increment")?,
         };
-        records.fields.push((name.clone(), values));
+        range.array(self.variable, self.budget)
     }
-    Ok(records)
-}
 
-fn sparse(
-    parts: &StructArray,
-    variable: &str,
-    budget: &ReadingBudget<'_>,
-) -> Result<Array, VariableFault> {
-    let wrong = || damaged(variable, "the sparse matrix contradicts itself");
-    let side = |name: &str| {
-        number(parts, name)
-            .filter(|side| *side >= 0.0)
-            .map(|side| side as usize)
-            .ok_or_else(wrong)
-    };
-    let rows = side("nr")?;
-    let columns = side("nc")?;
-    let whole = |name: &str| {
-        numbers(parts, name)
+    fn range_number(&self, name: &str) -> Result<f64, VariableFault> {
+        match self.number(name) {
+            Some(number) => Ok(number),
+            None => Err(self.damaged("a range has no base, limit and step")),
+        }
+    }
+
+    /// Converts a cell array: its sides `dims`, and a member with an underscore for each value.
+    fn cell(&self) -> Result<CellArray, VariableFault> {
+        let shape: Vec<usize> = self
+            .numbers("dims")
             .iter()
-            .map(|number| *number as usize)
-            .collect::<Vec<usize>>()
-    };
-    let starts = whole("cidx");
-    let indices = whole("ridx");
-    let data = numbers(parts, "data").to_vec();
-    budget.take(
-        (starts.len() + 2 * indices.len() + data.len()) as u64,
-        8,
-        variable,
-    )?;
-    let stored = Entries::of_columns(
-        [rows, columns],
-        ElementKind::Float,
-        indices,
-        &starts,
-        (data, None),
-    );
-    stored.ok_or_else(wrong)?.filled(variable, budget, wrong)
+            .rev()
+            .map(|&side| side as usize)
+            .collect();
+        let mut values = Vec::new();
+        for (name, members) in &self.parts.fields {
+            if !name.starts_with('_') {
+                continue;
+            }
+            for member in members {
+                let inner = format!("{}{{{}}}", self.variable, values.len() + 1);
+                values.push(convert_group(member, &inner, self.budget)?);
+            }
+        }
+        if count(&shape) != Some(values.len()) {
+            return Err(self.damaged("the value count of a cell array does not fit its sides"));
+        }
+        Ok(CellArray { shape, values })
+    }
+
+    fn object(&self) -> Result<Object, VariableFault> {
+        let Some(Value::Text(class)) = self.member("classname") else {
+            return Err(self.damaged("an object has no class"));
+        };
+        let class = class.texts.first().cloned().unwrap_or_default();
+        // The fields are in a separate group beside the class name.
+        let Some(Value::Struct(fields)) = self.member("value") else {
+            return Err(self.damaged("an object has no fields"));
+        };
+        let fields = GroupParts {
+            parts: fields,
+            ..*self
+        };
+        Ok(Object {
+            class,
+            records: fields.records(true)?,
+        })
+    }
+
+    /// Converts struct fields; `in_cells` is set if they can have several records: then a cell
+    /// holds a value for each record.
+    fn records(&self, in_cells: bool) -> Result<StructArray, VariableFault> {
+        let mut records = StructArray::one(Vec::new());
+        for (name, values) in &self.parts.fields {
+            let inner = format!("{}.{name}", self.variable);
+            let values = match values.first() {
+                None => Vec::new(),
+                Some(value) => match convert_group(value, &inner, self.budget)? {
+                    Value::Cell(cell) if in_cells => {
+                        if !records.fields.is_empty() && records.shape != cell.shape {
+                            return Err(damaged(&inner, FIELD_LENGTH));
+                        }
+                        records.shape = cell.shape;
+                        cell.values
+                    }
+                    value => vec![value],
+                },
+            };
+            records.fields.push((name.clone(), values));
+        }
+        Ok(records)
+    }
+
+    fn sparse(&self) -> Result<Array, VariableFault> {
+        let shape = [self.side("nr")?, self.side("nc")?];
+        let starts = self.integers("cidx");
+        let rows = self.integers("ridx");
+        let re = self.numbers("data").to_vec();
+        let count = starts.len() + 2 * rows.len() + re.len();
+        self.budget.take(count as u64, 8, self.variable)?;
+        let columns = CompressedColumns {
+            shape,
+            kind: ElementKind::Float,
+            rows,
+            starts,
+            re,
+            im: None,
+        };
+        columns
+            .into_entries()
+            .ok_or_else(|| self.sparse_contradiction())?
+            .full_matrix(self.variable, self.budget, || self.sparse_contradiction())
+    }
+
+    fn side(&self, name: &str) -> Result<usize, VariableFault> {
+        match self.number(name) {
+            Some(side) if side >= 0.0 => Ok(side as usize),
+            _ => Err(self.sparse_contradiction()),
+        }
+    }
+
+    fn sparse_contradiction(&self) -> VariableFault {
+        self.damaged("the sparse matrix contradicts itself")
+    }
+
+    fn damaged(&self, what: &str) -> VariableFault {
+        damaged(self.variable, what)
+    }
+
+    fn member(&self, name: &str) -> Option<&'v Value> {
+        self.parts.field(name)?.first()
+    }
+
+    /// Returns the first number of a member.
+    fn number(&self, name: &str) -> Option<f64> {
+        self.numbers(name).first().copied()
+    }
+
+    /// Returns the numbers of a member; none if there is no such member.
+    fn numbers(&self, name: &str) -> &'v [f64] {
+        match self.member(name) {
+            Some(Value::Array(array)) => &array.re,
+            _ => &[],
+        }
+    }
+
+    fn integers(&self, name: &str) -> Vec<usize> {
+        self.numbers(name)
+            .iter()
+            .map(|&number| number as usize)
+            .collect()
+    }
 }

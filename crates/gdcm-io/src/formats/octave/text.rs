@@ -1,73 +1,77 @@
 //! GNU Octave's `save -text`: lines `# name: A`, `# type: matrix`, `# rows: 8`, and numbers.
 
-use super::{Element, Form, Parts, Sides, texts_in_pages, value};
 use crate::file_error::FileError;
-use crate::formats::strides::Entries;
+use crate::formats::octave::assembly::{Parts, Sides, ValueHeading, read_value, texts_in_pages};
+use crate::formats::octave::form::{Element, Form, NumberParts};
+use crate::formats::sparse_matrix::SparseEntries;
 use crate::formats::text::encoding::decode;
 use crate::formats::variables::{TextArray, Value, Variable};
 use crate::formats::{Contents, Importer};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Largest offset of the first variable in a file \[bytes\].
+/// Largest offset of the first variable \[bytes\].
 const HEAD: usize = 2000;
 
 /// Files written by `save -text`.
 pub(crate) const OCTAVE_TEXT: Importer = Importer {
     name: "a file of GNU Octave, as it writes with -text",
     endings: &["txt", "mat", "dat"],
-    recognises: |bytes, _| {
-        let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]);
-        let mut lines = head
-            .lines()
-            .map(str::trim_end)
-            .skip_while(|line| !line.starts_with("# name: "));
-        let before = head
-            .lines()
-            .take_while(|line| !line.starts_with("# name: "));
-        lines
-            .nth(1)
-            .is_some_and(|line| line.starts_with("# type: "))
-            && before
-                .into_iter()
-                .all(|line| line.is_empty() || line.starts_with('#'))
-    },
+    recognises: |bytes, _| begins_with_variable(bytes),
     read: |bytes, path, budget| {
-        let wrong = |fault| FileError::variables(path, fault);
-        let text = decode(bytes, budget).map_err(wrong)?;
-        Contents::variables(variables(&text, budget), path)
+        let text = decode(bytes, budget).map_err(|fault| FileError::variables(path, fault))?;
+        Contents::variables(read_variables(&text, budget), path)
     },
 };
 
-/// Reads the variables of a text.
-fn variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
-    let mut lines = Lines {
+/// Whether the first lines are comments or empty, up to a variable's name and type.
+fn begins_with_variable(bytes: &[u8]) -> bool {
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]);
+    for line in head.lines() {
+        if line.starts_with("# name: ") {
+            break;
+        }
+        if !line.is_empty() && !line.starts_with('#') {
+            return false;
+        }
+    }
+    let mut lines = head.lines().map(str::trim_end);
+    lines.any(|line| line.starts_with("# name: "))
+        && lines
+            .next()
+            .is_some_and(|line| line.starts_with("# type: "))
+}
+
+fn read_variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+    let mut reader = TextReader {
         text,
         at: 0,
         budget,
     };
     let mut variables = Vec::new();
-    while lines.find_name() {
+    while reader.find_name() {
         budget.take(1, size_of::<Variable>() as u64, "")?;
-        let (name, kind) = lines.member("")?;
-        let value = match value(&mut lines, &kind, &name, 0) {
+        let ValueHeading { name, type_name } = reader.heading("")?;
+        let value = match read_value(&mut reader, &type_name, &name) {
+            Ok(value) => value,
             // The other values remain readable: only a value begins with a name at the start of a
             // line.
             Err(VariableFault::Unsupported { what, remedy, .. }) => Value::opaque(what, remedy),
-            value => value?,
+            Err(fault) => return Err(fault),
         };
         variables.push(Variable { name, value });
     }
     Ok(variables)
 }
 
-/// A text during reading.
-struct Lines<'t> {
+/// A text while it is read.
+struct TextReader<'t> {
     text: &'t str,
+    /// Position of the next byte.
     at: usize,
     budget: &'t ReadingBudget<'t>,
 }
 
-impl<'t> Lines<'t> {
+impl<'t> TextReader<'t> {
     fn rest(&self) -> &'t str {
         &self.text[self.at..]
     }
@@ -83,7 +87,7 @@ impl<'t> Lines<'t> {
         Some(rest[..end].trim_end_matches('\r'))
     }
 
-    /// Moves to the next line that names a value.
+    /// Moves to the next line that names a value; `false` if there is none.
     fn find_name(&mut self) -> bool {
         loop {
             let begin = self.at;
@@ -107,32 +111,33 @@ impl<'t> Lines<'t> {
                 Some(line) => break line,
             }
         };
-        let said = line
-            .strip_prefix("# ")
-            .and_then(|line| line.strip_prefix(key)?.strip_prefix(':'));
-        said.map(str::trim)
-            .ok_or_else(|| self.wrong(variable, &format!("expected \"# {key}: …\"")))
+        match text_after_key(line, key) {
+            Some(text) => Ok(text.trim()),
+            None => Err(self.fault(variable, &format!("expected \"# {key}: …\""))),
+        }
     }
 
-    fn whole(&mut self, key: &str, variable: &str) -> Result<usize, VariableFault> {
-        let said = self.key(key, variable)?;
-        said.parse()
-            .map_err(|_| self.wrong(variable, &format!("{key}: expected a whole number")))
+    /// Returns the whole number after `# key: ` on the next nonempty line.
+    fn key_number(&mut self, key: &str, variable: &str) -> Result<usize, VariableFault> {
+        let text = self.key(key, variable)?;
+        text.parse()
+            .map_err(|_| self.fault(variable, &format!("{key}: expected a whole number")))
     }
 
+    /// Whether the next nonempty line begins with `# key`.
     fn has_key(&self, key: &str) -> bool {
-        self.rest()
-            .trim_start()
-            .strip_prefix("# ")
-            .is_some_and(|rest| rest.starts_with(key))
+        match self.rest().trim_start().strip_prefix("# ") {
+            Some(rest) => rest.starts_with(key),
+            None => false,
+        }
     }
 
     /// Returns the next word, on this line or a later line.
     fn word(&mut self, variable: &str) -> Result<&'t str, VariableFault> {
         let rest = self.rest();
-        let begin = rest
-            .find(|letter: char| !letter.is_whitespace())
-            .ok_or_else(|| self.cut_off(variable))?;
+        let Some(begin) = rest.find(|letter: char| !letter.is_whitespace()) else {
+            return Err(self.cut_off(variable));
+        };
         let rest = &rest[begin..];
         let length = rest.find(char::is_whitespace).unwrap_or(rest.len());
         self.at += begin + length;
@@ -142,17 +147,33 @@ impl<'t> Lines<'t> {
     fn index(&mut self, variable: &str) -> Result<usize, VariableFault> {
         let word = self.word(variable)?;
         word.parse()
-            .map_err(|_| self.wrong(variable, "expected a whole number"))
+            .map_err(|_| self.fault(variable, "expected a whole number"))
     }
 
     fn number(&self, word: &str, variable: &str) -> Result<f64, VariableFault> {
-        match word {
-            // Octave's "not available".
-            "NA" => Ok(f64::NAN),
-            _ => word
-                .parse()
-                .map_err(|_| self.wrong(variable, "expected a number")),
+        // Octave's "not available".
+        if word == "NA" {
+            return Ok(f64::NAN);
         }
+        word.parse()
+            .map_err(|_| self.fault(variable, "expected a number"))
+    }
+
+    /// Returns the next text with `length` bytes, which may contain line breaks. If no line ends
+    /// after these bytes, as in a file with another encoding, returns the next line.
+    fn text_with_length(
+        &mut self,
+        length: usize,
+        variable: &str,
+    ) -> Result<&'t str, VariableFault> {
+        if let Some((text, after)) = self.rest().split_at_checked(length)
+            && (after.is_empty() || after.starts_with(['\n', '\r']))
+        {
+            self.at += length;
+            self.line();
+            return Ok(text);
+        }
+        self.line().ok_or_else(|| self.cut_off(variable))
     }
 
     fn cut_off(&self, variable: &str) -> VariableFault {
@@ -160,39 +181,52 @@ impl<'t> Lines<'t> {
     }
 }
 
-impl Parts for Lines<'_> {
+/// Returns the text after `# key:`.
+fn text_after_key<'t>(line: &'t str, key: &str) -> Option<&'t str> {
+    line.strip_prefix("# ")?
+        .strip_prefix(key)?
+        .strip_prefix(':')
+}
+
+/// Splits a complex number `(re,im)` into its parts.
+fn complex_parts(word: &str) -> Option<(&str, &str)> {
+    word.strip_prefix('(')?.strip_suffix(')')?.split_once(',')
+}
+
+impl Parts for TextReader<'_> {
     fn budget(&self) -> &ReadingBudget<'_> {
         self.budget
     }
 
-    fn member(&mut self, variable: &str) -> Result<(String, String), VariableFault> {
-        let name = self.key("name", variable)?;
-        Ok((name.to_owned(), self.key("type", variable)?.to_owned()))
+    fn heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault> {
+        Ok(ValueHeading {
+            name: self.key("name", variable)?.to_owned(),
+            type_name: self.key("type", variable)?.to_owned(),
+        })
     }
 
     fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault> {
         if self.has_key("rows") {
-            let shape = vec![
-                self.whole("rows", variable)?,
-                self.whole("columns", variable)?,
-            ];
+            let rows = self.key_number("rows", variable)?;
+            let columns = self.key_number("columns", variable)?;
             return Ok(Sides {
-                shape,
+                shape: vec![rows, columns],
                 by_rows: true,
             });
         }
-        let count = self.whole("ndims", variable)?;
+        let count = self.key_number("ndims", variable)?;
         self.budget.take(count as u64, 8, variable)?;
-        let shape = (0..count)
-            .map(|_| self.index(variable))
-            .collect::<Result<Vec<_>, _>>()?;
-        match shape.len() {
-            0 | 1 => Err(self.wrong(variable, "expected two dimensions or more")),
-            _ => Ok(Sides {
-                shape,
-                by_rows: false,
-            }),
+        let mut shape = Vec::new();
+        for _ in 0..count {
+            shape.push(self.index(variable)?);
         }
+        if shape.len() < 2 {
+            return Err(self.fault(variable, "expected two dimensions or more"));
+        }
+        Ok(Sides {
+            shape,
+            by_rows: false,
+        })
     }
 
     fn numbers(
@@ -207,12 +241,10 @@ impl Parts for Lines<'_> {
         let mut numbers = Vec::new();
         for _ in 0..count {
             let word = self.word(variable)?;
-            if element.complex {
-                let parts = word
-                    .strip_prefix('(')
-                    .and_then(|word| word.strip_suffix(')')?.split_once(','));
-                let (re, im) = parts
-                    .ok_or_else(|| self.wrong(variable, "expected a complex number, (re,im)"))?;
+            if element.is_complex {
+                let Some((re, im)) = complex_parts(word) else {
+                    return Err(self.fault(variable, "expected a complex number, (re,im)"));
+                };
                 numbers.extend([self.number(re, variable)?, self.number(im, variable)?]);
             } else {
                 numbers.push(self.number(word, variable)?);
@@ -221,22 +253,19 @@ impl Parts for Lines<'_> {
         Ok(numbers)
     }
 
-    fn sparse(&mut self, element: Element, variable: &str) -> Result<Entries, VariableFault> {
-        let count = self.whole("nnz", variable)?;
-        let shape = [
-            self.whole("rows", variable)?,
-            self.whole("columns", variable)?,
-        ];
+    fn sparse(&mut self, element: Element, variable: &str) -> Result<SparseEntries, VariableFault> {
+        let count = self.key_number("nnz", variable)?;
+        let height = self.key_number("rows", variable)?;
+        let width = self.key_number("columns", variable)?;
         let mut rows = Vec::new();
         let mut columns = Vec::new();
         let mut numbers = Vec::new();
         for _ in 0..count {
-            let row = self.index(variable)?;
-            let column = self.index(variable)?;
-            let row = row.wrapping_sub(1);
-            let column = column.wrapping_sub(1);
-            if row >= shape[0] || column >= shape[1] {
-                return Err(self.wrong(variable, "a number lies outside the matrix"));
+            // Octave counts from 1; a zero wraps to a place outside the matrix.
+            let row = self.index(variable)?.wrapping_sub(1);
+            let column = self.index(variable)?.wrapping_sub(1);
+            if row >= height || column >= width {
+                return Err(self.fault(variable, "a number is outside the matrix"));
             }
             // Vectors grow by doubling.
             self.budget.take(1, 48, variable)?;
@@ -244,9 +273,9 @@ impl Parts for Lines<'_> {
             columns.push(column);
             numbers.extend(self.numbers(element, 1, variable)?);
         }
-        let (re, im) = element.parts(numbers);
-        Ok(Entries {
-            shape,
+        let NumberParts { re, im } = element.parts(numbers);
+        Ok(SparseEntries {
+            shape: [height, width],
             kind: element.kind(),
             rows,
             columns,
@@ -259,7 +288,7 @@ impl Parts for Lines<'_> {
         if !self.has_key("elements") {
             return Err(texts_in_pages(variable));
         }
-        let count = self.whole("elements", variable)?;
+        let count = self.key_number("elements", variable)?;
         if count == 0 {
             if self.has_key("length") {
                 self.line();
@@ -268,25 +297,8 @@ impl Parts for Lines<'_> {
         }
         let mut texts = Vec::new();
         for _ in 0..count {
-            let length = self.whole("length", variable)?;
-            // The length counts bytes, and a text may contain line breaks; a file in another
-            // encoding has other lengths.
-            let bytes = self.rest().get(..length).filter(|_| {
-                self.rest()[length..].starts_with(['\n', '\r'])
-                    || self.at + length == self.text.len()
-            });
-            match bytes {
-                Some(text) => {
-                    self.at += length;
-                    self.line();
-                    texts.push(text.to_owned());
-                }
-                None => texts.push(
-                    self.line()
-                        .ok_or_else(|| self.cut_off(variable))?
-                        .to_owned(),
-                ),
-            }
+            let length = self.key_number("length", variable)?;
+            texts.push(self.text_with_length(length, variable)?.to_owned());
         }
         Ok(TextArray {
             shape: vec![texts.len(), 1],
@@ -294,18 +306,18 @@ impl Parts for Lines<'_> {
         })
     }
 
-    fn members(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault> {
-        if form == Form::Struct {
+    fn field_count(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault> {
+        if form == Form::ScalarStruct {
             self.sides(variable)?;
         }
-        self.whole("length", variable)
+        self.key_number("length", variable)
     }
 
     fn class(&mut self, variable: &str) -> Result<String, VariableFault> {
         Ok(self.key("classname", variable)?.to_owned())
     }
 
-    fn wrong(&self, variable: &str, what: &str) -> VariableFault {
+    fn fault(&self, variable: &str, what: &str) -> VariableFault {
         let read = &self.text.as_bytes()[..self.at.saturating_sub(1).min(self.text.len())];
         let line = 1 + read.iter().filter(|byte| **byte == b'\n').count();
         VariableFault::line(variable, line, what)

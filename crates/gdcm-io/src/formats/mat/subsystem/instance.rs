@@ -2,35 +2,33 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::{Content, Property, Reference, Subsystem, is_enumeration, packed_text};
-use crate::formats::mat::matrix::unread_because;
-use crate::formats::mat::{FieldPath, Step};
+use crate::formats::mat::subsystem::directory::{Content, Property};
+use crate::formats::mat::subsystem::enumeration::is_enumeration;
+use crate::formats::mat::subsystem::packed_text::unpack_texts;
+use crate::formats::mat::subsystem::reference::Reference;
+use crate::formats::mat::subsystem::{Subsystem, damaged};
+use crate::formats::mat::unreadable::unreadable;
+use crate::formats::mat::value_path::{Step, ValuePath};
 use crate::formats::variables::{
     Array, CellArray, ElementKind, Object, StructArray, TextArray, Value,
 };
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
 /// Property with the value that a class creates when saving its objects.
-const MADE: &str = "any";
+const CREATED: &str = "any";
 
 /// Assembles objects, including nested objects.
 pub(super) struct Assembly<'s> {
-    pub(super) subsystem: &'s Subsystem,
-    pub(super) budget: &'s ReadingBudget<'s>,
+    subsystem: &'s Subsystem,
+    budget: &'s ReadingBudget<'s>,
     /// Objects under assembly, to detect an object that contains itself.
     open: Vec<u32>,
 }
 
-impl Subsystem {
-    /// Resolves a reference.
-    pub(in super::super) fn referred(
-        &self,
-        reference: &Reference,
-        trail: &FieldPath<'_>,
-        budget: &ReadingBudget<'_>,
-    ) -> Result<Value, VariableFault> {
-        Assembly::new(self, budget).referred(reference, trail)
-    }
+/// A property with its name.
+struct NamedValue {
+    name: String,
+    value: Value,
 }
 
 impl<'s> Assembly<'s> {
@@ -43,96 +41,108 @@ impl<'s> Assembly<'s> {
     }
 
     /// Resolves a reference; objects that are nested too deeply or cannot be decoded are opaque.
-    pub(super) fn referred(
+    pub(super) fn resolve(
         &mut self,
         reference: &Reference,
-        trail: &FieldPath<'_>,
+        path: &ValuePath<'_>,
     ) -> Result<Value, VariableFault> {
         let directory = &self.subsystem.directory;
         let class = directory.class(reference.class).unwrap_or("object");
-        let opaque = |why: &str| Ok(unread_because(class, why, &trail.words()));
         if let ("string", &[object]) = (class, reference.objects.as_slice()) {
-            let text = self.text(object)?;
-            return text.map_or_else(
-                || opaque("its texts are packed in an unknown way"),
-                |text| Ok(Value::Text(text)),
-            );
+            return Ok(match self.packed_texts(object)? {
+                Some(texts) => Value::Text(texts),
+                None => unreadable(
+                    class,
+                    "its texts are packed in an unknown way",
+                    &path.text(),
+                ),
+            });
         }
-        if reference
+        let contains_itself = reference
             .objects
             .iter()
-            .any(|&object| object != 0 && self.open.contains(&object))
-        {
-            return opaque("it lies in itself");
+            .any(|&object| object != 0 && self.open.contains(&object));
+        if contains_itself {
+            return Ok(unreadable(class, "it contains itself", &path.text()));
         }
-        let begun = self.open.len();
-        let records = self.records(reference, trail);
-        self.open.truncate(begun);
+        let open = self.open.len();
+        let records = self.records(reference, path);
+        self.open.truncate(open);
         match records {
             Ok(records) => Ok(Value::Object(Object {
                 class: class.to_owned(),
                 records,
             })),
-            Err(VariableFault::TooDeep { .. }) => opaque("too many values lie in one another"),
-            Err(VariableFault::Damaged { what, .. }) => opaque(&what),
-            Err(fault) => Err(trail.name(fault)),
+            Err(VariableFault::TooDeep { .. }) => Ok(unreadable(
+                class,
+                "its values are nested too deeply",
+                &path.text(),
+            )),
+            Err(VariableFault::Damaged { what, .. }) => Ok(unreadable(class, &what, &path.text())),
+            Err(fault) => Err(path.locate(fault)),
         }
     }
 
-    /// Returns the texts of a `string` object.
-    fn text(&self, object: u32) -> Result<Option<TextArray>, VariableFault> {
-        let properties = self
-            .subsystem
-            .directory
-            .object(object)
-            .map_or(&[][..], |(_, properties)| properties);
+    /// Unpacks the texts of a `string` object; `None` if they are packed in an unknown way.
+    fn packed_texts(&self, object: u32) -> Result<Option<TextArray>, VariableFault> {
+        let subsystem = self.subsystem;
+        let Some(object) = subsystem.directory.object(object) else {
+            return Ok(None);
+        };
         let Some(&Property {
             content: Content::Cell(cell),
             ..
-        }) = properties.first()
+        }) = object.properties.first()
         else {
             return Ok(None);
         };
-        let words = match (
-            self.subsystem.long_words.get(&cell),
-            self.subsystem.values.get(cell),
-        ) {
-            (Some(words), _) => Some(words.clone()),
-            (None, Some(Value::Array(array))) => exact_words(array),
-            _ => None,
+        if let Some(words) = subsystem.long_words.get(&cell) {
+            return unpack_texts(words, self.budget);
+        }
+        let Some(Value::Array(array)) = subsystem.values.get(cell) else {
+            return Ok(None);
         };
-        words.map_or(Ok(None), |words| packed_text(&words, self.budget))
+        match exact_words(array) {
+            Some(words) => unpack_texts(&words, self.budget),
+            None => Ok(None),
+        }
     }
 
+    /// Assembles a record for each object of a reference; the fields are the union of their
+    /// properties.
     fn records(
         &mut self,
         reference: &Reference,
-        trail: &FieldPath<'_>,
+        path: &ValuePath<'_>,
     ) -> Result<StructArray, VariableFault> {
         let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
-        let mut places: HashMap<String, usize> = HashMap::new();
+        let mut field_indices: HashMap<String, usize> = HashMap::new();
         for (at, &object) in reference.objects.iter().enumerate() {
-            let record = trail.step(Step::Record(at))?;
-            let trail = if reference.objects.len() == 1 {
-                trail
+            let record = path.step(Step::Record(at))?;
+            let path = if reference.objects.len() == 1 {
+                path
             } else {
                 &record
             };
             self.open.push(object);
-            for (name, value) in self.properties(object, reference.class, trail)? {
-                let field = *places.entry(name).or_insert_with_key(|name| {
-                    fields.push((name.clone(), Vec::new()));
-                    fields.len() - 1
-                });
+            for NamedValue { name, value } in self.properties(object, reference.class, path)? {
+                let field = match field_indices.get(&name) {
+                    Some(&field) => field,
+                    None => {
+                        fields.push((name.clone(), Vec::new()));
+                        field_indices.insert(name, fields.len() - 1);
+                        fields.len() - 1
+                    }
+                };
                 if let Some((_, values)) = fields.get_mut(field) {
-                    self.fill(values, at)?;
+                    self.pad(values, at)?;
                     values.push(value);
                 }
             }
             self.open.pop();
         }
         for (_, values) in &mut fields {
-            self.fill(values, reference.objects.len())?;
+            self.pad(values, reference.objects.len())?;
         }
         Ok(StructArray {
             shape: reference.shape.clone(),
@@ -140,8 +150,8 @@ impl<'s> Assembly<'s> {
         })
     }
 
-    /// Fills missing properties of objects in an array with empty values.
-    fn fill(&self, values: &mut Vec<Value>, length: usize) -> Result<(), VariableFault> {
+    /// Appends empty values up to `length`, for objects without the property.
+    fn pad(&self, values: &mut Vec<Value>, length: usize) -> Result<(), VariableFault> {
         let missing = length.saturating_sub(values.len());
         self.budget
             .take(missing as u64, 2 * size_of::<Value>() as u64, "")?;
@@ -149,46 +159,48 @@ impl<'s> Assembly<'s> {
         Ok(())
     }
 
-    /// Collects the properties of one object: its saved values, and the defaults of its class for
-    /// the others.
+    /// Collects the saved properties of an object, and the defaults of its class for the others.
     fn properties(
         &mut self,
         object: u32,
         class: u32,
-        trail: &FieldPath<'_>,
-    ) -> Result<Vec<(String, Value)>, VariableFault> {
+        path: &ValuePath<'_>,
+    ) -> Result<Vec<NamedValue>, VariableFault> {
         if object == 0 {
             return Ok(Vec::new());
         }
         let subsystem = self.subsystem;
-        let entry = subsystem.directory.object(object);
-        let (class, saved) = entry.ok_or_else(|| {
-            super::damaged(format!("there is no object {object} of class {class}"))
-        })?;
-        let mut properties: Vec<(String, Value)> = Vec::new();
+        let Some(saved) = subsystem.directory.object(object) else {
+            return Err(damaged(format!(
+                "class {class} has no object with number {object}"
+            )));
+        };
+        let mut properties = Vec::new();
         let mut known: HashSet<&str> = HashSet::new();
-        for property in saved {
-            let name = subsystem
-                .directory
-                .name(property.name)
-                .ok_or_else(|| super::damaged("a property has no name"))?;
+        for property in saved.properties {
+            let Some(name) = subsystem.directory.name(property.name) else {
+                return Err(damaged("a property has no name"));
+            };
             if known.insert(name) {
-                let value = self.property(property, &trail.step(Step::Field(name))?)?;
-                properties.push((name.to_owned(), value));
+                let value = self.property(property, &path.step(Step::Field(name))?)?;
+                let name = name.to_owned();
+                properties.push(NamedValue { name, value });
             }
         }
-        let defaults = if known.contains(MADE) {
-            None
-        } else {
-            subsystem.defaults.get(class as usize)
-        };
-        let Some(Value::Struct(defaults)) = defaults else {
+        if known.contains(CREATED) {
+            return Ok(properties);
+        }
+        let Some(Value::Struct(defaults)) = subsystem.defaults.get(saved.class as usize) else {
             return Ok(properties);
         };
         for (name, values) in &defaults.fields {
-            if let (Some(value), false) = (values.first(), known.contains(name.as_str())) {
-                let value = self.copy(value, &trail.step(Step::Field(name))?)?;
-                properties.push((name.clone(), value));
+            if known.contains(name.as_str()) {
+                continue;
+            }
+            if let Some(value) = values.first() {
+                let value = self.copy(value, &path.step(Step::Field(name))?)?;
+                let name = name.clone();
+                properties.push(NamedValue { name, value });
             }
         }
         Ok(properties)
@@ -197,85 +209,79 @@ impl<'s> Assembly<'s> {
     fn property(
         &mut self,
         property: &Property,
-        trail: &FieldPath<'_>,
+        path: &ValuePath<'_>,
     ) -> Result<Value, VariableFault> {
         let subsystem = self.subsystem;
         self.budget.take(1, 256, "")?;
         match property.content {
-            Content::Cell(cell) => {
-                let value = subsystem
-                    .values
-                    .get(cell)
-                    .ok_or_else(|| super::damaged("a property has no value"))?;
-                self.copy(value, trail)
-            }
+            Content::Cell(cell) => match subsystem.values.get(cell) {
+                Some(value) => self.copy(value, path),
+                None => Err(damaged("a property has no value")),
+            },
             Content::Name(name) => Ok(Value::text(
                 subsystem.directory.name(name).unwrap_or_default(),
             )),
-            Content::Number(number) => Ok(Value::Array(Array {
-                shape: vec![1, 1],
-                kind: if number <= 1 {
+            Content::Number(number) => {
+                let kind = if number <= 1 {
                     ElementKind::Logical
                 } else {
                     ElementKind::Integer
-                },
-                re: vec![f64::from(number)],
-                im: None,
-            })),
+                };
+                Ok(Value::Array(Array {
+                    kind,
+                    ..Array::matrix(1, 1, vec![f64::from(number)])
+                }))
+            }
         }
     }
 
-    /// Copies the value of a cell, with references replaced by their objects.
-    pub(super) fn copy(
-        &mut self,
-        value: &Value,
-        trail: &FieldPath<'_>,
-    ) -> Result<Value, VariableFault> {
+    /// Copies a value, with references replaced by their objects.
+    fn copy(&mut self, value: &Value, path: &ValuePath<'_>) -> Result<Value, VariableFault> {
         self.budget.take(1, value.own_memory(), "")?;
         if let Some(reference) = self.reference(value) {
-            return self.referred(&reference, trail);
+            return self.resolve(&reference, path);
         }
         Ok(match value {
             Value::Array(_) | Value::Text(_) | Value::Opaque { .. } => value.clone(),
-            Value::Cell(cell) => Value::Cell(CellArray {
-                shape: cell.shape.clone(),
-                values: self.cells(cell, trail)?,
-            }),
+            Value::Cell(cell) => Value::Cell(self.copy_cell(cell, path)?),
             Value::Struct(records) if is_enumeration(records) => {
-                self.subsystem
-                    .enumeration(records, "", trail, self.budget)?
+                self.subsystem.enumeration(records, "", path, self.budget)?
             }
-            Value::Struct(records) => Value::Struct(self.copied(records, trail)?),
+            Value::Struct(records) => Value::Struct(self.copy_records(records, path)?),
             Value::Object(object) => Value::Object(Object {
                 class: object.class.clone(),
-                records: self.copied(&object.records, trail)?,
+                records: self.copy_records(&object.records, path)?,
             }),
         })
     }
 
-    fn cells(
+    fn copy_cell(
         &mut self,
         cell: &CellArray,
-        trail: &FieldPath<'_>,
-    ) -> Result<Vec<Value>, VariableFault> {
-        let values = cell.values.iter().enumerate();
-        values
-            .map(|(at, value)| self.copy(value, &trail.step(Step::Cell(at))?))
-            .collect()
+        path: &ValuePath<'_>,
+    ) -> Result<CellArray, VariableFault> {
+        let mut values = Vec::new();
+        for (at, value) in cell.values.iter().enumerate() {
+            values.push(self.copy(value, &path.step(Step::Cell(at))?)?);
+        }
+        Ok(CellArray {
+            shape: cell.shape.clone(),
+            values,
+        })
     }
 
-    fn copied(
+    fn copy_records(
         &mut self,
         records: &StructArray,
-        trail: &FieldPath<'_>,
+        path: &ValuePath<'_>,
     ) -> Result<StructArray, VariableFault> {
         let mut fields = Vec::with_capacity(records.fields.len());
         for (name, values) in &records.fields {
             let mut copies = Vec::with_capacity(values.len());
             for (at, value) in values.iter().enumerate() {
-                let record = trail.step(Step::Record(at))?;
-                let trail = if values.len() == 1 { trail } else { &record };
-                copies.push(self.copy(value, &trail.step(Step::Field(name))?)?);
+                let record = path.step(Step::Record(at))?;
+                let path = if values.len() == 1 { path } else { &record };
+                copies.push(self.copy(value, &path.step(Step::Field(name))?)?);
             }
             fields.push((name.clone(), copies));
         }
@@ -285,32 +291,29 @@ impl<'s> Assembly<'s> {
         })
     }
 
-    /// Returns the reference in a value if its objects exist: numbers may look like a reference by
-    /// chance.
+    /// Returns the reference in a value if its class and objects exist: numbers may look like a
+    /// reference by chance.
     fn reference(&self, value: &Value) -> Option<Reference> {
         let directory = &self.subsystem.directory;
-        Reference::of(value).filter(|reference| {
-            directory.class(reference.class).is_some()
-                && reference
-                    .objects
-                    .iter()
-                    .all(|&object| directory.has_object(object))
-        })
+        let reference = Reference::from_value(value)?;
+        directory.class(reference.class)?;
+        let has_objects = reference
+            .objects
+            .iter()
+            .all(|&object| directory.has_object(object));
+        if has_objects { Some(reference) } else { None }
     }
 }
 
-/// Returns the integers of an array if none can have lost digits.
+/// Returns the numbers as integers; `None` if a number may have lost digits.
 fn exact_words(array: &Array) -> Option<Vec<u64>> {
     const MOST: f64 = (1_u64 << 53) as f64;
-    array
-        .re
-        .iter()
-        .map(|&number| {
-            if (0.0..MOST).contains(&number) {
-                Some(number as u64)
-            } else {
-                None
-            }
-        })
-        .collect()
+    let mut words = Vec::with_capacity(array.re.len());
+    for &number in &array.re {
+        if !(0.0..MOST).contains(&number) {
+            return None;
+        }
+        words.push(number as u64);
+    }
+    Some(words)
 }

@@ -1,41 +1,52 @@
-//! MATLAB class objects, stored in a separate part of the file: the cells of a `FileWrapper__`.
+//! Objects of MATLAB classes, in a separate part of the file: the cells of a `FileWrapper__`.
 //!
-//! The first cell lists the objects and the cell of each of their properties; the last cells are
-//! shared by all objects of a class. The format is not published by The MathWorks; it is known from
-//! the descriptions of the MatFileHandler, matio (Python) and MAT.jl projects. It is the same in
-//! files up to version 7 and in files of version 7.3 (HDF5).
+//! The first cell is a directory that lists the objects and the cell of each property; the last
+//! cells are shared by all objects with the same class. The format is not published by The
+//! MathWorks; it is known from the descriptions by the MatFileHandler, matio (Python) and MAT.jl
+//! projects. It is the same in files up to version 7 and in files at version 7.3 (HDF5).
 
+mod directory;
+mod enumeration;
 mod instance;
+mod packed_text;
+mod reference;
 
 use std::collections::HashMap;
 
-use crate::formats::mat::FieldPath;
-use crate::formats::mat::level5::{ByteOrder, name_of};
-use crate::formats::mat::matrix::unread_because;
-use crate::formats::strides::count;
-use crate::formats::variables::{ElementKind, Object, StructArray, TextArray, Value};
+use crate::formats::mat::subsystem::directory::Directory;
+use crate::formats::mat::subsystem::enumeration::EnumerationMembers;
+use crate::formats::mat::subsystem::instance::Assembly;
+use crate::formats::mat::unreadable::unreadable;
+use crate::formats::mat::value_path::ValuePath;
+use crate::formats::variables::{StructArray, Value};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// The objects of a file.
+pub(in crate::formats::mat) use crate::formats::mat::subsystem::reference::Reference;
+
+/// Class system for the objects of MATLAB's own classes.
+pub(super) const CLASS_SYSTEM: &str = "MCOS";
+/// Cells before the property values.
+const CELLS_BEFORE_VALUES: usize = 2;
+
+/// Exact integers of cells that hold unsigned 64-bit integers, by cell index from 0.
+pub type LongWords = HashMap<usize, Vec<u64>>;
+
 #[derive(Clone, Debug)]
 pub struct Subsystem {
     directory: Directory,
-    /// The values of all properties, in the order of the directory.
+    /// Property values, in directory order.
     values: Vec<Value>,
-    /// Default property values, one record for each class.
+    /// Default property values, a record for each class.
     defaults: Vec<Value>,
-    /// Exact values of cells with 64-bit integers.
-    long_words: HashMap<usize, Vec<u64>>,
+    /// Exact integers, by index in `values`.
+    long_words: LongWords,
 }
 
-/// Number of cells before the property values.
-const BEFORE_VALUES: usize = 2;
-
 impl Subsystem {
-    /// Reads the cells of a `FileWrapper__`; the first holds the bytes of its directory.
+    /// Reads the cells of a `FileWrapper__`; the first holds the bytes of the directory.
     pub fn new(cells: Vec<Value>, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
         let bytes = directory_bytes(cells.first())?;
-        // An empty name takes one byte of the file and a whole `String` in memory.
+        // An empty name takes a single byte in the file and a whole `String` in memory.
         budget.take(bytes.len() as u64, 2 * size_of::<String>() as u64, "")?;
         let directory = Directory::read(&bytes)?;
         let mut values = cells;
@@ -43,28 +54,28 @@ impl Subsystem {
             Some(Value::Cell(defaults)) => defaults.values,
             _ => Vec::new(),
         };
-        let shared = directory.cells_behind_values.saturating_sub(1);
+        let shared = directory.cells_after_values.saturating_sub(1);
         values.truncate(values.len().saturating_sub(shared));
         Ok(Self {
             directory,
-            values: values.split_off(BEFORE_VALUES.min(values.len())),
+            values: values.split_off(CELLS_BEFORE_VALUES.min(values.len())),
             defaults,
-            long_words: HashMap::new(),
+            long_words: LongWords::new(),
         })
     }
 
-    /// Adds the exact values of some cells: `string` objects are packed into 64-bit integers, of
-    /// which a [`Value`] keeps 53 bits. Each item has the index of its cell, counted from 0.
-    pub fn with_long_words(mut self, cells: impl IntoIterator<Item = (usize, Vec<u64>)>) -> Self {
-        let values = cells
-            .into_iter()
-            .filter_map(|(cell, words)| Some((cell.checked_sub(BEFORE_VALUES)?, words)));
-        self.long_words = values.collect();
+    /// Adds exact integers, by index among all cells: `string` objects are packed into 64-bit
+    /// integers, but a [`Value`] keeps only 53 bits.
+    pub fn with_long_words(mut self, cells: LongWords) -> Self {
+        for (cell, words) in cells {
+            if let Some(value) = cell.checked_sub(CELLS_BEFORE_VALUES) {
+                self.long_words.insert(value, words);
+            }
+        }
         self
     }
 
-    /// Returns the object, or the array of objects, for a reference: `[0xDD000000, number of
-    /// dimensions, dimensions, numbers of the objects, number of the class]`.
+    /// Returns the object, or the object array, for the words of a reference.
     ///
     /// Parts that cannot be decoded are [`Value::Opaque`]; only the budget causes a fault.
     pub fn object(
@@ -74,427 +85,70 @@ impl Subsystem {
         budget: &ReadingBudget<'_>,
     ) -> Result<Value, VariableFault> {
         match Reference::parse(reference) {
-            Some(reference) => self.referred(&reference, &FieldPath::start(variable), budget),
-            None => Ok(unread_because(
-                "object",
-                "what refers to it is damaged",
-                variable,
+            Some(reference) => self.resolve(&reference, &ValuePath::start(variable), budget),
+            None => Ok(unreadable("object", "its reference is damaged", variable)),
+        }
+    }
+
+    /// Resolves a reference.
+    pub(super) fn resolve(
+        &self,
+        reference: &Reference,
+        path: &ValuePath<'_>,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Value, VariableFault> {
+        Assembly::new(self, budget).resolve(reference, path)
+    }
+
+    /// Converts enumeration members to objects whose only property is the member name; `class` is
+    /// used if the records do not name a class.
+    pub(super) fn enumeration(
+        &self,
+        records: &StructArray,
+        class: &str,
+        path: &ValuePath<'_>,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Value, VariableFault> {
+        match EnumerationMembers::read(&self.directory, records, class) {
+            Ok(members) => {
+                budget
+                    .take(1, members.memory(), "")
+                    .map_err(|fault| path.locate(fault))?;
+                Ok(members.into_value())
+            }
+            Err(class) => Ok(unreadable(
+                class,
+                "the members of the enumeration are not read",
+                &path.text(),
             )),
         }
     }
 }
 
+/// Returns the directory bytes, stored as the numbers in a cell.
 fn directory_bytes(cell: Option<&Value>) -> Result<Vec<u8>, VariableFault> {
     let Some(Value::Array(array)) = cell else {
         return Err(damaged("the directory of objects is missing"));
     };
-    let byte = |&number: &f64| {
-        if (0.0..256.0).contains(&number) {
-            Some(number as u8)
-        } else {
-            None
+    let mut bytes = Vec::new();
+    for &number in &array.re {
+        if !(0.0..256.0).contains(&number) {
+            return Err(damaged(
+                "the directory of objects does not consist of bytes",
+            ));
         }
-    };
-    let bytes: Option<Vec<u8>> = array.re.iter().map(byte).collect();
-    bytes.ok_or_else(|| damaged("the directory of objects does not consist of bytes"))
+        bytes.push(number as u8);
+    }
+    Ok(bytes)
 }
 
+/// Returns the fault for damaged objects; their position in the file is unknown here.
 fn damaged(what: impl Into<String>) -> VariableFault {
     VariableFault::damaged("", what, 0)
 }
 
-// Directory of the objects and the positions of their properties.
-
-/// Bytes before the names: version, number of names, and the offsets of eight regions.
-const HEADER_BYTES: usize = 40;
-/// Newest known layout version.
-const NEWEST: u32 = 4;
-
-/// Directory of the objects and the positions of their properties.
-#[derive(Clone, Debug)]
-pub(super) struct Directory {
-    /// Names of properties and classes, counted from 1; 0 means none.
-    names: Vec<String>,
-    /// Names of the classes, also counted from 1.
-    classes: Vec<String>,
-    objects: Vec<Entry>,
-    /// Properties of objects saved as another value that their class creates.
-    made: Vec<Vec<Property>>,
-    /// Properties of all other objects.
-    plain: Vec<Vec<Property>>,
-    /// Number of cells after the property values.
-    pub(super) cells_behind_values: usize,
-}
-
-/// One object.
-#[derive(Clone, Copy, Debug)]
-struct Entry {
-    class: u32,
-    made: u32,
-    plain: u32,
-}
-
-/// One property of an object.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Property {
-    pub(super) name: u32,
-    pub(super) content: Content,
-}
-
-/// Location of a property value.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Content {
-    /// The value is a name.
-    Name(u32),
-    /// The value is in a cell, counted from the first cell with a value.
-    Cell(usize),
-    /// The value is this number.
-    Number(u32),
-}
-
-impl Directory {
-    /// Reads the bytes of the first cell.
-    pub(super) fn read(bytes: &[u8]) -> Result<Self, VariableFault> {
-        let words = |order: ByteOrder| -> Vec<u32> {
-            bytes
-                .get(..HEADER_BYTES)
-                .unwrap_or_default()
-                .as_chunks()
-                .0
-                .iter()
-                .map(|&word| order.u32(word))
-                .collect()
-        };
-        let little = words(ByteOrder::Little);
-        let big = words(ByteOrder::Big);
-        // A version is a small number and becomes large in the wrong byte order.
-        let is_little = little.first() <= big.first();
-        let (order, head) = if is_little {
-            (ByteOrder::Little, little)
-        } else {
-            (ByteOrder::Big, big)
-        };
-        let [version, count, regions @ ..] = head.as_slice() else {
-            return Err(damaged("the directory of objects is cut off"));
-        };
-        if !(1..=NEWEST).contains(version) {
-            return Err(damaged(format!(
-                "the directory of objects has the unknown version {version}"
-            )));
-        }
-        let region = |number: usize| region(bytes, regions, number, order);
-        let first = regions.first().map_or(0, |&at| at as usize);
-        let names = bytes
-            .get(HEADER_BYTES..first)
-            .ok_or_else(|| damaged("the names of objects are cut off"))?;
-        let names = names
-            .split(|&byte| byte == 0)
-            .take(*count as usize)
-            .map(name_of)
-            .collect();
-        let cells_behind_values = match version {
-            4 => 3,
-            3 => 2,
-            _ => 1,
-        };
-        let mut directory = Directory {
-            classes: Vec::new(),
-            names,
-            cells_behind_values,
-            ..Directory::without_names(&region)?
-        };
-        directory.classes = region(0)?
-            .chunks_exact(4)
-            .map(|class| directory.class_of(class))
-            .collect();
-        Ok(directory)
-    }
-
-    fn without_names(
-        region: &dyn Fn(usize) -> Result<Vec<u32>, VariableFault>,
-    ) -> Result<Self, VariableFault> {
-        let entry = |words: &[u32]| match *words {
-            [class, _, _, made, plain, _] => Some(Entry { class, made, plain }),
-            _ => None,
-        };
-        Ok(Directory {
-            names: Vec::new(),
-            classes: Vec::new(),
-            objects: region(2)?.chunks_exact(6).filter_map(entry).collect(),
-            made: properties(&region(1)?)?,
-            plain: properties(&region(3)?)?,
-            cells_behind_values: 0,
-        })
-    }
-
-    /// Returns the class name: its package and its own name.
-    fn class_of(&self, words: &[u32]) -> String {
-        let name = |at: usize| {
-            words
-                .get(at)
-                .and_then(|&number| self.name(number))
-                .unwrap_or_default()
-        };
-        match (name(0), name(1)) {
-            ("", name) => name.to_owned(),
-            (package, name) => format!("{package}.{name}"),
-        }
-    }
-
-    /// Returns the name of a property or a class.
-    pub(super) fn name(&self, number: u32) -> Option<&str> {
-        self.names
-            .get((number as usize).checked_sub(1)?)
-            .map(String::as_str)
-    }
-
-    /// Returns the name of a class.
-    pub(super) fn class(&self, number: u32) -> Option<&str> {
-        if number == 0 {
-            None
-        } else {
-            self.classes.get(number as usize).map(String::as_str)
-        }
-    }
-
-    /// Returns the class of an object and its properties.
-    pub(super) fn object(&self, number: u32) -> Option<(u32, &[Property])> {
-        let entry = self.objects.get(number as usize)?;
-        let (list, at) = if entry.made == 0 {
-            (&self.plain, entry.plain)
-        } else {
-            (&self.made, entry.made)
-        };
-        Some((entry.class, list.get(at as usize)?.as_slice()))
-    }
-
-    /// Whether an object with this number exists; 0 marks a deleted object.
-    pub(super) fn has_object(&self, number: u32) -> bool {
-        number == 0 || (number as usize) < self.objects.len()
-    }
-}
-
-fn region(
-    bytes: &[u8],
-    regions: &[u32],
-    number: usize,
-    order: ByteOrder,
-) -> Result<Vec<u32>, VariableFault> {
-    let bounds = regions.get(number).zip(regions.get(number + 1));
-    let region = bounds.and_then(|(&from, &to)| bytes.get(from as usize..to as usize));
-    let region =
-        region.ok_or_else(|| damaged("a part of the directory of objects lies outside it"))?;
-    Ok(region
-        .as_chunks()
-        .0
-        .iter()
-        .map(|&word| order.u32(word))
-        .collect())
-}
-
-/// Reads consecutive property lists, each preceded by its length and padded to eight bytes.
-fn properties(region: &[u32]) -> Result<Vec<Vec<Property>>, VariableFault> {
-    let mut lists = Vec::new();
-    let mut rest = region;
-    while let [count, after @ ..] = rest {
-        let length = (*count as usize).saturating_mul(3);
-        let (list, after) = after
-            .split_at_checked(length)
-            .ok_or_else(|| damaged("the properties of an object are cut off"))?;
-        lists.push(list.chunks_exact(3).filter_map(property).collect());
-        rest = after.get((length + 1) % 2..).unwrap_or_default();
-    }
-    Ok(lists)
-}
-
-fn property(words: &[u32]) -> Option<Property> {
-    let &[name, kind, value] = words else {
-        return None;
-    };
-    let content = match kind {
-        0 => Content::Name(value),
-        1 => Content::Cell(value as usize),
-        _ => Content::Number(value),
-    };
-    Some(Property { name, content })
-}
-
-// Texts of a `string` object, packed into 64-bit integers.
-
-/// The only known version of the packing.
-const VERSION: u64 = 1;
-/// Length that marks a missing text.
-const MISSING: u64 = u64::MAX;
-
-/// Unpacks the texts from version, number of dimensions, dimensions, lengths and UTF-16 units, four
-/// to a number; `None` for other numbers. A missing text is read as an empty text.
-pub(super) fn packed_text(
-    words: &[u64],
-    budget: &ReadingBudget<'_>,
-) -> Result<Option<TextArray>, VariableFault> {
-    budget.take(words.len() as u64, 64, "")?;
-    Ok(unpacked(words))
-}
-
-fn unpacked(words: &[u64]) -> Option<TextArray> {
-    let [VERSION, dimensions, rest @ ..] = words else {
-        return None;
-    };
-    let (shape, rest) = rest.split_at_checked(usize::try_from(*dimensions).ok()?)?;
-    let shape: Vec<usize> = shape
-        .iter()
-        .map(|&length| usize::try_from(length).ok())
-        .collect::<Option<_>>()?;
-    let count = shape
-        .iter()
-        .try_fold(1_usize, |product, &length| product.checked_mul(length))?;
-    let (lengths, rest) = rest.split_at_checked(count)?;
-    let units: Vec<u16> = rest
-        .iter()
-        .flat_map(|word| [0, 16, 32, 48].map(|shift| (word >> shift) as u16))
-        .collect();
-    let mut rest = units.as_slice();
-    let mut texts = Vec::new();
-    for &length in lengths {
-        let length = if length == MISSING {
-            0
-        } else {
-            usize::try_from(length).ok()?
-        };
-        let (text, after) = rest.split_at_checked(length)?;
-        texts.push(String::from_utf16_lossy(text));
-        rest = after;
-    }
-    Some(TextArray { shape, texts })
-}
-
-// References to objects.
-
-/// First number of every reference.
-const REFERENCE: u32 = 0xdd00_0000;
-
-/// A reference to objects.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(in crate::formats::mat) struct Reference {
-    /// Number of objects along each dimension.
-    pub(super) shape: Vec<usize>,
-    /// Number of each object, first index fastest.
-    pub(super) objects: Vec<u32>,
-    /// Number of the class.
-    pub(super) class: u32,
-}
-
-impl Reference {
-    /// Parses `[0xDD000000, number of dimensions, dimensions, numbers of the objects, number of the
-    /// class]`.
-    pub(super) fn parse(words: &[u32]) -> Option<Self> {
-        let [REFERENCE, dimensions, rest @ ..] = words else {
-            return None;
-        };
-        let (shape, rest) = rest.split_at_checked(*dimensions as usize)?;
-        let shape: Vec<usize> = shape.iter().map(|&length| length as usize).collect();
-        let (&class, objects) = rest.split_last()?;
-        let is_whole = shape.len() >= 2 && count(&shape)? == objects.len();
-        is_whole.then(|| Self {
-            shape,
-            objects: objects.to_vec(),
-            class,
-        })
-    }
-
-    /// Returns the reference in a value: a column of integers.
-    pub(in crate::formats::mat) fn of(value: &Value) -> Option<Self> {
-        let Value::Array(array) = value else {
-            return None;
-        };
-        let begins = array.re.first() == Some(&f64::from(REFERENCE));
-        if !begins
-            || array.kind != ElementKind::Integer
-            || array.shape.get(1) != Some(&1)
-            || array.im.is_some()
-        {
-            return None;
-        }
-        let word = |&number: &f64| {
-            if (0.0..=f64::from(u32::MAX)).contains(&number) {
-                Some(number as u32)
-            } else {
-                None
-            }
-        };
-        let words: Option<Vec<u32>> = array.re.iter().map(word).collect();
-        Self::parse(&words?)
-    }
-}
-
-// Enumeration members.
-
-/// Field that marks a record as enumeration members.
-const TAG: &str = "EnumerationInstanceTag";
-/// Property with the name of the member.
-const MEMBER: &str = "Name";
-
-/// Whether the records are enumeration members.
-pub(super) fn is_enumeration(records: &StructArray) -> bool {
-    records.field(TAG).is_some()
-}
-
-impl Subsystem {
-    /// Converts enumeration members to objects whose only property is the member's name.
-    pub(in crate::formats::mat) fn enumeration(
-        &self,
-        records: &StructArray,
-        class: &str,
-        trail: &FieldPath<'_>,
-        budget: &ReadingBudget<'_>,
-    ) -> Result<Value, VariableFault> {
-        let number = numbers(records, "ClassName").and_then(|numbers| numbers.first().copied());
-        let class = number
-            .and_then(|number| self.directory.class(number))
-            .unwrap_or(class);
-        let opaque = || {
-            unread_because(
-                class,
-                "the members of the enumeration are not read",
-                &trail.words(),
-            )
-        };
-        let names = numbers(records, "ValueNames").unwrap_or_default();
-        let Some([Value::Array(indices)]) = records.field("ValueIndices") else {
-            return Ok(opaque());
-        };
-        let name = |&index: &f64| self.directory.name(*names.get(index as usize)?);
-        let Some(members) = indices.re.iter().map(name).collect::<Option<Vec<_>>>() else {
-            return Ok(opaque());
-        };
-        let bytes = members.iter().map(|name| name.len() as u64 + 256).sum();
-        budget
-            .take(1, bytes, "")
-            .map_err(|fault| trail.name(fault))?;
-        let fields = vec![(
-            MEMBER.to_owned(),
-            members.iter().copied().map(Value::text).collect(),
-        )];
-        let records = StructArray {
-            shape: indices.shape.clone(),
-            fields,
-        };
-        Ok(Value::Object(Object {
-            class: class.to_owned(),
-            records,
-        }))
-    }
-}
-
-fn numbers(records: &StructArray, field: &str) -> Option<Vec<u32>> {
-    match records.field(field)? {
-        [Value::Array(array)] => Some(array.re.iter().map(|&number| number as u32).collect()),
-        _ => None,
-    }
-}
-
 #[cfg(test)]
-mod subsystem_tests {
+mod tests {
     use proptest::prelude::*;
 
     use super::*;
@@ -503,7 +157,7 @@ mod subsystem_tests {
         Directory, chars, column, doubles, file_with_objects, long_words_of, opaque, record,
         reference, words_of,
     };
-    use crate::formats::variables::{Array, StructArray, TextArray};
+    use crate::formats::variables::{Array, TextArray};
 
     const NAMES: [&str; 12] = [
         "ss", "ssdata", "ltipack", "string", "node", "Data_", "Name_", "any", "a", "self", "Mode_",
@@ -609,7 +263,7 @@ mod subsystem_tests {
     }
 
     #[test]
-    fn objects_within_objects_are_put_in_their_places() {
+    fn nested_objects_are_resolved() {
         let values = values(&file(4));
         let Value::Cell(data) = &records(&values["sys"]).field("Data_").unwrap()[0] else {
             panic!()
@@ -636,7 +290,7 @@ mod subsystem_tests {
     }
 
     #[test]
-    fn an_object_that_lies_in_itself_is_cut() {
+    fn an_object_that_contains_itself_is_cut() {
         let values = values(&file(4));
         let Value::Opaque { class, why } = &records(&values["ring"]).field("self").unwrap()[0]
         else {
@@ -650,7 +304,7 @@ mod subsystem_tests {
     }
 
     #[test]
-    fn what_cannot_be_decoded_leaves_the_other_variables_alone() {
+    fn undecodable_objects_leave_the_other_variables_alone() {
         let values = values(&file(4));
         assert!(matches!(&values["lost"], Value::Opaque { .. }));
         assert_eq!(values["x"], Value::Array(Array::matrix(1, 1, vec![3.0])));
@@ -689,7 +343,7 @@ mod subsystem_tests {
     }
 
     #[test]
-    fn strings_whose_words_lost_no_digits_are_read_without_the_long_words() {
+    fn strings_without_lost_digits_are_read_without_the_long_words() {
         let words = [1.0, 2.0, 1.0, 1.0, 2.0, f64::from(0x62_u32 << 16 | 0x61)];
         let bytes = directory(2).cell();
         let directory = values(&file_with_objects(
@@ -740,99 +394,5 @@ mod subsystem_tests {
         for length in 0..bytes.len() {
             let _ = read(&bytes[..length], &ReadingBudget::new(1 << 20));
         }
-    }
-}
-
-#[cfg(test)]
-mod packed_text_tests {
-    use super::*;
-
-    #[test]
-    fn texts_follow_one_another_without_gaps() {
-        let units: Vec<u16> = "abcde".encode_utf16().collect();
-        let word = |units: &[u16]| {
-            units
-                .iter()
-                .rev()
-                .fold(0_u64, |word, &unit| (word << 16) | u64::from(unit))
-        };
-        let words = [
-            1,
-            2,
-            1,
-            3,
-            3,
-            MISSING,
-            2,
-            word(&units[..4]),
-            word(&units[4..]),
-        ];
-        let texts = ["abc", "", "de"].map(str::to_owned).to_vec();
-        assert_eq!(
-            unpacked(&words),
-            Some(TextArray {
-                shape: vec![1, 3],
-                texts
-            })
-        );
-    }
-
-    #[test]
-    fn other_numbers_are_no_texts() {
-        for words in [
-            &[][..],
-            &[2, 2, 1, 1, 0],
-            &[1, 2, 1, 1, 5, 0],
-            &[1, 9, 1],
-            &[1, 2, u64::MAX, 2, 0],
-        ] {
-            assert_eq!(unpacked(words), None);
-        }
-    }
-}
-
-#[cfg(test)]
-mod reference_tests {
-    use super::*;
-    use crate::formats::variables::Array;
-
-    #[test]
-    fn a_reference_names_its_objects_and_their_class() {
-        let reference = Reference::parse(&[REFERENCE, 2, 1, 2, 7, 8, 3]);
-        assert_eq!(
-            reference,
-            Some(Reference {
-                shape: vec![1, 2],
-                objects: vec![7, 8],
-                class: 3
-            })
-        );
-    }
-
-    #[test]
-    fn what_does_not_fit_its_own_sizes_is_no_reference() {
-        for words in [
-            &[REFERENCE, 2, 1, 2, 7, 3][..],
-            &[REFERENCE, 9, 1, 1, 1, 1],
-            &[1, 2, 1, 1, 1, 1],
-            &[],
-        ] {
-            assert_eq!(Reference::parse(words), None);
-        }
-        assert_eq!(
-            Reference::parse(&[REFERENCE, 4, u32::MAX, u32::MAX, u32::MAX, 0, 1]),
-            None
-        );
-    }
-
-    #[test]
-    fn ordinary_numbers_are_no_reference_even_if_they_look_like_one() {
-        let numbers = Array::matrix(6, 1, [REFERENCE, 2, 1, 1, 1, 1].map(f64::from).to_vec());
-        assert_eq!(Reference::of(&Value::Array(numbers.clone())), None);
-        let integers = Array {
-            kind: ElementKind::Integer,
-            ..numbers
-        };
-        assert!(Reference::of(&Value::Array(integers)).is_some());
     }
 }

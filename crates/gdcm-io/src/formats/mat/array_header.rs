@@ -1,0 +1,146 @@
+//! Array header: class, flags, shape and name.
+//!
+//! Source: "MAT-File Format", The MathWorks, "miMATRIX Format".
+
+use crate::formats::mat::cursor::Cursor;
+use crate::formats::mat::element::{DataKind, Element};
+use crate::formats::mat::numbers::read_sizes;
+use crate::formats::strides;
+use crate::formats::variables::ElementKind;
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Flag for logical numbers.
+const LOGICAL: u32 = 0x0200;
+/// Flag for complex numbers.
+const COMPLEX: u32 = 0x0800;
+/// Class number for unsigned 64-bit integers.
+const UINT64: u32 = 15;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ArrayClass {
+    Cell,
+    Struct,
+    Object,
+    Char,
+    Sparse,
+    Float,
+    Integer,
+    FunctionHandle,
+    Opaque,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct ArrayHeader {
+    pub(super) class: ArrayClass,
+    /// Whether the numbers are unsigned 64-bit integers.
+    pub(super) has_long_words: bool,
+    pub(super) is_logical: bool,
+    pub(super) is_complex: bool,
+    /// Side lengths, at least two; 1 x 1 for an opaque array.
+    pub(super) shape: Vec<usize>,
+    /// Element count.
+    pub(super) count: usize,
+    /// Empty for a value nested in another.
+    pub(super) name: String,
+}
+
+impl ArrayHeader {
+    /// Reads the header, which precedes the contents.
+    pub(super) fn read(
+        contents: &mut Cursor<'_>,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Self, VariableFault> {
+        let flags = Element::read(contents)?;
+        if flags.kind != DataKind::U32 {
+            return Err(flags.data.damaged("an array without flags"));
+        }
+        let bits = { flags.data }.u32()?;
+        let number = bits & 0xff;
+        let Some(class) = ArrayClass::from_number(number) else {
+            return Err(flags
+                .data
+                .damaged(format!("an array with the unknown class {number}")));
+        };
+        let shape = if class == ArrayClass::Opaque {
+            vec![1, 1]
+        } else {
+            read_shape(contents, budget)?
+        };
+        // The product of all nonzero sides must not overflow.
+        if strides::count(&shape).is_none() {
+            budget.take(u64::MAX, 1, "")?;
+        }
+        Ok(ArrayHeader {
+            class,
+            count: saturating_count(&shape),
+            has_long_words: number == UINT64,
+            is_logical: bits & LOGICAL != 0,
+            is_complex: bits & COMPLEX != 0,
+            shape,
+            name: Element::read(contents)?.name()?,
+        })
+    }
+
+    pub(super) fn element_kind(&self) -> ElementKind {
+        if self.is_logical {
+            return ElementKind::Logical;
+        }
+        match self.class {
+            ArrayClass::Integer => ElementKind::Integer,
+            _ => ElementKind::Float,
+        }
+    }
+}
+
+impl ArrayClass {
+    fn from_number(number: u32) -> Option<Self> {
+        Some(match number {
+            1 => ArrayClass::Cell,
+            2 => ArrayClass::Struct,
+            3 => ArrayClass::Object,
+            4 => ArrayClass::Char,
+            5 => ArrayClass::Sparse,
+            6 | 7 => ArrayClass::Float,
+            8..=15 => ArrayClass::Integer,
+            16 => ArrayClass::FunctionHandle,
+            17 => ArrayClass::Opaque,
+            _ => return None,
+        })
+    }
+}
+
+/// Counts the elements in an array with these sides; saturates at the largest integer.
+pub(super) fn saturating_count(shape: &[usize]) -> usize {
+    if shape.contains(&0) {
+        return 0;
+    }
+    let mut count = 1_usize;
+    for &side in shape {
+        count = count.saturating_mul(side);
+    }
+    count
+}
+
+/// Reads the side lengths, with ones for missing sides up to two.
+fn read_shape(
+    contents: &mut Cursor<'_>,
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<usize>, VariableFault> {
+    let mut shape = read_sizes(&Element::read(contents)?, budget)?;
+    while shape.len() < 2 {
+        shape.push(1);
+    }
+    Ok(shape)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_array_with_an_empty_side_has_no_elements() {
+        assert_eq!(saturating_count(&[usize::MAX, usize::MAX, 0]), 0);
+        assert_eq!(saturating_count(&[3, 4]), 12);
+        assert_eq!(saturating_count(&[usize::MAX, 2]), usize::MAX);
+    }
+}

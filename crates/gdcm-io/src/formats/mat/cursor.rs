@@ -1,0 +1,180 @@
+//! Sequential reading in the byte order of the file.
+
+use crate::reading_budget::VariableFault;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ByteOrder {
+    Little,
+    Big,
+}
+
+impl ByteOrder {
+    /// Decodes a 32-bit integer.
+    pub(super) fn u32(self, bytes: [u8; 4]) -> u32 {
+        match self {
+            ByteOrder::Little => u32::from_le_bytes(bytes),
+            ByteOrder::Big => u32::from_be_bytes(bytes),
+        }
+    }
+
+    /// Decodes a 64-bit integer.
+    pub(super) fn u64(self, bytes: [u8; 8]) -> u64 {
+        match self {
+            ByteOrder::Little => u64::from_le_bytes(bytes),
+            ByteOrder::Big => u64::from_be_bytes(bytes),
+        }
+    }
+}
+
+/// A position within a section of bytes; reading cannot leave the section.
+///
+/// Its faults name no variable: [`super::value_path::ValuePath::locate`] adds the name.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cursor<'b> {
+    /// The bytes from the position to the end of the section.
+    bytes: &'b [u8],
+    pub(super) order: ByteOrder,
+    /// Offset of the position in the file.
+    pub(super) offset: u64,
+    section: Section,
+}
+
+/// Origin of a section, which decides the fault if it ends too early.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Section {
+    /// The whole file: it is cut off.
+    File,
+    /// An element of the file: its size is wrong.
+    Element,
+    /// Unpacked or embedded bytes: every position is reported as the start of the packed element.
+    Unpacked,
+}
+
+impl<'b> Cursor<'b> {
+    pub(super) fn file(bytes: &'b [u8], order: ByteOrder) -> Self {
+        Self {
+            bytes,
+            order,
+            offset: 0,
+            section: Section::File,
+        }
+    }
+
+    /// Starts at the beginning of bytes that were unpacked from, or embedded at, `offset` in the
+    /// file.
+    pub(super) fn unpacked(bytes: &'b [u8], order: ByteOrder, offset: u64) -> Self {
+        Self {
+            bytes,
+            order,
+            offset,
+            section: Section::Unpacked,
+        }
+    }
+
+    /// Returns the remaining bytes.
+    pub(super) fn rest(&self) -> &'b [u8] {
+        self.bytes
+    }
+
+    /// Counts the remaining bytes.
+    pub(super) fn len(&self) -> usize {
+        self.bytes.len()
+    }
+
+    /// Whether no bytes remain.
+    pub(super) fn is_empty(&self) -> bool {
+        self.bytes.is_empty()
+    }
+
+    /// Takes the next `length` bytes as an element.
+    pub(super) fn take(&mut self, length: usize) -> Result<Cursor<'b>, VariableFault> {
+        let Some((bytes, rest)) = self.bytes.split_at_checked(length) else {
+            return Err(self.too_short());
+        };
+        let section = if self.section == Section::File {
+            Section::Element
+        } else {
+            self.section
+        };
+        let taken = Cursor {
+            bytes,
+            order: self.order,
+            offset: self.offset,
+            section,
+        };
+        self.bytes = rest;
+        if self.section != Section::Unpacked {
+            self.offset = self.offset.saturating_add(length as u64);
+        }
+        Ok(taken)
+    }
+
+    /// Takes all remaining bytes. If they turn out to be too few, the fault is that of this
+    /// section, not that of an element.
+    pub(super) fn take_all(&mut self) -> Result<Cursor<'b>, VariableFault> {
+        let rest = *self;
+        self.pass(rest.len())?;
+        Ok(rest)
+    }
+
+    /// Skips `length` bytes, or all remaining bytes if there are fewer.
+    pub(super) fn pass(&mut self, length: usize) -> Result<(), VariableFault> {
+        self.take(length.min(self.len())).map(drop)
+    }
+
+    /// Reads a 32-bit integer.
+    pub(super) fn u32(&mut self) -> Result<u32, VariableFault> {
+        let order = self.order;
+        let bytes = self.array()?;
+        Ok(order.u32(bytes))
+    }
+
+    /// Reads the next `N` bytes.
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], VariableFault> {
+        let taken = self.take(N)?;
+        <[u8; N]>::try_from(taken.bytes).map_err(|_| self.too_short())
+    }
+
+    /// Returns the fault for bytes at this position that contradict the format.
+    pub(super) fn damaged(&self, what: impl Into<String>) -> VariableFault {
+        VariableFault::damaged("", what, self.offset)
+    }
+
+    fn too_short(&self) -> VariableFault {
+        match self.section {
+            Section::File => VariableFault::CutOff {
+                variable: String::new(),
+                offset: self.offset,
+            },
+            Section::Element | Section::Unpacked => {
+                self.damaged("an element is longer than the element that contains it")
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_is_read_in_both_orders() {
+        assert_eq!(Cursor::file(&[1, 0, 0, 0], ByteOrder::Little).u32(), Ok(1));
+        assert_eq!(Cursor::file(&[0, 0, 0, 1], ByteOrder::Big).u32(), Ok(1));
+    }
+
+    #[test]
+    fn the_end_of_the_file_is_not_the_end_of_an_element() {
+        let mut file = Cursor::file(&[0; 6], ByteOrder::Little);
+        let mut element = file.take(3).unwrap();
+        assert!(matches!(
+            element.u32(),
+            Err(VariableFault::Damaged { offset: 0, .. })
+        ));
+        assert!(matches!(
+            file.u32(),
+            Err(VariableFault::CutOff { offset: 3, .. })
+        ));
+        assert!(file.pass(9).is_ok() && file.is_empty());
+    }
+}

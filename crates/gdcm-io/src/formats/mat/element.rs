@@ -1,0 +1,282 @@
+//! Data elements: a tag with data type and length, and the data.
+//!
+//! Source: "MAT-File Format", The MathWorks, "Data Element Format".
+
+use crate::formats::mat::cursor::{ByteOrder, Cursor};
+use crate::formats::strides::{NumberClass, StoredNumber};
+use crate::reading_budget::VariableFault;
+
+/// Data type of an element, with its number in the tag.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum DataKind {
+    I8 = 1,
+    U8 = 2,
+    I16 = 3,
+    U16 = 4,
+    I32 = 5,
+    U32 = 6,
+    F32 = 7,
+    F64 = 9,
+    I64 = 12,
+    U64 = 13,
+    Matrix = 14,
+    Packed = 15,
+    Utf8 = 16,
+    Utf16 = 17,
+    Utf32 = 18,
+}
+
+impl DataKind {
+    /// Returns the data type with this number in the tag, if there is such a type.
+    fn from_number(number: u32) -> Option<Self> {
+        Some(match number {
+            1 => Self::I8,
+            2 => Self::U8,
+            3 => Self::I16,
+            4 => Self::U16,
+            5 => Self::I32,
+            6 => Self::U32,
+            7 => Self::F32,
+            9 => Self::F64,
+            12 => Self::I64,
+            13 => Self::U64,
+            14 => Self::Matrix,
+            15 => Self::Packed,
+            16 => Self::Utf8,
+            17 => Self::Utf16,
+            18 => Self::Utf32,
+            _ => return None,
+        })
+    }
+
+    /// Returns the number type; matrices and packed data have none.
+    pub(super) fn number_type(self, order: ByteOrder) -> Option<StoredNumber> {
+        let (class, size) = match self {
+            Self::I8 => (NumberClass::Signed, 1),
+            Self::I16 => (NumberClass::Signed, 2),
+            Self::I32 => (NumberClass::Signed, 4),
+            Self::I64 => (NumberClass::Signed, 8),
+            Self::U8 | Self::Utf8 => (NumberClass::Unsigned, 1),
+            Self::U16 | Self::Utf16 => (NumberClass::Unsigned, 2),
+            Self::U32 | Self::Utf32 => (NumberClass::Unsigned, 4),
+            Self::U64 => (NumberClass::Unsigned, 8),
+            Self::F32 => (NumberClass::Float, 4),
+            Self::F64 => (NumberClass::Float, 8),
+            Self::Matrix | Self::Packed => return None,
+        };
+        StoredNumber::new(class, size, order == ByteOrder::Big)
+    }
+}
+
+/// A data element.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Element<'b> {
+    pub(super) kind: DataKind,
+    /// The data, without the padding to eight bytes.
+    pub(super) data: Cursor<'b>,
+    /// Whether all bytes announced by the tag are present; only an array may have fewer.
+    pub(super) is_whole: bool,
+}
+
+impl<'b> Element<'b> {
+    /// Reads the next element and its padding.
+    pub(super) fn read(cursor: &mut Cursor<'b>) -> Result<Self, VariableFault> {
+        let tag = *cursor;
+        let first = cursor.u32()?;
+        // A small element holds up to four bytes within its tag, and their count in the upper half
+        // of the first word.
+        let small = first >> 16;
+        if small != 0 {
+            let kind = known_kind(first & 0xffff, tag)?;
+            let data = cursor.take(4)?.take(small as usize)?;
+            return Ok(Self {
+                kind,
+                data,
+                is_whole: true,
+            });
+        }
+        let kind = known_kind(first, tag)?;
+        let length = cursor.u32()? as usize;
+        if kind == DataKind::Matrix && length > cursor.len() {
+            // GNU Octave announces a few bytes too many for some arrays.
+            return Ok(Self {
+                kind,
+                data: cursor.take_all()?,
+                is_whole: false,
+            });
+        }
+        let data = cursor.take(length)?;
+        if kind != DataKind::Packed {
+            cursor.pass(length.wrapping_neg() % 8)?;
+        }
+        Ok(Self {
+            kind,
+            data,
+            is_whole: true,
+        })
+    }
+
+    /// Skips all remaining elements.
+    pub(super) fn pass_all(cursor: &mut Cursor<'_>) -> Result<(), VariableFault> {
+        while !cursor.is_empty() {
+            Element::read(cursor)?;
+        }
+        Ok(())
+    }
+
+    /// Counts the numbers in the element.
+    pub(super) fn count(&self) -> Result<usize, VariableFault> {
+        let Some(number_type) = self.kind.number_type(self.data.order) else {
+            return Err(self.data.damaged("an array instead of numbers"));
+        };
+        let width = number_type.size();
+        let length = self.data.len();
+        if !length.is_multiple_of(width) {
+            return Err(self.data.damaged(format!(
+                "{length} bytes for numbers with {width} bytes each"
+            )));
+        }
+        Ok(length / width)
+    }
+
+    /// Reads a name with one byte for each character.
+    pub(super) fn name(&self) -> Result<String, VariableFault> {
+        match self.kind {
+            DataKind::I8 | DataKind::U8 | DataKind::Utf8 => Ok(decode_name(self.data.rest())),
+            _ => Err(self.data.damaged("numbers instead of a name")),
+        }
+    }
+
+    /// Returns the contents; refuses elements that are no arrays.
+    pub(super) fn array_contents(self) -> Result<Cursor<'b>, VariableFault> {
+        match self.kind {
+            DataKind::Matrix => Ok(self.data),
+            _ => Err(self.data.damaged("another element instead of an array")),
+        }
+    }
+}
+
+/// Returns the data type with this number, or the fault at its tag.
+fn known_kind(number: u32, tag: Cursor<'_>) -> Result<DataKind, VariableFault> {
+    DataKind::from_number(number)
+        .ok_or_else(|| tag.damaged(format!("an element with the unknown data type {number}")))
+}
+
+/// An array that was read, for finding the element after it.
+#[derive(Clone, Copy)]
+pub(super) struct ReadArray<'b> {
+    /// Position before the tag.
+    pub(super) start: Cursor<'b>,
+    pub(super) element: Element<'b>,
+    /// Contents that were not read.
+    pub(super) unread: Cursor<'b>,
+    /// Position after the element and its padding, as given by the tag.
+    pub(super) end: Cursor<'b>,
+}
+
+impl<'b> ReadArray<'b> {
+    /// Returns the position of the next element.
+    ///
+    /// GNU Octave counts too many bytes for some texts and objects. So if bytes are left over and
+    /// no array begins at the announced end, the next element begins with these bytes.
+    pub(super) fn next_position(self) -> Result<Cursor<'b>, VariableFault> {
+        if self.unread.is_empty() || (self.element.is_whole && begins_array(&self.end)) {
+            return Ok(self.end);
+        }
+        let mut next = self.start;
+        let read = self.element.data.len().saturating_sub(self.unread.len());
+        next.pass(8 + read)?;
+        Ok(next)
+    }
+}
+
+/// Whether an array begins at the cursor, or the data ends there.
+fn begins_array(cursor: &Cursor<'_>) -> bool {
+    if cursor.is_empty() {
+        return true;
+    }
+    let mut tag = *cursor;
+    let Ok(number) = tag.u32() else {
+        return false;
+    };
+    let Ok(length) = tag.u32() else {
+        return false;
+    };
+    let is_array = matches!(
+        DataKind::from_number(number),
+        Some(DataKind::Matrix | DataKind::Packed)
+    );
+    is_array && length as usize <= tag.len()
+}
+
+/// Decodes a name up to the first zero; bytes that are not UTF-8 are read as Latin-1, the encoding
+/// of old programs.
+pub(super) fn decode_name(bytes: &[u8]) -> String {
+    let bytes = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
+    match std::str::from_utf8(bytes) {
+        Ok(name) => name.to_owned(),
+        Err(_) => bytes.iter().copied().map(char::from).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::mat::cursor::ByteOrder;
+
+    fn read(bytes: &[u8]) -> Result<Element<'_>, VariableFault> {
+        Element::read(&mut Cursor::file(bytes, ByteOrder::Little))
+    }
+
+    #[test]
+    fn small_data_is_within_the_tag() {
+        let element = read(&[1, 0, 3, 0, b'a', b'b', b'c', 0]).unwrap();
+        assert_eq!(
+            (element.kind, element.name().unwrap().as_str()),
+            (DataKind::I8, "abc")
+        );
+        assert!(matches!(
+            read(&[1, 0, 5, 0, 0, 0, 0, 0]),
+            Err(VariableFault::Damaged { .. })
+        ));
+    }
+
+    #[test]
+    fn the_next_element_begins_at_a_multiple_of_eight_bytes() {
+        let bytes = [
+            &[2, 0, 0, 0, 5, 0, 0, 0, 1, 2, 3, 4, 5, 0, 0, 0][..],
+            &[2, 0, 1, 0, 7, 0, 0, 0],
+        ]
+        .concat();
+        let mut cursor = Cursor::file(&bytes, ByteOrder::Little);
+        assert_eq!(Element::read(&mut cursor).unwrap().count(), Ok(5));
+        assert_eq!(Element::read(&mut cursor).unwrap().data.rest(), [7]);
+    }
+
+    #[test]
+    fn an_array_begins_at_a_tag_that_fits_the_remaining_bytes() {
+        let begins = |bytes: &[u8]| begins_array(&Cursor::file(bytes, ByteOrder::Little));
+        assert!(begins(&[]) && begins(&[14, 0, 0, 0, 0, 0, 0, 0]));
+        for bytes in [
+            &[14, 0, 0, 0, 1, 0, 0, 0][..],
+            &[9, 0, 0, 0, 0, 0, 0, 0],
+            &[14, 0, 0, 0],
+        ] {
+            assert!(!begins(bytes), "{bytes:?}");
+        }
+    }
+
+    #[test]
+    fn an_unknown_kind_and_half_numbers_are_damage() {
+        assert!(matches!(
+            read(&[8, 0, 0, 0, 0, 0, 0, 0]),
+            Err(VariableFault::Damaged { .. })
+        ));
+        assert!(read(&[4, 0, 3, 0, 0, 0, 0, 0]).unwrap().count().is_err());
+    }
+
+    #[test]
+    fn names_that_are_not_utf_8_are_latin_1() {
+        assert_eq!(decode_name(b"caf\xe9\0\0"), "caf\u{e9}");
+    }
+}

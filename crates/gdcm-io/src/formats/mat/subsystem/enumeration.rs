@@ -1,0 +1,78 @@
+//! Enumeration members, saved as a record with indices into a name list.
+
+use crate::formats::mat::subsystem::directory::Directory;
+use crate::formats::variables::{Object, StructArray, Value};
+
+/// Field that marks a record as enumeration members.
+const TAG: &str = "EnumerationInstanceTag";
+/// Property with the name of the member.
+const MEMBER: &str = "Name";
+
+/// Enumeration members with their names.
+pub(super) struct EnumerationMembers<'d> {
+    class: &'d str,
+    shape: Vec<usize>,
+    names: Vec<&'d str>,
+}
+
+impl<'d> EnumerationMembers<'d> {
+    /// Reads enumeration members; `class` is used if the records do not name a class.
+    ///
+    /// # Errors
+    ///
+    /// The class name, if the members cannot be decoded.
+    pub(super) fn read(
+        directory: &'d Directory,
+        records: &StructArray,
+        class: &'d str,
+    ) -> Result<Self, &'d str> {
+        let class = integers(records, "ClassName")
+            .and_then(|numbers| directory.class(*numbers.first()?))
+            .unwrap_or(class);
+        let name_numbers = integers(records, "ValueNames").unwrap_or_default();
+        let Some([Value::Array(indices)]) = records.field("ValueIndices") else {
+            return Err(class);
+        };
+        let mut names = Vec::new();
+        for &index in &indices.re {
+            let number = name_numbers.get(index as usize).ok_or(class)?;
+            names.push(directory.name(*number).ok_or(class)?);
+        }
+        Ok(Self {
+            class,
+            shape: indices.shape.clone(),
+            names,
+        })
+    }
+
+    /// Estimates the memory of the value \[bytes\].
+    pub(super) fn memory(&self) -> u64 {
+        self.names.iter().map(|name| name.len() as u64 + 256).sum()
+    }
+
+    /// Returns an object array whose only property is the name of the member.
+    pub(super) fn into_value(self) -> Value {
+        let names = self.names.into_iter().map(Value::text).collect();
+        let records = StructArray {
+            shape: self.shape,
+            fields: vec![(MEMBER.to_owned(), names)],
+        };
+        Value::Object(Object {
+            class: self.class.to_owned(),
+            records,
+        })
+    }
+}
+
+/// Whether the records are enumeration members.
+pub(super) fn is_enumeration(records: &StructArray) -> bool {
+    records.field(TAG).is_some()
+}
+
+/// Returns the numbers of a field with a single array, as integers.
+fn integers(records: &StructArray, field: &str) -> Option<Vec<u32>> {
+    match records.field(field)? {
+        [Value::Array(array)] => Some(array.re.iter().map(|&number| number as u32).collect()),
+        _ => None,
+    }
+}

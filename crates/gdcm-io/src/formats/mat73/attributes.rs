@@ -1,0 +1,64 @@
+//! MATLAB's attributes of groups and datasets.
+
+use std::collections::HashMap;
+
+use hdf5_pure::{AttrValue, Error};
+
+use crate::formats::mat73::library_fault::library_fault;
+use crate::reading_budget::VariableFault;
+
+/// `MATLAB_object_decode` of a function handle.
+pub(super) const FUNCTION_HANDLE: u64 = 1;
+/// `MATLAB_object_decode` of an `@`-folder object, stored as a struct.
+pub(super) const FOLDER_OBJECT: u64 = 2;
+/// `MATLAB_object_decode` of a `classdef` object, stored as a reference.
+pub(super) const OBJECT: u64 = 3;
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MatlabAttributes {
+    /// Class name (`MATLAB_class`); `None` if MATLAB did not write the object.
+    pub(super) class: Option<String>,
+    /// Whether the dataset holds the shape of an empty array (`MATLAB_empty`,
+    /// `OCTAVE_EMPTY_MATRIX`).
+    pub(super) is_empty: bool,
+    /// Height of a sparse matrix (`MATLAB_sparse`).
+    pub(super) sparse_height: Option<u64>,
+    /// Field names of a struct in order (`MATLAB_fields`).
+    pub(super) fields: Vec<String>,
+    /// Encoding (`MATLAB_object_decode`); 0 for a plain value.
+    pub(super) encoding: u64,
+}
+
+impl MatlabAttributes {
+    /// Selects MATLAB's attributes; `path` is the variable in faults.
+    pub(super) fn read(
+        attributes: Result<HashMap<String, AttrValue>, Error>,
+        path: &str,
+    ) -> Result<Self, VariableFault> {
+        let attributes = attributes.map_err(|error| library_fault(&error, path))?;
+        let class = attributes.get("MATLAB_class").and_then(AttrValue::as_str);
+        let fields = attributes
+            .get("MATLAB_fields")
+            .and_then(AttrValue::as_strings);
+        let is_empty = match integer(&attributes, "MATLAB_empty") {
+            Some(empty) if empty != 0 => true,
+            _ => attributes.contains_key("OCTAVE_EMPTY_MATRIX"),
+        };
+        Ok(Self {
+            class: class.map(str::to_owned),
+            is_empty,
+            sparse_height: integer(&attributes, "MATLAB_sparse"),
+            fields: fields.unwrap_or_default().to_vec(),
+            encoding: integer(&attributes, "MATLAB_object_decode").unwrap_or(0),
+        })
+    }
+
+    /// Returns the class name, or an empty text.
+    pub(super) fn class_name(&self) -> &str {
+        self.class.as_deref().unwrap_or_default()
+    }
+}
+
+fn integer(attributes: &HashMap<String, AttrValue>, name: &str) -> Option<u64> {
+    attributes.get(name).and_then(AttrValue::as_u64)
+}

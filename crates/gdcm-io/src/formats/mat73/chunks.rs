@@ -1,0 +1,78 @@
+//! Checks on the chunks of packed datasets.
+
+use hdf5_pure::{Chunk, ChunkIndex, Dataset};
+
+use crate::formats::mat73::library_fault::{damaged, library_fault};
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Memory that the library takes for each chunk while it reads \[bytes\].
+const CHUNK: u64 = 128;
+/// Largest growth of a chunk by filters, beyond twice its length \[bytes\].
+const OVERHEAD: u64 = 4096;
+
+/// Takes the memory for reading a dataset in chunks (an unpacked chunk, and the bookkeeping for
+/// each chunk) and checks that the claimed chunks are possible: the library allocates memory for
+/// the claimed sizes and adds up their offsets unchecked.
+///
+/// `sides` are the dataset's side lengths; `size` is the element size \[bytes\].
+pub(super) fn check_chunks(
+    dataset: &Dataset,
+    sides: &[usize],
+    size: u64,
+    path: &str,
+    budget: &ReadingBudget<'_>,
+) -> Result<(), VariableFault> {
+    let shape = dataset
+        .chunk_shape()
+        .map_err(|error| library_fault(&error, path))?;
+    let Some(shape) = shape else {
+        return Ok(());
+    };
+    if shape.contains(&0) || shape.len() != sides.len() {
+        return Err(damaged(path, "the chunks have no size"));
+    }
+    let mut elements: u64 = 1;
+    let mut most_chunks: u64 = 1;
+    for (&side, &chunk) in sides.iter().zip(&shape) {
+        elements = elements.saturating_mul(chunk);
+        most_chunks = most_chunks.saturating_mul((side as u64).div_ceil(chunk));
+    }
+    budget.take(elements, size, path)?;
+    budget.take(most_chunks, CHUNK, path)?;
+    let index = dataset
+        .chunk_index()
+        .map_err(|error| library_fault(&error, path))?;
+    if index == Some(ChunkIndex::BTreeV2) {
+        return Err(VariableFault::unsupported(
+            path,
+            "a dataset that can grow in two directions",
+            "write it with a fixed shape",
+        ));
+    }
+    let longest = elements
+        .saturating_mul(size)
+        .saturating_mul(2)
+        .saturating_add(OVERHEAD);
+    let chunks = dataset
+        .chunks()
+        .map_err(|error| library_fault(&error, path))?;
+    if chunks.iter().any(|chunk| chunk.storage_size > longest) {
+        return Err(damaged(path, "a chunk is longer than its shape allows"));
+    }
+    // The other indices compute offsets instead of storing them.
+    if index == Some(ChunkIndex::BTreeV1) {
+        let is_outside = chunks.iter().any(|chunk| begins_outside(chunk, sides));
+        if is_outside || chunks.len() as u64 > most_chunks {
+            return Err(damaged(path, "a chunk is outside the dataset"));
+        }
+    }
+    Ok(())
+}
+
+fn begins_outside(chunk: &Chunk, sides: &[usize]) -> bool {
+    chunk
+        .offset
+        .iter()
+        .zip(sides)
+        .any(|(&offset, &side)| offset >= side as u64)
+}

@@ -1,0 +1,97 @@
+//! File bytes with a limit on reading.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use hdf5_pure::{FormatError, Source};
+
+/// How many times a file may be read: headers and indices are read several times, once for each
+/// query.
+const TIMES: u64 = 16;
+/// Additional reading, which small files need \[bytes\].
+const ADDITIONAL: u64 = 16 << 20;
+/// Smallest charge for a read \[bytes\].
+const LEAST: u64 = 16;
+
+/// Bytes in memory with a limit on how much is read.
+///
+/// Index nodes may refer to one another so that a file with a few kilobytes has more paths than can
+/// ever be visited; the library follows them all. The limit ends such reading.
+pub(super) struct LimitedSource {
+    bytes: Vec<u8>,
+    /// Remaining reading \[bytes\].
+    left: AtomicU64,
+    stop: Arc<AtomicBool>,
+}
+
+impl LimitedSource {
+    /// Creates the source; reading ends once `stop` is set.
+    pub(super) fn new(bytes: Vec<u8>, stop: Arc<AtomicBool>) -> Self {
+        let limit = (bytes.len() as u64)
+            .saturating_mul(TIMES)
+            .saturating_add(ADDITIONAL);
+        Self {
+            bytes,
+            left: AtomicU64::new(limit),
+            stop,
+        }
+    }
+}
+
+impl Source for LimitedSource {
+    fn len(&self) -> u64 {
+        self.bytes.len() as u64
+    }
+
+    fn read_at(&self, offset: u64, buffer: &mut [u8]) -> Result<(), FormatError> {
+        let cost = (buffer.len() as u64).max(LEAST);
+        let paid = self
+            .left
+            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
+                left.checked_sub(cost)
+            });
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(FormatError::Source("stopped".to_owned()));
+        }
+        if paid.is_err() {
+            return Err(FormatError::Source(
+                "its parts refer to one another too often".to_owned(),
+            ));
+        }
+        let start = usize::try_from(offset).unwrap_or(usize::MAX);
+        let end = start.saturating_add(buffer.len());
+        let Some(found) = self.bytes.get(start..end) else {
+            return Err(FormatError::UnexpectedEof {
+                expected: end,
+                available: self.bytes.len(),
+            });
+        };
+        buffer.copy_from_slice(found);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_can_be_read_a_limited_number_of_times() {
+        let source = LimitedSource::new(vec![7; 1 << 20], Arc::default());
+        let mut buffer = vec![0; 1 << 20];
+        for _ in 0..32 {
+            source.read_at(0, &mut buffer).unwrap();
+        }
+        assert!(matches!(
+            source.read_at(0, &mut buffer),
+            Err(FormatError::Source(_))
+        ));
+    }
+
+    #[test]
+    fn nothing_is_read_beyond_the_end() {
+        let source = LimitedSource::new(vec![1, 2, 3], Arc::default());
+        assert!(source.read_at(2, &mut [0; 2]).is_err());
+        assert!(source.read_at(u64::MAX, &mut [0; 2]).is_err());
+    }
+}

@@ -1,0 +1,74 @@
+//! Objects of MATLAB classes, in a separate part of the file (`#subsystem#/MCOS`), as in files up
+//! to version 7.
+
+use hdf5_pure::{Dataset, File, Object};
+
+use crate::formats::mat::{LongWords, Subsystem};
+use crate::formats::mat73::dataset::{Elements, Order};
+use crate::formats::mat73::library_fault::library_fault;
+use crate::formats::mat73::objects::Objects;
+use crate::formats::mat73::reader::Reader;
+use crate::formats::variables::Value;
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Size of elements that may be 64-bit integers \[bytes\].
+const LONG_WORD: u64 = 8;
+
+/// Cells of the object part.
+pub(super) struct ObjectCells {
+    /// The first cell holds the bytes of the directory.
+    pub(super) cells: Vec<Value>,
+    pub(super) long_words: LongWords,
+}
+
+/// Reads the object part, if there is one. Objects that cannot be read leave the other variables
+/// readable; only an exhausted budget is an error.
+pub(super) fn read_objects(
+    file: &File,
+    budget: &ReadingBudget<'_>,
+) -> Result<Objects, VariableFault> {
+    let root = file.root();
+    let part = root
+        .group("#subsystem#")
+        .and_then(|group| group.dataset("MCOS"));
+    let Ok(part) = part else {
+        return Ok(Objects::Unread("the file has no object part".to_owned()));
+    };
+    match read_subsystem(&part, budget) {
+        Ok(subsystem) => Ok(Objects::Read(subsystem)),
+        Err(fault) if fault.is_of_the_budget() => Err(fault),
+        Err(fault) => Ok(Objects::Unread(fault.to_string())),
+    }
+}
+
+fn read_subsystem(part: &Dataset, budget: &ReadingBudget<'_>) -> Result<Subsystem, VariableFault> {
+    let ObjectCells { cells, long_words } = read_cells(part, budget)?;
+    Ok(Subsystem::new(cells, budget)?.with_long_words(long_words))
+}
+
+pub(super) fn read_cells(
+    part: &Dataset,
+    budget: &ReadingBudget<'_>,
+) -> Result<ObjectCells, VariableFault> {
+    let reader = Reader {
+        budget,
+        objects: &Objects::References,
+    };
+    let mut cells = Vec::new();
+    let mut long_words = LongWords::new();
+    for (index, object) in reader.referenced_objects(part, "")?.iter().enumerate() {
+        if let Object::Dataset(dataset) = object {
+            let size = dataset
+                .element_size()
+                .map_err(|error| library_fault(&error, ""))?;
+            if size == LONG_WORD {
+                let elements = Elements::read(dataset, Order::Columns, "", budget)?;
+                if let Some(words) = elements.words("", budget)? {
+                    long_words.insert(index, words);
+                }
+            }
+        }
+        cells.push(reader.value(object, "", 0)?);
+    }
+    Ok(ObjectCells { cells, long_words })
+}

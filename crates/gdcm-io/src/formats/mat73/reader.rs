@@ -1,0 +1,359 @@
+//! Values of datasets and groups, including nested values.
+
+use hdf5_pure::{Dataset, Group, Object};
+
+use crate::formats::mat73::attributes::{FOLDER_OBJECT, FUNCTION_HANDLE, MatlabAttributes, OBJECT};
+use crate::formats::mat73::dataset::{Elements, Order, is_object_reference};
+use crate::formats::mat73::library_fault::{damaged, library_fault};
+use crate::formats::mat73::objects::Objects;
+use crate::formats::mat73::values::{
+    SparseGroup, character_rows, compound_records, empty_value, strings,
+};
+use crate::formats::variables::{
+    self, Array, CellArray, ElementKind, StructArray, Value, Variable,
+};
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Deepest nesting of values.
+const DEEPEST: usize = 64;
+/// Memory of a value while it is read, without its elements: the library's view of its header, and
+/// the value itself \[bytes\].
+const HEADER: u64 = 1024;
+/// Memory that the library takes for each group member while it reads \[bytes\].
+const MEMBER: u64 = 256;
+
+/// Reads values within a budget.
+///
+/// Its methods name a value in faults by its `path`, such as "sys.A"; `depth` counts the values
+/// that contain it.
+pub(super) struct Reader<'r> {
+    pub(super) budget: &'r ReadingBudget<'r>,
+    pub(super) objects: &'r Objects,
+}
+
+impl Reader<'_> {
+    /// Reads the variables in the root group.
+    pub(super) fn variables(&self, root: &Group) -> Result<Vec<Variable>, VariableFault> {
+        let mut variables = Vec::new();
+        for (name, object) in self.members(root, "")? {
+            // These groups hold contents to which other variables refer.
+            if name != "#refs#" && name != "#subsystem#" {
+                let value = self.value(&object, &name, 0)?;
+                variables.push(Variable { name, value });
+            }
+        }
+        Ok(variables)
+    }
+
+    /// Reads a dataset or group.
+    pub(super) fn value(
+        &self,
+        object: &Object,
+        path: &str,
+        depth: usize,
+    ) -> Result<Value, VariableFault> {
+        if depth >= DEEPEST {
+            return Err(VariableFault::too_deep(path));
+        }
+        self.budget.take(1, HEADER, path)?;
+        let value = match object {
+            Object::Dataset(dataset) => self.dataset_value(dataset, path, depth),
+            Object::Group(group) => self.group_value(group, path, depth),
+            _ => Ok(Value::opaque(
+                "an HDF5 object",
+                "it is neither a dataset nor a group",
+            )),
+        };
+        match value {
+            // The other variables remain readable.
+            Err(VariableFault::Unsupported { what, remedy, .. }) => Ok(Value::opaque(what, remedy)),
+            value => value,
+        }
+    }
+
+    fn dataset_value(
+        &self,
+        dataset: &Dataset,
+        path: &str,
+        depth: usize,
+    ) -> Result<Value, VariableFault> {
+        let attributes = MatlabAttributes::read(dataset.attrs(), path)?;
+        let order = if attributes.class.is_some() {
+            Order::Columns
+        } else {
+            Order::Rows
+        };
+        let elements = Elements::read(dataset, order, path, self.budget)?;
+        if attributes.is_empty {
+            return empty_value(&attributes, &elements, path, self.budget);
+        }
+        if attributes.encoding == FUNCTION_HANDLE {
+            return Ok(function_handle());
+        }
+        if is_object_reference(&elements.datatype) {
+            return self.cell(dataset, &elements, path, depth);
+        }
+        if let Some(array) = elements.numbers(path, self.budget)? {
+            return self.number_value(array, &attributes, path);
+        }
+        if let Some(texts) = strings(dataset, &elements, path, self.budget)? {
+            return Ok(Value::Text(texts));
+        }
+        match compound_records(&elements, path, self.budget)? {
+            Some(records) => Ok(Value::Struct(records)),
+            None => Ok(Value::opaque(
+                "an HDF5 dataset",
+                "it holds neither numbers nor texts",
+            )),
+        }
+    }
+
+    /// Interprets the numbers of a dataset by its class.
+    fn number_value(
+        &self,
+        mut array: Array,
+        attributes: &MatlabAttributes,
+        path: &str,
+    ) -> Result<Value, VariableFault> {
+        let class = attributes.class_name();
+        if attributes.encoding == OBJECT {
+            return self.objects.value(class, array, path, self.budget);
+        }
+        match class {
+            "char" => Ok(Value::Text(character_rows(&array, path, self.budget)?)),
+            "logical" => {
+                array.kind = ElementKind::Logical;
+                Ok(Value::Array(array))
+            }
+            _ => Ok(Value::Array(array)),
+        }
+    }
+
+    /// Reads a cell for each reference.
+    fn cell(
+        &self,
+        dataset: &Dataset,
+        elements: &Elements,
+        path: &str,
+        depth: usize,
+    ) -> Result<Value, VariableFault> {
+        let objects = self.referenced_objects(dataset, path)?;
+        let mut values = Vec::with_capacity(objects.len());
+        for (index, place) in elements.places().enumerate() {
+            if let Some(object) = objects.get(place) {
+                let path = format!("{path}{{{}}}", index + 1);
+                values.push(self.value(object, &path, depth + 1)?);
+            }
+        }
+        Ok(Value::Cell(CellArray {
+            shape: elements.shape.clone(),
+            values,
+        }))
+    }
+
+    /// Resolves the references of a dataset, in file order.
+    pub(super) fn referenced_objects(
+        &self,
+        dataset: &Dataset,
+        path: &str,
+    ) -> Result<Vec<Object>, VariableFault> {
+        let sides = dataset
+            .shape()
+            .map_err(|error| library_fault(&error, path))?;
+        let count = sides.iter().copied().fold(1, u64::saturating_mul);
+        self.budget.take(count, HEADER, path)?;
+        dataset
+            .dereference()
+            .map_err(|error| library_fault(&error, path))
+    }
+
+    /// Reads a group: a struct, a struct array, a sparse matrix, or an object of an `@`-folder
+    /// class.
+    fn group_value(&self, group: &Group, path: &str, depth: usize) -> Result<Value, VariableFault> {
+        let attributes = MatlabAttributes::read(group.attrs(), path)?;
+        let members = self.members(group, path)?;
+        let class = attributes.class_name();
+        if let Some(height) = attributes.sparse_height {
+            let sparse = SparseGroup {
+                height,
+                is_logical: class == "logical",
+                members: &members,
+                path,
+                budget: self.budget,
+            };
+            return Ok(Value::Array(sparse.full_matrix()?));
+        }
+        if attributes.encoding == FUNCTION_HANDLE || class == "function_handle" {
+            return Ok(function_handle());
+        }
+        if attributes.encoding == OBJECT {
+            return Ok(Value::opaque(class, "enumerations are not read"));
+        }
+        let members = self.in_field_order(members, &attributes.fields, path)?;
+        let records = if is_struct_array(&attributes, &members, path)? {
+            self.struct_array(&members, path, depth)?
+        } else {
+            self.scalar_struct(members, attributes.is_empty, path, depth)?
+        };
+        if attributes.encoding == FOLDER_OBJECT {
+            return Ok(Value::Object(variables::Object {
+                class: class.to_owned(),
+                records,
+            }));
+        }
+        Ok(Value::Struct(records))
+    }
+
+    /// Returns the datasets and groups in a group, sorted by name.
+    fn members(&self, group: &Group, path: &str) -> Result<Vec<(String, Object)>, VariableFault> {
+        let datasets = group
+            .iter_datasets()
+            .map_err(|error| library_fault(&error, path))?;
+        let groups = group
+            .iter_groups()
+            .map_err(|error| library_fault(&error, path))?;
+        let count = (datasets.len() + groups.len()) as u64;
+        self.budget.take(count, MEMBER, path)?;
+        let mut members = Vec::new();
+        for (name, dataset) in datasets {
+            members.push((name, Object::Dataset(Box::new(dataset))));
+        }
+        for (name, group) in groups {
+            members.push((name, Object::Group(group)));
+        }
+        members.sort_by(|(a, _), (b, _)| a.cmp(b));
+        match members.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            Some(pair) => Err(VariableFault::Duplicate {
+                name: field_path(path, &pair[0].0),
+            }),
+            None => Ok(members),
+        }
+    }
+
+    /// Sorts members by MATLAB's field order, which is stored only if it differs from the order by
+    /// name; other members follow.
+    fn in_field_order(
+        &self,
+        mut members: Vec<(String, Object)>,
+        fields: &[String],
+        path: &str,
+    ) -> Result<Vec<(String, Object)>, VariableFault> {
+        let comparisons = (members.len() as u64).saturating_mul(fields.len() as u64);
+        self.budget.work(comparisons, path)?;
+        members.sort_by_cached_key(|(name, _)| {
+            fields
+                .iter()
+                .position(|field| field == name)
+                .unwrap_or(usize::MAX)
+        });
+        Ok(members)
+    }
+
+    /// Reads a struct with a single record, a field for each member.
+    fn scalar_struct(
+        &self,
+        members: Vec<(String, Object)>,
+        holds_shapes: bool,
+        path: &str,
+        depth: usize,
+    ) -> Result<StructArray, VariableFault> {
+        let mut fields = Vec::with_capacity(members.len());
+        for (name, object) in members {
+            let mut value = self.value(&object, &field_path(path, &name), depth + 1)?;
+            if holds_shapes {
+                restore_octave_empty(&mut value);
+            }
+            fields.push((name, vec![value]));
+        }
+        Ok(StructArray::one(fields))
+    }
+
+    /// Reads a struct with several records: each member is a dataset with references to the values
+    /// of a field.
+    fn struct_array(
+        &self,
+        members: &[(String, Object)],
+        path: &str,
+        depth: usize,
+    ) -> Result<StructArray, VariableFault> {
+        let mut records = StructArray {
+            shape: Vec::new(),
+            fields: Vec::with_capacity(members.len()),
+        };
+        for (name, object) in members {
+            let Object::Dataset(dataset) = object else {
+                continue;
+            };
+            let shape = Elements::read(dataset, Order::Columns, path, self.budget)?.shape;
+            if !records.fields.is_empty() && records.shape != shape {
+                return Err(damaged(
+                    &field_path(path, name),
+                    "the value count of a field differs from the record count",
+                ));
+            }
+            records.shape = shape;
+            let mut values = Vec::new();
+            for (index, object) in self.referenced_objects(dataset, path)?.iter().enumerate() {
+                let path = format!("{path}({}).{name}", index + 1);
+                values.push(self.value(object, &path, depth + 1)?);
+            }
+            records.fields.push((name.clone(), values));
+        }
+        Ok(records)
+    }
+}
+
+fn function_handle() -> Value {
+    Value::opaque("function_handle", "functions are not data")
+}
+
+/// Whether a struct has several records: its members are references that are not marked as cells.
+fn is_struct_array(
+    attributes: &MatlabAttributes,
+    members: &[(String, Object)],
+    path: &str,
+) -> Result<bool, VariableFault> {
+    if attributes.class.is_none() || members.is_empty() {
+        return Ok(false);
+    }
+    for (_, object) in members {
+        let Object::Dataset(dataset) = object else {
+            return Ok(false);
+        };
+        if MatlabAttributes::read(dataset.attrs(), path)?
+            .class
+            .is_some()
+        {
+            return Ok(false);
+        }
+        let datatype = dataset
+            .datatype()
+            .map_err(|error| library_fault(&error, path))?;
+        if !is_object_reference(&datatype) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Turns an array of sides, among them a zero, into an empty array with this shape: Octave stores
+/// the sides of an empty array in its place and marks this at the group that contains it.
+fn restore_octave_empty(value: &mut Value) {
+    if let Value::Array(sides) = value
+        && sides.re.contains(&0.0)
+    {
+        *sides = Array {
+            shape: sides.re.iter().rev().map(|side| *side as usize).collect(),
+            ..Array::matrix(0, 0, Vec::new())
+        };
+    }
+}
+
+/// Returns the path to a field, or to a variable in the root group.
+fn field_path(path: &str, name: &str) -> String {
+    if path.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{path}.{name}")
+    }
+}

@@ -1,0 +1,185 @@
+//! Header before the elements of an array.
+
+use serde_json::{Map, Value as Json};
+
+use crate::formats::npy::element::{Element, parse_sides};
+use crate::formats::npy::python_literal::parse_literal;
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Signature at the beginning.
+pub(super) const MAGIC: &[u8; 6] = b"\x93NUMPY";
+/// Offset of the version in the file.
+const VERSION_AT: usize = 6;
+/// Offset of the header length in the file, reported as the position of faults in the header.
+const LENGTH_AT: usize = 8;
+/// Fault in a header with other keys.
+const MISSING_KEY: &str = "the header has not the keys descr, fortran_order and shape";
+
+/// Header of a `.npy` file (`numpy.lib.format`, versions 1.0 to 3.0).
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Header {
+    pub(super) element: Element,
+    pub(super) column_major: bool,
+    /// Shape as stored: any number of dimensions, including none.
+    pub(super) shape: Vec<usize>,
+    /// Offset at which the elements begin \[bytes\].
+    pub(super) length: usize,
+}
+
+/// Text of a header, a Python dictionary.
+struct HeaderText {
+    text: String,
+    /// Offset of the end of the text \[bytes\].
+    end: usize,
+}
+
+impl Header {
+    /// Parses the header; `name` is the array name in errors.
+    pub(super) fn parse(
+        bytes: &[u8],
+        name: &str,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Self, VariableFault> {
+        let HeaderText { text, end } = HeaderText::read(bytes, name)?;
+        // Memory of the JSON text and of the parsed tree.
+        budget.take(text.len() as u64, 40, name)?;
+        let header = parse_literal(&text).map_err(|what| damaged(name, what))?;
+        let entries = match header.as_object() {
+            Some(entries) if entries.len() == 3 => entries,
+            _ => return Err(damaged(name, MISSING_KEY)),
+        };
+        let descr = required_entry(entries, "descr", name)?;
+        let order = required_entry(entries, "fortran_order", name)?;
+        let shape = required_entry(entries, "shape", name)?;
+        let Some(column_major) = order.as_bool() else {
+            return Err(damaged(name, "fortran_order is neither True nor False"));
+        };
+        let Some(shape) = parse_sides(shape) else {
+            return Err(damaged(name, "the shape is no tuple of whole numbers"));
+        };
+        let element = Element::parse(descr).map_err(|fault| fault.of(|| name.to_owned()))?;
+        Ok(Self {
+            element,
+            column_major,
+            shape,
+            length: end,
+        })
+    }
+}
+
+impl HeaderText {
+    fn read(bytes: &[u8], name: &str) -> Result<Self, VariableFault> {
+        if !bytes.starts_with(MAGIC) {
+            return Err(VariableFault::other_bytes(
+                "an array of NumPy (.npy)",
+                bytes,
+            ));
+        }
+        let Some(&version) = bytes.get(VERSION_AT) else {
+            return Err(VariableFault::cut_off(name, bytes.len()));
+        };
+        let begin = match version {
+            1 => LENGTH_AT + 2,
+            2 | 3 => LENGTH_AT + 4,
+            _ => {
+                return Err(VariableFault::unsupported(
+                    name,
+                    format!("version {version} of the .npy format"),
+                    "save it with numpy.save of a plain array",
+                ));
+            }
+        };
+        let Some(digits) = bytes.get(LENGTH_AT..begin) else {
+            return Err(VariableFault::cut_off(name, bytes.len()));
+        };
+        let mut length = 0;
+        for &digit in digits.iter().rev() {
+            length = length << 8 | usize::from(digit);
+        }
+        let end = begin.saturating_add(length);
+        let Some(text) = bytes.get(begin..end) else {
+            return Err(VariableFault::cut_off(name, bytes.len()));
+        };
+        // Versions 1 and 2 use Latin-1, whose codes are the first characters of Unicode; version 3
+        // uses UTF-8.
+        let text = match version {
+            3 => String::from_utf8(text.to_vec()).map_err(|_| {
+                VariableFault::damaged(name, "the header is not UTF-8", begin as u64)
+            })?,
+            _ => text.iter().copied().map(char::from).collect(),
+        };
+        Ok(Self { text, end })
+    }
+}
+
+fn required_entry<'h>(
+    entries: &'h Map<String, Json>,
+    key: &str,
+    name: &str,
+) -> Result<&'h Json, VariableFault> {
+    entries.get(key).ok_or_else(|| damaged(name, MISSING_KEY))
+}
+
+fn damaged(name: &str, what: &str) -> VariableFault {
+    VariableFault::damaged(name, what, LENGTH_AT as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn header_of(bytes: &[u8]) -> Result<Header, VariableFault> {
+        Header::parse(bytes, "x", &ReadingBudget::new(1 << 20))
+    }
+
+    fn file(version: u8, text: &[u8]) -> Vec<u8> {
+        let length = (text.len() as u32).to_le_bytes();
+        let length = if version == 1 {
+            &length[..2]
+        } else {
+            &length[..]
+        };
+        [MAGIC.as_slice(), &[version, 0], length, text].concat()
+    }
+
+    #[test]
+    fn all_three_versions_are_read() {
+        let text = b"{'descr': '<f8', 'fortran_order': True, 'shape': (2, 3), }\n";
+        for version in 1..=3 {
+            let header = header_of(&file(version, text)).unwrap();
+            assert_eq!((header.column_major, header.shape), (true, vec![2, 3]));
+        }
+        assert!(matches!(
+            header_of(&file(4, text)),
+            Err(VariableFault::Unsupported { .. })
+        ));
+    }
+
+    #[test]
+    fn a_header_needs_its_three_keys_and_no_other() {
+        for text in [
+            "{'descr': '<f8', 'fortran_order': True}",
+            "{'descr': '<f8', 'fortran_order': True, 'shape': (), 'more': 1}",
+            "{'descr': '<f8', 'descr': '<f8', 'shape': ()}",
+            "{'descr': '<f8', 'fortran_order': 1, 'shape': ()}",
+            "{'descr': '<f8', 'fortran_order': True, 'shape': 3}",
+            "[]",
+        ] {
+            assert!(
+                matches!(
+                    header_of(&file(1, text.as_bytes())),
+                    Err(VariableFault::Damaged { .. })
+                ),
+                "{text}"
+            );
+        }
+        assert!(matches!(
+            header_of(&file(3, &[0xff])),
+            Err(VariableFault::Damaged { .. })
+        ));
+        assert!(matches!(
+            header_of(b"PK"),
+            Err(VariableFault::Format { .. })
+        ));
+    }
+}

@@ -1,0 +1,104 @@
+//! Python literals in the headers of arrays.
+
+use serde_json::Value as Json;
+
+/// Converts a header, which is a Python literal, to JSON: quotes, tuples as lists, trailing commas,
+/// and the words for true and false.
+///
+/// # Errors
+///
+/// The reason, for anything that `NumPy` does not write into a header.
+pub(super) fn parse_literal(text: &str) -> Result<Json, &'static str> {
+    let mut json = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(sign) = rest.chars().next() {
+        let length = match sign {
+            '\'' | '"' => convert_text(rest, sign, &mut json)?,
+            'T' | 'F' | 't' | 'f' | 'n' => convert_word(rest, &mut json)?,
+            '(' | '[' => {
+                json.push('[');
+                1
+            }
+            ')' | ']' | '}' => {
+                if json.ends_with(',') {
+                    json.pop();
+                }
+                json.push(if sign == '}' { '}' } else { ']' });
+                1
+            }
+            // Python 2 appends an L to long integers.
+            ' ' | '\t' | '\r' | '\n' | 'L' => 1,
+            _ => {
+                json.push(sign);
+                sign.len_utf8()
+            }
+        };
+        rest = &rest[length..];
+    }
+    serde_json::from_str(&json)
+        .map_err(|_| "the header is no dictionary of texts, numbers and tuples")
+}
+
+/// Converts the text at the beginning of `rest`; returns its length with both quotes.
+fn convert_text(rest: &str, quote: char, json: &mut String) -> Result<usize, &'static str> {
+    let Some(end) = rest[1..].find(quote) else {
+        return Err("a text in the header does not end");
+    };
+    let text = &rest[1..=end];
+    // Escapes occur only in field names with quotes, backslashes or control characters.
+    if text.contains('\\') {
+        return Err("the header holds an escape");
+    }
+    json.push_str(&Json::from(text).to_string());
+    Ok(end + 2)
+}
+
+/// Converts the word at the beginning of `rest`; returns its length.
+fn convert_word(rest: &str, json: &mut String) -> Result<usize, &'static str> {
+    let end = rest
+        .find(|sign: char| !sign.is_alphanumeric())
+        .unwrap_or(rest.len());
+    match &rest[..end] {
+        "True" => json.push_str("true"),
+        "False" => json.push_str("false"),
+        _ => return Err("the header holds an unknown word"),
+    }
+    Ok(end)
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn a_header_of_numpy_is_read() {
+        let read = parse_literal(
+            "{'descr': [('a', '<f8', (2,))], 'fortran_order': False, 'shape': (3, 4L), }   \n",
+        )
+        .unwrap();
+        assert_eq!(
+            read,
+            json!({"descr": [["a", "<f8", [2]]], "fortran_order": false, "shape": [3, 4]})
+        );
+    }
+
+    #[test]
+    fn other_python_values_are_refused() {
+        for text in [
+            "",
+            "{",
+            "{'a' 1}",
+            "{1: 2}",
+            "'a",
+            "__import__('os')",
+            "True1",
+            "() ()",
+            "'\\x00'",
+        ] {
+            assert!(parse_literal(text).is_err(), "{text}");
+        }
+        assert!(parse_literal(&"(".repeat(100_000)).is_err());
+    }
+}

@@ -1,0 +1,261 @@
+//! Values assembled from their parts, which the text and binary encodings give in the same order.
+
+use crate::formats::octave::form::{Element, Form, NumberParts};
+use crate::formats::sparse_matrix::SparseEntries;
+use crate::formats::strides::{Places, count};
+use crate::formats::variables::{Array, CellArray, Object, StructArray, TextArray, Value};
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Deepest nesting of values.
+const DEEPEST: usize = 64;
+
+/// Side lengths, and whether numbers are stored by rows.
+pub(super) struct Sides {
+    pub(super) shape: Vec<usize>,
+    pub(super) by_rows: bool,
+}
+
+/// Name and type, which precede a value.
+pub(super) struct ValueHeading {
+    pub(super) name: String,
+    pub(super) type_name: String,
+}
+
+/// Reads the consecutive parts of values in the text or binary encoding; `variable` is the name of
+/// the value in faults.
+pub(super) trait Parts {
+    fn budget(&self) -> &ReadingBudget<'_>;
+    /// Reads the next name and type.
+    fn heading(&mut self, variable: &str) -> Result<ValueHeading, VariableFault>;
+    fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault>;
+    /// Reads `count` numbers; a complex number is a pair.
+    fn numbers(
+        &mut self,
+        element: Element,
+        count: usize,
+        variable: &str,
+    ) -> Result<Vec<f64>, VariableFault>;
+    fn sparse(&mut self, element: Element, variable: &str) -> Result<SparseEntries, VariableFault>;
+    fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault>;
+    /// Reads how many fields a record has.
+    fn field_count(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault>;
+    fn class(&mut self, variable: &str) -> Result<String, VariableFault>;
+    /// Returns a fault at this position.
+    fn fault(&self, variable: &str, what: &str) -> VariableFault;
+}
+
+/// Reads the value of a variable after its name and type.
+pub(super) fn read_value(
+    parts: &mut dyn Parts,
+    type_name: &str,
+    variable: &str,
+) -> Result<Value, VariableFault> {
+    Assembler { parts }.value(type_name, variable, 0)
+}
+
+/// Assembles values; `depth` counts the values that contain a value.
+struct Assembler<'p> {
+    parts: &'p mut dyn Parts,
+}
+
+impl Assembler<'_> {
+    fn value(
+        &mut self,
+        type_name: &str,
+        variable: &str,
+        depth: usize,
+    ) -> Result<Value, VariableFault> {
+        if depth >= DEEPEST {
+            return Err(VariableFault::too_deep(variable));
+        }
+        let size = size_of::<Value>() as u64;
+        self.parts.budget().take(1, size, variable)?;
+        let local_type = type_name.strip_prefix("global ").unwrap_or(type_name);
+        let Some(form) = Form::from_type_name(local_type) else {
+            return Err(VariableFault::unsupported(
+                variable,
+                format!("a {type_name} of GNU Octave"),
+                "save it without this variable, or with -v7",
+            ));
+        };
+        Ok(match form {
+            Form::Scalar(element) => {
+                let numbers = self.parts.numbers(element, 1, variable)?;
+                Value::Array(element.array(vec![1, 1], numbers))
+            }
+            Form::Matrix(element) => Value::Array(self.matrix(element, variable)?),
+            Form::Diagonal(element) => Value::Array(self.diagonal(element, variable)?),
+            Form::Sparse(element) => {
+                let entries = self.parts.sparse(element, variable)?;
+                Value::Array(self.full_matrix(&entries, variable)?)
+            }
+            Form::Range => Value::Array(self.range(variable)?),
+            Form::Text => Value::Text(self.parts.text(variable)?),
+            Form::Cell => Value::Cell(self.cell(variable, depth)?),
+            Form::ScalarStruct => Value::Struct(self.records(form, vec![1, 1], variable, depth)?),
+            Form::StructArray => {
+                let shape = self.parts.sides(variable)?.shape;
+                Value::Struct(self.records(form, shape, variable, depth)?)
+            }
+            Form::Class => {
+                let class = self.parts.class(variable)?;
+                let records = self.records(form, vec![1, 1], variable, depth)?;
+                Value::Object(Object { class, records })
+            }
+        })
+    }
+
+    /// Counts the elements and takes `size` bytes for each.
+    fn take_elements(
+        &self,
+        shape: &[usize],
+        size: u64,
+        variable: &str,
+    ) -> Result<usize, VariableFault> {
+        let Some(count) = count(shape) else {
+            return Err(self.parts.fault(variable, "the element count overflows"));
+        };
+        self.parts.budget().take(count as u64, size, variable)?;
+        Ok(count)
+    }
+
+    fn matrix(&mut self, element: Element, variable: &str) -> Result<Array, VariableFault> {
+        let Sides { shape, by_rows } = self.parts.sides(variable)?;
+        let width = if element.is_complex { 2 } else { 1 };
+        let count = self.take_elements(&shape, 16 * width as u64, variable)?;
+        let mut numbers = self.parts.numbers(element, count, variable)?;
+        if by_rows && let Some(places) = Places::row_major(&shape) {
+            numbers = places
+                .flat_map(|place| &numbers[place * width..(place + 1) * width])
+                .copied()
+                .collect();
+        }
+        Ok(element.array(shape, numbers))
+    }
+
+    fn diagonal(&mut self, element: Element, variable: &str) -> Result<Array, VariableFault> {
+        let shape = self.parts.sides(variable)?.shape;
+        let rows = shape[0];
+        let columns = shape[1];
+        let length = rows.min(columns);
+        let numbers = self.parts.numbers(element, length, variable)?;
+        let NumberParts { re, im } = element.parts(numbers);
+        let entries = SparseEntries {
+            shape: [rows, columns],
+            kind: element.kind(),
+            rows: (0..length).collect(),
+            columns: (0..length).collect(),
+            re,
+            im,
+        };
+        self.full_matrix(&entries, variable)
+    }
+
+    fn full_matrix(&self, entries: &SparseEntries, variable: &str) -> Result<Array, VariableFault> {
+        entries.full_matrix(variable, self.parts.budget(), || {
+            self.parts.fault(variable, "a number is outside the matrix")
+        })
+    }
+
+    fn range(&mut self, variable: &str) -> Result<Array, VariableFault> {
+        let numbers = self.parts.numbers(Element::FLOAT, 3, variable)?;
+        let &[first, limit, step] = numbers.as_slice() else {
+            return Err(self.parts.fault(variable, "a range has three numbers"));
+        };
+        let range = Range { first, limit, step };
+        range.array(variable, self.parts.budget())
+    }
+
+    fn cell(&mut self, variable: &str, depth: usize) -> Result<CellArray, VariableFault> {
+        let shape = self.parts.sides(variable)?.shape;
+        let count = self.take_elements(&shape, size_of::<Value>() as u64, variable)?;
+        let mut values = Vec::new();
+        for index in 1..=count {
+            let inner = format!("{variable}{{{index}}}");
+            let ValueHeading { type_name, .. } = self.parts.heading(&inner)?;
+            values.push(self.value(&type_name, &inner, depth + 1)?);
+        }
+        Ok(CellArray { shape, values })
+    }
+
+    /// Reads the records in a struct or an object. Fields that can have several records are cells
+    /// with a value for each record.
+    fn records(
+        &mut self,
+        form: Form,
+        shape: Vec<usize>,
+        variable: &str,
+        depth: usize,
+    ) -> Result<StructArray, VariableFault> {
+        let count = self.take_elements(&shape, size_of::<Value>() as u64, variable)?;
+        let mut fields = Vec::new();
+        for _ in 0..self.parts.field_count(form, variable)? {
+            let ValueHeading { name, type_name } = self.parts.heading(variable)?;
+            let inner = format!("{variable}.{name}");
+            let values = match (form, self.value(&type_name, &inner, depth + 1)?) {
+                (Form::StructArray | Form::Class, Value::Cell(cell)) => cell.values,
+                (_, value) => vec![value],
+            };
+            if values.len() != count {
+                return Err(self.parts.fault(
+                    &inner,
+                    "the value count of a field differs from the record count",
+                ));
+            }
+            fields.push((name, values));
+        }
+        Ok(StructArray { shape, fields })
+    }
+}
+
+/// Numbers from a first number up to a limit, in steps.
+#[derive(Clone, Copy)]
+pub(super) struct Range {
+    pub(super) first: f64,
+    pub(super) limit: f64,
+    pub(super) step: f64,
+}
+
+impl Range {
+    /// Returns the numbers as a row.
+    pub(super) fn array(
+        self,
+        variable: &str,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Array, VariableFault> {
+        // As in Octave: a limit missed by rounding alone is reached.
+        let steps = ((self.limit - self.first) / self.step * (1.0 + f64::EPSILON)).floor();
+        let length = if steps >= 0.0 {
+            (steps as usize).saturating_add(1)
+        } else {
+            0
+        };
+        budget.take(length as u64, 8, variable)?;
+        let numbers = (0..length)
+            .map(|index| self.first + index as f64 * self.step)
+            .collect();
+        Ok(Array::matrix(1, length, numbers))
+    }
+}
+
+/// Returns the rows of a byte array, stored by columns, as texts.
+pub(super) fn text_rows(letters: &[u8], height: usize) -> TextArray {
+    if letters.is_empty() {
+        return TextArray::one("");
+    }
+    let mut texts = Vec::new();
+    for row in 0..height {
+        let letters: Vec<u8> = letters.iter().skip(row).step_by(height).copied().collect();
+        texts.push(String::from_utf8_lossy(&letters).into_owned());
+    }
+    TextArray {
+        shape: vec![height, 1],
+        texts,
+    }
+}
+
+/// Returns the fault for character arrays with more than two dimensions.
+pub(super) fn texts_in_pages(variable: &str) -> VariableFault {
+    let what = "a text array with more than two dimensions";
+    VariableFault::unsupported(variable, what, "save it as a cell array")
+}

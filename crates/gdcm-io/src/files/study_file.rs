@@ -179,7 +179,7 @@ impl StudyText {
         let taken = study.taken_models().map(|(condition, taken)| TakenText {
             condition: condition.0,
             identified_models: taken.models.iter().map(ModelText::of_model).collect(),
-            records: taken.records.iter().map(RecordText::of).collect(),
+            records: taken.records.iter().map(RecordText::from_record).collect(),
         });
         Self {
             format: FORMAT.name.to_owned(),

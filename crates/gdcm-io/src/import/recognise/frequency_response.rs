@@ -66,9 +66,7 @@ pub(super) fn is_response(record: &Record<'_>) -> bool {
 fn complex_array<'v>(record: &Record<'v>) -> Option<&'v Array> {
     let field = record.find(RESPONSES)?;
     let array = array_of(field.value)?;
-    if array.im.is_none() {
-        return None;
-    }
+    array.im.as_ref()?;
     record.mark_used(field.name);
     Some(array)
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use gdcm_io::files::requirements_file::{
-    REQUIREMENT_FILES, add_tolerances, requirement_paths, write_requirements,
+    REQUIREMENT_FILES, RequirementResults, add_tolerances, requirement_paths, write_requirements,
 };
 use gdcm_io::output_set::make_directory;
 use gdcm_method::requirements::ModeVerdict;
@@ -55,8 +55,13 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
         &TerminalProgress::new("reading bandwidths"),
     )?;
     let histories = time_histories(&analysis, &records)?;
-    let dataset = (analysis.study.dataset.name(), loaded.sha256.as_str());
-    write_requirements((&requirements, &histories), dataset, out, outputs)?;
+    let results = RequirementResults {
+        requirements: &requirements,
+        time_histories: &histories,
+        dataset: analysis.study.dataset.name(),
+        sha256: &loaded.sha256,
+    };
+    write_requirements(results, out, outputs)?;
     tell_cautions(&requirements, &histories);
     let files = format!(
         "{} in {}",

@@ -37,7 +37,7 @@ pub enum ExportFault {
     /// There is no schedule to export.
     #[error(transparent)]
     Schedule(#[from] ScheduleError),
-    /// The study requests couplings and has none: the export would not be the requested one.
+    /// The study requests couplings and has none, so that the export would differ from the request.
     #[error(
         "the study asks for couplings, and there are none: {why}; mend that, or set couplings to none"
     )]
@@ -76,7 +76,7 @@ pub enum ExportFault {
 }
 
 impl ExportFault {
-    /// Returns whether the analysis lacks the requested content; otherwise the request must change.
+    /// Whether the analysis lacks the requested content; otherwise the request must change.
     pub fn is_of_analysis(&self) -> bool {
         matches!(
             self,

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! n <- 64 KiB
-//! 1  text <- the first n bytes, unpacked; where that is all of it, the reader proper says what is wrong
+//! 1  text <- the first n bytes, unpacked; if that is the whole file, stop: the full reader checks it
 //! 2  read text up to its last comma as a dataset or a study
-//! 3  an error other than the end of the text: it stands, whatever follows
+//! 3  an error other than the end of the text: report it
 //! 4  n <- 16 n, and again up to 16 MiB
 //! ```
 //!
@@ -38,7 +38,7 @@ pub fn check_beginning(path: &Path) -> Result<(), FileError> {
     let mut length = FIRST;
     while length <= LAST {
         let wanted = length - text.len();
-        // A file that cannot be read or unpacked is reported by the reader proper.
+        // The full reader reports a file that cannot be read or unpacked.
         let Ok(found) = reader.by_ref().take(wanted as u64).read_to_end(&mut text) else {
             return Ok(());
         };

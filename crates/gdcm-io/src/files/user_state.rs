@@ -45,11 +45,10 @@ pub fn recent_files(directory: &Path) -> Vec<PathBuf> {
     let Ok(source) = Source::read(&path, &budget) else {
         return Vec::new();
     };
-    let decoded = FORMAT.decode::<RecentText>(source.text(), &path, &budget);
-    decoded.map_or_else(
-        |_| Vec::new(),
-        |(text, _)| text.files.into_iter().map(PathBuf::from).collect(),
-    )
+    match FORMAT.decode::<RecentText>(source.text(), &path, &budget) {
+        Ok((text, _)) => text.files.into_iter().map(PathBuf::from).collect(),
+        Err(_) => Vec::new(),
+    }
 }
 
 /// Puts a file at the front of the list, which another window may have changed in the meantime.
@@ -57,21 +56,20 @@ pub fn recent_files(directory: &Path) -> Vec<PathBuf> {
 /// # Errors
 /// Returned if the list cannot be written.
 pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
-    let Some(file) = std::path::absolute(file)
-        .ok()
-        .and_then(|path| path.to_str().map(str::to_owned))
-    else {
+    let absolute = std::path::absolute(file).ok();
+    let Some(file) = absolute.as_deref().and_then(Path::to_str) else {
         // A name that is not valid Unicode cannot be listed.
         return Ok(());
     };
-    let others = recent_files(directory)
-        .into_iter()
-        .filter_map(|path| path.to_str().map(str::to_owned));
-    let others = others.filter(|other| *other != file);
-    let files = std::iter::once(file.clone())
-        .chain(others)
-        .take(MOST)
-        .collect();
+    let mut files = vec![file.to_owned()];
+    for path in recent_files(directory) {
+        if let Some(other) = path.to_str()
+            && other != file
+            && files.len() < MOST
+        {
+            files.push(other.to_owned());
+        }
+    }
     let text = RecentText {
         format: FORMAT.name.to_owned(),
         version: FORMAT.version,
@@ -84,9 +82,8 @@ pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
 /// The marker file of an earlier start.
 const STARTED: &str = "started";
 
-/// Returns whether this is the first start, and records it in the program's directory. Also false
-/// if the record cannot be created: otherwise the content of the first start would appear at every
-/// start.
+/// Whether this is the first start, which is then recorded in the program's directory. Also false if
+/// the record cannot be created: otherwise every start would look like the first.
 pub fn is_first_start(directory: &Path) -> bool {
     let kept = create_dir_all(directory).and_then(|()| {
         OpenOptions::new()
@@ -104,9 +101,8 @@ const LOCK_EXTENSION: &str = "lock";
 /// Much longer than the time between the creation of a lock file and its lock.
 const YOUNG: Duration = Duration::from_secs(60);
 
-/// The recovery file of an open window. It is a study file, `PROCESS-NUMBER.gdcm-study.json`;
-/// beside it lies a file that is locked as long as the process lives, and that contains the path of
-/// the study's own file.
+/// Recovery file of an open window: a study file, `PROCESS-NUMBER.gdcm-study.json`. A file beside it
+/// is locked while the process lives, and contains the path of the study's own file.
 #[derive(Debug)]
 pub struct RecoveryFile {
     path: PathBuf,
@@ -197,8 +193,8 @@ impl Drop for RecoveryFile {
     }
 }
 
-/// The recovery file of a window that ended without saving; it is not offered to other windows as
-/// long as this value exists.
+/// Recovery file of a window that ended without saving. It is not offered to other windows while
+/// this value exists.
 #[derive(Debug)]
 pub struct LostStudy {
     path: PathBuf,
@@ -234,8 +230,10 @@ pub fn lost_studies(directory: &Path) -> Vec<LostStudy> {
     let Ok(entries) = fs::read_dir(directory) else {
         return Vec::new();
     };
-    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
-    let mut lost: Vec<LostStudy> = paths.filter_map(|path| lost_study(&path)).collect();
+    let mut lost: Vec<LostStudy> = Vec::new();
+    for entry in entries.flatten() {
+        lost.extend(lost_study(&entry.path()));
+    }
     lost.sort_by_key(|lost| std::cmp::Reverse(lost.kept_at));
     lost
 }
@@ -255,14 +253,12 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
         Ok(()) => {}
         Err(TryLockError::WouldBlock | TryLockError::Error(_)) => return None,
     }
-    let Ok(kept_at) = fs::metadata(&path).and_then(|there| there.modified()) else {
-        let made_at = lock.metadata().and_then(|there| there.modified()).ok();
-        // Left by a process without decisions; a young one may belong to another process that has
+    let Ok(kept_at) = fs::metadata(&path).and_then(|study| study.modified()) else {
+        // Left by a process without decisions; a young file may belong to another process that has
         // created but not yet locked it.
-        if made_at
-            .and_then(|at| at.elapsed().ok())
-            .is_some_and(|age| age > YOUNG)
-        {
+        let created_at = lock.metadata().and_then(|lock| lock.modified()).ok();
+        let age = created_at.and_then(|time| time.elapsed().ok());
+        if age.is_some_and(|age| age > YOUNG) {
             let _ = remove(lock_path);
         }
         return None;
@@ -270,7 +266,11 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
     let mut name = String::new();
     // An unreadable name is treated as unknown.
     let _ = lock.read_to_string(&mut name);
-    let saved_as = (!name.is_empty()).then(|| PathBuf::from(name));
+    let saved_as = if name.is_empty() {
+        None
+    } else {
+        Some(PathBuf::from(name))
+    };
     let dataset =
         dataset_of_study(&path).unwrap_or_else(|| "a dataset that cannot be told".to_owned());
     Some(LostStudy {

@@ -11,7 +11,7 @@ use gdcm_study::Table;
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
 
-/// Writes records of equal length, a line for each; the cells are [`plain`].
+/// Writes equally long records, a line for each; the cells are [`plain`].
 pub(crate) fn write_records<R>(
     file: &mut dyn Write,
     records: impl Iterator<Item = R>,
@@ -78,7 +78,7 @@ pub fn csv_text(tables: &[Table]) -> String {
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// Writes tables as CSV: the headings of each, then a line for each row. Existing files are kept or
+/// Writes tables as CSV: headings, then a line for each row. Existing files are kept or
 /// replaced according to `outputs`.
 pub fn save_tables(tables: &[Table], path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
     outputs.add(path, |file| write_tables(file, tables))?;

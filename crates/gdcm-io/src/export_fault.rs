@@ -28,7 +28,7 @@ pub enum ExportFault {
         quoted(found)
     )]
     FunctionName { found: String },
-    /// The file extension is none of the model formats.
+    /// The file extension belongs to no model format.
     #[error("models are written to a name that ends in .mat, .json or .npz")]
     ModelsFormat,
     /// The values cannot be written.

@@ -13,7 +13,7 @@ use tempfile::NamedTempFile;
 use super::file_error::FileError;
 use super::source::kind_of;
 
-/// Treatment of existing files at the places of new ones.
+/// Treatment of existing files where new files should go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
     /// They are kept, and nothing is written.
@@ -168,7 +168,7 @@ impl OutputSet {
         Ok(())
     }
 
-    /// Locks each directory of a set; a single file needs no lock, as the last writer wins.
+    /// Locks each directory in a set; a single file needs no lock, as the last writer wins.
     fn directory_locks(&self) -> Vec<SetLock> {
         if self.staged.len() <= 1 {
             return Vec::new();
@@ -286,7 +286,7 @@ impl Placed {
     }
 }
 
-/// Creates a second name for a file, or a copy of it if the file system has no hard links; removed
+/// Creates a second name for a file, or a copy if the file system has no hard links; removed
 /// when dropped.
 fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
     named().make_in(directory_of(target), |path| {
@@ -310,7 +310,7 @@ fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
     })
 }
 
-/// Writes a file, replacing an existing one, which an error leaves untouched. Links are followed:
+/// Writes a file, replacing an existing file, which an error leaves untouched. Links are followed:
 /// their target is replaced.
 pub(super) fn write_whole(
     path: &Path,
@@ -332,7 +332,7 @@ pub fn make_directory(path: &Path) -> Result<(), FileError> {
 }
 
 /// Turns the signal for a file beyond the system's size limit (`ulimit -f`) into an ordinary error,
-/// instead of the end of the program.
+/// instead of ending the program.
 pub fn report_size_limit() {
     // If that fails, the program ends as before, and still leaves no partial file.
     #[cfg(unix)]
@@ -384,7 +384,7 @@ fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> 
     }
 }
 
-/// Removes the temporary files of killed runs: those without a lock.
+/// Removes temporary files from killed runs: those without a lock.
 fn remove_leftovers(directory: &Path) {
     for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
         let is_ours = entry

@@ -1,5 +1,5 @@
-//! All results of an analysis: `corrections.json`, `corrections.csv`, and the fields of the former
-//! as one MATLAB struct.
+//! All analysis results: `corrections.json`, `corrections.csv`, and the fields of the former
+//! as a MATLAB struct.
 
 use std::collections::BTreeSet;
 
@@ -72,7 +72,7 @@ fn all_conditions(analysis: &Analysis) -> BTreeSet<ConditionId> {
     analysis.conditions.keys().copied().collect()
 }
 
-/// Values of channels are arrays in the order of the dataset's `inputs` and `outputs`.
+/// Channel values are arrays, ordered as the dataset's `inputs` and `outputs`.
 const LAYOUT: Layout = Layout {
     by_channel: &["inputs", "outputs"],
     by_name: &["discontinuity"],
@@ -89,7 +89,7 @@ const EARLIER_NAMES: [EarlierName; 6] = [
     EarlierName::new("delay_matched", "delay_solution", "matched"),
 ];
 
-/// Name in earlier versions for a member of a solution.
+/// Earlier name for a member in a solution.
 struct EarlierName {
     name: &'static str,
     solution: &'static str,
@@ -106,9 +106,9 @@ impl EarlierName {
     }
 }
 
-/// Returns the fields of `corrections.json` as a struct. Lists of responses become logical matrices
+/// Returns the fields in `corrections.json` as a struct. Lists with responses become logical matrices
 /// with a row for each output and a column for each input; `net_gains` becomes several matrices,
-/// and its original is `net_gain_table`. Fields of earlier versions keep their names.
+/// and its original is `net_gain_table`. Fields from earlier versions keep their names.
 fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
     let settings = &mut corrections["settings"];
     for name in ["constrained", "ignored"] {
@@ -151,7 +151,7 @@ fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
     value
 }
 
-/// Changes the members of a condition as described at [`corrections_struct`].
+/// Changes a condition's members as described at [`corrections_struct`].
 fn restructure_condition(condition: &mut Tree, dataset: &Dataset) {
     condition["held"] = marked_responses(&condition["held"], dataset);
     condition["held_out"] = condition.get("held_out").cloned().unwrap_or(false.into());
@@ -190,7 +190,7 @@ fn response_table(dataset: &Dataset, value: impl Fn(&str, &str) -> Tree) -> Tree
     Tree::Array(rows)
 }
 
-/// Returns which responses are in a list of pairs, output and input.
+/// Returns which responses are in a list with pairs, output and input.
 fn marked_responses(pairs: &Tree, dataset: &Dataset) -> Tree {
     let pairs = pairs.as_array().map(Vec::as_slice).unwrap_or_default();
     response_table(dataset, |output, input| {
@@ -222,7 +222,7 @@ fn net_gain_value(
     }
 }
 
-/// Adds the delays in a row of the schedule's table as lists in channel order.
+/// Adds the delays in a schedule row as lists in channel order.
 fn add_delay_lists(row: &mut Tree) {
     for (name, side) in [("input_delays_s", "inputs"), ("output_delays_s", "outputs")] {
         if let Some(delays) = row

@@ -22,7 +22,7 @@ use crate::formats::mat;
 use crate::formats::npy::write_npz;
 use crate::formats::variables::{TextArray, Value, Variable};
 
-/// Corrected models, in the format of the file extension.
+/// Corrected models, in the format that the file extension names.
 pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
     name: "state-space",
     extension: "mat",
@@ -35,7 +35,7 @@ pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
         let dataset = &export.analysis.study.dataset;
         let remarks = models.iter().map(ExportedModel::words).collect();
         let exported = match ModelsFormat::from_path(export.path)? {
-            // Compressed: the matrices of delayed models are mostly zeros.
+            // Compressed: matrices with delays are mostly zeros.
             ModelsFormat::Mat => {
                 Exported::bytes(mat::write_packed(&[models_variable(&models, dataset)])?)
             }
@@ -49,7 +49,7 @@ pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
     },
 };
 
-/// Format of corrected models.
+/// File format for corrected models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ModelsFormat {
     Mat,
@@ -106,7 +106,7 @@ fn found_model(model: &ExportedModel, dataset: &Dataset) -> FoundModel {
     }
 }
 
-/// Returns the variable `models`: a struct for each model, with the properties of MATLAB's `ss`, so
+/// Returns the variable `models`: a struct for each model, with properties as in MATLAB's `ss`, so
 /// that `ss(m.A, m.B, m.C, m.D, m.Ts)` is the model.
 fn models_variable(models: &[ExportedModel], dataset: &Dataset) -> Variable {
     Variable {
@@ -147,7 +147,7 @@ fn units_of(channels: &[Channel]) -> Value {
     cell_of_texts(channels.iter().map(|channel| channel.unit.clone()))
 }
 
-/// Name of a metric in files, and the metric of a model.
+/// Name in files, and function, of a model metric.
 type Metric = (&'static str, fn(&ExportedModel) -> f64);
 
 const METRICS: [Metric; 8] = [
@@ -164,7 +164,7 @@ const METRICS: [Metric; 8] = [
     ("gain_above_band_db", ExportedModel::gain_above_band_db),
 ];
 
-/// Name of a part of a correction, and its source.
+/// Name and source of a part in a correction.
 type ContainedPart = (&'static str, fn(&ExportContents) -> PartSource);
 
 const CONTAINED: [ContainedPart; 4] = [
@@ -174,7 +174,7 @@ const CONTAINED: [ContainedPart; 4] = [
     ("couplings", |contents| contents.couplings),
 ];
 
-/// Returns the models as arrays, the only type of NumPy: for model 0 `A_0`, `B_0`, `C_0`, `D_0` and
+/// Returns the models as arrays, NumPy's only type: for model 0 `A_0`, `B_0`, `C_0`, `D_0` and
 /// `StateName_0`; the other arrays have an entry for each model or channel.
 fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
     let mut arrays = NamedArrays::default();
@@ -211,7 +211,7 @@ fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
     arrays.variables
 }
 
-/// Arrays of an archive, in order.
+/// Arrays in an archive, in order.
 #[derive(Default)]
 struct NamedArrays {
     variables: Vec<Variable>,

@@ -1,4 +1,4 @@
-//! Corrected models of conditions, with their accuracy, before they are written.
+//! Corrected models with their accuracy, before they are written.
 
 use gdcm_method::correction::corrected_model::CorrectedModel;
 use gdcm_method::correction::{self, ChannelCorrection, LeadPrice};
@@ -15,37 +15,37 @@ use crate::files::export_contents::{ExportContents, LeftOutPart, PartSource};
 /// A corrected model, ready to be written.
 pub(super) struct ExportedModel {
     pub(super) condition: ConditionId,
-    /// True airspeed of the condition \[kt\].
+    /// True airspeed \[kt\].
     pub(super) airspeed_kt: f64,
-    /// Name of the physics model.
+    /// Physics model.
     pub(super) name: String,
     /// "scheduled" or "own".
     pub(super) correction: &'static str,
     pub(super) model: StateSpace,
     /// A name for each state.
     pub(super) states: Vec<String>,
-    /// Number of states for delays.
+    /// State count for delays.
     delay_states: usize,
-    /// Number of states for lead filters.
+    /// State count for lead filters.
     lead_states: usize,
-    /// Order of the Padé approximants of delays; 0 in discrete time, where delays are exact.
+    /// Order of the Padé approximants; 0 in discrete time, where delays are exact.
     pub(super) pade_order: usize,
-    /// Largest phase error of the approximants at the top of the band \[deg\].
+    /// Largest phase error at the top of the band \[deg\], from approximants.
     approximation_error_deg: f64,
     /// Largest phase \[deg\] there that delays of the condition's own correction would add, if the
     /// model is under a schedule without delays.
     pub(super) left_out_deg: f64,
-    /// Parts of the correction in the model.
+    /// Correction parts in the model.
     pub(super) contents: ExportContents,
-    /// Top of the compared band \[rad/s\].
+    /// Highest compared frequency \[rad/s\].
     pub(super) band_top_rad_s: f64,
-    /// Cost of the lead filters; `None` without lead filters.
+    /// Lead filter cost; `None` without lead filters.
     price: Option<DescribedPrice>,
     /// Description of the couplings; empty without couplings.
     couplings: &'static str,
 }
 
-/// Cost of lead filters, with its description.
+/// Lead filter cost, with its description.
 struct DescribedPrice {
     price: LeadPrice,
     words: String,
@@ -73,7 +73,7 @@ pub(super) fn exported_models(
     }
 }
 
-/// Returns the contents of the requested models; empty if the study lacks the requested schedule.
+/// Returns the parts in the requested models; none if the study lacks the requested schedule.
 pub(super) fn contents_of_models(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
     let conditions: Vec<ConditionId> = match request.condition {
         Some(condition) => vec![condition],
@@ -167,7 +167,7 @@ fn correction_words(correction: AssessedCorrection) -> &'static str {
     }
 }
 
-/// Describes the parts of a model besides the correction of its channels.
+/// Describes the parts in a model besides its channel corrections.
 fn couplings_words(analysis: &Analysis, dynamics: &StateSpace) -> &'static str {
     let has_delays =
         !StateSpace::timing(dynamics).is_plain() && dynamics.timing().sample_time_s.is_none();
@@ -184,7 +184,7 @@ fn couplings_words(analysis: &Analysis, dynamics: &StateSpace) -> &'static str {
     }
 }
 
-/// Returns the requested physics model of a condition.
+/// Returns a condition's requested physics model.
 fn model_of<'c>(
     analysis: &Analysis,
     role: &ExportedRole,
@@ -208,7 +208,7 @@ fn model_of<'c>(
     }
 }
 
-/// Returns the requested correction of a condition.
+/// Returns a condition's requested correction.
 fn correction_of(
     analysis: &Analysis,
     which: AssessedCorrection,
@@ -237,7 +237,7 @@ fn correction_of(
     }
 }
 
-/// Returns the analysis of a condition.
+/// Returns a condition's analysis.
 fn result_of<'a>(
     analysis: &'a Analysis,
     condition: &Condition,
@@ -253,8 +253,8 @@ fn result_of<'a>(
     })
 }
 
-/// Returns state names: "LON lead 1" and "LON delay 1" of the inputs, the model's own names, "Q
-/// delay 1" and "Q lead 1" of the outputs.
+/// Returns state names: "LON lead 1" and "LON delay 1" for inputs, the model's own names, "Q
+/// delay 1" and "Q lead 1" for outputs.
 fn state_names(analysis: &Analysis, model: &Model, corrected: &CorrectedModel) -> Vec<String> {
     let CorrectedModel {
         lead_states,
@@ -277,7 +277,7 @@ fn state_names(analysis: &Analysis, model: &Model, corrected: &CorrectedModel) -
     names
 }
 
-/// Adds the names of a part's states in each channel, counted from 1.
+/// Adds names for a part's states in each channel, counted from 1.
 fn add_state_names(names: &mut Vec<String>, channels: &[Channel], part: &str, counts: &[usize]) {
     for (channel, &count) in channels.iter().zip(counts) {
         for place in 1..=count {
@@ -288,7 +288,7 @@ fn add_state_names(names: &mut Vec<String>, channels: &[Channel], part: &str, co
 
 impl ExportedModel {
     /// Returns the largest phase error \[deg\] at the top of the band against the condition's own
-    /// correction of delays, as far as it is caused by the export: by approximants and omitted
+    /// delays, as far as the export causes it: by approximants and omitted
     /// delays.
     pub(super) fn phase_error_deg(&self) -> f64 {
         self.approximation_error_deg + self.left_out_deg
@@ -391,7 +391,7 @@ fn greatest(gains_db: &[f64]) -> f64 {
     gains_db.iter().copied().fold(0.0, f64::max)
 }
 
-/// Describes an upper bound of a phase error \[deg\]; values below a thousandth of a degree are not
+/// Describes an upper bound on a phase error \[deg\]; values below 0.001 are not
 /// distinguished.
 fn bound_words(error_deg: f64) -> String {
     /// The smallest bound that is reported.

@@ -1,4 +1,4 @@
-//! The gains and delays of a schedule at given airspeeds, for lookup tables with linear
+//! Scheduled gains and delays at given airspeeds, for lookup tables with linear
 //! interpolation: as text, and for MATLAB.
 
 use std::fmt::Write;
@@ -47,11 +47,11 @@ pub(super) const MAT: ExportFormat = ExportFormat {
 
 const OPTIONS: &[&str] = &["--breakpoints"];
 
-/// Quantity of a column: a gain, or a time \[s\].
+/// Quantity in a column: a gain, or a time \[s\].
 #[derive(Debug, PartialEq)]
 struct Quantity {
     name: &'static str,
-    /// Part of the field names.
+    /// Part in field names.
     field: &'static str,
     is_time: bool,
 }
@@ -78,7 +78,7 @@ const LEAD: Quantity = Quantity {
 };
 
 impl Quantity {
-    /// Returns the error of a value against the true value: \[%\] for a gain, \[ms\] for a time.
+    /// Returns the error against the true value: \[%\] for a gain, \[ms\] for a time.
     fn error(&self, value: f64, truth: f64) -> f64 {
         let difference = value - truth;
         if difference == 0.0 {
@@ -92,7 +92,7 @@ impl Quantity {
     }
 }
 
-/// Airspeed and second variable of a row.
+/// Airspeed and second variable in a row.
 #[derive(Clone, Copy)]
 struct Breakpoint {
     airspeed_kt: f64,
@@ -100,14 +100,14 @@ struct Breakpoint {
     second: Option<f64>,
 }
 
-/// Values of a channel at the airspeeds of a table.
+/// Channel values at a table's airspeeds.
 struct Column {
     quantity: &'static Quantity,
     channel: Channel,
     name: String,
     /// A value for each row.
     values: Vec<f64>,
-    /// Largest deviation of the table from the schedule: \[%\] for a gain, \[ms\] for a time.
+    /// Largest deviation from the schedule: \[%\] for a gain, \[ms\] for a time.
     error: TableError,
 }
 
@@ -118,7 +118,7 @@ struct BreakpointTable<'e> {
     airspeeds_kt: Vec<f64>,
     /// All airspeeds, for each value of the second variable.
     rows: Vec<Breakpoint>,
-    /// Gain, delay and lead filter of each input, then of each output; then the mixing.
+    /// Gain, delay and lead filter for each input, then for each output; then the mixing.
     columns: Vec<Column>,
 }
 
@@ -171,7 +171,7 @@ impl<'e> BreakpointTable<'e> {
         Ok(table)
     }
 
-    /// Adds the gain, the delay and the lead filter of a channel.
+    /// Adds a channel's gain, delay and lead filter.
     fn add_channel(&mut self, channel: Channel, second_values: &[Option<f64>]) {
         let schedule = self.scheduled.schedule;
         let gain = self.column(channel, &GAIN, second_values, |row| {
@@ -192,7 +192,7 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Adds the weight of each input in each input, first those in the first input.
+    /// Adds the weight with which each input enters each input, first those in the first input.
     fn add_mixing(&mut self, couplings: &CouplingMatrices) {
         let (inputs, _) = self.scheduled.dataset.names_of_channels();
         for (to, receiver) in inputs.iter().enumerate() {
@@ -206,8 +206,8 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Returns the column of a channel; `value_at` gives its value at an airspeed and a value of the
-    /// second variable. The error is searched at each of `second_values`.
+    /// Returns a channel's column; `value_at` gives its value at an airspeed and a value of the
+    /// second variable. The error is searched at all `second_values`.
     fn column(
         &self,
         channel: Channel,
@@ -248,7 +248,7 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Returns remarks on the schedule, and the deviations of the table from it.
+    /// Returns remarks on the schedule, and the table's deviations from it.
     fn remarks(&self) -> Vec<String> {
         let mut remarks = self.scheduled.notes();
         for column in &self.columns {
@@ -374,7 +374,7 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Adds the names and the columns of the channels on one side, "input" or "output".
+    /// Adds channel names and columns on one side, "input" or "output".
     fn add_side_fields(&self, fields: &mut Fields, side: &str, names: Vec<String>) {
         fields.add(&format!("{side}s"), cell_of_texts(names));
         let mut quantities = vec![&GAIN, &DELAY];
@@ -441,7 +441,7 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// Returns the values of columns side by side, a row for each breakpoint.
+    /// Returns columns side by side, a row for each breakpoint.
     fn columns_matrix(&self, columns: &[&Column]) -> Value {
         let mut values = Vec::new();
         for column in columns {
@@ -451,7 +451,7 @@ impl<'e> BreakpointTable<'e> {
     }
 }
 
-/// Returns the distinct airspeeds \[kt\] of the scheduled conditions, increasing.
+/// Returns the scheduled conditions' distinct airspeeds \[kt\], increasing.
 fn distinct_airspeeds_kt(scheduled: &Scheduled<'_>) -> Vec<f64> {
     let mut airspeeds_kt = scheduled.schedule.airspeeds.values_kt.clone();
     airspeeds_kt.sort_by(f64::total_cmp);

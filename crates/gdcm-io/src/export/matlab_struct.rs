@@ -1,4 +1,4 @@
-//! Conversion of serde-serialisable data to MATLAB values: one schema for JSON and for `.mat`.
+//! Conversion from JSON to MATLAB values: the same schema for JSON and for `.mat`.
 
 use serde_json::Value as Json;
 
@@ -20,7 +20,7 @@ pub(super) struct Layout {
     /// Objects with member names that MATLAB does not accept, which become structs with the fields
     /// `name` and `value`.
     pub(super) by_name: &'static [&'static str],
-    /// Lists of objects that become a single struct of columns instead of a struct array.
+    /// Lists with objects that become a single struct with columns instead of a struct array.
     pub(super) columns: &'static [&'static str],
 }
 
@@ -35,8 +35,8 @@ fn number(json: &Json) -> f64 {
 }
 
 impl Layout {
-    /// Converts a JSON value: objects become structs, lists of objects arrays of structs,
-    /// rectangular lists of numbers matrices, lists of texts columns of cells, and null becomes
+    /// Converts a JSON value: objects become structs, lists with objects struct arrays,
+    /// rectangular lists with numbers matrices, lists with texts cell columns, and null becomes
     /// NaN.
     pub(super) fn value(&self, name: &str, json: &Json) -> Value {
         match json {
@@ -88,7 +88,7 @@ impl Layout {
         }
     }
 
-    /// Returns a row of structs with the same fields; missing members are empty.
+    /// Returns structs with the same fields in a row; missing members are empty.
     fn records(&self, objects: &[&Json]) -> Value {
         let mut fields = Vec::new();
         for name in names_of(objects) {
@@ -107,8 +107,8 @@ impl Layout {
         })
     }
 
-    /// Returns the leaves as an array of this shape, whose last index is fastest among the leaves:
-    /// objects become a struct of arrays, numbers an array, truth values a logical array, rows of
+    /// Returns the leaves as an array with this shape; the last index is fastest among the leaves.
+    /// Objects become a struct with arrays, numbers an array, truth values a logical array, rows with
     /// numbers an array with another index, all others cells.
     fn gathered(&self, shape: &[usize], leaves: Vec<&Json>) -> Value {
         if leaves.iter().any(|leaf| leaf.is_object()) {
@@ -145,7 +145,7 @@ impl Layout {
         })
     }
 
-    /// Returns a struct with an array for each member name of the leaves; members by channel add an
+    /// Returns a struct with an array for each member name; members by channel add an
     /// index to the array.
     fn gathered_objects(&self, shape: &[usize], leaves: &[&Json]) -> Value {
         let mut fields = Fields::default();
@@ -176,7 +176,7 @@ impl Layout {
     }
 }
 
-/// Returns the member of an object at a position; null if there is none.
+/// Returns an object's member at a position; null if there is none.
 fn member_at(value: &Json, at: usize) -> &Json {
     match value {
         Json::Object(members) => members.values().nth(at).unwrap_or(&NULL),
@@ -184,7 +184,7 @@ fn member_at(value: &Json, at: usize) -> &Json {
     }
 }
 
-/// Returns the leaves as ones and zeros, if all of them are truth values.
+/// Returns the leaves as ones and zeros, if all are truth values.
 fn truth_values(leaves: &[&Json]) -> Option<Vec<f64>> {
     let mut numbers = Vec::with_capacity(leaves.len());
     for leaf in leaves {
@@ -193,7 +193,7 @@ fn truth_values(leaves: &[&Json]) -> Option<Vec<f64>> {
     Some(numbers)
 }
 
-/// Returns the length of the leaves, if they are rows of numbers of equal length; null stands for a
+/// Returns the common length, if all leaves are rows with equally many numbers; null replaces a
 /// missing row.
 fn row_length(leaves: &[&Json]) -> Option<usize> {
     let length = leaves
@@ -209,7 +209,7 @@ fn row_length(leaves: &[&Json]) -> Option<usize> {
     Some(length)
 }
 
-/// Returns the distinct member names of all objects, in order of appearance.
+/// Returns all distinct member names, ordered by appearance.
 fn names_of<'j>(objects: &[&'j Json]) -> Vec<&'j str> {
     let mut names: Vec<&str> = Vec::new();
     for object in objects {
@@ -260,7 +260,7 @@ fn array(shape: &[usize], numbers: Vec<f64>, kind: ElementKind) -> Value {
     })
 }
 
-/// Fields of a struct, in order.
+/// Struct fields, in order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Fields {
     fields: Vec<(String, Value)>,
@@ -278,7 +278,7 @@ impl Fields {
     }
 }
 
-/// Returns a row of records with the same fields.
+/// Returns records with the same fields in a row.
 pub(super) fn records(records: Vec<Fields>) -> Value {
     let shape = vec![1, records.len()];
     let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
@@ -293,7 +293,7 @@ pub(super) fn records(records: Vec<Fields>) -> Value {
     Value::Struct(StructArray { shape, fields })
 }
 
-/// Returns a column of texts, each in a cell.
+/// Returns texts in a column, each in a cell.
 pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
     let values: Vec<Value> = texts.into_iter().map(Value::text).collect();
     Value::Cell(CellArray {
@@ -302,13 +302,13 @@ pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
     })
 }
 
-/// Returns a row of numbers.
+/// Returns numbers in a row.
 pub(super) fn row(values: impl IntoIterator<Item = f64>) -> Value {
     let values: Vec<f64> = values.into_iter().collect();
     matrix(1, values.len(), values)
 }
 
-/// Returns a column of numbers.
+/// Returns numbers in a column.
 pub(super) fn column(values: impl IntoIterator<Item = f64>) -> Value {
     let values: Vec<f64> = values.into_iter().collect();
     matrix(values.len(), 1, values)
@@ -319,7 +319,7 @@ pub(super) fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Value {
     Value::Array(Array::matrix(rows, columns, values))
 }
 
-/// Returns the parts of the correction in a file: the source of each, and the omitted parts.
+/// Returns the correction parts in a file: the source of each, and the omitted parts.
 pub(super) fn contained_parts(contents: &ExportContents, dataset: &Dataset) -> Value {
     let mut fields = Fields::default();
     for (name, source) in contents.parts() {

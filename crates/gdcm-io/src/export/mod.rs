@@ -31,21 +31,21 @@ use crate::output_set::OutputSet;
 pub struct ExportFormat {
     /// Its name on the command line.
     pub name: &'static str,
-    /// Extension of a file name.
+    /// File extension.
     pub extension: &'static str,
     /// Description for people.
     pub words: &'static str,
-    /// Accepted options of the command line.
+    /// Accepted command-line options.
     pub options: &'static [&'static str],
     /// Rejects an unsuitable file name, before the work.
     check_path: fn(&Path) -> Result<(), ExportFault>,
-    /// Returns the parts of the correction in the file.
+    /// Returns the correction parts in the file.
     contents: fn(&Analysis, &ExportRequest) -> ExportContents,
-    /// Returns the contents of the file.
+    /// Returns the file contents.
     export: for<'e> fn(&Export<'e>) -> Result<Exported<'e>, ExportFault>,
 }
 
-/// All exports, in the order of their list; the first is the default.
+/// All exports, in display order; the first is the default.
 pub static EXPORTERS: [ExportFormat; 9] = [
     all_results::MAT,
     programs::MATLAB,
@@ -77,7 +77,7 @@ impl PartialEq for ExportFormat {
     }
 }
 
-/// Physics model of a condition to be exported.
+/// Physics model to be exported from a condition.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum ExportedRole {
     /// The model at the condition's own trim.
@@ -94,23 +94,23 @@ pub enum ExportedRole {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExportRequest {
     pub format: ExportFormat,
-    /// Airspeeds of a lookup table \[kt\]; by default the distinct airspeeds of the scheduled
+    /// Airspeeds in a lookup table \[kt\]; by default the distinct airspeeds of the scheduled
     /// conditions.
     pub breakpoints_kt: Option<Vec<f64>>,
-    /// Condition of the exported model; all conditions if `None`.
+    /// Condition to be exported; all if `None`.
     pub condition: Option<ConditionId>,
     /// Model of the condition.
     pub role: ExportedRole,
     /// Correction of the model.
     pub correction: AssessedCorrection,
-    /// Approximant of its delays.
+    /// Delay approximant.
     pub pade: Pade,
 }
 
 /// Origin of a correction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExportSource {
-    /// Name of the study.
+    /// Study name.
     pub name: String,
     /// SHA-256 of the dataset's file, in hexadecimal.
     pub sha256: String,
@@ -123,12 +123,12 @@ pub struct Export<'e> {
     /// Origin of the correction.
     pub source: &'e ExportSource,
     pub request: &'e ExportRequest,
-    /// Path of the output file.
+    /// Output file.
     pub path: &'e Path,
 }
 
 impl<'e> Export<'e> {
-    /// Returns a remark on the cost of the scheduled leads, for a file with their numbers.
+    /// Returns a remark on the cost of scheduled leads, for a file with their numbers.
     fn price_remarks(&self) -> Vec<String> {
         let Ok(schedule) = &self.analysis.schedule else {
             return Vec::new();
@@ -165,10 +165,10 @@ impl<'e> Export<'e> {
     }
 }
 
-/// Writer of the contents of a file.
+/// Function that writes a file.
 type Writing<'e> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'e>;
 
-/// Contents of a file, and remarks on them, line by line.
+/// File contents, and remarks on them, line by line.
 pub struct Exported<'e> {
     write: Writing<'e>,
     remarks: Vec<String>,
@@ -200,7 +200,7 @@ pub fn check_export(format: ExportFormat, path: &Path) -> Result<(), FileError> 
     (format.check_path)(path).map_err(|fault| FileError::export(path, fault))
 }
 
-/// Returns the parts of the correction in the requested file.
+/// Returns the correction parts in the requested file.
 pub fn export_contents(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
     (request.format.contents)(analysis, request)
 }

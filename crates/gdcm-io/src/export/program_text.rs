@@ -19,7 +19,7 @@ pub(super) fn comment(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for character in text.chars() {
         match character {
-            // Pairs of these characters may begin or end comments, continue lines, or be escapes.
+            // In pairs, these characters may begin or end comments, continue lines, or be escapes.
             '*' | '/' | '\\' | '?' | '%' | '{' | '}' | '"' | '\''
                 if plain.ends_with(['*', '/', '?', '%', '"', '\'']) =>
             {

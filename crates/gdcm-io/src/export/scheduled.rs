@@ -13,7 +13,7 @@ use super::program_text::{comment, number};
 use crate::export_fault::ExportFault;
 use crate::files::export_contents::ExportContents;
 
-/// Intervals of airspeed in which an airspeed-dependent lead filter is linear.
+/// Airspeed intervals in which an airspeed-dependent lead filter is linear.
 const LEAD_INTERVALS: u32 = 100;
 
 /// A schedule with its dataset and study.
@@ -22,9 +22,9 @@ pub(super) struct Scheduled<'e> {
     pub(super) schedule: &'e Schedule,
     pub(super) dataset: &'e Dataset,
     pub(super) source: &'e ExportSource,
-    /// Mixing and feedback of the model, if any.
+    /// Mixing and feedback, if any.
     pub(super) couplings: Option<&'e CouplingMatrices>,
-    /// Contents of a file with the schedule.
+    /// Correction parts in a file with the schedule.
     pub(super) contents: ExportContents,
 }
 
@@ -34,14 +34,14 @@ pub(super) struct Curve {
     pub(super) figures: Regression,
     /// Coefficient of the scaled second variable, for an added term.
     pub(super) slope: Option<f64>,
-    /// Whether the sum is the natural logarithm of the value.
+    /// Whether the sum is the value's natural logarithm.
     pub(super) of_logarithm: bool,
     /// If present, the value is clipped between zero and this table.
     pub(super) upper: Option<Regression>,
 }
 
 impl Curve {
-    /// Creates the curve of a regression alone.
+    /// Creates a curve from a regression alone.
     pub(super) fn plain(figures: Regression) -> Self {
         Self {
             figures,
@@ -72,7 +72,7 @@ impl Curve {
 }
 
 impl Scheduled<'_> {
-    /// Returns the gain of a channel \[-\].
+    /// Returns a channel's gain \[-\].
     pub(super) fn gain(&self, channel: Channel) -> Curve {
         let second = self.schedule.second.as_ref();
         Curve {
@@ -82,7 +82,7 @@ impl Scheduled<'_> {
         }
     }
 
-    /// Returns the delay of a channel \[s\]; zero if delays are not scheduled.
+    /// Returns a channel's delay \[s\]; zero if delays are not scheduled.
     pub(super) fn delay_s(&self, channel: Channel) -> Curve {
         if let Some(leads) = &self.schedule.leads {
             let upper = Regression::Table {

@@ -1,22 +1,22 @@
 //! Largest error of linear interpolation in a table.
 
-/// Intervals of the grid in the search for the largest error.
+/// Grid intervals in the search for the largest error.
 const GRID: usize = 2000;
-/// Steps of the golden-section search: each multiplies the interval by 0.618.
+/// Golden-section steps: each multiplies the interval by 0.618.
 const STEPS: usize = 60;
 
 /// Largest error of linear interpolation in a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TableError {
-    /// Absolute error, in the unit of its measure.
+    /// Absolute error, in its measure's unit.
     pub(super) error: f64,
-    /// Airspeed of this error \[kt\].
+    /// Airspeed \[kt\] with this error.
     pub(super) airspeed_kt: f64,
 }
 
 impl TableError {
     /// Finds the largest error of a table of `curve` at `points` within `range_kt`; `measure` returns
-    /// the error of a value against the true value.
+    /// a value's error against the true value.
     ///
     /// A grid finds the neighbourhood, a golden-section search the location.
     pub(super) fn greatest(
@@ -53,7 +53,7 @@ impl TableError {
         greatest
     }
 
-    /// Returns the greater of two errors, `self` if they are equal.
+    /// Returns the greater error, `self` if they are equal.
     pub(super) fn or_greater(self, other: Self) -> Self {
         if other.error > self.error {
             other

@@ -1,4 +1,4 @@
-//! Errors in the beginning of a dataset or a study, without reading the rest.
+//! Errors near the beginning of a dataset or a study, without reading the rest.
 //!
 //! ```text
 //! n <- 64 KiB
@@ -20,18 +20,18 @@ use crate::location::Outline;
 use crate::reading_budget::ReadingBudget;
 use crate::source::{text_reader, without_mark};
 
-/// Length of the first beginning \[bytes\].
+/// Length read first \[bytes\].
 const FIRST: usize = 1 << 16;
 /// Growth factor from each beginning to the next.
 const GROWTH: usize = 16;
-/// Length of the last beginning \[bytes\].
+/// Length read last \[bytes\].
 const LAST: usize = 16 << 20;
 
 /// Looks for the first structural error of a dataset or a study: text that is not JSON, another
-/// format or version, values of a type other than their keys require, lists that are too long.
+/// format or version, values with a type other than their keys require, lists that are too long.
 ///
 /// # Errors
-/// Returns that error if it lies in the beginning of the file, and an error if the file is missing.
+/// Returns this error if it is within the first 16 MiB, and an error if the file is missing.
 pub fn check_beginning(path: &Path) -> Result<(), FileError> {
     let mut reader = text_reader(path)?;
     let mut text = Vec::new();

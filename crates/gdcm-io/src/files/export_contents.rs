@@ -8,7 +8,7 @@ use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_study::results::schedule_losses::DelayedChannel;
 use gdcm_study::{Analysis, AssessedCorrection, PhaseCorrection};
 
-/// Source of a part of an exported correction.
+/// Source of a part in an exported correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartSource {
     Scheduled,
@@ -43,7 +43,7 @@ impl PartSource {
         if is_own { Self::Own } else { Self::None }
     }
 
-    /// Combines this part with the same part of the schedule.
+    /// Combines this part with the same part in the schedule.
     fn beside(self, scheduled: Self) -> Self {
         match (self, scheduled) {
             (Self::Own, Self::Scheduled) => Self::OwnAndScheduled,
@@ -53,13 +53,13 @@ impl PartSource {
     }
 }
 
-/// A part of the conditions' corrections that an export does not contain.
+/// A part in the conditions' corrections that an export does not contain.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LeftOutPart {
-    /// A channel's delays in the own corrections of some conditions that the schedule does not
+    /// A channel's delays in some conditions' own corrections that the schedule does not
     /// have.
     Delay(DelayedChannel),
-    /// The lead filters of the schedule.
+    /// The scheduled lead filters.
     Leads,
     /// The requested couplings, and the reason why there are none.
     Couplings(String),
@@ -85,21 +85,21 @@ impl LeftOutPart {
     }
 }
 
-/// Contents of an export, and the parts it omits.
+/// Export contents, and the parts that it omits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExportContents {
     pub gains: PartSource,
     pub delays: PartSource,
     pub leads: PartSource,
-    /// Mixing and feedback of the models, the same for all conditions.
+    /// Mixing and feedback, the same for all conditions.
     pub couplings: PartSource,
     /// The omitted parts.
     pub left_out: Vec<LeftOutPart>,
 }
 
 impl ExportContents {
-    /// Returns the contents of the result files: each condition's own correction, beside the
-    /// schedule if the study has one.
+    /// Returns the contents for the result files: each condition's own correction, beside the
+    /// schedule if it exists.
     pub fn of_results(analysis: &Analysis) -> Self {
         let own = Self::of_own(analysis);
         let Ok(schedule) = &analysis.schedule else {
@@ -121,7 +121,7 @@ impl ExportContents {
         }
     }
 
-    /// Returns the contents of the study's schedule; empty for a study without one.
+    /// Returns the contents for the study's schedule; empty without a schedule.
     pub fn of_scheduled(analysis: &Analysis) -> Self {
         match &analysis.schedule {
             Ok(schedule) => Self::of_schedule(analysis, schedule),
@@ -129,7 +129,7 @@ impl ExportContents {
         }
     }
 
-    /// Returns the contents of the corrected models of these conditions.
+    /// Returns the contents for corrected models in these conditions.
     ///
     /// # Errors
     /// [`ScheduleError`] if a schedule is requested and there is none.
@@ -208,7 +208,7 @@ impl ExportContents {
         contents
     }
 
-    /// Returns each part with its name, in the order of reports.
+    /// Returns each part with its name, in report order.
     pub fn parts(&self) -> [(&'static str, PartSource); 4] {
         [
             ("gains", self.gains),
@@ -242,7 +242,7 @@ impl ExportContents {
         lines
     }
 
-    /// Returns the block `contains` of files.
+    /// Returns the block `contains` for files.
     pub fn json(&self, dataset: &Dataset) -> Value {
         json!({
             "gains": self.gains.word(),

@@ -23,9 +23,9 @@ use crate::file_error::FileError;
 use crate::json_text::{Nested, write_compact};
 use crate::output_set::OutputSet;
 
-/// Results of an identification, with the additional information in its file.
+/// Identification results, with the additional information in their file.
 pub struct IdentifiedModels<'f> {
-    /// In the units of the channels.
+    /// In channel units.
     pub found: &'f Identification,
     pub channels: &'f RecordChannels,
     /// In order.
@@ -53,15 +53,15 @@ struct MeasuredText {
     omega_rad_s: Vec<f64>,
     re: Nested<3>,
     im: Nested<3>,
-    /// Multiple coherence of each output.
+    /// Multiple coherence, by output.
     coherence: Nested<2>,
     partial_coherence: Nested<3>,
     sd_db: Nested<3>,
     sd_deg: Nested<3>,
 }
 
-/// Adds the results of an identification as a file to `outputs`: the recommended model first, then
-/// CT-PBSID without refinement, then the rest of the bundle. Values that are not finite become
+/// Adds identification results as a file to `outputs`: the recommended model first, then
+/// CT-PBSID without refinement, then the remaining bundle. Values that are not finite become
 /// `null`.
 pub fn add_identified(
     results: &IdentifiedModels<'_>,
@@ -155,8 +155,8 @@ fn measured_text(measured: &ResponseEstimate) -> MeasuredText {
     }
 }
 
-/// Returns the values of all responses, outputs x inputs x frequencies; `value` takes a point and the
-/// indices of output and input.
+/// Returns values for all responses, outputs x inputs x frequencies; `value` takes a point and the
+/// output and input indices.
 fn response_array(
     points: &[EstimatePoint],
     value: impl Fn(&EstimatePoint, (usize, usize)) -> f64,
@@ -194,7 +194,7 @@ fn caution_text(note: &CautionNote) -> Value {
     })
 }
 
-/// Returns a pole, with the standard deviation of its distance.
+/// Returns a pole, with the standard deviation of its distance in the complex plane.
 fn pole_text(estimate: &PoleEstimate) -> Value {
     json!({
         "re": estimate.pole.re,
@@ -204,7 +204,7 @@ fn pole_text(estimate: &PoleEstimate) -> Value {
     })
 }
 
-/// Returns record `index`: first and last time \[s\] of its part of the file and of each used segment,
+/// Returns record `index`: first and last time \[s\] for its part in the file and for each used segment,
 /// and the reasons why other segments were not used.
 fn record_text(found: &Identification, index: usize, record: &ConditionRecord) -> Value {
     let mut reasons = Vec::new();

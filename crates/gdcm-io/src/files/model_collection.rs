@@ -1,4 +1,4 @@
-//! Files of models, `gdcm-models` 1, as `gdcm convert` writes them.
+//! Model files, `gdcm-models` 1, as `gdcm convert` writes them.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -21,12 +21,12 @@ use crate::json_text::{Format, Limited, list, write_compact};
 use crate::output_set::OutputSet;
 use crate::reading_budget::ReadingBudget;
 
-/// Format and version of a file of models.
+/// Format and version of a model file.
 pub(crate) const MODELS: Format = Format {
     name: "gdcm-models",
     version: 1,
 };
-/// Format and version of a file of identified models.
+/// Format and version of a file with identified models.
 pub(crate) const IDENTIFIED: Format = Format {
     name: "gdcm-identified",
     version: 1,
@@ -59,7 +59,7 @@ fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::Result<()> {
     write_compact(&text, file)
 }
 
-/// A corrected model with the contents of the correction.
+/// A corrected model, and the correction parts in it.
 pub(crate) struct ContainingModel {
     pub(crate) model: FoundModel,
     /// The block `contains`.
@@ -80,7 +80,7 @@ struct ContainingModelsText {
     models: Vec<ContainingModelText>,
 }
 
-/// Writes a file of corrected models.
+/// Writes corrected models as a file.
 pub(crate) fn write_containing_models(
     models: &[ContainingModel],
     file: &mut dyn Write,
@@ -149,7 +149,7 @@ fn units_text(labels: &[ChannelLabel]) -> Option<Limited<String, MOST_CHANNELS>>
     Some(Limited(units))
 }
 
-/// Reads the models of a text in one of this program's formats, with its unknown keys; `None` for
+/// Reads the models in a text that has this program's formats, with its unknown keys; `None` for
 /// any other text.
 ///
 /// Also `None` if an unknown key looks like a delay. Such a text is read like any other, with all
@@ -162,7 +162,7 @@ pub(crate) fn found_models(
     let (texts, unknown) = match MODELS.decode::<ModelsText>(text, path, budget) {
         Ok((text, unknown)) => (text.models, unknown),
         Err(_) => {
-            // The keys besides the models are for readers of identification results.
+            // The keys besides the models are identification results.
             let (text, _) = IDENTIFIED.decode::<ModelsText>(text, path, budget).ok()?;
             (text.models, Vec::new())
         }
@@ -185,7 +185,7 @@ fn names_delay(words: &str) -> bool {
         .any(|word| words.contains(word))
 }
 
-/// Returns the labels of a dataset's channels.
+/// Returns labels for a dataset's channels.
 pub(crate) fn labels(channels: &[Channel]) -> Vec<ChannelLabel> {
     let mut labels = Vec::with_capacity(channels.len());
     for channel in channels {
@@ -211,7 +211,7 @@ pub(crate) fn bare_draft(name: String, origin: Origin) -> ModelDraft {
     }
 }
 
-/// Converts the text of a model, whose variable gets the place `index` in the list of models; `None`
+/// Converts a model's text; its variable gets the place `index` in the list of models. `None`
 /// if it has no size.
 fn found_model(mut text: ModelText, index: usize) -> Option<FoundModel> {
     let origin = match text.origin() {
@@ -253,7 +253,7 @@ fn found_model(mut text: ModelText, index: usize) -> Option<FoundModel> {
     })
 }
 
-/// Returns the labels of `count` channels from their names and units, each list possibly empty;
+/// Returns `count` labels from channel names and units, each list possibly empty;
 /// `None` if a list has another length.
 fn labels_from_texts(
     count: usize,

@@ -1,4 +1,4 @@
-//! Files of requirements (M17): `requirements.json` and `requirements.csv`, with the same numbers.
+//! Requirement files (M17): `requirements.json` and `requirements.csv`, with the same numbers.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -23,10 +23,10 @@ use crate::source::Source;
 const NAME: &str = "gdcm-requirements";
 const VERSION: u64 = 1;
 
-/// Names of the files of requirements.
+/// Requirement file names.
 pub const REQUIREMENT_FILES: [&str; 2] = ["requirements.json", "requirements.csv"];
 
-/// Returns the paths of the files of requirements in a directory.
+/// Returns the requirement file paths in a directory.
 pub fn requirement_paths(directory: &Path) -> [PathBuf; 2] {
     REQUIREMENT_FILES.map(|name| directory.join(name))
 }
@@ -54,7 +54,7 @@ struct DatasetName<'a> {
 pub struct RequirementResults<'a> {
     pub requirements: &'a Requirements,
     pub time_histories: &'a TimeHistories,
-    /// Name of the dataset.
+    /// Dataset name.
     pub dataset: &'a str,
     /// SHA-256 of the dataset's file.
     pub sha256: &'a str,
@@ -93,7 +93,7 @@ pub fn write_requirements(
     outputs.persist()
 }
 
-/// Headings of the columns.
+/// Column headings.
 const HEADING: &str = "question condition airspeed_kt role model output input mode record tolerance quantity value low high remark";
 
 /// Writes a row for each number.
@@ -134,7 +134,7 @@ struct Subject<'a> {
 }
 
 impl Subject<'_> {
-    /// Returns the row of a number with this name.
+    /// Returns the row for a number with this name.
     fn row(
         &self,
         name: &str,
@@ -228,7 +228,7 @@ fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
     rows
 }
 
-/// Returns the rows of a mode in the model with this role.
+/// Returns a mode's rows for the model with this role.
 fn model_mode_rows(finding: &ModeFinding, role: &str, numbers: &ModeNumbers) -> Vec<Vec<String>> {
     let mode = match finding.name {
         Some(name) => format!("{} {name}", finding.number),
@@ -304,7 +304,7 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
     rows
 }
 
-/// Returns the unit of an excess, and the trend indicated by a correlation.
+/// Returns the unit for an excess, and the trend that a correlation indicates.
 fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
     match (name, finding.correlation, finding.trend) {
         ("largest_excess", ..) => finding.unit.clone(),
@@ -314,8 +314,8 @@ fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
     }
 }
 
-// The engineer's own tables for requirements, each a separate file, for any study (M17): levels of
-// bandwidth and phase delay, tolerances of time histories.
+// The engineer's own tables for requirements, each a separate file, for any study (M17): levels for
+// bandwidth and phase delay, tolerances for time histories.
 
 const TOLERANCES: Format = Format {
     name: "gdcm-tolerances",
@@ -331,7 +331,7 @@ struct TolerancesText {
     tolerances: Vec<Tolerance>,
 }
 
-/// Reads the boundaries of levels from a file, `[{"name": "Level 1", "axis": "P", "points":
+/// Reads level boundaries from a file, `[{"name": "Level 1", "axis": "P", "points":
 /// [[rad/s, s], ...]}]` (M17.1).
 ///
 /// # Errors
@@ -343,7 +343,7 @@ pub fn read_levels(path: &Path) -> Result<LevelBoundaries, FileError> {
         .map_err(|error| json_error(text, path, Location::default(), &error))
 }
 
-/// Reads a table of tolerances; whole, or not at all. Unknown keys are cautions.
+/// Reads a tolerance table; whole, or not at all. Unknown keys are cautions.
 pub fn load_tolerances(path: &Path) -> Result<(ToleranceTable, Vec<String>), FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
@@ -357,7 +357,7 @@ pub fn load_tolerances(path: &Path) -> Result<(ToleranceTable, Vec<String>), Fil
     }
 }
 
-/// Adds a table of tolerances to `outputs`.
+/// Adds a tolerance table to `outputs`.
 pub fn add_tolerances(
     table: &ToleranceTable,
     path: &Path,

@@ -1,4 +1,4 @@
-//! Rules files, `*.gdcm-rules.json`: the engineer's rules for the files of a folder, reusable for
+//! Rules files, `*.gdcm-rules.json`: the engineer's rules for the files in a folder, reusable for
 //! later folders.
 
 use std::collections::BTreeMap;
@@ -19,10 +19,10 @@ use crate::output_set::OutputSet;
 use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 
-/// Extension of a rules file.
+/// File extension.
 const RULES_EXTENSION: &str = "gdcm-rules.json";
 
-/// Returns the path of the rules beside a dataset: "week.gdcm-rules.json" beside "week.json.gz".
+/// Returns the path for rules beside a dataset: "week.gdcm-rules.json" beside "week.json.gz".
 pub fn rules_path(dataset: &Path) -> PathBuf {
     let name = match dataset.file_name() {
         Some(name) => name.to_string_lossy().into_owned(),
@@ -49,7 +49,7 @@ pub fn add_rules(rules: &Rules, path: &Path, outputs: &mut OutputSet) -> Result<
     outputs.add(path, |file| write_pretty(&text, file))
 }
 
-/// Returns the error of an entry with a word other than expected.
+/// Returns the error for an entry with a word other than expected.
 fn word_error(entry: String, expected: &str, found: String) -> ContentError {
     let fault = ContentFault::Word {
         expected: expected.to_owned(),
@@ -161,7 +161,7 @@ fn check_signs(place: &str, signs: &Signs) -> Result<(), ContentError> {
     Ok(())
 }
 
-/// Rejects a factor that converts nothing, a unit beside a factor of the same channel, an empty
+/// Rejects a factor that converts nothing, a unit beside a factor for the same channel, an empty
 /// unit, and an invalid sign.
 fn check_declarations(place: &str, declared: &ChannelDeclarations) -> Result<(), ContentError> {
     for (channel, factor) in &declared.factors {
@@ -206,10 +206,10 @@ pub(crate) const FORMAT: Format = Format {
     version: 1,
 };
 
-/// Maximum number of patterns, and of conversions, in a rules file.
+/// Largest number of patterns, and of conversions, in a rules file.
 const MOST_PATTERNS: usize = 200;
 
-/// Maximum number of declarations in a rules file, each for a role, for folders or for a file.
+/// Largest number of declarations in a rules file, each for a role, for folders or for a file.
 const MOST_DECLARATIONS: usize = 1000;
 
 #[derive(Deserialize, Serialize)]
@@ -231,23 +231,23 @@ pub(crate) struct RulesText {
     pub(crate) conversions: Vec<UnitRule>,
     #[serde(default = "standard", deserialize_with = "list::<MOST_PATTERNS, _, _>")]
     pub(crate) patterns: Vec<String>,
-    /// Signs of channels in all files.
+    /// Channel signs for all files.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) signs: Signs,
-    /// Signs of channels in the models of a role, "identified" or "physics".
+    /// Channel signs for the models with a role, "identified" or "physics".
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) role_signs: BTreeMap<String, Signs>,
-    /// Units, factors and signs of channels in the models of a role, of folders, or of a file.
+    /// Channel units, factors and signs for the models with a role, in folders, or in a file.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
         deserialize_with = "list::<MOST_DECLARATIONS, _, _>"
     )]
     pub(crate) declarations: Vec<ScopedDeclarations>,
-    /// Sample time of models without one \[s\], 0 for continuous-time models.
+    /// Sample time \[s\] for models without a sample time; 0 for continuous time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) sample_time_s: Option<f64>,
-    /// Column headings of tables, by file.
+    /// Column headings for tables, by file.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) headings: BTreeMap<String, Vec<String>>,
     /// Rules for single models, by file and variable.

@@ -1,4 +1,4 @@
-//! Study files, `*.gdcm-study.json`: the decisions of a study, and a reference to its dataset.
+//! Study files, `*.gdcm-study.json`: a study's decisions, and a reference to its dataset.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -30,7 +30,7 @@ use crate::output_set::{Existing, OutputSet};
 use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 
-/// Maximum number of variants in a study file.
+/// Largest number of variants in a study file.
 pub(crate) const MOST_VARIANTS: usize = 1000;
 
 /// Format and version of a study file.
@@ -39,19 +39,19 @@ const FORMAT: Format = Format {
     version: 1,
 };
 
-/// Extension of a study file.
+/// File extension of a study.
 pub const STUDY_EXTENSION: &str = "gdcm-study.json";
 /// Replaces a path if a study uses the embedded example.
 const EMBEDDED: &str = "embedded example";
 
-/// A study with its dataset, and the changes of the dataset since the study was saved.
+/// A study with its dataset, and the dataset's changes since the study was saved.
 #[derive(Clone, Debug)]
 pub struct OpenedStudy {
     /// The study, with every decision that still applies.
     pub study: Study,
     pub loaded: LoadedDataset,
     pub path: PathBuf,
-    /// Changes of the dataset, and the decisions that no longer apply; empty if it is unchanged.
+    /// Changes in the dataset, and decisions that no longer apply; empty if it is unchanged.
     pub differences: Vec<Difference>,
 }
 
@@ -83,7 +83,7 @@ struct StudyText {
     /// Inputs for the requirements; absent if nothing was decided.
     #[serde(default, skip_serializing_if = "is_default")]
     requirements: RequirementSettings,
-    /// Named decisions; absent in studies of older programs.
+    /// Named decisions; absent in older studies.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
@@ -112,7 +112,7 @@ struct VariantText {
     conditions: Vec<ConditionText>,
 }
 
-/// Reference to the dataset of a study.
+/// Reference to a study's dataset.
 #[derive(Clone, Deserialize, Serialize)]
 struct DatasetReference {
     /// Path relative to the study's directory, with `/` between its parts; `None` for the embedded
@@ -121,7 +121,7 @@ struct DatasetReference {
     /// The dataset's name, for people; "embedded example" for the embedded example.
     name: String,
     sha256: String,
-    /// Inventory of its content; absent in studies of older programs.
+    /// Content inventory; absent in older studies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     holds: Option<Inventory>,
 }
@@ -134,7 +134,7 @@ struct ConditionText {
     physics: BundleChoice,
     identified: BundleChoice,
     scheduled: bool,
-    /// Whether it is held out; absent in studies of older programs.
+    /// Whether it is held out; absent in older studies.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     held_out: bool,
 }
@@ -156,7 +156,7 @@ impl ConditionText {
         }
     }
 
-    /// Returns the choices for all conditions of a study.
+    /// Returns the choices for all conditions.
     fn from_study(study: &Study) -> Vec<Self> {
         let conditions = study.dataset.conditions().iter();
         conditions
@@ -309,7 +309,7 @@ fn adopted_models(
     Ok(adopted)
 }
 
-/// Saves a study of a loaded dataset, replacing an existing file; whole, or not at all. The dataset
+/// Saves a study, replacing an existing file; whole, or not at all. The dataset
 /// itself is never replaced.
 pub fn save_study(study: &Study, loaded: &LoadedDataset, path: &Path) -> Result<(), FileError> {
     save(study, loaded, path, |dataset| path_text(dataset, path))
@@ -326,7 +326,7 @@ pub(crate) fn save_recovery(
     })
 }
 
-/// Returns the settled path of a dataset; without resolved links if its directory is out of reach,
+/// Returns a dataset's settled path; without resolved links if its directory is out of reach,
 /// so that the decisions are kept all the same.
 fn settled_or_absolute(dataset: &Path) -> PathBuf {
     if let Ok(settled) = settled(dataset) {
@@ -366,7 +366,7 @@ fn save(
     output.persist()
 }
 
-/// Returns the file name of the dataset in a study file. `None` if the study cannot be read.
+/// Returns the dataset's file name in a study file. `None` if the study cannot be read.
 pub(crate) fn dataset_of_study(path: &Path) -> Option<String> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget).ok()?;
@@ -388,7 +388,7 @@ pub fn open_study(path: &Path) -> Result<OpenedStudy, FileError> {
     study_from(&Source::read(path, &budget)?, path, None, &budget)
 }
 
-/// Opens a study whose dataset has moved to `dataset`, both within one budget.
+/// Opens a study whose dataset has moved to `dataset`, both within the same budget.
 pub fn open_study_of(
     path: &Path,
     dataset: &Path,
@@ -397,7 +397,7 @@ pub fn open_study_of(
     study_from(&Source::read(path, budget)?, path, Some(dataset), budget)
 }
 
-/// Checks the structure of a study's text, as far as it goes.
+/// Checks the structure in a study's text, as far as the text goes.
 pub(crate) fn check_study_text(
     text: &[u8],
     path: &Path,
@@ -437,7 +437,7 @@ pub(crate) fn study_from(
     })
 }
 
-/// Loads the dataset of a study, at `moved` or at the path in the study.
+/// Loads a study's dataset, at `moved` or at the path in the study.
 fn load_referenced(
     reference: &DatasetReference,
     study: &Path,
@@ -460,7 +460,7 @@ fn load_referenced(
     }
 }
 
-/// Returns the path of the dataset in the study, or beside the study if it exists only there.
+/// Returns the path to the dataset: as in the study, or beside the study if it exists only there.
 fn referenced_path(study: &Path, relative: &str) -> PathBuf {
     let directory = study.parent().unwrap_or(Path::new(""));
     let referenced = directory.join(relative);
@@ -485,7 +485,7 @@ fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
     slashed(&relative, study)
 }
 
-/// Returns the relative path from the folder of `file` to `folder`, the current one if that is
+/// Returns the relative path from the folder around `file` to `folder`, the current folder if that is
 /// empty, with `/` between its parts; the unchanged folder if there is no such path.
 pub fn relative_folder(folder: &Path, file: &Path) -> String {
     let folder = if folder.as_os_str().is_empty() {
@@ -499,7 +499,7 @@ pub fn relative_folder(folder: &Path, file: &Path) -> String {
         .replace(std::path::MAIN_SEPARATOR, "/")
 }
 
-/// Returns the relative path from the folder of `file` to `folder`, if there is one.
+/// Returns the relative path from the folder around `file` to `folder`, if it exists.
 fn relative_path(folder: &Path, file: &Path) -> Option<PathBuf> {
     let folder = std::path::absolute(folder).ok()?;
     let file = std::path::absolute(file).ok()?;
@@ -517,7 +517,7 @@ fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
     }
 }
 
-/// Returns the absolute path of a file, with the links of its directory resolved: `..` after a link
+/// Returns the absolute path to a file, with links in its directory resolved: `..` after a link
 /// would lead elsewhere.
 fn settled(path: &Path) -> Result<PathBuf, FileError> {
     let failed = |error: std::io::Error| FileError::writing(path, &error);

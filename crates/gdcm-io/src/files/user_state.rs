@@ -1,4 +1,4 @@
-//! State of the user kept between starts of the program: recently opened and saved files, and
+//! User state kept between program starts: recently opened and saved files, and
 //! whether it was started before.
 
 use std::fs::{self, File, OpenOptions, TryLockError, create_dir_all};
@@ -20,9 +20,9 @@ use crate::output_set::{make_directory, write_whole};
 use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 
-/// Maximum number of listed files.
+/// Largest number of listed files.
 const MOST: usize = 10;
-/// Name of the list in the program's directory.
+/// File name in the program's directory.
 const NAME: &str = "recent-files.json";
 /// Format and version of the list.
 const FORMAT: Format = Format {
@@ -79,7 +79,7 @@ pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
     write_whole(&directory.join(NAME), |writer| write_pretty(&text, writer))
 }
 
-/// The marker file of an earlier start.
+/// Marker file from an earlier start.
 const STARTED: &str = "started";
 
 /// Whether this is the first start, which is then recorded in the program's directory. Also false if
@@ -96,13 +96,13 @@ pub fn is_first_start(directory: &Path) -> bool {
 
 // Recovery files: unsaved decisions that survive a crash or a kill.
 
-/// Extension of the file whose lock shows whether the process lives.
+/// File extension for locks that show whether a process lives.
 const LOCK_EXTENSION: &str = "lock";
-/// Much longer than the time between the creation of a lock file and its lock.
+/// Much longer than the time between creating and locking a file.
 const YOUNG: Duration = Duration::from_secs(60);
 
 /// Recovery file of an open window: a study file, `PROCESS-NUMBER.gdcm-study.json`. A file beside it
-/// is locked while the process lives, and contains the path of the study's own file.
+/// is locked while the process lives, and contains the path to the study's own file.
 #[derive(Debug)]
 pub struct RecoveryFile {
     path: PathBuf,
@@ -116,7 +116,7 @@ impl RecoveryFile {
     /// # Errors
     /// Returned if the directory or the lock cannot be created.
     pub fn claim(directory: &Path) -> Result<Self, FileError> {
-        /// Two windows of the same process have different names.
+        /// Windows in the same process have different names.
         static NUMBER: AtomicUsize = AtomicUsize::new(1);
         make_directory(directory)?;
         loop {
@@ -127,7 +127,7 @@ impl RecoveryFile {
             );
             let path = directory.join(format!("{name}.{STUDY_EXTENSION}"));
             let lock_path = directory.join(format!("{name}.{LOCK_EXTENSION}"));
-            // A file of an earlier process with this number may be waiting there to be restored.
+            // A file from an earlier process with this number may be waiting there to be restored.
             if path.exists() || lock_path.exists() {
                 continue;
             }
@@ -143,7 +143,7 @@ impl RecoveryFile {
         }
     }
 
-    /// Returns the path of the kept decisions.
+    /// Returns the path to the kept decisions.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -204,12 +204,12 @@ pub struct LostStudy {
     pub kept_at: SystemTime,
     /// Their dataset, in words.
     pub dataset: String,
-    /// The study's own file, if it had one.
+    /// The study's own file, if any.
     pub saved_as: Option<PathBuf>,
 }
 
 impl LostStudy {
-    /// Returns the path of the decisions.
+    /// Returns the path to the decisions.
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -1,4 +1,4 @@
-//! Models of a whole dataset, found among other model files.
+//! Models in a whole dataset, found among other model files.
 
 use std::path::Path;
 
@@ -45,7 +45,7 @@ pub(super) fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel
     models
 }
 
-/// Returns the information on the condition; the paths of its records, relative to the dataset's
+/// Returns the information on the condition; its record paths, relative to the dataset's
 /// folder, become relative to the requested path.
 fn facts_of(condition: &Condition, name: &str) -> Facts {
     let state = condition.flight_state();

@@ -11,7 +11,7 @@ use crate::reading_budget::ReadingBudget;
 
 /// A matrix in a separate file.
 pub(super) struct LooseMatrix {
-    /// The folder and the part of the name before the letter: matrices with the same group are a
+    /// The folder and the name before the letter: matrices with the same group are a
     /// model.
     group: String,
     file: String,
@@ -21,7 +21,7 @@ pub(super) struct LooseMatrix {
 }
 
 impl LooseMatrix {
-    /// Takes the only variable of a file that is named as a matrix.
+    /// Takes the only variable in a file that is named as a matrix.
     pub(super) fn from_variables(variables: &[Variable], file: &str, sha256: &str) -> Option<Self> {
         let [variable] = variables else { return None };
         if !matches!(variable.value, Value::Array(_)) {
@@ -50,7 +50,7 @@ impl LooseMatrix {
     }
 }
 
-/// Returns the letter of a file that is named as a matrix, and the part before it: "nominal_A" is A
+/// Returns the letter at the end of a file name, and the part before it: "nominal_A" is A
 /// of "nominal".
 pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
     let letter = stem.chars().last()?;
@@ -64,7 +64,7 @@ pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
     Some((letter, before.trim_end_matches(['_', '-', '.', ' '])))
 }
 
-/// Builds a model from each group of loose matrices; its file is the folder, or the part of the name
+/// Builds a model from each group; its file is the folder, or the part of the name
 /// before the letters.
 pub(super) fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     let mut groups: BTreeMap<String, Vec<LooseMatrix>> = BTreeMap::new();

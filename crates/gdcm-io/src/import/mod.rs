@@ -1,4 +1,4 @@
-//! Models and records recognised in files of any format.
+//! Models and records recognised in files, whatever their format.
 
 mod dataset_models;
 mod loose_matrices;

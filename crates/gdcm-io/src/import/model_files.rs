@@ -1,4 +1,4 @@
-//! Models in files of any format, and in folders.
+//! Models in files, whatever their format, and in folders.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,10 +18,10 @@ use crate::formats::variables::Variable;
 use crate::formats::{Contents, FolderProgress, ImportedFile, import, import_bytes, of_file};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Key for the headings of every table with the same number of columns, among the keys of single
+/// Key for the headings that apply to every table with as many columns, among the keys for single
 /// files.
 pub const EVERY_TABLE: &str = "*";
-/// Lines at the start of a text in which named matrices begin.
+/// Number of first lines in a text among which named matrices begin.
 const HEADING_LINES: usize = 50;
 /// Largest number of unused variables listed for a file.
 const MOST_LISTED: usize = 20;
@@ -29,7 +29,7 @@ const MOST_LISTED: usize = 20;
 /// Models found in files.
 #[derive(Clone, Debug, Default)]
 pub struct FoundModels {
-    /// In the order of their files.
+    /// In file order.
     pub models: Vec<FoundModel>,
     /// Files and apparent models that could not be read, each with place and reason.
     pub faults: Vec<String>,
@@ -41,7 +41,7 @@ pub struct FoundModels {
     pub tables: Headings,
     /// Missing units, without which these tables are not recognised as frequency responses.
     pub unsaid: BTreeMap<String, Vec<UnsaidUnit>>,
-    /// Number of files read.
+    /// File count.
     pub files: usize,
 }
 
@@ -80,7 +80,7 @@ pub fn read_models(
     })
 }
 
-/// Reads the models in the bytes of a file with this name, within a budget.
+/// Reads the models in a file with this name and these bytes, within a budget.
 pub fn models_of_bytes(
     bytes: &[u8],
     name: &str,
@@ -95,7 +95,7 @@ pub fn models_of_bytes(
     })
 }
 
-/// Name and hash of a file, or of the archive around it.
+/// Name and hash: those of the archive for a file inside it.
 #[derive(Clone, Copy)]
 struct FileIdentity<'f> {
     name: &'f str,
@@ -119,7 +119,7 @@ impl<'h> ModelReading<'h> {
         }
     }
 
-    /// Adds the models in the contents of a file.
+    /// Adds the models in a file.
     fn add_file(
         &mut self,
         file: ImportedFile<'_>,
@@ -184,7 +184,7 @@ impl<'h> ModelReading<'h> {
         Ok(())
     }
 
-    /// Adds the models in a file of an archive. A file that cannot be read is a fault.
+    /// Adds the models in an archived file. A file that cannot be read is a fault.
     ///
     /// # Errors
     /// Only cancellation.
@@ -260,7 +260,7 @@ impl<'h> ModelReading<'h> {
         Ok(models.found)
     }
 
-    /// Adds the models of a file, with their provenance; the first lists the unused variables.
+    /// Adds models with their provenance; the first in a file lists the unused variables.
     fn add_found(&mut self, mut found: Found<FoundModel>, identity: FileIdentity<'_>) {
         let FileIdentity { name, sha256 } = identity;
         for (index, model) in found.items.iter_mut().enumerate() {
@@ -293,7 +293,7 @@ impl<'h> ModelReading<'h> {
     }
 }
 
-/// Contents of a text in the search for models.
+/// Text contents in the search for models.
 enum TextContents {
     Variables {
         variables: Vec<Variable>,

@@ -1,4 +1,4 @@
-//! Frequency responses in tables of columns.
+//! Frequency responses in tables with columns.
 
 use gdcm_model::assembly::found_model::Facts;
 use gdcm_model::assembly::{ChannelLabel, FoundModel};
@@ -20,7 +20,7 @@ pub(super) struct TableModels {
     pub(super) unsaid: Vec<UnsaidUnit>,
 }
 
-/// Returns the responses in a table, each a model with one input and one output. A table without any
+/// Returns the responses in a table, each as a model with an input and an output. A table without any
 /// is reported as ignored, with the units that would make it a response.
 pub(super) fn models_of_table(table: &TextTable, file: &str) -> Result<TableModels, VariableFault> {
     let columns = match FrequencyColumns::recognise(table) {
@@ -58,8 +58,8 @@ pub(super) fn models_of_table(table: &TextTable, file: &str) -> Result<TableMode
     })
 }
 
-/// Returns the model of a response, without notes. If the table `has_several` responses, its channels
-/// become the name of the variable.
+/// Returns a response as a model, without notes. If the table `has_several` responses, its channels
+/// become the variable name.
 fn response_model(
     response: &RecognisedResponse,
     points: ResponsePoints,
@@ -108,7 +108,7 @@ fn response_model(
     }
 }
 
-/// Returns the values of one response at `count` frequencies as an array, outputs x inputs x
+/// Returns a response's values at `count` frequencies as an array, outputs x inputs x
 /// frequencies.
 fn single_response(values: Vec<f64>, count: usize) -> ResponseArray {
     ResponseArray {

@@ -1,5 +1,5 @@
 //! Value of the scheduled correction, uncertainty of the results (M13), and meaning, value and cost
-//! of the couplings of the physics models (M16).
+//! of couplings in the physics models (M16).
 
 use std::sync::Arc;
 
@@ -127,7 +127,7 @@ pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Adds the changes of J of some responses, called `name`: a summary, figures and tables.
+/// Adds the changes in J for some responses, called `name`: a summary, figures and tables.
 fn add_responses(
     page: &mut Page,
     analysis: &Analysis,
@@ -155,7 +155,7 @@ pub(super) fn capital(words: &str) -> String {
     capital
 }
 
-/// Adds figures of the changes of J of some responses, called `name`.
+/// Adds figures with the changes in J for some responses, called `name`.
 fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], name: &str) {
     let drawn = &pairs[..pairs.len().min(PAIRS_DRAWN)];
     for pairs in drawn.chunks(IN_A_FIGURE) {
@@ -175,7 +175,7 @@ fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], name: &str)
     }
 }
 
-/// Adds ΔJ of some responses, called `name`, in every condition, as many conditions side by side as
+/// Adds ΔJ for some responses, called `name`, in every condition, as many conditions side by side as
 /// fit on a page.
 fn add_tables(
     page: &mut Page,
@@ -219,7 +219,7 @@ fn add_tables(
     page.list(missing);
 }
 
-/// Tabulates J before and after, and the parts of its change, for every condition and response.
+/// Tabulates J before and after, and its change by part, for every condition and response.
 fn parts_table(analysis: &Analysis, assessment: &AssessmentTable, pairs: &[Pair]) -> Table {
     let columns = [
         "condition",
@@ -258,7 +258,7 @@ fn parts_table(analysis: &Analysis, assessment: &AssessmentTable, pairs: &[Pair]
 /// Largest number of matrix columns that fit on a page.
 const MATRIX_COLUMNS: usize = 8;
 
-/// Returns the analysis with the value of its couplings, if it has any.
+/// Returns the analysis with its couplings assessed, if it has any.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.

@@ -24,7 +24,7 @@ use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, MODELS_SHOWN, PAIRS_DRAWN, PAIRS_LISTED, Page, names};
 
 /// Adds the section on the conditions: representatives, gains and delays with their basis, and
-/// plots of each.
+/// plots for each.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -64,7 +64,7 @@ pub(super) fn add_conditions(
     Ok(())
 }
 
-/// Computes the curves of a condition and adds its plots.
+/// Computes a condition's curves and adds its plots.
 fn add_condition_plots(
     page: &mut Page,
     analysis: &Analysis,
@@ -88,7 +88,7 @@ fn add_condition_plots(
     Ok(())
 }
 
-/// Adds the results of a condition as text and tables.
+/// Adds a condition's results as text and tables.
 fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) {
     page.facts(facts(analysis, result));
     let study = &analysis.study;
@@ -114,7 +114,7 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
     }
 }
 
-/// Returns the proof status of the gains in a word.
+/// Returns the gains' proof status in a word.
 pub(super) fn proof_word(result: &ConditionAnalysis) -> &'static str {
     match result.gains.proof.outcome {
         Outcome::Proven { .. } => "global optimum",
@@ -193,7 +193,7 @@ fn flight_words(condition: &Condition) -> String {
     parts.join(", ")
 }
 
-/// Describes the number of kept models in a bundle, and its representative.
+/// Describes how many models are kept in a bundle, and its representative.
 fn representative(analysis: &Analysis, result: &ConditionAnalysis, kind: BundleKind) -> String {
     let choice = analysis.study.choice(result.condition.id()).bundle(kind);
     let name = result.representative_name(kind);
@@ -250,7 +250,7 @@ const RESPONSE_COLUMNS: [&str; 11] = [
     "ΔJ phase",
 ];
 
-/// Adds the table of the responses, and the reasons why some of them have no G and no D.
+/// Adds the response table, and the reasons why some responses have no G and no D.
 fn add_responses(page: &mut Page, study: &Study, result: &ConditionAnalysis) {
     let all: Vec<Pair> = study.dataset.on_axis().pairs().collect();
     let measuring = study.dataset.measuring_pairs();
@@ -344,7 +344,7 @@ fn undefined_lines(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     lines
 }
 
-/// Adds the table of a bundle's models; for a long bundle, of the most important ones.
+/// Adds a table with a bundle's models, for a long bundle with the most important models.
 fn add_models(page: &mut Page, study: &Study, result: &ConditionAnalysis, kind: BundleKind) {
     let models = result.condition.bundle(kind);
     let shown = models_shown(study, result, kind);
@@ -426,7 +426,7 @@ fn kept_word(
 /// Largest number of responses in a figure, in two rows at most.
 const IN_A_FIGURE: usize = 10;
 
-/// Adds plots of the important responses, their errors in the fit, all responses, and the poles.
+/// Adds plots for important responses, their errors in the fit, all responses, and the poles.
 fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSource<'_>) {
     let options = BodeOptions {
         hidden_models: models_hidden(source.study, result),
@@ -437,7 +437,7 @@ fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSour
     add_poles(page, source, &options);
 }
 
-/// Adds plots of the responses that measure a model, and of their errors in the fit.
+/// Adds plots for the responses that measure a model, and for their errors in the fit.
 fn add_response_plots(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
     let id = source.curves.condition.id();
     let measuring: Vec<Pair> = source.study.dataset.measuring_pairs().marked().collect();
@@ -462,7 +462,7 @@ fn add_response_plots(page: &mut Page, source: &ConditionSource<'_>, options: &B
     }
 }
 
-/// Adds the magnitude of every response, unless there are too many for a figure.
+/// Adds all response magnitudes, unless there are too many for a figure.
 fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
     let without_bundles = BodeOptions {
         hidden: BTreeSet::from([Role::Perturbed, Role::Identified, Role::Rejected]),
@@ -479,7 +479,7 @@ fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOpt
     }
 }
 
-/// Adds the poles of the models, with their shifts by couplings.
+/// Adds the model poles, with their shifts by couplings.
 fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
     let Ok(modes) = ConditionModes::of(&source.curves.condition, &Unobserved) else {
         return;
@@ -496,7 +496,7 @@ fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOption
     );
 }
 
-/// Reduces labels of lines across narrow frames to their names ("G", "UB"): their values are in the
+/// Reduces line labels in narrow frames to their names ("G", "UB"): the values are in the
 /// tables.
 fn without_values(mut figure: Figure) -> Figure {
     let panels = figure.plots.iter_mut().flat_map(|plot| &mut plot.panels);
@@ -508,7 +508,7 @@ fn without_values(mut figure: Figure) -> Figure {
     figure
 }
 
-/// Returns " on axis" if responses are marked as such; otherwise all of them measure a model.
+/// Returns " on axis" if responses are marked as such; otherwise all responses measure a model.
 fn on_axis_words(source: &ConditionSource<'_>) -> &'static str {
     if source.study.dataset.on_axis().marked().next().is_some() {
         " on axis"
@@ -517,7 +517,7 @@ fn on_axis_words(source: &ConditionSource<'_>) -> &'static str {
     }
 }
 
-/// Returns the indices of the models in a bundle that are listed and drawn. In a short bundle these
+/// Returns the indices of listed and drawn models in a bundle. In a short bundle these
 /// are all; in a long bundle the representative, the nominal and the suggested models, rejected
 /// models, then others, evenly over the bundle.
 fn models_shown(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> BTreeSet<usize> {
@@ -549,7 +549,7 @@ fn models_shown(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> 
     shown
 }
 
-/// Returns the models of a condition that are not drawn.
+/// Returns the models in a condition that are not drawn.
 fn models_hidden(study: &Study, result: &ConditionAnalysis) -> BTreeSet<ModelId> {
     let mut hidden = BTreeSet::new();
     for kind in BundleKind::BOTH {

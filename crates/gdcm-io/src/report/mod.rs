@@ -1,4 +1,4 @@
-//! The report of a study: a single HTML file without external resources that prints on A4 and
+//! A study's report: a single HTML file without external resources that prints on A4 and
 //! letter. The same study makes the same bytes.
 
 mod assessment;
@@ -25,12 +25,12 @@ pub use self::study::assessment_sentence;
 
 const PROGRAM: &str = concat!("gdcm ", env!("CARGO_PKG_VERSION"));
 
-/// Files of a study, as a report names them.
+/// A study's files, as a report names them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReportSource {
-    /// Name of the study's file; `None` for a study that is not saved.
+    /// The study's file name; `None` for a study that is not saved.
     pub study: Option<String>,
-    /// Name of the dataset's file, or its replacement.
+    /// The dataset's file name, or its replacement.
     pub dataset: String,
     /// SHA-256 of that file, in hexadecimal.
     pub sha256: String,
@@ -39,7 +39,7 @@ pub struct ReportSource {
 }
 
 impl ReportSource {
-    /// Takes the files of a study: its dataset, and its own file if any. They are named without their
+    /// Takes a study's files: its dataset, and its own file if any. They are named without their
     /// folders, so that the report does not depend on their location.
     pub fn of(loaded: &LoadedDataset, study: Option<&Path>) -> Self {
         let study = study
@@ -54,19 +54,19 @@ impl ReportSource {
     }
 }
 
-/// Subject of a report.
+/// Report subject.
 #[derive(Clone, Copy, Debug)]
 pub struct ReportSubject<'a> {
-    /// With the requirements of its study.
+    /// With its study's requirements.
     pub analysis: &'a Analysis,
-    /// Responses of its models to flight records, if available.
+    /// Model responses to flight records, if available.
     pub histories: Option<&'a TimeHistories>,
     /// The identified poles.
     pub known: &'a KnownPoles,
 }
 
-/// Creates the report of an analysis; `engine` provides the responses to be drawn. Each condition
-/// is a step of the progress.
+/// Creates the report on an analysis; `engine` provides the responses to be drawn. Each condition
+/// is a progress step.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -112,7 +112,7 @@ pub fn report(
     Ok(page.finish(&title, &[origin]))
 }
 
-/// Forwards cancellation only, not the progress of inner steps.
+/// Forwards cancellation only, not the progress in inner steps.
 struct Unobtrusive<'a>(&'a dyn Progress);
 
 impl Progress for Unobtrusive<'_> {

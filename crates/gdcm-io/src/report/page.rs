@@ -7,19 +7,19 @@ use gdcm_plot::figure::{ColumnWidth, Figure};
 use gdcm_plot::paper::{escaped, inline_svg};
 use gdcm_study::Table;
 
-/// Maximum number of conditions with figures; all have tables.
+/// Largest number of conditions with figures; all have tables.
 pub(super) const CONDITIONS_DRAWN: usize = 60;
-/// Maximum number of on-axis responses with figures, and of off-axis ones.
+/// Largest number of on-axis responses with figures, and of off-axis responses.
 pub(super) const PAIRS_DRAWN: usize = 40;
-/// Maximum number of responses in a table with all; a longer table lists only the on-axis and the
-/// constrained ones.
+/// Largest number of responses in a table with all; a longer table lists only on-axis and
+/// constrained responses.
 pub(super) const PAIRS_LISTED: usize = 48;
-/// Maximum number of models in a bundle that are listed and drawn.
+/// Largest number of models in a bundle that are listed and drawn.
 pub(super) const MODELS_SHOWN: usize = 40;
-/// Maximum number of names in a sentence.
+/// Largest number of names in a sentence.
 pub(super) const NAMES_SHOWN: usize = 12;
 
-/// Lists names with commas; for many, the first ones and the number of the others.
+/// Lists names with commas; for many, the first names and how many follow.
 pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
     let shown: Vec<&str> = all.iter().take(NAMES_SHOWN).map(AsRef::as_ref).collect();
     let shown = shown.join(", ");
@@ -30,16 +30,16 @@ pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
 }
 
 /// Maximum distance \[pt\] between a line in a figure and its original points: less than the thinnest
-/// line width, hence invisible. It reduces files to a quarter of their size.
+/// line width, hence invisible. It reduces file sizes to a quarter.
 const TOLERANCE_PT: f64 = 0.1;
-/// Maximum number of rows in a table; the result files have all.
+/// Largest number of rows in a table; the result files have all.
 const ROWS: usize = 1000;
-/// Maximum number of rows in a table that is not split between pages.
+/// Largest number of rows in a table that is not split between pages.
 const ROWS_ON_A_SHEET: usize = 30;
-/// Maximum number of letters in a text that stays on a line.
+/// Largest number of letters in a text that stays on a line.
 const SHORT: usize = 24;
 const STYLE: &str = include_str!("style.css");
-/// Nothing is fetched and nothing is run, whatever the content of a page.
+/// Nothing is fetched and nothing is run, whatever a page contains.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'";
 
 /// A heading in the table of contents.
@@ -99,7 +99,7 @@ impl Page {
         self.add_list("", items);
     }
 
-    /// Adds a list in small print, for details of interest to few readers.
+    /// Adds a list in small print, for details.
     pub(super) fn fine_list(&mut self, items: impl IntoIterator<Item = impl AsRef<str>>) {
         self.add_list(" class=\"fine\"", items);
     }
@@ -180,7 +180,7 @@ impl Page {
         }
     }
 
-    /// Adds a figure under its number, with this title and caption instead of its own.
+    /// Adds a numbered figure, with this title and caption instead of its own.
     pub(super) fn figure(&mut self, figure: &Figure, title: &str, caption: &str) {
         self.figures += 1;
         let bare = Figure {
@@ -201,7 +201,7 @@ impl Page {
         ));
     }
 
-    /// Adds fixed markup of the program itself.
+    /// Adds fixed markup from the program itself.
     pub(super) fn fixed(&mut self, markup: &'static str) {
         self.body.push_str(markup);
     }
@@ -243,7 +243,7 @@ impl Page {
     }
 }
 
-/// Returns a row of a table, with the class of each column.
+/// Returns a table row, with a class for each column.
 fn table_row(tag: &str, cells: &[String], classes: &[&str]) -> String {
     let mut row = String::from("<tr>\n");
     for (text, class) in cells.iter().zip(classes) {
@@ -257,13 +257,13 @@ fn table_row(tag: &str, cells: &[String], classes: &[&str]) -> String {
     row
 }
 
-/// Returns the first `heads` cells of a row, and those from `from` up to `to`.
+/// Returns the first `heads` cells in a row, and those from `from` up to `to`.
 fn columns_between(cells: &[String], heads: usize, from: usize, to: usize) -> Vec<String> {
     let to = to.min(cells.len());
     [&cells[..heads], &cells[from..to]].concat()
 }
 
-/// Returns the class of a column: numbers (`n`), texts short enough to stay on a line (`s`), or
+/// Returns a column's class: numbers (`n`), texts short enough to stay on a line (`s`), or
 /// other texts (none).
 fn class_of(table: &Table, column: usize) -> &'static str {
     let is_short = table

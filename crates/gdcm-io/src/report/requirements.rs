@@ -1,4 +1,4 @@
-//! Requirements of a qualification on the models (M17): the numbers of `gdcm requirements`.
+//! Qualification requirements on the models (M17): the same numbers as `gdcm requirements`.
 
 use std::collections::BTreeMap;
 
@@ -65,7 +65,7 @@ pub(super) fn add_requirements(
     Ok(())
 }
 
-/// Adds bandwidth and phase delay of the responses for which either is defined, and the reasons why
+/// Adds bandwidth and phase delay for the responses in which either is defined, and the reasons why
 /// others have none.
 fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
     let dataset = &study.dataset;

@@ -41,7 +41,7 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Adds figures of channels; `axes` are the drawn quantity and the horizontal axis.
+/// Adds channel figures; `axes` are the drawn quantity and the horizontal axis.
 fn add_channels(
     page: &mut Page,
     analysis: &Analysis,
@@ -104,7 +104,7 @@ fn add_schedule_facts(page: &mut Page, analysis: &Analysis, schedule: &Schedule)
     ]);
 }
 
-/// Adds the cost of leads, the cautions about the schedule, and the delays that it omits.
+/// Adds lead costs, cautions about the schedule, and the delays that it omits.
 fn add_schedule_remarks(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let dataset = &analysis.study.dataset;
     let (inputs, outputs) = dataset.names_of_channels();
@@ -163,7 +163,7 @@ fn add_coefficients(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     page.wide_table(&table, COLUMNS);
 }
 
-/// Adds the scheduled gains, net gains and, if scheduled, delays at the airspeeds of the
+/// Adds the scheduled gains, net gains and, if scheduled, delays at the airspeeds of all
 /// conditions.
 fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let dataset = &analysis.study.dataset;
@@ -203,7 +203,7 @@ fn channel_name(dataset: &Dataset, channel: Channel) -> String {
     channel.name(&inputs, &outputs)
 }
 
-/// Column of a table over airspeed: its name, and its cell for the correction at an airspeed.
+/// Column in a table over airspeed: its name, and its cell for the correction at an airspeed.
 struct AirspeedColumn {
     name: String,
     cell: Box<dyn Fn(&ChannelCorrection) -> String>,

@@ -1,4 +1,4 @@
-//! The study as a whole: its results, its settings, the sources of its numbers, and the excluded
+//! The study as a whole: its results, settings and sources, and the excluded
 //! models.
 
 use std::collections::BTreeMap;
@@ -21,7 +21,7 @@ use super::conditions::proof_word;
 use super::page::{NAMES_SHOWN, Page, names};
 use super::{PROGRAM, ReportSource};
 
-/// Adds a summary of the results.
+/// Adds a summary.
 pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     page.section("Summary");
     let conditions = analysis.study.dataset.conditions();
@@ -48,7 +48,7 @@ pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     page.table(&condition_table(analysis));
 }
 
-/// Describes the value of the schedule for the nominal models in a sentence.
+/// Describes the schedule's value for the nominal models in a sentence.
 pub fn assessment_sentence(analysis: &Analysis) -> String {
     let dataset = &analysis.study.dataset;
     let measuring = dataset.measuring_pairs();
@@ -118,7 +118,7 @@ fn condition_table(analysis: &Analysis) -> Table {
     table
 }
 
-/// Returns the number of kept models in a bundle: "8 of 9".
+/// Returns how many models are kept in a bundle: "8 of 9".
 fn kept_words(study: &Study, condition: &Condition, kind: BundleKind) -> String {
     let models = condition.bundle(kind);
     let rejected = &study.choice(condition.id()).bundle(kind).rejected;
@@ -129,7 +129,7 @@ fn kept_words(study: &Study, condition: &Condition, kind: BundleKind) -> String 
     format!("{kept} of {}", models.len())
 }
 
-/// Returns the number of matched responses among the constrained ones: "4 of 5".
+/// Returns how many constrained responses are matched: "4 of 5".
 fn matched_words(result: &ConditionAnalysis, unmatched: usize) -> String {
     let held = result.held().marked().count();
     format!("{} of {held}", held.saturating_sub(unmatched))
@@ -181,7 +181,7 @@ fn pair_names(dataset: &Dataset, marked: &PairTable<bool>) -> String {
     }
 }
 
-/// Describes the form of a schedule.
+/// Describes a schedule's form.
 pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
     let kind = match settings.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed"),
@@ -203,7 +203,7 @@ pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
     )
 }
 
-/// Adds the section on the files of the study.
+/// Adds the section on the study's files.
 pub(super) fn add_files(page: &mut Page, study: &Study, source: &ReportSource) {
     page.section("Provenance");
     let dataset = &study.dataset;
@@ -238,7 +238,7 @@ fn channel_words(channels: &[Channel]) -> String {
     words.join(", ")
 }
 
-/// Adds the section on the source files of the models, if any is known.
+/// Adds the section on the models' source files, if any is known.
 pub(super) fn add_models(page: &mut Page, study: &Study) {
     let mut models: BTreeMap<[String; 5], Vec<String>> = BTreeMap::new();
     let mut unknown = 0;
@@ -277,7 +277,7 @@ pub(super) fn add_models(page: &mut Page, study: &Study) {
     }
 }
 
-/// Returns file, hash, variable (or records), date and note of a model's source.
+/// Returns file, hash, variable (or records), date and note from a model's source.
 fn source_cells(source: &Provenance) -> [String; 5] {
     let Provenance {
         file,
@@ -334,7 +334,7 @@ fn rejected_table(analysis: &Analysis) -> Table {
     table
 }
 
-/// Adds a row for each rejected model. Of many models without a reason, the last are only counted.
+/// Adds a row for each rejected model. If many have no reason, the last are only counted.
 fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, table: &mut Table) {
     let study = &analysis.study;
     let result = analysis.condition(condition.id());
@@ -374,8 +374,8 @@ fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, t
     }
 }
 
-/// Describes the models of a condition that are set aside, those suspected but kept, and the pinned
-/// ones.
+/// Describes the models in a condition that are set aside, suspected but kept, or pinned by the
+/// analyst.
 fn left_out_lines(analysis: &Analysis, condition: &Condition) -> Vec<String> {
     let study = &analysis.study;
     let id = condition.id();

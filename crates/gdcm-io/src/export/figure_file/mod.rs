@@ -32,7 +32,7 @@ pub fn figure_format(path: &Path) -> Result<FigureFormat, FileError> {
     })
 }
 
-/// Writes a figure to a file, in the format of its extension.
+/// Writes a figure to a file, in the format that its extension names.
 ///
 /// # Errors
 /// [`FileError::FigureWithoutNumbers`] if CSV is requested for a figure without numbers; otherwise

@@ -1,4 +1,4 @@
-//! JSON values by channel and by response, with the channel names of a dataset.
+//! JSON values by channel and by response, with a dataset's channel names.
 
 use serde_json::{Map, Value, json};
 
@@ -16,7 +16,7 @@ pub(super) fn is_empty_value(value: &Value) -> bool {
     }
 }
 
-/// Returns an object without those of the named members that are empty.
+/// Returns an object without the named members that are empty.
 pub(crate) fn without_empty(mut object: Value, members: &[&str]) -> Value {
     if let Value::Object(all) = &mut object {
         all.retain(|name, value| !(members.contains(&name.as_str()) && is_empty_value(value)));
@@ -32,7 +32,7 @@ pub(super) fn rows<T>(table: &PairTable<Option<T>>, figure: impl Fn(&T) -> f64) 
     })
 }
 
-/// Returns the entries of a table as a list with a row for each output.
+/// Returns table entries as a list with a row for each output.
 pub(super) fn rows_of(outputs: usize, inputs: usize, entry: impl Fn(Pair) -> Value) -> Value {
     let mut rows = Vec::with_capacity(outputs);
     for output in 0..outputs {
@@ -45,7 +45,7 @@ pub(super) fn rows_of(outputs: usize, inputs: usize, entry: impl Fn(Pair) -> Val
     Value::Array(rows)
 }
 
-/// An analysis with the channel names of its dataset.
+/// An analysis with its dataset's channel names.
 pub(super) struct ChannelNames<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) inputs: Vec<String>,
@@ -62,17 +62,17 @@ impl<'a> ChannelNames<'a> {
         }
     }
 
-    /// Returns the names of a response, output first.
+    /// Returns a response's channel names, output first.
     pub(super) fn pair(&self, pair: Pair) -> (String, String) {
         self.analysis.study.dataset.channel_names(pair)
     }
 
-    /// Returns the names of responses, output first.
+    /// Returns the channel names for each response, output first.
     pub(super) fn pairs(&self, pairs: impl IntoIterator<Item = Pair>) -> Vec<(String, String)> {
         pairs.into_iter().map(|pair| self.pair(pair)).collect()
     }
 
-    /// Returns the entries of a response, preceded by the names of its output and its input.
+    /// Returns a response's entries, preceded by its output and its input.
     pub(super) fn response_entries(&self, pair: Pair, entries: Value) -> Value {
         let (output, input) = self.pair(pair);
         let mut members = Map::new();
@@ -97,7 +97,7 @@ impl<'a> ChannelNames<'a> {
         json!({"inputs": inputs, "outputs": outputs})
     }
 
-    /// Returns the regression coefficients of each channel.
+    /// Returns regression coefficients by channel.
     pub(super) fn coefficients(&self, regressions: &Channels<Regression>) -> Value {
         self.by_channel(|channel| regressions[channel].figures().to_vec())
     }
@@ -111,7 +111,7 @@ impl<'a> ChannelNames<'a> {
         self.by_channel(|channel| correction.pure_delay_s(channel))
     }
 
-    /// Returns the signed delay and the lead filter of each channel (M15); `None` unless the phase
+    /// Returns signed delay and lead filter by channel (M15); `None` unless the phase
     /// correction has leads.
     pub(super) fn leads(&self, correction: &ChannelCorrection) -> Option<Value> {
         let leads = correction.leads.as_ref()?;

@@ -13,13 +13,13 @@ use gdcm_study::Analysis;
 use super::condition_results::{ConditionResults, cell, condition_results};
 use crate::csv_text::write_records;
 
-/// A channel of a condition.
+/// A channel in a condition.
 struct ChannelRow<'a> {
     results: &'a ConditionResults<'a>,
     channel: Channel,
 }
 
-/// Name of a column, and its cell in a row.
+/// Column name, and its cell in a row.
 type ChannelColumn = (&'static str, fn(&ChannelRow<'_>) -> String);
 
 const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
@@ -149,7 +149,7 @@ impl ChannelRow<'_> {
         Some(leads.taus_s[self.channel])
     }
 
-    /// Returns the weights of each input and of each output in an input; empty without couplings.
+    /// Returns the weight with which each input and each output enters an input; empty without couplings.
     fn coupling_cells(&self) -> Vec<String> {
         let Some(fitted) = self.results.analysis.fitted_couplings() else {
             return Vec::new();
@@ -173,7 +173,7 @@ impl ChannelRow<'_> {
         }
     }
 
-    /// Returns the cost of the leads in the condition's own correction.
+    /// Returns the lead cost in the condition's own correction.
     fn price(&self) -> Option<LeadPrice> {
         LeadPrice::of(self.results.own()?.leads.as_ref()?)
     }

@@ -15,7 +15,7 @@ use super::couplings::condition_couplings;
 use super::solutions::{delay_solution, gain_solution};
 use super::uncertainty::{bars, net_gain_bar};
 
-/// Returns the results of a condition.
+/// Returns a condition's results.
 pub(super) fn condition_json(
     names: &ChannelNames<'_>,
     condition: &Condition,
@@ -115,7 +115,7 @@ fn cautions(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
     json!(cautions)
 }
 
-/// Returns the net gain of each response, with its interval if there is one.
+/// Returns net gains by response, with intervals if there are any.
 fn net_gains(names: &ChannelNames<'_>, id: ConditionId, result: &ConditionAnalysis) -> Value {
     let mut net_gains = Vec::new();
     for pair in result.held().pairs() {
@@ -129,7 +129,7 @@ fn net_gains(names: &ChannelNames<'_>, id: ConditionId, result: &ConditionAnalys
     Value::Array(net_gains)
 }
 
-/// Returns both parts of J for each response.
+/// Returns both parts of J by response.
 fn costs(table: &PairTable<Option<Cost>>) -> Value {
     json!({
         "mag": rows(table, |cost| cost.magnitude),
@@ -137,7 +137,7 @@ fn costs(table: &PairTable<Option<Cost>>) -> Value {
     })
 }
 
-/// Returns the sources of the models, as far as their dataset records them.
+/// Returns the model sources, as far as the dataset records them.
 fn sources(condition: &Condition) -> Value {
     let mut sources = Vec::new();
     for kind in BundleKind::BOTH {

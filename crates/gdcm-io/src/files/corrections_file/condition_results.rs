@@ -1,4 +1,4 @@
-//! Results of a condition as cells of comma-separated values (RFC 4180).
+//! A condition's results as comma-separated values (RFC 4180).
 
 use std::collections::BTreeSet;
 
@@ -9,17 +9,17 @@ use gdcm_study::{Analysis, ConditionAnalysis};
 
 use crate::files::export_contents::ExportContents;
 
-/// Results of a condition.
+/// Results for a condition.
 pub(super) struct ConditionResults<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) condition: &'a Condition,
     /// Correction by the schedule, if there is one.
     pub(super) scheduled: Option<ChannelCorrection>,
-    /// Parts of the correction in the file and omitted parts, in words.
+    /// Correction parts in the file and omitted parts, in words.
     pub(super) contains: String,
 }
 
-/// Returns the results of the chosen conditions, in the dataset's order.
+/// Returns the results for the chosen conditions, in the dataset's order.
 pub(super) fn condition_results<'a>(
     analysis: &'a Analysis,
     chosen: &BTreeSet<ConditionId>,
@@ -55,7 +55,7 @@ impl ConditionResults<'_> {
         self.result().map(|result| &result.correction)
     }
 
-    /// Returns the confidence interval of a quantity.
+    /// Returns a confidence interval.
     pub(super) fn bar(&self, scalar: Scalar) -> Option<&Bar> {
         self.analysis
             .uncertainty
@@ -63,7 +63,7 @@ impl ConditionResults<'_> {
             .bar(self.condition.id(), scalar)
     }
 
-    /// Returns the lower (0) or upper (1) end of the total interval: a factor for a gain, seconds for
+    /// Returns the lower (0) or upper (1) end in the total interval: a factor for a gain, seconds for
     /// a delay.
     pub(super) fn end(&self, scalar: Scalar, end: usize) -> String {
         let ends = match &self.analysis.uncertainty {
@@ -79,7 +79,7 @@ impl ConditionResults<'_> {
         }
     }
 
-    /// Returns the standard deviation from a component of the variance.
+    /// Returns the standard deviation from a variance component.
     pub(super) fn deviation(
         &self,
         scalar: Scalar,
@@ -93,7 +93,7 @@ impl ConditionResults<'_> {
 /// Formats a value at full precision; empty if it is missing or not finite.
 pub(super) fn cell(value: Option<f64>) -> String {
     match value {
-        // Debug writes an exponent, unlike Display, which would write hundreds of zeros.
+        // Debug writes an exponent, where Display would write hundreds of zeros.
         Some(value) if value.is_finite() => format!("{value:?}"),
         _ => String::new(),
     }

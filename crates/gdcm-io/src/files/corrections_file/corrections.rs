@@ -1,4 +1,4 @@
-//! The text of `corrections.json`: all results of an analysis, key by key.
+//! The text of `corrections.json`: all analysis results, key by key.
 
 use std::collections::BTreeSet;
 
@@ -16,8 +16,8 @@ use super::uncertainty::uncertainty;
 use super::{NAME, VERSION};
 use crate::files::export_contents::ExportContents;
 
-/// Returns all results of the chosen conditions, with the schedule of the whole study, as
-/// `corrections.json` contains them. The documentation of file formats describes each key.
+/// Returns all results for the chosen conditions, with the schedule for the whole study, as
+/// `corrections.json` contains them. The file format documentation describes each key.
 ///
 /// `sha256` is the hash of the dataset's file.
 pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<ConditionId>) -> Value {
@@ -48,7 +48,7 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
     }
     let schedule = analysis.schedule.as_ref().ok();
     let mut settings = analysis.study.settings.named(dataset);
-    // Readers of older programs look here for whether the schedule below has delays.
+    // Older readers look here for whether the schedule below has delays.
     settings.schedule.delays = schedule.is_some_and(|schedule| schedule.delays.is_some());
     let corrections = json!({
         "format": NAME,
@@ -70,7 +70,7 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
     without_empty(corrections, &["signs", "couplings", "uncertainty"])
 }
 
-/// Returns the changes in J of a condition's nominal model under the schedule.
+/// Returns how the schedule changes J for a condition's nominal model.
 fn assessment_json(condition: &Condition, changes: &PairTable<Option<CostChange>>) -> Value {
     json!({
         "id": condition.id().0,
@@ -81,7 +81,7 @@ fn assessment_json(condition: &Condition, changes: &PairTable<Option<CostChange>
     })
 }
 
-/// Returns names and units of channels, in the order of all lists and tables.
+/// Returns channel names and units, in the order that all lists and tables have.
 fn channels(channels: &[Channel]) -> Value {
     let mut list = Vec::with_capacity(channels.len());
     for channel in channels {

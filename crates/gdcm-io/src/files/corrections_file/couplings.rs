@@ -1,4 +1,4 @@
-//! The text of `corrections.json` about couplings of the physics models, and their value (M16).
+//! The text of `corrections.json` about couplings in the physics models, and their value (M16).
 
 use nalgebra::{DMatrix, Scalar};
 use serde_json::{Value, json};
@@ -9,7 +9,7 @@ use gdcm_study::{Analysis, ConditionAnalysis};
 
 use super::channel_names::{rows_of, without_empty};
 
-/// Returns mixing and feedback of the study, in the dataset's units; null without couplings.
+/// Returns the study's mixing and feedback, in the dataset's units; null without couplings.
 pub(super) fn couplings(analysis: &Analysis) -> Value {
     let fitted = match &analysis.couplings {
         None => return Value::Null,
@@ -76,7 +76,7 @@ fn coupling_cost(cost: CouplingCost) -> Value {
     })
 }
 
-/// Returns the mixing of a condition, with ones on its diagonal, and the effect of the couplings on
+/// Returns a condition's mixing, with ones on the diagonal, and how the couplings affect
 /// its physics representative; null without couplings.
 pub(super) fn condition_couplings(analysis: &Analysis, result: &ConditionAnalysis) -> Value {
     let Some(coupled) = &result.coupled else {

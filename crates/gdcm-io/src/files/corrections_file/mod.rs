@@ -30,7 +30,7 @@ pub use self::corrections::corrections;
 const NAME: &str = "gdcm-corrections";
 const VERSION: u64 = 1;
 
-/// Names of the result files; the last contains the checksums of the others.
+/// Result file names; the last file contains checksums for the others.
 pub const RESULT_FILES: [&str; 4] = [
     "corrections.json",
     "corrections.csv",
@@ -38,12 +38,12 @@ pub const RESULT_FILES: [&str; 4] = [
     "corrections.sha256",
 ];
 
-/// Returns the paths of the result files in a directory.
+/// Returns the result file paths in a directory.
 pub fn result_paths(directory: &Path) -> [PathBuf; 4] {
     RESULT_FILES.map(|name| directory.join(name))
 }
 
-/// Writes the results of the chosen conditions into a directory, created if missing: all files, or
+/// Writes the results for the chosen conditions into a directory, created if missing: all files, or
 /// none. The checksums come last and show whether the files belong together.
 ///
 /// `sha256` is the hash of the dataset's file.
@@ -66,7 +66,7 @@ pub fn write_results(
     outputs.persist()
 }
 
-/// Writes `corrections.json`: all results of the chosen conditions.
+/// Writes `corrections.json`: all results for the chosen conditions.
 pub(crate) fn write_corrections(
     analysis: &Analysis,
     sha256: &str,

@@ -11,13 +11,13 @@ use gdcm_study::Analysis;
 use super::condition_results::{ConditionResults, cell, condition_results};
 use crate::csv_text::write_records;
 
-/// A response of a condition.
+/// A response in a condition.
 struct ResponseRow<'a> {
     results: &'a ConditionResults<'a>,
     pair: Pair,
 }
 
-/// Name of a column, and its cell in a row.
+/// Column name, and its cell in a row.
 type ResponseColumn = (&'static str, fn(&ResponseRow<'_>) -> String);
 
 const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
@@ -152,9 +152,9 @@ const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
 ];
 
 /// Writes `assessment.csv`: G, D \[s\], net gains, and J of the nominal model before and under the
-/// scheduled correction, for every response of the chosen conditions. A missing value is an empty
+/// scheduled correction, for every response in the chosen conditions. A missing value is an empty
 /// cell; `left_out` gives the reason why a condition is not assessed, `D_band_s` is the band delay
-/// (M15.2). The columns `…_low` and `…_high` are the interval of the value with this name.
+/// (M15.2). The columns `…_low` and `…_high` are the confidence interval.
 pub(crate) fn response_table(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,

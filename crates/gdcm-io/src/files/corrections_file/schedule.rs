@@ -6,7 +6,7 @@ use gdcm_method::schedule::{Schedule, ScheduleCaution, ScheduleKind, ScheduledQu
 
 use super::channel_names::{ChannelNames, without_empty};
 
-/// Returns the gains and delays as functions of airspeed.
+/// Returns gains and delays over airspeed.
 pub(super) fn schedule_json(names: &ChannelNames<'_>, schedule: &Schedule) -> Value {
     let airspeeds = &schedule.airspeeds;
     let gains = names.coefficients(&schedule.gains);

@@ -1,4 +1,4 @@
-//! The text of `corrections.json` about the fits of gains and delays: objective, proof, unmatched
+//! The text of `corrections.json` about the gain fit and the delay fit: objective, proof, unmatched
 //! responses, and their explanation.
 
 use serde_json::{Value, json};
@@ -12,7 +12,7 @@ use gdcm_study::ConditionAnalysis;
 
 use super::channel_names::{ChannelNames, without_empty};
 
-/// Returns the fit of the gains.
+/// Returns the gain fit.
 pub(super) fn gain_solution(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
     let gains = &result.gains;
     let mut unmatched = Vec::new();
@@ -37,14 +37,14 @@ pub(super) fn gain_solution(names: &ChannelNames<'_>, result: &ConditionAnalysis
     })
 }
 
-/// Returns the fit of the delays.
+/// Returns the delay fit.
 pub(super) fn delay_solution(names: &ChannelNames<'_>, result: &ConditionAnalysis) -> Value {
     let delays = &result.delays;
     let band_top_rad_s = names.analysis.study.settings.band.max();
     let mut unmatched = Vec::new();
     for entry in &delays.unmatched {
         let mut why = entry.words(band_top_rad_s, &names.inputs, &names.outputs);
-        // The words of the entry already report a single response that needs lead.
+        // The entry's words already report a single response that needs lead.
         if !entry.why.is_lone_lead() {
             why = format!("{why} {}", entry.why.words(&names.inputs, &names.outputs));
         }
@@ -72,7 +72,7 @@ pub(super) fn delay_solution(names: &ChannelNames<'_>, result: &ConditionAnalysi
 }
 
 /// Explains why the gains, or the delays, are not matched, which changes would match them, and the
-/// cost of the constraints.
+/// constraint costs.
 fn explanation(names: &ChannelNames<'_>, problem: &Problem, solution: &Solution) -> Value {
     let mut conflicts = Vec::new();
     for conflict in &solution.conflicts {
@@ -101,7 +101,7 @@ fn explanation(names: &ChannelNames<'_>, problem: &Problem, solution: &Solution)
     without_empty(explanation, &["agreeing"])
 }
 
-/// Kind of a conflict with its numbers; factors for gains, seconds for delays.
+/// Conflict kind with its numbers: factors for gains, seconds for delays.
 #[derive(Default)]
 struct ConflictFigures {
     kind: &'static str,

@@ -43,7 +43,7 @@ fn bar_json(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) ->
     Value::Object(members)
 }
 
-/// Returns the ends of an interval in the units of the file: factors for gains, seconds for delays.
+/// Returns an interval in the file's units: factors for gains, seconds for delays.
 fn in_units(scalar: Scalar, ends: [f64; 2]) -> [f64; 2] {
     if scalar.is_delay() {
         ends
@@ -52,7 +52,7 @@ fn in_units(scalar: Scalar, ends: [f64; 2]) -> [f64; 2] {
     }
 }
 
-/// Returns the interval of a net gain.
+/// Returns a net gain's interval.
 pub(super) fn net_gain_bar(
     analysis: &Analysis,
     condition: ConditionId,
@@ -65,7 +65,7 @@ pub(super) fn net_gain_bar(
     Some(bar_json(scalar, bar, uncertainty.level, left_in_band))
 }
 
-/// Returns the intervals of the other quantities of a condition.
+/// Returns the other confidence intervals in a condition.
 pub(super) fn bars(names: &ChannelNames<'_>, condition: ConditionId) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let bars = ConditionBars {
@@ -88,7 +88,7 @@ pub(super) fn bars(names: &ChannelNames<'_>, condition: ConditionId) -> Option<V
     Some(without_empty(members, &["D_band_s"]))
 }
 
-/// Confidence intervals of a condition.
+/// Confidence intervals in a condition.
 struct ConditionBars<'a> {
     names: &'a ChannelNames<'a>,
     bars: &'a ScalarTable<Option<Bar>>,
@@ -114,7 +114,7 @@ impl ConditionBars<'_> {
     }
 }
 
-/// Returns the consequences of the intervals of all conditions, if they are available.
+/// Returns the consequences that follow from all intervals, if these are available.
 pub(super) fn uncertainty(names: &ChannelNames<'_>) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let level = uncertainty.level;
@@ -154,7 +154,7 @@ fn difference_json(difference: &AirspeedDifference, level: f64) -> Value {
     })
 }
 
-/// Returns the contributions to the scatter of a net gain, as standard deviations of the natural
+/// Returns the contributions to a net gain's scatter, as standard deviations of the natural
 /// logarithm.
 fn scatter_json(scatter: &PairScatter, level: f64) -> Value {
     let same_airspeed = scatter.same_airspeed.as_ref();
@@ -195,7 +195,7 @@ fn bands(names: &ChannelNames<'_>, uncertainty: &Uncertainty) -> Value {
     Value::Array(list)
 }
 
-/// Returns the band of a net gain at the distinct scheduled airspeeds; `None` if one is missing.
+/// Returns a net gain's band at the distinct scheduled airspeeds; `None` unless all have it.
 fn band_json(schedule: &Schedule, bands: &ScheduleBands, pair: Pair) -> Option<Value> {
     let airspeeds_kt = schedule.airspeeds.clusters_kt();
     let mut fit = Vec::new();
@@ -215,7 +215,7 @@ fn band_json(schedule: &Schedule, bands: &ScheduleBands, pair: Pair) -> Option<V
     }))
 }
 
-/// Returns whether the schedule of a net gain needs a second variable.
+/// Returns whether a scheduled net gain needs a second variable.
 fn second_variable_json(test: &SecondVariableTest) -> Value {
     let effect = test.effect.as_ref().ok();
     json!({

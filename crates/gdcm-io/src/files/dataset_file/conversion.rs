@@ -1,4 +1,4 @@
-//! Conversion between the text of a dataset file and datasets: drafts from texts, texts from checked
+//! Conversion between dataset files and datasets: drafts from texts, texts from checked
 //! datasets.
 
 use nalgebra::DMatrix;
@@ -20,10 +20,10 @@ use super::text::{
 use crate::file_error::{ContentError, ContentFault};
 use crate::json_text::{Limited, Nested};
 
-/// Draft of a dataset, with cautions about its text.
+/// Dataset draft, with cautions about its text.
 pub(super) struct CautionedDraft {
     pub(super) draft: DatasetDraft,
-    /// A caution for each key of a model without meaning at its place.
+    /// A caution for each model key without meaning at its place.
     pub(super) cautions: Vec<String>,
 }
 
@@ -61,7 +61,7 @@ impl DatasetText {
         Ok(CautionedDraft { draft, cautions })
     }
 
-    /// Creates the text of a dataset.
+    /// Writes a dataset as text.
     pub(super) fn from_dataset(dataset: &Dataset) -> Self {
         let mut on_axis = Vec::new();
         for pair in dataset.on_axis().marked() {
@@ -121,7 +121,7 @@ impl ChannelText {
 }
 
 impl ConditionText {
-    /// Converts the text of the condition at this position, from 1.
+    /// Converts the condition at this position, from 1.
     fn into_draft(
         self,
         position: usize,
@@ -176,7 +176,7 @@ impl ConditionText {
     }
 }
 
-/// Converts the models of a bundle, with a caution for each key without meaning there.
+/// Converts a bundle's models, with a caution for each key without meaning there.
 fn model_drafts(
     texts: Vec<ModelText>,
     kind: BundleKind,
@@ -202,7 +202,7 @@ fn model_drafts(
 }
 
 impl RecordText {
-    /// Converts the record at this position, from 1, of a condition at the place `condition`.
+    /// Converts the record at this position, from 1, in the condition at this place.
     pub(crate) fn into_record(
         self,
         condition: &Location,
@@ -240,7 +240,7 @@ impl RecordText {
         })
     }
 
-    /// Creates the text of a record.
+    /// Writes a record as text.
     pub(crate) fn from_record(record: &ConditionRecord) -> Self {
         let record = record.clone();
         Self {
@@ -260,7 +260,7 @@ impl RecordText {
 }
 
 impl ModelText {
-    /// Returns the keys of this text without meaning in a bundle of a dataset.
+    /// Returns the present keys without meaning in a dataset's bundle.
     fn misplaced_keys(&self, kind: BundleKind) -> Vec<&'static str> {
         let is_physics = kind == BundleKind::Physics;
         let mut misplaced = Vec::new();
@@ -288,7 +288,7 @@ impl ModelText {
         misplaced
     }
 
-    /// Returns the origin of a physics model.
+    /// Returns a physics model's origin.
     ///
     /// # Errors
     /// A missing role, and any role other than nominal and perturbed.
@@ -327,7 +327,7 @@ impl ModelText {
         }
     }
 
-    /// Converts to the draft of an identified model of a dataset or a study.
+    /// Converts to a draft of an identified model in a dataset or a study.
     pub(crate) fn into_identified(self) -> ModelDraft {
         let origin = self.identified_origin();
         self.into_draft(origin)
@@ -354,12 +354,12 @@ impl ModelText {
         }
     }
 
-    /// Creates the text of a model of a dataset.
+    /// Writes a dataset's model as text.
     pub(crate) fn of_model(model: &Model) -> Self {
         Self::from_draft(ModelDraft::of(model))
     }
 
-    /// Creates the text of a model.
+    /// Writes a model as text.
     pub(crate) fn from_draft(draft: ModelDraft) -> Self {
         let [a, b, c, d] = draft
             .matrices

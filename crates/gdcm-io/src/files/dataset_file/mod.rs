@@ -29,7 +29,7 @@ const EXAMPLE: &[u8] = include_bytes!("../../../../../assets/example-dataset.jso
 /// Name under which the example is written.
 const EXAMPLE_NAME: &str = "example-dataset.json";
 
-/// Origin of a dataset.
+/// Dataset origin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DatasetOrigin {
     File(PathBuf),
@@ -47,7 +47,7 @@ impl fmt::Display for DatasetOrigin {
 }
 
 impl DatasetOrigin {
-    /// Returns the file, if it comes from one.
+    /// Returns the file; `None` for the embedded example.
     pub fn file(&self) -> Option<PathBuf> {
         match self {
             DatasetOrigin::File(path) => Some(path.clone()),
@@ -64,11 +64,11 @@ impl DatasetOrigin {
     }
 }
 
-/// A dataset with the identification and the cautions of its file.
+/// A dataset with its file's hash and cautions.
 #[derive(Clone, Debug)]
 pub struct LoadedDataset {
     pub dataset: Arc<Dataset>,
-    /// SHA-256 of the stored bytes of the file, in lower-case hexadecimal.
+    /// SHA-256 of the file as stored, in lower-case hexadecimal.
     pub sha256: String,
     pub origin: DatasetOrigin,
     /// Unknown keys and other oddities, each with its place.
@@ -84,7 +84,7 @@ impl LoadedDataset {
         }
     }
 
-    /// Returns the name of the dataset's file, or its replacement.
+    /// Returns the dataset's file name, or its replacement.
     pub fn file_name(&self) -> String {
         match self.path().and_then(Path::file_name) {
             Some(name) => sanitized(&name.to_string_lossy()),
@@ -126,7 +126,7 @@ pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
         .collect())
 }
 
-/// Checks the structure of a dataset's text, as far as it goes.
+/// Checks the structure in a dataset's text, as far as the text goes.
 pub(crate) fn check_dataset_text(
     text: &[u8],
     path: &Path,

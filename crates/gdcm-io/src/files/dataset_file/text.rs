@@ -14,7 +14,7 @@ use gdcm_model::whole_number::{whole, whole_or_none};
 
 use crate::json_text::{Format, Limited, Nested, Numbers, list, list_while};
 
-/// Format and version of a dataset file.
+/// Format and version.
 pub(super) const FORMAT: Format = Format {
     name: "gdcm-dataset",
     version: 1,
@@ -57,7 +57,7 @@ fn conditions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Conditio
     )
 }
 
-/// Reads the coordinates of a perturbation, or null.
+/// Reads a perturbation's coordinates, or null.
 fn coordinates<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<BTreeMap<String, f64>>, D::Error> {
@@ -127,7 +127,7 @@ pub(crate) struct RecordText {
     pub(super) remedies: BTreeMap<String, ChannelRemedy>,
 }
 
-/// A model in a dataset, in a file of models (`gdcm-models`) or in a file of identified models
+/// A model in a dataset, in a model file (`gdcm-models`) or in a file with identified models
 /// (`gdcm-identified`).
 #[derive(Default, Deserialize, Serialize)]
 pub(crate) struct ModelText {
@@ -150,7 +150,7 @@ pub(crate) struct ModelText {
         skip_serializing_if = "Option::is_none"
     )]
     pub(crate) order: Option<usize>,
-    /// Flight condition of a model outside a dataset.
+    /// Flight condition, only outside a dataset.
     #[serde(
         default,
         deserialize_with = "whole_or_none",
@@ -163,7 +163,7 @@ pub(crate) struct ModelText {
     pub(crate) altitude_ft: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) mass_kg: Option<f64>,
-    /// Channel names of a model outside a dataset; empty texts if they are unknown.
+    /// Channel names, only outside a dataset; empty texts if they are unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) inputs: Option<Limited<LabelText, MOST_CHANNELS>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -172,7 +172,7 @@ pub(crate) struct ModelText {
     pub(crate) input_units: Option<Limited<String, MOST_CHANNELS>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) output_units: Option<Limited<String, MOST_CHANNELS>>,
-    /// Names of the states, for people.
+    /// State names, for people.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) states: Option<Limited<String, MOST_STATES>>,
     #[serde(rename = "A", skip_serializing_if = "Option::is_none")]
@@ -204,7 +204,7 @@ pub(crate) struct ModelText {
     pub(crate) recommended: Option<bool>,
 }
 
-/// A channel of a model outside a dataset: its name, or an object like a channel of a dataset.
+/// A channel outside a dataset: its name, or an object as in a dataset.
 #[derive(Clone, Deserialize, Serialize)]
 #[serde(untagged)]
 pub(crate) enum LabelText {
@@ -226,7 +226,7 @@ impl LabelText {
     }
 }
 
-/// Source file of a model.
+/// Source file.
 #[derive(Default, Deserialize, Serialize)]
 pub(crate) struct SourceText {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -239,7 +239,7 @@ pub(crate) struct SourceText {
     pub(super) made: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) note: Option<String>,
-    /// Flight records of the condition.
+    /// Flight records in the condition.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) records: Option<Limited<String, MOST_PIECES>>,
     /// Variables in the file that were not used.
@@ -250,7 +250,7 @@ pub(crate) struct SourceText {
     pub(super) by_position: Option<Limited<SideText, 2>>,
 }
 
-/// A side of a model.
+/// Inputs or outputs.
 #[derive(Clone, Copy, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum SideText {
@@ -258,7 +258,7 @@ pub(crate) enum SideText {
     Outputs,
 }
 
-/// Standard deviations of a model's response.
+/// Standard deviations for a model's response.
 #[derive(Deserialize, Serialize)]
 pub(crate) struct BandsText {
     #[serde(deserialize_with = "list::<MOST_FREQUENCIES, _, _>")]
@@ -276,7 +276,7 @@ pub(crate) struct ResponseText {
     pub(super) im: Nested<3>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) coherence: Option<Nested<3>>,
-    /// First and last trusted frequency of each response.
+    /// First and last trusted frequency, by response.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) valid_band_rad_s: Option<Nested<3>>,
     /// Count of independent averages in the estimate.

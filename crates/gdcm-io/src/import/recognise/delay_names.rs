@@ -1,4 +1,4 @@
-//! Names of delay fields: which signals they delay, and in which unit.
+//! Delay names: which signals a field delays, and in which unit.
 
 use gdcm_model::assembly::channel_match::folded_name;
 
@@ -20,19 +20,19 @@ pub(super) enum Delayed {
     Unclear,
 }
 
-/// Unit of a delay, from its name.
+/// Delay unit, from the name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DelayUnit {
     Seconds,
     Milliseconds,
     Samples,
-    /// No unit, in MATLAB's spelling: seconds, or samples of a discrete-time model.
+    /// No unit, in MATLAB's spelling: seconds, or samples in discrete time.
     Matlab,
     /// No unit.
     Unknown,
 }
 
-/// Meaning of a delay name.
+/// Signals and unit that a delay name implies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct DelayMeaning {
     pub(super) delayed: Delayed,
@@ -96,7 +96,7 @@ pub(super) fn delay_fields<'v>(fields: &[Field<'v>]) -> Vec<DelayField<'v>> {
     found
 }
 
-/// Returns the signals delayed by a part of the struct `Delay` in a MATLAB object.
+/// Returns the signals that a field delays in the struct `Delay` of a MATLAB object.
 fn delayed_in_matlab_object(part: &str) -> Delayed {
     match part {
         "Input" => Delayed::Inputs,
@@ -107,12 +107,12 @@ fn delayed_in_matlab_object(part: &str) -> Delayed {
     }
 }
 
-/// Whether a name is the name of a delay or resembles one.
+/// Whether a name is a delay name or resembles one.
 pub(super) fn is_delay(name: &str) -> bool {
     delay_meaning(name).is_some()
 }
 
-/// Returns the meaning of a name; `None` if it does not resemble the name of a delay.
+/// Returns the meaning of a name; `None` if it does not resemble a delay name.
 fn delay_meaning(name: &str) -> Option<DelayMeaning> {
     let (stem, unit) = split_unit(name);
     let folded = folded_name(stem);
@@ -159,7 +159,7 @@ fn split_unit(name: &str) -> (&str, DelayUnit) {
     (trimmed, DelayUnit::Unknown)
 }
 
-/// Whether a character separates the words of a name.
+/// Whether a character separates words in a name.
 fn is_mark(letter: char) -> bool {
     !letter.is_alphanumeric()
 }

@@ -1,4 +1,4 @@
-//! Sample time and delays of a model, in seconds.
+//! Sample time and delays, in seconds.
 
 use nalgebra::DMatrix;
 
@@ -17,13 +17,13 @@ const ROUNDING_S: f64 = 1e-9;
 /// Names for delays, suggested in questions.
 const WAYS: &str = "call it input_delays_s or output_delays_s (one number for each channel, in s), or otherwise if it is no delay";
 
-/// Timing of a model, with notes on the conventions applied.
+/// Model timing, with notes on the conventions applied.
 pub(super) struct NotedTiming {
     pub(super) timing: Timing,
     pub(super) notes: Vec<String>,
 }
 
-/// Reads sample time and delays of a model with this number of outputs and inputs.
+/// Reads sample time and delays; `outputs` and `inputs` are channel counts.
 ///
 /// # Errors
 /// A possible delay whose signals or unit are ambiguous: it becomes a question and is never
@@ -76,10 +76,10 @@ pub(super) fn refuse_delays(record: &Record<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// Delays of one model during reading.
+/// Delays during reading.
 struct DelayReading {
     sample_time_s: Option<f64>,
-    /// Whether the model is an object of MATLAB or GNU Octave, whose conventions are defined.
+    /// Whether the model is a MATLAB or GNU Octave object, whose conventions are defined.
     is_object: bool,
     outputs: usize,
     inputs: usize,
@@ -145,7 +145,7 @@ impl DelayReading {
         self.in_seconds(field, &delays)
     }
 
-    /// Splits a matrix of response delays (outputs x inputs) into input delays and output delays. The
+    /// Splits response delays (a matrix, outputs x inputs) into input delays and output delays. The
     /// output with the smallest delay gets zero.
     fn split_response_delays(&mut self, field: &DelayField<'_>) -> Result<SplitDelays, String> {
         let name = field.name;
@@ -183,7 +183,7 @@ impl DelayReading {
         Ok(SplitDelays { inputs, outputs })
     }
 
-    /// Returns the delays of all responses in the unit of the file, output index fastest; a single
+    /// Returns the delays of all responses in the file's unit, output index fastest; a single
     /// number applies to all responses.
     fn response_delay_values(&self, field: &DelayField<'_>) -> Result<Vec<f64>, String> {
         let p = self.outputs;
@@ -220,7 +220,7 @@ impl DelayReading {
         Ok(delays)
     }
 
-    /// Returns the delay unit of a field in seconds, and notes a convention if it decides.
+    /// Returns a field's delay unit in seconds, and notes a convention if it decides.
     fn seconds_per_unit(&mut self, field: &DelayField<'_>, delays: &[f64]) -> Result<f64, String> {
         let name = field.name;
         match (field.meaning.unit, self.sample_time_s) {

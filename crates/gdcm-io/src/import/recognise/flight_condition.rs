@@ -1,4 +1,4 @@
-//! Flight condition and origin of a model, from the fields beside it.
+//! Flight condition and model origin, from the fields beside a model.
 
 use std::collections::BTreeMap;
 
@@ -22,14 +22,14 @@ const CONDITION_STRUCTS: [&[&str]; 4] = [
     &["flight_state"],
     &["condition"],
 ];
-/// Struct of trim offsets, by coordinate.
+/// Struct with trim offsets, by coordinate.
 const OFFSETS: &[&str] = &["perturbation", "trim_offset", "trim_offsets"];
-/// Prefix of a single offset: `by_roll_deg`.
+/// Prefix for a single offset: `by_roll_deg`.
 const OFFSET_PREFIX: &str = "by_";
 /// Largest condition number that is still a number for a condition.
 const GREATEST_CONDITION: f64 = 1e9;
 
-/// Position of a model in an array of models; lists beside the array hold an entry for each model.
+/// Position in an array of models; lists beside the array hold an entry for each model.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Page {
     /// Counted from 0.
@@ -45,7 +45,7 @@ impl Page {
 /// Returns the flight condition given beside a model and in its enclosing records.
 ///
 /// # Errors
-/// A list with another length than the array of models, and a number that contradicts an enclosing
+/// A list that is not as long as the array of models, and a number that contradicts an enclosing
 /// record.
 pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String> {
     let condition = match fact(record, CONDITIONS, page)? {
@@ -62,7 +62,7 @@ pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String>
     })
 }
 
-/// Returns a number of the flight condition, given beside a model or in an enclosing record.
+/// Returns a number that describes the flight condition, beside a model or in an enclosing record.
 fn fact(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
     let mut known: Option<f64> = None;
     for (level, record) in record.with_outer().enumerate() {
@@ -146,7 +146,7 @@ fn figure_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, Str
     Ok(None)
 }
 
-/// Whether a field of a flight condition is read by [`facts_of`].
+/// Whether [`facts_of`] reads a field with this name.
 fn is_fact_name(name: &str) -> bool {
     name == "id"
         || [AIRSPEEDS, ALTITUDES, MASSES, CONDITIONS]
@@ -154,7 +154,7 @@ fn is_fact_name(name: &str) -> bool {
             .any(|names| names.contains(&name))
 }
 
-/// Returns the name beside a model. A single name beside several models applies to none of them.
+/// Returns the name beside a model. A single name beside several models is ignored.
 fn name_beside(record: &Record<'_>, page: Page) -> Option<String> {
     if record.is_shared {
         return None;
@@ -173,8 +173,8 @@ fn name_beside(record: &Record<'_>, page: Page) -> Option<String> {
     Some(name.clone())
 }
 
-/// Returns the origin of a model from its record and the enclosing records: role, trim offsets,
-/// method of identification. Without a role, models of MATLAB's `id…` classes are identified and
+/// Returns the origin from a model's record and the enclosing records: role, trim offsets,
+/// identification method. Without a role, objects with a MATLAB class `id…` are identified and
 /// all others are simulated.
 pub(super) fn origin_of(record: &Record<'_>) -> Origin {
     let role = match text_beside(record, "role") {
@@ -199,7 +199,7 @@ pub(super) fn origin_of(record: &Record<'_>) -> Origin {
     }
 }
 
-/// Returns the single text under `key`, from the innermost record that has one.
+/// Returns the single text under `key`, from the innermost record with a text.
 fn text_beside(record: &Record<'_>, key: &str) -> Option<String> {
     for record in record.with_outer() {
         let Some(field) = record.find(&[key]) else {

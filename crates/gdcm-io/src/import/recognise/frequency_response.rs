@@ -17,7 +17,7 @@ use super::values::{array_of, first_text_of, list_of};
 use crate::files::model_collection::bare_draft;
 use crate::formats::variables::Array;
 
-/// Names of complex responses; python-control uses `frdata` and, in earlier versions, `fresp`.
+/// Names for complex responses; python-control uses `frdata` and, in earlier versions, `fresp`.
 const RESPONSES: &[&str] = &[
     "ResponseData",
     "Response",
@@ -152,7 +152,7 @@ pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel
 /// Returns the coherence γ², if the record has it.
 ///
 /// # Errors
-/// A coherence of another size than the response; a field that may be γ or γ².
+/// A coherence that is not as large as the response; a field that may be γ or γ².
 fn coherence_of(
     record: &Record<'_>,
     stored: &StoredResponse<'_>,
@@ -179,7 +179,7 @@ fn coherence_of(
     }
 }
 
-/// Frequencies of a response.
+/// Response frequencies.
 struct Frequencies {
     /// In rad/s.
     omega: Vec<f64>,
@@ -196,7 +196,7 @@ impl Frequencies {
         let unit = PhysicalUnit::of(&unit_text);
         let multiple_of_hertz = unit.filter(|unit| unit.dimension == Dimension::Frequency);
         let angular_rate = unit.filter(|unit| unit.name.starts_with("rad/"));
-        // Objects of MATLAB and python-control use rad/s by default.
+        // MATLAB and python-control use rad/s by default.
         let has_default = record.class.is_some() || record.get(&["frdata", "fresp"]).is_some();
         let (field, is_hertz) = if let Some(field) = record.find(RADIANS) {
             (field, multiple_of_hertz.is_some())
@@ -239,7 +239,7 @@ impl Frequencies {
     }
 }
 
-/// Order of the numbers in a stored response.
+/// Number order in a stored response.
 struct ResponseLayout {
     outputs: usize,
     inputs: usize,
@@ -251,7 +251,7 @@ struct ResponseLayout {
 }
 
 impl ResponseLayout {
-    /// Finds the layout of an array with `count` frequencies along its last index as in MATLAB, or
+    /// Finds the layout for `count` frequencies along the last index as in MATLAB, or
     /// along its first as in NumPy. A single response may be a row or a column.
     fn new(shape: &[usize], count: usize) -> Result<Self, String> {
         match *shape {

@@ -1,4 +1,4 @@
-//! Names and units of channels and states that accompany a model.
+//! Channel and state names, and channel units, that accompany a model.
 
 use gdcm_model::assembly::ChannelLabel;
 use gdcm_model::assembly::channel_match::direction_of;
@@ -41,21 +41,21 @@ const STATE_NAMES: &[&str] = &[
     "x_names",
     "xnames",
 ];
-/// Fields of a channel object that hold its name.
+/// Fields with the name in a channel object.
 const LABEL_NAMES: &[&str] = &["name", "label", "id", "channel"];
 const LABEL_UNITS: &[&str] = &["unit", "units"];
 
-/// Returns the labels of a model with `count` inputs.
+/// Returns the labels for `count` inputs.
 pub(super) fn inputs_of(record: &Record<'_>, count: usize) -> Result<Vec<ChannelLabel>, String> {
     labels(record, ChannelSide::Input, count)
 }
 
-/// Returns the labels of a model with `count` outputs.
+/// Returns the labels for `count` outputs.
 pub(super) fn outputs_of(record: &Record<'_>, count: usize) -> Result<Vec<ChannelLabel>, String> {
     labels(record, ChannelSide::Output, count)
 }
 
-/// Returns the state names; none unless every one of the `order` states has a name.
+/// Returns the state names; none unless each of the `order` states has a name.
 pub(super) fn states_of(record: &Record<'_>, order: usize) -> Vec<String> {
     let names = record
         .get(STATE_NAMES)
@@ -68,7 +68,7 @@ pub(super) fn states_of(record: &Record<'_>, order: usize) -> Vec<String> {
     }
 }
 
-/// Returns the labels of the `count` channels on one side: those beside the model, or those of an
+/// Returns the labels for `count` channels on one side: those beside the model, or those of an
 /// enclosing record with the same count.
 ///
 /// # Errors
@@ -91,7 +91,7 @@ fn labels(
     Ok(labels)
 }
 
-/// Returns the list of names or units under the first of `keys`, searching the record and then its
+/// Returns the names or units under the first existing key, searching the record and then its
 /// enclosing records; missing entries are empty texts.
 fn list_of_labels(
     record: &Record<'_>,
@@ -129,7 +129,7 @@ fn list_of_labels(
     Ok(None)
 }
 
-/// Returns the labels in a value as texts: a list of texts, or of objects with a name and a unit as
+/// Returns the labels in a value as texts: a list with texts, or with objects that have a name and a unit as
 /// in a dataset file; `None` for numbers.
 fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String> {
     if let Some(texts) = texts_of(value) {

@@ -1,8 +1,8 @@
-//! From variables to models: contents of a file in any format.
+//! From variables to models, whatever the file format.
 //!
 //! Fields that belong together are a model if they have the customary names: `A`, `B`, `C`, `D`; a
 //! response over frequencies; numerators and denominators; zeros, poles and gains. They belong
-//! together as a struct, as a MATLAB object, or as the variables of a file. Structs and objects may
+//! together as a struct, as a MATLAB object, or as the variables in a file. Structs and objects may
 //! be inside structs, cells and arrays.
 
 mod delay_names;

@@ -1,4 +1,4 @@
-//! Named fields that belong together: a struct, an object, or the variables of a file.
+//! Named fields that belong together: a struct, an object, or the variables in a file.
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeSet, HashMap};
@@ -10,12 +10,12 @@ use super::delay_names::{DelayField, delay_fields};
 use super::values::Field;
 use crate::formats::variables::{StructArray, Value, Variable};
 
-/// Inner parts in which objects of MATLAB and GNU Octave store fields that other files store
+/// Inner parts in which MATLAB and GNU Octave objects store fields that other files store
 /// directly.
 const INNER_PARTS: [&str; 4] = ["data", "structure", "lti", RESPONSE_PART];
-/// Field of this program's models that holds the measured response.
+/// Field with the measured response in this program's models.
 const RESPONSE_PART: &str = "frequencyresponse";
-/// Deepest nesting of inner parts.
+/// Deepest nesting among inner parts.
 const DEEPEST_PART: usize = 3;
 
 /// First field under each name. Built on the first query: a record may have as many fields as its
@@ -38,27 +38,27 @@ impl<'v> FieldIndex<'v> {
     }
 }
 
-/// Fields that belong together, and which of them were used.
+/// Fields that belong together, and the used ones among them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Record<'v> {
     fields: Vec<Field<'v>>,
     index: OnceCell<FieldIndex<'v>>,
     used: RefCell<BTreeSet<&'v str>>,
-    /// Unused fields of the structs among the used fields.
+    /// Unused fields in structs that are used fields.
     unused_inside: RefCell<Vec<String>>,
     delays: OnceCell<Vec<DelayField<'v>>>,
     /// The enclosing record; its labels and flight condition apply to every model inside.
     outer: Option<Rc<Record<'v>>>,
     /// Whether the fields belong to several models.
     pub(super) is_shared: bool,
-    /// Class name of an object.
+    /// Object class.
     pub(crate) class: Option<&'v str>,
-    /// Whether the record is a struct or an object, not the variables of a file.
+    /// Whether the record is a struct or an object, not the variables in a file.
     pub(crate) stands_alone: bool,
 }
 
 impl<'v> Record<'v> {
-    /// Creates a record from the variables of a file.
+    /// Creates a record from the variables in a file.
     pub(crate) fn from_variables(variables: &'v [Variable]) -> Self {
         Self::from_fields(variables.iter().map(|variable| Field {
             name: &variable.name,
@@ -74,7 +74,7 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Creates a record from element `index` of a struct array, with the inner parts of an object:
+    /// Creates a record from element `index` in a struct array, with the inner parts of an object:
     /// MATLAB objects keep their numbers in `Data_`. If an inner part is an array, its element
     /// `page` is read.
     pub(crate) fn from_struct(
@@ -114,7 +114,7 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Counts the models in element `index` of an object array, whose `Data_` has an element for
+    /// Counts the models in element `index` of an object array, where `Data_` has an element for
     /// each model.
     pub(crate) fn page_count(records: &StructArray, index: usize) -> usize {
         let data = fields_of(records, index)
@@ -126,7 +126,7 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Returns the first existing field with one of these names and marks it as used: exact names
+    /// Returns the first existing field under these names and marks it as used: exact names
     /// first, then names without case and underscores.
     pub(crate) fn get(&self, names: &[&str]) -> Option<&'v Value> {
         Some(self.take(self.find(names)?))
@@ -172,7 +172,7 @@ impl<'v> Record<'v> {
         self.used.borrow().contains(name)
     }
 
-    /// Notes an unused field of a struct in this record, by its path: "trim.theta_deg".
+    /// Notes an unused field inside a struct in this record, by its path: "trim.theta_deg".
     pub(super) fn note_unused_inside(&self, path: String) {
         let mut unused = self.unused_inside.borrow_mut();
         if !unused.contains(&path) {
@@ -180,7 +180,7 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Returns the names of the unused fields; none for objects, which store much internal data.
+    /// Returns the unused field names; none for objects, which store much internal data.
     pub(super) fn unused(&self) -> Vec<String> {
         if self.class.is_some() {
             return Vec::new();
@@ -215,7 +215,7 @@ impl<'v> Record<'v> {
     }
 }
 
-/// Returns the fields of element `index` of a struct array.
+/// Returns the fields in element `index` of a struct array.
 fn fields_of(records: &StructArray, index: usize) -> Vec<Field<'_>> {
     let mut fields = Vec::with_capacity(records.fields.len());
     for (name, values) in &records.fields {
@@ -226,7 +226,7 @@ fn fields_of(records: &StructArray, index: usize) -> Vec<Field<'_>> {
     fields
 }
 
-/// Appends the fields of an object's inner parts, recursively; outer fields come first.
+/// Appends the fields in an object's inner parts, recursively; outer fields come first.
 fn add_inner(fields: &mut Vec<Field<'_>>, page: usize, levels: usize) {
     if levels == 0 {
         return;

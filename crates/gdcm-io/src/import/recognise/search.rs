@@ -1,4 +1,4 @@
-//! Search through structs, objects, cells and arrays for fields of a sought kind.
+//! Search for models or records through structs, objects, cells and arrays.
 
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -13,7 +13,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 /// Largest number of variables listed if nothing is found.
 const MOST_LISTED: usize = 20;
 
-/// Results of a search among variables: models or records.
+/// Models or records found among variables.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Found<T> {
     /// The models or records; their sources give only the variable.
@@ -22,7 +22,7 @@ pub(crate) struct Found<T> {
     pub(crate) faults: Vec<String>,
     /// Descriptions of contents that are not candidates.
     pub(crate) ignored: Vec<String>,
-    /// Names of unused variables beside and inside the results.
+    /// Unused variables beside and inside the results.
     pub(crate) unused: Vec<String>,
 }
 
@@ -54,7 +54,7 @@ impl<T> Found<T> {
     }
 }
 
-/// Recognises the fields of a record, given the name of the variable; `None` if they are not of the
+/// Recognises a record's fields, given the variable name; `None` if they are not of the
 /// sought kind.
 pub(super) type Recognise<'r, T> = &'r dyn Fn(&Record<'_>, &str) -> Option<Vec<Result<T, String>>>;
 
@@ -93,7 +93,7 @@ pub(crate) fn search<T>(
     Ok(found)
 }
 
-/// Returns the unused fields of a record that hold no result themselves; `empty` are the fields
+/// Returns a record's unused fields that hold no result themselves; `empty` are the fields
 /// without results. Paths into structs are unused in any case.
 fn unused_among(record: &Record<'_>, empty: &BTreeSet<&str>) -> Vec<String> {
     let mut unused = record.unused();
@@ -108,14 +108,14 @@ struct Search<'r, T> {
 }
 
 impl<T> Search<'_, T> {
-    /// Adds the results from the fields of a record; returns whether the fields are recognised.
+    /// Adds the results from a record's fields; returns whether the fields are recognised.
     fn try_record(&mut self, record: &Record<'_>, variable: &str) -> Result<bool, VariableFault> {
         self.budget
             .work(STEPS * record.fields().count() as u64, variable)?;
         let Some(items) = (self.recognise)(record, variable) else {
             return Ok(false);
         };
-        // Each result holds a copy of its numbers.
+        // Each result copies its numbers.
         for field in record.fields() {
             if let Value::Array(array) = field.value {
                 self.budget.take(array.len() as u64, 16, variable)?;
@@ -162,7 +162,7 @@ impl<T> Search<'_, T> {
         }
     }
 
-    /// Searches each element of a struct array or an object array.
+    /// Searches each element in a struct array or an object array.
     fn descend_records<'v>(
         &mut self,
         name: &str,
@@ -203,7 +203,7 @@ impl<T> Search<'_, T> {
         Ok(is_any_found)
     }
 
-    /// Tries element `index` of a struct array itself, or each of its models if it is an array of
+    /// Tries element `index` in a struct array itself, or each of its models if it is an array of
     /// models; returns whether any is recognised.
     fn try_pages<'v>(
         &mut self,
@@ -230,7 +230,7 @@ impl<T> Search<'_, T> {
         Ok(is_any_known)
     }
 
-    /// Notes the unused fields of a variable, as paths.
+    /// Notes a variable's unused fields, as paths.
     fn note_unused(&mut self, variable: &str, names: &[String]) -> Result<(), VariableFault> {
         for name in names {
             let path = if variable.is_empty() {

@@ -17,7 +17,7 @@ use super::values::{PagedShape, array_of, matrix_of, page_of};
 use crate::files::model_collection::bare_draft;
 use crate::formats::variables::{Array, Value};
 
-/// Name of a system matrix: a capital letter, or in structs and objects also a small letter.
+/// Matrix name: a capital letter, or in structs and objects also a small letter.
 #[derive(Clone, Copy)]
 struct MatrixName {
     large: &'static str,
@@ -105,7 +105,7 @@ fn shapes_fit(a: &Array, b: &Array, c: &Array, pages_first: bool) -> bool {
     a.rows == a.columns && b.rows == a.rows && c.columns == a.rows && counts_fit
 }
 
-/// Returns a matrix of one model of an array; a single matrix is shared by all models.
+/// Returns a matrix for one model in an array; a single matrix is shared by all models.
 fn matrix_in_page(
     name: &str,
     value: &Value,
@@ -125,10 +125,10 @@ fn matrix_in_page(
     }
 }
 
-/// Reads a matrix from the value of a field, given its name for errors.
+/// Reads a matrix from a value; the name is for errors.
 type ReadMatrix<'f> = &'f dyn Fn(&str, &Value) -> Result<DMatrix<f64>, String>;
 
-/// Reads a matrix of `record`, if there is one.
+/// Reads a matrix in `record`, if it exists.
 fn optional_matrix(
     record: &Record<'_>,
     name: MatrixName,
@@ -151,7 +151,7 @@ fn required_matrix(
     }
 }
 
-/// Reads one model. D may be missing, or a single zero for a zero matrix; E is solved for.
+/// Reads a model. D may be missing, or a single zero for a zero matrix; E is inverted.
 fn state_space(
     record: &Record<'_>,
     variable: &str,
@@ -210,7 +210,7 @@ pub(super) fn build_model(
     })
 }
 
-/// Returns the provenance of a model in this variable; empty if it is the whole file.
+/// Returns the provenance for a variable, which is empty if the model is the whole file.
 pub(super) fn source_of(variable: &str) -> Provenance {
     let variable = if variable.is_empty() {
         None
@@ -223,7 +223,7 @@ pub(super) fn source_of(variable: &str) -> Provenance {
     }
 }
 
-/// Refuses a count above the largest number of states, before matrices of this size are allocated.
+/// Refuses a count above the largest state count, before matrices this large are allocated.
 pub(super) fn at_most(count: usize, counted: &str, place: &str) -> Result<(), String> {
     if count > MOST_STATES {
         return Err(format!(
@@ -267,7 +267,7 @@ fn check_shape(
     ))
 }
 
-/// Condition number of E above which `E^-1` has lost most digits.
+/// Condition number above which `E^-1` has lost most digits.
 const WORST_CONDITION: f64 = 1e12;
 
 /// Computes `E^-1 A` and `E^-1 B` of the descriptor model `E x' = A x + B u` (M2a).

@@ -18,12 +18,12 @@ const MATRICES: [&str; 5] = ["A", "B", "C", "D", "E"];
 /// Models in matrices with suffixes.
 pub(super) struct SuffixedModels {
     pub(super) found: Found<FoundModel>,
-    /// Names of the variables that these models use.
+    /// Variables that these models use.
     pub(super) used: BTreeSet<String>,
 }
 
-/// Finds the models in matrices with suffixes. Other variables, such as labels, apply to all of
-/// them; delays may have the suffix of one model.
+/// Finds the models in matrices with suffixes. Other variables, such as labels, apply to all
+/// models; delays may have a model's suffix.
 pub(super) fn suffixed_models(
     variables: &[Variable],
     read: Recognise<'_, FoundModel>,
@@ -55,7 +55,7 @@ pub(super) fn suffixed_models(
             if delays.contains(name) {
                 match name.strip_suffix(suffix) {
                     Some(stem) if is_delay(stem) => name = stem,
-                    // The delay of another model.
+                    // Belongs to another model.
                     _ => continue,
                 }
             }
@@ -103,7 +103,7 @@ fn matrices_with_suffix<'v>(by_name: &HashMap<&str, &'v Value>, suffix: &str) ->
     fields
 }
 
-/// Returns the names of delays with the suffix of a model: `InputDelay_nom` beside `A_nom`.
+/// Returns the delay names with a model's suffix: `InputDelay_nom` beside `A_nom`.
 fn delays_with_suffix<'v>(
     variables: &'v [Variable],
     suffixes: &BTreeSet<&str>,
@@ -115,7 +115,7 @@ fn delays_with_suffix<'v>(
         .collect()
 }
 
-/// Whether a name is the name of a delay followed by one of the suffixes.
+/// Whether a name is a delay name followed by a suffix.
 fn has_delay_stem(name: &str, suffixes: &BTreeSet<&str>) -> bool {
     name.char_indices().any(|(at, _)| {
         let (stem, end) = name.split_at(at);

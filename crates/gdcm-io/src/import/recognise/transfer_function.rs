@@ -32,7 +32,7 @@ impl<'v> Polynomials<'v> {
         })
     }
 
-    /// Returns the fractions; a single denominator may apply to all of them.
+    /// Returns the fractions; a single denominator may apply to all.
     fn fractions(&self) -> Result<FractionTable, String> {
         let numerators = CellTable::new(self.numerators);
         let denominators = CellTable::new(self.denominators).cells;
@@ -116,7 +116,7 @@ impl Fraction {
     /// Creates the fraction without leading zeros and with a monic denominator.
     ///
     /// # Errors
-    /// A zero denominator, a numerator of higher degree than the denominator, and too many poles.
+    /// A zero denominator, a numerator with a higher degree than the denominator, and too many poles.
     fn new(numerator: &[f64], denominator: &[f64], place: &str) -> Result<Self, String> {
         at_most(denominator.len().saturating_sub(1), "states", place)?;
         let numerator = without_leading_zeros(numerator);
@@ -154,14 +154,14 @@ fn without_leading_zeros(polynomial: &[f64]) -> &[f64] {
     }
 }
 
-/// Transfer functions of a model, output index fastest.
+/// Transfer functions, output index fastest.
 struct FractionTable {
     fractions: Vec<Fraction>,
     outputs: usize,
     inputs: usize,
 }
 
-/// Cells of a cell array, row index fastest; a single value counts as a 1 x 1 cell array.
+/// Cells, row index fastest; a single value counts as a 1 x 1 cell array.
 struct CellTable<'v> {
     cells: Vec<&'v Value>,
     rows: usize,
@@ -207,7 +207,7 @@ pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<F
     let mut b = DMatrix::zeros(order, inputs);
     let mut c = DMatrix::zeros(outputs, order);
     let mut d = DMatrix::zeros(outputs, inputs);
-    // Index of the first state of a response.
+    // First state of a response.
     let mut start = 0;
     for (index, fraction) in fractions.iter().enumerate() {
         let output = index % outputs;

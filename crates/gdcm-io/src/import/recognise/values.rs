@@ -1,4 +1,4 @@
-//! Conversion of values in files to numbers, matrices and texts.
+//! Conversion of file values to numbers, matrices and texts.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -6,7 +6,7 @@ use gdcm_model::units::number;
 
 use crate::formats::variables::{Array, Value};
 
-/// A value under a name: a variable of a file, or a field of a struct.
+/// A value under a name: a variable in a file, or a field in a struct.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field<'v> {
     pub(crate) name: &'v str,
@@ -14,7 +14,7 @@ pub(crate) struct Field<'v> {
 }
 
 /// Returns the numbers in a value. Objects and structs count if they hold a single array: the
-/// parameters of identified models in MATLAB (`Value`), the polynomials of GNU Octave (`poly`).
+/// parameters in MATLAB's identified models (`Value`), GNU Octave's polynomials (`poly`).
 pub(super) fn array_of(value: &Value) -> Option<&Array> {
     match value {
         Value::Array(array) => Some(array),
@@ -31,7 +31,7 @@ pub(super) fn array_of(value: &Value) -> Option<&Array> {
     }
 }
 
-/// Converts a value to a real matrix of finite numbers.
+/// Converts a value to a real, finite matrix.
 pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, String> {
     let Some(array) = array_of(value) else {
         return Err(format!(
@@ -48,7 +48,7 @@ pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, Strin
     page_of(name, array, 0, false)
 }
 
-/// Shape of an array that holds matrices of equal size, called pages.
+/// Shape of an array that holds equally large matrices, called pages.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PagedShape {
     pub(super) pages: usize,
@@ -57,7 +57,7 @@ pub(super) struct PagedShape {
 }
 
 impl PagedShape {
-    /// Reads the shape of an array; with `pages_first` the first of three indices counts the
+    /// Reads an array's shape; with `pages_first` the first of three indices counts the
     /// matrices, otherwise the indices after the second.
     pub(super) fn new(array: &Array, pages_first: bool) -> Self {
         let shape = &array.shape;
@@ -134,7 +134,7 @@ pub(super) fn scalar_of(value: &Value) -> Option<f64> {
     }
 }
 
-/// Converts a row or a column to a list of finite numbers; the imaginary part is ignored.
+/// Converts a row or a column to finite numbers; the imaginary part is ignored.
 pub(super) fn list_of(name: &str, value: &Value) -> Result<Vec<f64>, String> {
     let Some(array) = array_of(value) else {
         return Err(format!("{name}: expected numbers, found {}", value.words()));
@@ -149,7 +149,7 @@ pub(super) fn list_of(name: &str, value: &Value) -> Result<Vec<f64>, String> {
     }
 }
 
-/// Converts a row or a column to a list of finite complex numbers.
+/// Converts a row or a column to finite complex numbers.
 pub(super) fn complex_list_of(name: &str, value: &Value) -> Result<Vec<Complex<f64>>, String> {
     let re = list_of(name, value)?;
     let im = match array_of(value) {

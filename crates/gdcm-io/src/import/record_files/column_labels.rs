@@ -1,4 +1,4 @@
-//! Names, units and side of the columns of one field, from the fields beside it.
+//! Column names, units and side for a field, from the fields beside it.
 
 use gdcm_model::assembly::channel_match::folded_name;
 use gdcm_model::dataset::channel::ChannelSide;
@@ -9,7 +9,7 @@ use crate::import::recognise::labels::label_of;
 use crate::import::recognise::record::Record;
 use crate::import::recognise::values::texts_of;
 
-/// Plain names of matrices with the inputs.
+/// Plain names for matrices with the inputs.
 const INPUTS: [&str; 9] = [
     "u",
     "in",
@@ -21,7 +21,7 @@ const INPUTS: [&str; 9] = [
     "controls",
     "uin",
 ];
-/// Plain names of matrices with the outputs.
+/// Plain names for matrices with the outputs.
 const OUTPUTS: [&str; 9] = [
     "y",
     "out",
@@ -51,7 +51,7 @@ const OUTPUT_NAMES: [&str; 6] = [
 ];
 const INPUT_UNITS: [&str; 4] = ["inputunit", "inputunits", "inunit", "uunits"];
 const OUTPUT_UNITS: [&str; 4] = ["outputunit", "outputunits", "outunit", "yunits"];
-/// Fields with the column names of the only matrix in a record.
+/// Fields with column names, for the only matrix in a record.
 const NAMES: [&str; 10] = [
     "names",
     "channels",
@@ -64,10 +64,10 @@ const NAMES: [&str; 10] = [
     "colheaders",
     "varlab",
 ];
-/// Fields with the column units of the only matrix in a record.
+/// Fields with column units, for the only matrix in a record.
 const UNITS: [&str; 3] = ["units", "columnunits", "channelunits"];
 
-/// Names, units and side of the columns of one field.
+/// Column names, units and side for a field.
 pub(super) struct ColumnLabels {
     names: Option<Vec<String>>,
     units: Option<Vec<String>>,
@@ -75,8 +75,8 @@ pub(super) struct ColumnLabels {
 }
 
 impl ColumnLabels {
-    /// Finds the labels of a field with `count` columns: those named after the field (`u_names`),
-    /// then those of its side, then those of the whole record. Lists of another length are ignored.
+    /// Finds the labels for a field with `count` columns: those named after the field (`u_names`),
+    /// then those for its side, then those for the whole record. Lists with another length are ignored.
     pub(super) fn find(record: &Record<'_>, field: &str, count: usize) -> Self {
         let name = folded_name(field);
         // A single column called u may be a speed.
@@ -121,7 +121,7 @@ impl ColumnLabels {
         self.names.is_some()
     }
 
-    /// Returns the labelled columns of the field.
+    /// Returns the labelled columns.
     pub(super) fn label(self, field: &str, values: Vec<Vec<f64>>) -> Vec<RecordColumn> {
         let mut columns = named_columns(field, values);
         for (index, column) in columns.iter_mut().enumerate() {
@@ -143,7 +143,7 @@ impl ColumnLabels {
     }
 }
 
-/// Returns the texts in the first field with one of these folded names, if there are `count`.
+/// Returns the texts in the first field under these folded names, if there are `count`.
 fn list_beside<K: AsRef<str>>(
     record: &Record<'_>,
     keys: &[K],

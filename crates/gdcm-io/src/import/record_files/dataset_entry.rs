@@ -1,4 +1,4 @@
-//! Entries of records in a dataset file.
+//! Record entries in a dataset file.
 
 use std::path::{Path, PathBuf};
 
@@ -28,8 +28,8 @@ pub fn relative_entry(
     entry
 }
 
-/// Finds the path of a record's file: a requested file with this name, or the file in a requested
-/// folder. For topics joined from several files, which have no file, it is the folder of the first
+/// Finds the path to a record's file: a requested file with this name, or the file in a requested
+/// folder. For topics joined from several files, which have no file, it is the folder around the first
 /// requested file.
 fn place_of_record(file: &str, requested: &[PathBuf]) -> Option<PathBuf> {
     for path in requested {

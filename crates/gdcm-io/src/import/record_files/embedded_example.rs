@@ -1,4 +1,4 @@
-//! Records of the embedded example.
+//! Records in the embedded example.
 
 use gdcm_model::assembly::rules::standard_patterns;
 use gdcm_sysid::records::RecordTable;
@@ -8,15 +8,15 @@ use super::records_of_bytes;
 use crate::file_error::FileError;
 use crate::reading_budget::ReadingBudget;
 
-/// Records of conditions 3 and 10: simulated sweeps and a validation record, a CSV file each.
+/// Simulated sweeps and a validation record for each of conditions 3 and 10, as CSV files.
 const ARCHIVE: &[u8] = include_bytes!("../../../../../assets/example-records-3-and-10.zip");
-/// Name of the archive in errors.
+/// Archive name in errors.
 const NAME: &str = "(embedded example records).zip";
 
-/// Conditions of the example with embedded records.
+/// Example conditions with embedded records.
 pub const EXAMPLE_RECORD_CONDITIONS: [i64; 2] = [3, 10];
 
-/// Returns the records of a condition of the example; none unless the condition is among
+/// Returns the records of an example condition; none unless the condition is among
 /// [`EXAMPLE_RECORD_CONDITIONS`].
 pub fn example_records(condition: i64) -> Result<Vec<RecordTable>, FileError> {
     if !EXAMPLE_RECORD_CONDITIONS.contains(&condition) {

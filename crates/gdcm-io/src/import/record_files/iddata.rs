@@ -1,4 +1,4 @@
-//! Data of the identification tools of MATLAB and GNU Octave.
+//! Data from the identification tools in MATLAB and GNU Octave.
 //!
 //! An `iddata` object has, under these names or with a trailing underscore, `OutputData` and
 //! `InputData` (a matrix, or a cell for each experiment), `Ts` or `SamplingInstants`, and names and
@@ -14,13 +14,13 @@ use crate::formats::variables::Value;
 use crate::import::recognise::record::Record;
 use crate::import::recognise::values::{first_text_of, texts_of};
 
-/// Field names of one side, in MATLAB and in GNU Octave.
+/// Field names for one side, in MATLAB and in GNU Octave.
 struct SideFields {
     side: ChannelSide,
     data: [&'static str; 2],
     names: [&'static str; 2],
     units: [&'static str; 2],
-    /// Letter for the names of unnamed columns.
+    /// Letter in names for unnamed columns.
     letter: char,
 }
 
@@ -108,7 +108,7 @@ fn experiment(
     })
 }
 
-/// Returns the columns on one side of experiment `index`.
+/// Returns the columns on one side, for experiment `index`.
 fn side_columns(
     record: &Record<'_>,
     fields: &SideFields,
@@ -150,7 +150,7 @@ fn nonempty_text(texts: &[String], at: usize) -> Option<String> {
     }
 }
 
-/// Returns the values of the experiments: a cell for each, or a single value.
+/// Returns a value for each experiment: its cell, or the only value.
 fn parts_of(value: &Value) -> Vec<&Value> {
     match value {
         Value::Cell(cell) => cell.values.iter().collect(),
@@ -158,7 +158,7 @@ fn parts_of(value: &Value) -> Vec<&Value> {
     }
 }
 
-/// Returns the value of experiment `index`; a single value applies to all experiments.
+/// Returns the value for experiment `index`; a single value applies to all experiments.
 fn part_of<'v>(record: &Record<'v>, names: &[&str], index: usize) -> Option<&'v Value> {
     match record.get(names)? {
         Value::Cell(cell) => cell.values.get(index),

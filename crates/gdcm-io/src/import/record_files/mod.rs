@@ -1,10 +1,10 @@
-//! Flight records in files of any format: text tables, MATLAB, NumPy, JSON, and archives of them.
+//! Flight records in files: text tables, MATLAB, NumPy, JSON, and archives of these.
 //!
 //! ```text
 //! bytes -> format, by what they begin with
-//!       -> a table of columns, or variables, or the files of an archive      (text, mat, mat73, npy, zip, JSON)
-//!       -> columns of one length: vectors and matrices beside one another, structs, timetables, iddata
-//!       -> records of one table apart, by a column that numbers them or where time restarts
+//!       -> a table with columns, or variables, or archived files             (text, mat, mat73, npy, zip, JSON)
+//!       -> columns with equal lengths: vectors and matrices, structs, timetables, iddata
+//!       -> records: a table is split by a column that numbers them, or where time restarts
 //! ```
 
 mod column_labels;
@@ -54,7 +54,7 @@ pub struct FoundRecords {
     pub faults: Vec<String>,
     /// Descriptions of contents that are not records.
     pub ignored: Vec<String>,
-    /// Number of files read.
+    /// File count.
     pub files: usize,
     /// Explicitly requested files that could not be read completely.
     pub unread: Vec<PathBuf>,

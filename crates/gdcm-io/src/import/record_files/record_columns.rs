@@ -1,4 +1,4 @@
-//! Columns from vectors and matrices of equal length beside one another.
+//! Columns from vectors and matrices with equal lengths.
 
 use std::collections::BTreeMap;
 
@@ -11,9 +11,9 @@ use crate::formats::recorded_columns::Columns;
 use crate::formats::variables::Value;
 use crate::import::recognise::record::Record;
 
-/// Smallest sample count of a record with a time.
+/// Smallest sample count in a record with a time.
 pub(super) const FEWEST_TIMED: usize = 20;
-/// Smallest sample count of a record without a time.
+/// Smallest sample count in a record without a time.
 const FEWEST: usize = 50;
 const SAMPLE_RATE_NAMES: [&str; 5] = [
     "fs",
@@ -23,14 +23,14 @@ const SAMPLE_RATE_NAMES: [&str; 5] = [
     "fsamp",
 ];
 
-/// Sample count of a record.
+/// Sample count in a record.
 struct RecordLength {
     rows: usize,
-    /// Whether it is the length of a time vector.
+    /// Whether a time vector has this length.
     is_timed: bool,
 }
 
-/// Returns the record in the fields, if there is one: arrays of equal length, which is that of the
+/// Returns the record in the fields, if they hold one: arrays with equal lengths, that of the
 /// time or the most frequent length.
 pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
     let is_model = ["A", "B", "C"]
@@ -100,8 +100,8 @@ pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Colum
     })
 }
 
-/// Returns the length of the longest time vector, otherwise the length with the most columns (the
-/// longer of two with as many).
+/// Returns the longest time vector's length, otherwise the length with the most columns (the
+/// longer, if two have as many).
 fn record_length(record: &Record<'_>) -> Option<RecordLength> {
     let mut timed = None;
     for field in record.fields() {
@@ -146,7 +146,7 @@ fn sample_time(record: &Record<'_>) -> Option<f64> {
     if step.is_finite() { Some(step) } else { None }
 }
 
-/// Returns the number in the first field with one of these names, if it is positive.
+/// Returns the number in the first field under these names, if it is positive.
 fn positive_number(record: &Record<'_>, names: &[&str]) -> Option<f64> {
     let Value::Array(array) = record.get(names)? else {
         return None;

@@ -14,7 +14,7 @@ pub(super) struct Samples {
 }
 
 /// Returns the real numbers in a value as samples; a vector is a single column. If `rows` is given,
-/// the side of this length is the time, otherwise the longer side.
+/// the time runs along the side with this length, otherwise along the longer side.
 pub(super) fn samples_of(value: &Value, rows: Option<usize>) -> Option<Samples> {
     let array = match value {
         Value::Array(array) => array,
@@ -51,7 +51,7 @@ fn strided_values(array: &Array, from: usize, step: usize) -> Vec<f64> {
     array.re.iter().skip(from).step_by(step).copied().collect()
 }
 
-/// Reads single numbers in cells, the form of JSON lists with "null" among numbers.
+/// Reads single numbers in cells, as JSON lists with "null" among numbers become.
 fn samples_of_cells(cells: &[Value]) -> Option<Samples> {
     if cells.is_empty() {
         return None;
@@ -71,7 +71,7 @@ fn samples_of_cells(cells: &[Value]) -> Option<Samples> {
     })
 }
 
-/// Returns the first column of a value, along its longer side.
+/// Returns the first column in a value, along its longer side.
 pub(super) fn first_column_of(value: &Value) -> Option<Vec<f64>> {
     samples_of(value, None)?.columns.into_iter().next()
 }

@@ -1,4 +1,4 @@
-//! Columns of records in text tables.
+//! Record columns in text tables.
 
 use gdcm_sysid::records::RecordColumn;
 use gdcm_sysid::records::record_table::Separation;
@@ -8,7 +8,7 @@ use crate::formats::text::separator::sections;
 use crate::formats::text::{NumberedText, TextTable, numbered_words, read_table};
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// Reads the columns of a text. If the columns change on the way, each part that is long enough for
+/// Reads the columns in a text. If the columns change on the way, each part that is long enough for
 /// a record is read by itself.
 pub(super) fn text_columns(
     text: &str,
@@ -60,7 +60,7 @@ fn is_of_the_text(fault: &VariableFault) -> bool {
     )
 }
 
-/// Reads the columns of a single table; words and clock times in it are replaced by numbers.
+/// Reads the columns in a single table; words and clock times in it are replaced by numbers.
 fn whole_text_columns(text: &str, budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
     let first_fault = match read_table(text, budget) {
         Ok(table) => return Ok(table_columns(table)),
@@ -70,7 +70,7 @@ fn whole_text_columns(text: &str, budget: &ReadingBudget<'_>) -> Result<Columns,
     let Some(NumberedText { text, notes }) = numbered_words(text, budget)? else {
         return Err(first_fault);
     };
-    // The fault of the original text is more useful than that of the converted text.
+    // The fault in the original text is more useful than that in the converted text.
     let Ok(table) = read_table(&text, budget) else {
         return Err(first_fault);
     };
@@ -79,7 +79,7 @@ fn whole_text_columns(text: &str, budget: &ReadingBudget<'_>) -> Result<Columns,
     Ok(columns)
 }
 
-/// Returns the columns of a text table; unnamed columns are numbered.
+/// Returns the columns in a text table; unnamed columns are numbered.
 fn table_columns(table: TextTable) -> Columns {
     let named = table.names.is_some();
     let names = table.names.unwrap_or_default();

@@ -17,7 +17,7 @@ use crate::import::recognise::values::texts_of;
 /// A millisecond \[s\].
 const MILLISECOND: f64 = 1e-3;
 
-/// Reads the columns of a timetable or a table, if the object is one.
+/// Reads the columns if the object is a timetable or a table.
 pub(super) fn timetable_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
     match record.class? {
         "timetable" => read_timetable(record, variable),
@@ -75,7 +75,7 @@ fn read_table(record: &Record<'_>, variable: &str) -> Option<Columns> {
     Some(Columns::new(variable.to_owned(), columns))
 }
 
-/// Returns the fields of a struct or an object.
+/// Returns the fields in a struct or an object.
 fn inner_record(value: &Value) -> Option<Record<'_>> {
     let records = match value {
         Value::Struct(records) => records,
@@ -85,7 +85,7 @@ fn inner_record(value: &Value) -> Option<Record<'_>> {
     Some(Record::from_struct(records, 0, None, 0))
 }
 
-/// Returns the numeric columns with the length of the first; omits variables of other kinds.
+/// Returns the numeric columns that are as long as the first; omits other variables.
 fn numeric_columns(data: &[Value], names: &[String], units: &[String]) -> Vec<RecordColumn> {
     let mut columns: Vec<RecordColumn> = Vec::new();
     for (index, (value, name)) in data.iter().zip(names).enumerate() {
@@ -108,10 +108,10 @@ fn numeric_columns(data: &[Value], names: &[String], units: &[String]) -> Vec<Re
     columns
 }
 
-/// Sample times of a timetable.
+/// Sample times in a timetable.
 enum RowTimes {
     Stamps {
-        /// Time \[s\] of each row.
+        /// Time \[s\] at each row.
         time_s: Vec<f64>,
         /// Whether the file gives clock times, from which the first was subtracted.
         is_clock: bool,

@@ -39,7 +39,7 @@ pub enum ExportFault {
     Schedule(#[from] ScheduleError),
     /// The study requests couplings and has none, so that the export would differ from the request.
     #[error(
-        "the study asks for couplings, and there are none: {why}; mend that, or set couplings to none"
+        "the study asks for couplings, and there are none: {why}; correct that, or set couplings to none"
     )]
     NoCouplings { why: String },
     /// A condition has no result of its own.

@@ -147,7 +147,7 @@ fn units_of(channels: &[Channel]) -> Value {
     cell_of_texts(channels.iter().map(|channel| channel.unit.clone()))
 }
 
-/// Name in files, and function, of a model metric.
+/// Name of a model metric in files, and its function.
 type Metric = (&'static str, fn(&ExportedModel) -> f64);
 
 const METRICS: [Metric; 8] = [

@@ -17,7 +17,7 @@ pub(super) struct ExportedModel {
     pub(super) condition: ConditionId,
     /// True airspeed \[kt\].
     pub(super) airspeed_kt: f64,
-    /// Physics model.
+    /// Name of the physics model.
     pub(super) name: String,
     /// "scheduled" or "own".
     pub(super) correction: &'static str,

@@ -8,7 +8,7 @@ const STEPS: usize = 60;
 /// Largest error of linear interpolation in a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TableError {
-    /// Absolute error, in its measure's unit.
+    /// Absolute error, in the unit of `measure`.
     pub(super) error: f64,
     /// Airspeed \[kt\] with this error.
     pub(super) airspeed_kt: f64,

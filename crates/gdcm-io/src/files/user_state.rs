@@ -271,8 +271,7 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
     } else {
         Some(PathBuf::from(name))
     };
-    let dataset =
-        dataset_of_study(&path).unwrap_or_else(|| "a dataset that cannot be told".to_owned());
+    let dataset = dataset_of_study(&path).unwrap_or_else(|| "an unknown dataset".to_owned());
     Some(LostStudy {
         path,
         lock_path: lock_path.to_owned(),

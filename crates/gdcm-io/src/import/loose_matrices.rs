@@ -11,8 +11,7 @@ use crate::reading_budget::ReadingBudget;
 
 /// A matrix in a separate file.
 pub(super) struct LooseMatrix {
-    /// The folder and the name before the letter: matrices with the same group are a
-    /// model.
+    /// The folder, and the file name before the letter: matrices with the same group are a model.
     group: String,
     file: String,
     sha256: String,

@@ -21,7 +21,7 @@ use crate::reading_budget::{ReadingBudget, VariableFault};
 /// Key for the headings that apply to every table with as many columns, among the keys for single
 /// files.
 pub const EVERY_TABLE: &str = "*";
-/// Number of first lines in a text among which named matrices begin.
+/// Number of lines at the beginning of a text in which a named matrix is looked for.
 const HEADING_LINES: usize = 50;
 /// Largest number of unused variables listed for a file.
 const MOST_LISTED: usize = 20;
@@ -156,9 +156,7 @@ impl<'h> ModelReading<'h> {
                 ..Found::default()
             },
             Contents::Logs(_) => Found {
-                ignored: vec![format!(
-                    "{name}: a log of an aircraft: records, not a model"
-                )],
+                ignored: vec![format!("{name}: an aircraft log holds records, not models")],
                 ..Found::default()
             },
             Contents::Models(models, unknown) => Found {
@@ -293,7 +291,7 @@ impl<'h> ModelReading<'h> {
     }
 }
 
-/// Text contents in the search for models.
+/// Contents of a text, in the search for models.
 enum TextContents {
     Variables {
         variables: Vec<Variable>,

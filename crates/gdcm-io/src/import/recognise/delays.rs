@@ -15,7 +15,7 @@ const LONGEST_PLAIN_S: f64 = 1.0;
 /// Tolerance \[s\] for delays that should be equal.
 const ROUNDING_S: f64 = 1e-9;
 /// Names for delays, suggested in questions.
-const WAYS: &str = "call it input_delays_s or output_delays_s (one number for each channel, in s), or otherwise if it is no delay";
+const WAYS: &str = "call it input_delays_s or output_delays_s (a number for each channel, in s), or rename it if it is not a delay";
 
 /// Model timing, with notes on the conventions applied.
 pub(super) struct NotedTiming {
@@ -51,7 +51,7 @@ pub(super) fn timing_of(
             }
             if level > 0 {
                 return Err(format!(
-                    "{}: a delay beside no model; put it beside A, B, C and D, as input_delays_s",
+                    "{}: delay without a model; put it beside A, B, C and D, as input_delays_s",
                     field.name
                 ));
             }
@@ -76,7 +76,7 @@ pub(super) fn refuse_delays(record: &Record<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// Delays during reading.
+/// Delays of a model, while its fields are read.
 struct DelayReading {
     sample_time_s: Option<f64>,
     /// Whether the model is a MATLAB or GNU Octave object, whose conventions are defined.
@@ -100,10 +100,10 @@ impl DelayReading {
         let name = field.name;
         match field.meaning.delayed {
             Delayed::Unclear => Err(format!(
-                "{name} looks like a delay, and its name leaves open of what and in which unit: {WAYS}"
+                "{name} looks like a delay, but its name gives neither the delayed signals nor the unit: {WAYS}"
             )),
             Delayed::Inside => Err(format!(
-                "{name}: internal delays cannot be taken; absorb them first: sys = pade(sys, 3)"
+                "{name}: internal delays are not supported; absorb them first: sys = pade(sys, 3)"
             )),
             Delayed::Inputs => {
                 let delays = self.channel_delays(field, self.inputs, "input")?;
@@ -170,8 +170,8 @@ impl DelayReading {
                 let remainder = delays[(output, input)] - outputs[output] - inputs[input];
                 if remainder.abs() > ROUNDING_S {
                     return Err(format!(
-                        "{name}, output {}, input {}: the delays of single responses are not the sum of a delay of each output and one of \
-                         each input, which a model of the dataset can have; absorb them first: sys = pade(sys, 3)",
+                        "{name}, output {}, input {}: the delays of single responses are not the sum of an output delay and an input delay; \
+                         absorb them first: sys = pade(sys, 3)",
                         output + 1,
                         input + 1
                     ));
@@ -228,14 +228,14 @@ impl DelayReading {
             (DelayUnit::Milliseconds, _) => Ok(1e-3),
             (DelayUnit::Samples, None) => Err(question(
                 name,
-                "in samples of a model that has no sample time",
+                "in samples, but the model has no sample time",
             )),
             (DelayUnit::Samples, Some(sample_time_s)) => Ok(sample_time_s),
             (DelayUnit::Matlab, Some(sample_time_s)) => {
                 if delays.iter().any(|delay| delay.fract() != 0.0) {
                     return Err(question(
                         name,
-                        "MATLAB counts the delays of a discrete-time model in samples, and these are no whole numbers",
+                        "MATLAB counts the delays of a discrete-time model in samples, but these are not whole numbers",
                     ));
                 }
                 self.note_convention(name, "counted in samples, as MATLAB does in discrete time");
@@ -243,7 +243,7 @@ impl DelayReading {
             }
             (DelayUnit::Unknown, Some(_)) => Err(question(
                 name,
-                "seconds or samples of this discrete-time model are not said",
+                "can be seconds or samples of this discrete-time model",
             )),
             (DelayUnit::Matlab | DelayUnit::Unknown, None) => {
                 let greatest = delays
@@ -252,10 +252,7 @@ impl DelayReading {
                 if greatest > LONGEST_PLAIN_S && !self.is_object {
                     return Err(question(
                         name,
-                        &format!(
-                            "{} can be seconds or milliseconds, which is not said",
-                            number(greatest)
-                        ),
+                        &format!("{} can be seconds or milliseconds", number(greatest)),
                     ));
                 }
                 self.note_convention(name, "taken to be in s, as its name says no unit");
@@ -337,7 +334,7 @@ fn sample_time_of(record: &Record<'_>) -> Result<Option<f64>, String> {
         Some(0.0) => Ok(None),
         Some(sample_time) if sample_time > 0.0 => Ok(Some(sample_time)),
         Some(sample_time) => Err(format!(
-            "the sample time is {}: a discrete-time model whose sample time is not said cannot be compared; set Ts",
+            "the sample time is {}: a discrete-time model without a known sample time cannot be compared; set Ts",
             number(sample_time)
         )),
         None if array_of(value).is_some_and(|array| array.is_empty()) => Ok(None),

@@ -73,7 +73,7 @@ fn fact(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, 
             match known {
                 Some(known) if known != value => {
                     return Err(format!(
-                        "{}: {} and {} are said of one model; correct one",
+                        "{}: contradictory values {} and {} for the same model; correct one",
                         names[0],
                         number(known),
                         number(value)

@@ -172,7 +172,7 @@ fn coherence_of(
     }
     match record.find(GAMMAS) {
         Some(field) => Err(format!(
-            "{}: γ or γ² is not said; call γ² gamma2 or coherence, and square γ first",
+            "{}: may be γ or γ²; call γ² gamma2 or coherence, and square γ first",
             field.name
         )),
         None => Ok(None),
@@ -203,7 +203,7 @@ impl Frequencies {
         } else if let Some(field) = record.find(FREQUENCIES) {
             if unit_text.is_empty() && !has_default {
                 return Err(
-                    "frequencies: rad/s or Hz is not said; call them omega_rad_s or f_hz, or give \"rad/s\" or \"Hz\" \
+                    "frequencies: unit missing, rad/s or Hz; call them omega_rad_s or f_hz, or give \"rad/s\" or \"Hz\" \
                         beside them as frequency_unit"
                         .to_owned(),
                 );
@@ -239,7 +239,7 @@ impl Frequencies {
     }
 }
 
-/// Number order in a stored response.
+/// Order in which a response's numbers are stored.
 struct ResponseLayout {
     outputs: usize,
     inputs: usize,

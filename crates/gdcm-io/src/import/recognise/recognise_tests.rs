@@ -305,7 +305,7 @@ fn what_resembles_a_delay_and_leaves_something_open_is_asked_about() {
         ),
         (
             r#""InputDelay": [0.02, 0.05], "Ts": 0.02"#,
-            "no whole numbers",
+            "not whole numbers",
         ),
         (
             r#""ioDelay": [[0.03, 0.05], [0.03, 0.06]]"#,
@@ -337,7 +337,7 @@ fn what_resembles_a_delay_and_leaves_something_open_is_asked_about() {
         r#"{"sys": {"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]]}, "input_delays_s": 0.03}"#,
     );
     assert!(
-        outside.items.is_empty() && outside.faults[0].contains("beside no model"),
+        outside.items.is_empty() && outside.faults[0].contains("delay without a model"),
         "{:?}",
         outside.faults
     );
@@ -481,7 +481,7 @@ fn what_stands_beside_a_model_about_its_condition_is_used_and_contradictions_are
         r#"{"airspeed_kt": 70, "sys": {"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]], "airspeed_kt": 90}}"#,
     );
     assert!(
-        differing.faults[0].contains("90 and 70 are said of one model"),
+        differing.faults[0].contains("contradictory values 90 and 70"),
         "{:?}",
         differing.faults
     );
@@ -537,7 +537,7 @@ fn gamma_a_bare_f_and_coherence_of_another_size_are_asked_about_beside_a_respons
     assert!(
         of(r#""w": [1, 2, 3], "gamma": [1, 0.9, 0.8]"#)
             .1
-            .contains("γ or γ² is not said")
+            .contains("may be γ or γ²")
     );
     assert!(
         of(r#""w": [1, 2, 3], "coherence": [1, 0.9]"#)
@@ -547,7 +547,7 @@ fn gamma_a_bare_f_and_coherence_of_another_size_are_asked_about_beside_a_respons
     assert!(
         of(r#""f": [1, 2, 3]"#)
             .1
-            .contains("rad/s or Hz is not said")
+            .contains("unit missing, rad/s or Hz")
     );
     assert!(
         of(r#""f": [1, 2, 3], "frequency_unit": "rps""#)

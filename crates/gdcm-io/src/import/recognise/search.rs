@@ -137,7 +137,7 @@ impl<T> Search<'_, T> {
         self.budget.work(STEPS, name)?;
         if levels == 0 || self.found.items.len() >= MOST_FOUND {
             self.add_fault(format!(
-                "{name}: too many values, or values nested too deeply, to look into"
+                "{name}: too many values, or values nested too deeply"
             ))?;
             return Ok(true);
         }

@@ -50,7 +50,7 @@ pub(super) fn experiments(record: &Record<'_>, variable: &str) -> Result<Vec<Col
     if let Some(domain) = record.get(&["Domain"]).and_then(first_text_of)
         && domain.to_lowercase().starts_with('f')
     {
-        return Err("data over frequency are no record; save those over time".to_owned());
+        return Err("frequency-domain data are not a record; save time-domain data".to_owned());
     }
     let outputs = record
         .get(&OUTPUT_FIELDS.data)

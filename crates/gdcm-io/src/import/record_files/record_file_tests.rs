@@ -448,7 +448,7 @@ fn identification_data_of_matlab_and_of_octave_are_read() {
     );
     assert_eq!(
         searched("z", over_frequency).faults,
-        ["z: data over frequency are no record; save those over time"]
+        ["z: frequency-domain data are not a record; save time-domain data"]
     );
 }
 

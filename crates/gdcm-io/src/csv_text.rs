@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn several_tables_stand_under_their_titles() {
+    fn several_tables_are_written_under_their_titles() {
         let text = csv_text(&[table("first, of two"), table("second")]);
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines[0], "\"first, of two\"");

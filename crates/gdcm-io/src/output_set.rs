@@ -454,15 +454,14 @@ mod tests {
     }
 
     #[test]
-    fn a_set_whose_process_is_killed_on_the_way_is_not_whole_by_its_checksums_and_the_next_one_is()
-    {
+    fn checksums_reveal_a_set_whose_process_was_killed_and_the_next_set_is_whole() {
         // The killed process runs this very test.
         if let Some(directory) = std::env::var_os("GDCM_TEST_DIRECTORY") {
             write_set(Path::new(&directory), "after").unwrap();
         }
         let module = module_path!().split_once("::").unwrap().1;
         let name = format!(
-            "{module}::a_set_whose_process_is_killed_on_the_way_is_not_whole_by_its_checksums_and_the_next_one_is"
+            "{module}::checksums_reveal_a_set_whose_process_was_killed_and_the_next_set_is_whole"
         );
         for (end, whole) in [
             (SET[0], Some("before")),
@@ -499,7 +498,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_set_of_which_one_file_is_there_and_whose_directory_has_two_names_takes_its_place() {
+    fn a_set_with_an_existing_file_and_two_names_for_its_directory_takes_its_place() {
         let directory = tempfile::tempdir().unwrap();
         let real = directory.path().join("real");
         let link = directory.path().join("link");
@@ -511,7 +510,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_sets_that_are_written_at_once_one_is_there_whole() {
+    fn one_of_two_simultaneous_sets_is_whole() {
         let directory = tempfile::tempdir().unwrap();
         for _ in 0..200 {
             let start = std::sync::Barrier::new(2);
@@ -548,7 +547,7 @@ mod tests {
     }
 
     #[test]
-    fn a_set_of_which_one_file_cannot_take_its_place_leaves_what_was_there() {
+    fn a_set_that_cannot_be_placed_leaves_the_earlier_files() {
         let directory = tempfile::tempdir().unwrap();
         let [old, new, blocked] = ["old", "new", "blocked"].map(|name| directory.path().join(name));
         fs::write(&old, "before").unwrap();
@@ -655,7 +654,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_killed_run_left_is_removed_and_what_is_being_written_is_not() {
+    fn leftovers_of_killed_runs_are_removed_and_files_in_progress_are_not() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
         fs::write(at(".gdcm-x1y2z3.tmp"), "half of it").unwrap();
@@ -689,7 +688,7 @@ mod tests {
     }
 
     #[test]
-    fn a_directory_that_is_not_there_is_told() {
+    fn a_missing_directory_is_reported() {
         let directory = tempfile::tempdir().unwrap();
         let error = write_whole(&directory.path().join("no/such/file"), |_| Ok(())).unwrap_err();
         assert!(

@@ -578,7 +578,7 @@ mod tests {
     }
 
     #[test]
-    fn the_greatest_error_stands_above_the_table_and_airspeeds_have_to_increase() {
+    fn the_greatest_error_is_above_the_table_and_airspeeds_must_increase() {
         let analysis = analysis(None);
         let source = source();
         let table = table(&analysis, &source);
@@ -604,7 +604,7 @@ mod tests {
     }
 
     #[test]
-    fn every_airspeed_stands_at_three_values_of_a_second_variable() {
+    fn every_airspeed_has_three_values_of_a_second_variable() {
         let analysis = analysis(Some(SecondVariable::Altitude));
         let source = source();
         let table = table(&analysis, &source);

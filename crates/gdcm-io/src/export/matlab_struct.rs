@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn tables_are_matrices_and_what_is_null_is_nan() {
+    fn tables_are_matrices_and_null_is_nan() {
         let Value::Array(table) = field("{\"G\": [[1, 2, 3], [4, null, 6]]}", &["G"]) else {
             panic!("an array")
         };

@@ -78,7 +78,7 @@ impl LeftOutPart {
     /// Describes it in words: "delay of output NX: 5.3 ms in condition 4 (not scheduled)".
     pub fn words(&self, dataset: &Dataset) -> String {
         match self {
-            Self::Delay(of) => format!("{} (not scheduled)", of.words(dataset)),
+            Self::Delay(delayed) => format!("{} (not scheduled)", delayed.words(dataset)),
             Self::Leads => "the lead filters of the schedule".to_owned(),
             Self::Couplings(why) => format!("the couplings that the study asks for: {why}"),
         }

@@ -396,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn a_caution_of_one_record_names_it_and_one_of_a_pair_names_both() {
+    fn a_caution_names_its_record_or_both_channels_of_its_pair() {
         let of = |names: &[&str]| {
             let records = names.iter().map(|name| (*name).to_owned()).collect();
             let bytes = written(&[CautionNote {

@@ -308,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn converted_models_keep_all_that_a_dataset_says_of_them() {
+    fn converted_models_keep_all_information_from_their_dataset() {
         let read = |bytes: &[u8], name: &str| -> FoundModels {
             models_of_bytes(bytes, name, &ReadingBudget::new(1 << 24)).unwrap()
         };

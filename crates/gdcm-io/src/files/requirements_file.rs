@@ -378,7 +378,7 @@ mod table_tests {
     use crate::output_set::Existing;
 
     #[test]
-    fn levels_are_read_and_what_is_wrong_with_them_is_said_with_its_place() {
+    fn levels_are_read_and_faults_in_them_reported_with_their_place() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("levels.json");
         let read = |text: &str| {
@@ -426,7 +426,7 @@ mod table_tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_table_is_said_with_its_row() {
+    fn faults_in_a_table_are_reported_with_their_row() {
         let (_folder, path) = written(&ToleranceTable::default());
         let right = std::fs::read_to_string(&path).unwrap();
         for (from, to, words) in [

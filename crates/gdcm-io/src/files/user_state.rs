@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_list_is_an_empty_one_and_is_mended_by_the_next_file() {
+    fn a_damaged_list_counts_as_empty_and_is_replaced_with_the_next_file() {
         let directory = tempfile::tempdir().unwrap();
         std::fs::write(directory.path().join(NAME), "{\"format\": ").unwrap();
         assert!(recent_files(directory.path()).is_empty());
@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn only_one_start_is_the_first_and_none_where_nothing_can_be_kept() {
+    fn a_single_start_is_the_first_and_none_if_nothing_can_be_kept() {
         let folder = tempfile::tempdir().unwrap();
         let directory = folder.path().join("gdcm");
         assert!(is_first_start(&directory));
@@ -353,7 +353,7 @@ mod recovery_tests {
     }
 
     #[test]
-    fn the_file_of_a_window_that_is_open_is_not_offered_and_that_of_one_that_is_gone_is() {
+    fn only_recovery_files_of_closed_windows_are_offered() {
         let directory = tempfile::tempdir().unwrap();
         let mine = written(directory.path());
         let other = written(directory.path());
@@ -375,7 +375,7 @@ mod recovery_tests {
     }
 
     #[test]
-    fn what_one_window_is_offered_no_other_is_and_later_it_is_offered_again() {
+    fn a_lost_study_is_offered_to_one_window_at_a_time() {
         let directory = tempfile::tempdir().unwrap();
         drop(written(directory.path()));
         let offered = lost_studies(directory.path());
@@ -388,7 +388,7 @@ mod recovery_tests {
     }
 
     #[test]
-    fn what_is_saved_or_removed_leaves_nothing_behind() {
+    fn saved_or_removed_studies_leave_nothing_behind() {
         let directory = tempfile::tempdir().unwrap();
         let mut file = written(directory.path());
         file.clear().unwrap();

@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn matrices_of_a_folder_or_of_one_beginning_are_a_model() {
+    fn matrices_in_a_folder_or_with_a_common_prefix_are_a_model() {
         let files = [
             "c1/A.csv",
             "c1/B.csv",

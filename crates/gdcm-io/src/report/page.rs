@@ -392,7 +392,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_says_what_it_shows_to_who_cannot_see_it() {
+    fn a_figure_has_a_description_for_screen_readers() {
         let text = page();
         let document = parsed(&text);
         let labels: Vec<_> = document

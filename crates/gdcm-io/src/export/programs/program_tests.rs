@@ -186,7 +186,7 @@ fn listed() -> String {
 }
 
 #[test]
-fn delays_that_are_not_scheduled_are_zero_and_a_note_says_so() {
+fn unscheduled_delays_are_zero_with_a_note() {
     for (words, analysis) in analyses() {
         let settings = &analysis.study.settings;
         let has_delays = settings.schedule_delays == DelayScheduling::Always
@@ -709,7 +709,7 @@ fn a_name_that_matlab_cannot_call_is_refused() {
 }
 
 #[test]
-fn a_comment_stays_one_line_and_is_not_ended() {
+fn a_comment_stays_on_its_line_and_is_not_ended() {
     assert_eq!(comment("a\n*/b"), "a<U+000A>* /b");
     assert_eq!(comment("δ\\"), "<U+03B4>\\.");
     assert_eq!(comment("−3 ± 2 dB"), "-3 +- 2 dB");

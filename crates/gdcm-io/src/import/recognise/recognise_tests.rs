@@ -55,7 +55,7 @@ fn gains(found: &Found<FoundModel>) -> Vec<(String, f64)> {
 }
 
 #[test]
-fn models_are_found_in_structs_in_cells_in_struct_arrays_and_beside_one_another() {
+fn models_are_found_in_structs_cells_struct_arrays_and_suffixed_matrices() {
     let of_two = StructArray {
         shape: vec![1, 2],
         fields: [("A", -1.0), ("B", 3.0), ("C", 1.0), ("D", 0.0)]
@@ -102,7 +102,7 @@ fn models_are_found_in_structs_in_cells_in_struct_arrays_and_beside_one_another(
 }
 
 #[test]
-fn matrices_behind_one_another_are_models_and_share_what_there_is_once() {
+fn stacked_matrices_are_models_and_share_single_matrices() {
     let pages = Array {
         shape: vec![1, 1, 2],
         kind: ElementKind::Float,
@@ -168,7 +168,7 @@ fn an_object_of_matlab_keeps_its_numbers_inside_and_its_names_outside() {
 }
 
 #[test]
-fn what_looks_like_a_model_and_is_none_is_named_with_its_place() {
+fn a_faulty_model_is_reported_with_its_place() {
     let of = |change: fn(&mut Vec<(&'static str, Value)>)| {
         let mut fields = model(1.0);
         change(&mut fields);
@@ -230,7 +230,7 @@ fn delays(found: &Found<FoundModel>) -> [Option<Vec<f64>>; 2] {
 }
 
 #[test]
-fn delays_are_read_under_every_name_that_says_whose_they_are_and_in_which_unit() {
+fn delays_are_read_under_every_name_with_known_signals_and_unit() {
     for member in [
         r#""InputDelay": [0.03, 0.05]"#,
         r#""InputDelays": [0.03, 0.05]"#,
@@ -286,7 +286,7 @@ fn delays_are_read_under_every_name_that_says_whose_they_are_and_in_which_unit()
 }
 
 #[test]
-fn what_resembles_a_delay_and_leaves_something_open_is_asked_about() {
+fn an_ambiguous_delay_is_refused_with_a_question() {
     for (member, question) in [
         (r#""tau": 0.03"#, "tau looks like a delay"),
         (r#""tau_i": [0.03, 0.05]"#, "tau_i looks like a delay"),
@@ -353,7 +353,7 @@ fn what_resembles_a_delay_and_leaves_something_open_is_asked_about() {
 }
 
 #[test]
-fn each_of_several_models_beside_one_another_has_its_own_delays() {
+fn models_in_suffixed_matrices_have_their_own_delays() {
     let mut variables = Vec::new();
     for (suffix, delay) in [("_nom", 0.03), ("_pert", 0.05)] {
         for (name, value) in model(1.0) {
@@ -376,7 +376,7 @@ fn each_of_several_models_beside_one_another_has_its_own_delays() {
 }
 
 #[test]
-fn what_is_not_used_is_listed_once_for_a_file() {
+fn unused_variables_are_listed_once_for_a_file() {
     let found = beside(
         r#""Q": [[1]], "author": "me", "trim": {"airspeed_kt": 90, "theta_deg": 3}, "airspeed_kt": 90"#,
     );
@@ -451,7 +451,7 @@ fn channels_are_objects_with_a_name_and_a_unit_too_and_a_wrong_number_of_them_is
 }
 
 #[test]
-fn what_stands_beside_a_model_about_its_condition_is_used_and_contradictions_are_refused() {
+fn the_condition_beside_a_model_is_used_and_contradictions_are_refused() {
     let found = beside(
         r#""airspeed_kt": 70, "name": "bank", "perturbation": {"roll_deg": 5}, "mass_kg": 6600"#,
     );

@@ -148,7 +148,7 @@ fn names_units_and_sides_are_those_of_the_file() {
 }
 
 #[test]
-fn several_records_of_one_file_are_told_apart() {
+fn several_records_in_a_file_are_distinguished() {
     let runs = read("runs.csv");
     let names: Vec<&str> = runs
         .tables
@@ -197,7 +197,7 @@ fn files_in_an_archive_are_records_of_it() {
 }
 
 #[test]
-fn records_are_found_again_by_what_the_dataset_calls_them() {
+fn records_are_found_again_by_their_names_in_the_dataset() {
     let load = |name: &str, variables: &[Option<&str>]| {
         load_records(
             Path::new(&format!("{FOLDER}{name}")),
@@ -220,7 +220,7 @@ fn records_are_found_again_by_what_the_dataset_calls_them() {
 }
 
 #[test]
-fn words_and_times_of_the_clock_stand_among_the_numbers_of_a_log() {
+fn words_and_clock_times_among_the_numbers_of_a_log_are_read() {
     let row = |k: usize, run: &str| {
         let at = k as f64;
         let cs = 2 * k;
@@ -453,7 +453,7 @@ fn identification_data_of_matlab_and_of_octave_are_read() {
 }
 
 #[test]
-fn what_simulink_logs_with_time_is_a_record() {
+fn a_simulink_structure_with_time_is_a_record() {
     let signal = |label: &str, columns: usize| {
         let label = Value::Text(TextArray {
             shape: vec![1, 1],
@@ -587,7 +587,7 @@ fn a_log_of_px4_is_opened_with_channels_proposed_in_the_units_of_its_documentati
 }
 
 #[test]
-fn a_blackbox_holds_several_flights_each_of_which_is_a_record() {
+fn each_flight_in_a_blackbox_is_a_record() {
     let bytes = include_bytes!("../../../../../tests/data/logs/two-flights.bbl");
     let found =
         records_of_bytes(bytes, "two-flights.bbl", &ReadingBudget::new(MOST_MEMORY)).unwrap();
@@ -633,7 +633,7 @@ fn a_blackbox_holds_several_flights_each_of_which_is_a_record() {
 }
 
 #[test]
-fn a_table_for_each_topic_in_an_archive_is_one_record() {
+fn topic_tables_in_an_archive_are_a_single_record() {
     let folder = tempfile::tempdir().unwrap();
     let rows = |rate: u32, name: &str| {
         let row = |k: u32| format!("{},{}\n", f64::from(k) / f64::from(rate), f64::from(k % 17));

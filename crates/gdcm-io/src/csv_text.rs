@@ -78,8 +78,8 @@ pub fn csv_text(tables: &[Table]) -> String {
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// Writes tables as CSV: headings, then a line for each row. Existing files are kept or
-/// replaced according to `outputs`.
+/// Writes tables as CSV: headings, then a line for each row. Existing files are kept or replaced
+/// according to `outputs`.
 pub fn save_tables(tables: &[Table], path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
     outputs.add(path, |file| write_tables(file, tables))?;
     outputs.persist()

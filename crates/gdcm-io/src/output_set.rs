@@ -127,8 +127,8 @@ impl OutputSet {
         Ok(())
     }
 
-    /// Adds the SHA-256 of every file so far, in the format of `sha256sum`. This file takes its place
-    /// last, and shows whether the others belong together.
+    /// Adds the SHA-256 of every file so far, in the format of `sha256sum`. This file takes its
+    /// place last, and shows whether the others belong together.
     pub fn add_checksums(&mut self, path: &Path) -> Result<(), FileError> {
         let mut lines = String::new();
         for staged in &self.staged {
@@ -203,8 +203,8 @@ fn write_temporary_file(
     Ok(temporary)
 }
 
-/// Whether an output is an input, through any links. An input that is a pipe or a device
-/// does not count, and is not opened.
+/// Whether an output is an input, through any links. An input that is a pipe or a device does not
+/// count, and is not opened.
 fn is_same_file(path: &Path, input: &Path) -> bool {
     let Ok(found) = fs::metadata(input) else {
         return false;
@@ -286,16 +286,16 @@ impl Placed {
     }
 }
 
-/// Creates a second name for a file, or a copy if the file system has no hard links; removed
-/// when dropped.
+/// Creates a second name for a file, or a copy if the file system has no hard links; removed when
+/// dropped.
 fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
     named().make_in(directory_of(target), |path| {
         match fs::hard_link(target, path) {
             Err(error) if error.kind() != ErrorKind::AlreadyExists => drop(fs::copy(target, path)?),
             linked => linked?,
         }
-        // Another process may remove it as a leftover before the lock. This error makes `make_in` try
-        // another name.
+        // Another process may remove it as a leftover before the lock. This error makes `make_in`
+        // try another name.
         let removed = ErrorKind::AlreadyExists;
         let file = match File::open(path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Err(removed.into()),

@@ -1,5 +1,5 @@
-//! All analysis results: `corrections.json`, `corrections.csv`, and the fields of the former
-//! as a MATLAB struct.
+//! All analysis results: `corrections.json`, `corrections.csv`, and the fields of the former as a
+//! MATLAB struct.
 
 use std::collections::BTreeSet;
 
@@ -106,9 +106,9 @@ impl EarlierName {
     }
 }
 
-/// Returns the fields in `corrections.json` as a struct. Lists with responses become logical matrices
-/// with a row for each output and a column for each input; `net_gains` becomes several matrices,
-/// and its original is `net_gain_table`. Fields from earlier versions keep their names.
+/// Returns the fields in `corrections.json` as a struct. Lists with responses become logical
+/// matrices with a row for each output and a column for each input; `net_gains` becomes several
+/// matrices, and its original is `net_gain_table`. Fields from earlier versions keep their names.
 fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
     let settings = &mut corrections["settings"];
     for name in ["constrained", "ignored"] {

@@ -253,8 +253,8 @@ fn result_of<'a>(
     })
 }
 
-/// Returns state names: "LON lead 1" and "LON delay 1" for inputs, the model's own names, "Q
-/// delay 1" and "Q lead 1" for outputs.
+/// Returns state names: "LON lead 1" and "LON delay 1" for inputs, the model's own names, "Q delay
+/// 1" and "Q lead 1" for outputs.
 fn state_names(analysis: &Analysis, model: &Model, corrected: &CorrectedModel) -> Vec<String> {
     let CorrectedModel {
         lead_states,
@@ -288,14 +288,13 @@ fn add_state_names(names: &mut Vec<String>, channels: &[Channel], part: &str, co
 
 impl ExportedModel {
     /// Returns the largest phase error \[deg\] at the top of the band against the condition's own
-    /// delays, as far as the export causes it: by approximants and omitted
-    /// delays.
+    /// delays, as far as the export causes it: by approximants and omitted delays.
     pub(super) fn phase_error_deg(&self) -> f64 {
         self.approximation_error_deg + self.left_out_deg
     }
 
-    /// Returns the frequency \[rad/s\] above which the lead filters make the model invalid; infinite
-    /// without leads.
+    /// Returns the frequency \[rad/s\] above which the lead filters make the model invalid;
+    /// infinite without leads.
     pub(super) fn not_valid_above_rad_s(&self) -> f64 {
         match &self.price {
             Some(described) => described.price.limit_rad_s,
@@ -344,8 +343,8 @@ impl ExportedModel {
         )
     }
 
-    /// Describes the parts in the model and their accuracy. Delays that are not in the model have no
-    /// accuracy.
+    /// Describes the parts in the model and their accuracy. Delays that are not in the model have
+    /// no accuracy.
     fn delay_words(&self) -> String {
         let has_delays = self.contents.delays != PartSource::None;
         let has_leads = self.lead_states > 0;
@@ -391,8 +390,7 @@ fn greatest(gains_db: &[f64]) -> f64 {
     gains_db.iter().copied().fold(0.0, f64::max)
 }
 
-/// Describes an upper bound on a phase error \[deg\]; values below 0.001 are not
-/// distinguished.
+/// Describes an upper bound on a phase error \[deg\]; values below 0.001 are not distinguished.
 fn bound_words(error_deg: f64) -> String {
     /// The smallest bound that is reported.
     const LEAST_DEG: f64 = 1e-3;

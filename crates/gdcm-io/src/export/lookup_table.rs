@@ -1,5 +1,5 @@
-//! Scheduled gains and delays at given airspeeds, for lookup tables with linear
-//! interpolation: as text, and for MATLAB.
+//! Scheduled gains and delays at given airspeeds, for lookup tables with linear interpolation: as
+//! text, and for MATLAB.
 
 use std::fmt::Write;
 
@@ -263,8 +263,8 @@ impl<'e> BreakpointTable<'e> {
         remarks
     }
 
-    /// Returns the table as CSV, preceded by lines with # that describe it and the largest deviation
-    /// of each column from its curve.
+    /// Returns the table as CSV, preceded by lines with # that describe it and the largest
+    /// deviation of each column from its curve.
     fn csv(&self) -> String {
         let mut text = String::new();
         self.write_description(&mut text);
@@ -335,9 +335,9 @@ impl<'e> BreakpointTable<'e> {
         lines
     }
 
-    /// Returns the variable `gdcm_table`: the airspeeds, and for the inputs and the outputs matrices
-    /// of gains, delays \[s\] and lead numerators \[s\], a row for each airspeed and a column for each
-    /// channel, with their largest errors.
+    /// Returns the variable `gdcm_table`: the airspeeds, and for the inputs and the outputs
+    /// matrices of gains, delays \[s\] and lead numerators \[s\], a row for each airspeed and a
+    /// column for each channel, with their largest errors.
     fn variable(&self) -> Variable {
         let scheduled = &self.scheduled;
         let mut fields = Fields::default();

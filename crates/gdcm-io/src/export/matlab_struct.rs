@@ -35,9 +35,8 @@ fn number(json: &Json) -> f64 {
 }
 
 impl Layout {
-    /// Converts a JSON value: objects become structs, lists with objects struct arrays,
-    /// rectangular lists with numbers matrices, lists with texts cell columns, and null becomes
-    /// NaN.
+    /// Converts a JSON value: objects become structs, lists with objects struct arrays, rectangular
+    /// lists with numbers matrices, lists with texts cell columns, and null becomes NaN.
     pub(super) fn value(&self, name: &str, json: &Json) -> Value {
         match json {
             Json::Null | Json::Number(_) => Value::number(number(json)),
@@ -108,8 +107,8 @@ impl Layout {
     }
 
     /// Returns the leaves as an array with this shape; the last index is fastest among the leaves.
-    /// Objects become a struct with arrays, numbers an array, truth values a logical array, rows with
-    /// numbers an array with another index, all others cells.
+    /// Objects become a struct with arrays, numbers an array, truth values a logical array, rows
+    /// with numbers an array with another index, all others cells.
     fn gathered(&self, shape: &[usize], leaves: Vec<&Json>) -> Value {
         if leaves.iter().any(|leaf| leaf.is_object()) {
             return self.gathered_objects(shape, &leaves);
@@ -145,8 +144,8 @@ impl Layout {
         })
     }
 
-    /// Returns a struct with an array for each member name; members by channel add an
-    /// index to the array.
+    /// Returns a struct with an array for each member name; members by channel add an index to the
+    /// array.
     fn gathered_objects(&self, shape: &[usize], leaves: &[&Json]) -> Value {
         let mut fields = Fields::default();
         for name in names_of(leaves) {

@@ -13,8 +13,8 @@ pub(super) fn number_list(values: &[f64]) -> String {
 }
 
 /// Escapes a text for a comment in any language: visible ASCII characters remain, special signs of
-/// the program's own texts are replaced by equivalents, all others by their Unicode numbers. Nothing
-/// in the result can end or begin a comment.
+/// the program's own texts are replaced by equivalents, all others by their Unicode numbers.
+/// Nothing in the result can end or begin a comment.
 pub(super) fn comment(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for character in text.chars() {

@@ -154,8 +154,8 @@ impl Language {
             .map_err(io::Error::other)
     }
 
-    /// Returns the parts of the correction: name and source of each, and the omitted parts, as texts
-    /// of the language.
+    /// Returns the parts of the correction: name and source of each, and the omitted parts, as
+    /// texts of the language.
     fn contained_parts(&self, scheduled: &Scheduled<'_>) -> Value {
         let mut parts = Vec::new();
         for (name, source) in scheduled.contents.parts() {

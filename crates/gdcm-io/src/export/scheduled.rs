@@ -103,8 +103,8 @@ impl Scheduled<'_> {
         }
     }
 
-    /// Returns the time constant `a` \[s\] in the numerator of a channel's lead filter: equal to `b`
-    /// without a lead. `None` for a schedule without leads.
+    /// Returns the time constant `a` \[s\] in the numerator of a channel's lead filter: equal to
+    /// `b` without a lead. `None` for a schedule without leads.
     pub(super) fn zero_s(&self, channel: Channel) -> Option<Curve> {
         let leads = self.schedule.leads.as_ref()?;
         let least = self.schedule.airspeeds.min_kt;

@@ -15,8 +15,8 @@ pub(super) struct TableError {
 }
 
 impl TableError {
-    /// Finds the largest error of a table of `curve` at `points` within `range_kt`; `measure` returns
-    /// a value's error against the true value.
+    /// Finds the largest error of a table of `curve` at `points` within `range_kt`; `measure`
+    /// returns a value's error against the true value.
     ///
     /// A grid finds the neighbourhood, a golden-section search the location.
     pub(super) fn greatest(

@@ -56,8 +56,7 @@ impl PartSource {
 /// A part in the conditions' corrections that an export does not contain.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LeftOutPart {
-    /// A channel's delays in some conditions' own corrections that the schedule does not
-    /// have.
+    /// A channel's delays in some conditions' own corrections that the schedule does not have.
     Delay(DelayedChannel),
     /// The scheduled lead filters.
     Leads,

@@ -60,9 +60,8 @@ struct MeasuredText {
     sd_deg: Nested<3>,
 }
 
-/// Adds identification results as a file to `outputs`: the recommended model first, then
-/// CT-PBSID without refinement, then the remaining bundle. Values that are not finite become
-/// `null`.
+/// Adds identification results as a file to `outputs`: the recommended model first, then CT-PBSID
+/// without refinement, then the remaining bundle. Values that are not finite become `null`.
 pub fn add_identified(
     results: &IdentifiedModels<'_>,
     path: &Path,
@@ -114,9 +113,9 @@ fn label(rule: &ChannelRule) -> ChannelLabel {
     }
 }
 
-/// Returns the validation: costs over degrees of freedom for the fitted and for the held-out records,
-/// the latter also with the model free within its own uncertainty; and in time, the share of each
-/// output that the model reproduces in the held-out records \[%\], and Theil's coefficient.
+/// Returns the validation: costs over degrees of freedom for the fitted and for the held-out
+/// records, the latter also with the model free within its own uncertainty; and in time, the share
+/// of each output that the model reproduces in the held-out records \[%\], and Theil's coefficient.
 fn validation_text(found: &Identification) -> Value {
     let (fit_percent, theil) = match &found.validation {
         Some(in_time) => (json!(in_time.fit_percent), json!(in_time.theil)),
@@ -204,8 +203,8 @@ fn pole_text(estimate: &PoleEstimate) -> Value {
     })
 }
 
-/// Returns record `index`: first and last time \[s\] for its part in the file and for each used segment,
-/// and the reasons why other segments were not used.
+/// Returns record `index`: first and last time \[s\] for its part in the file and for each used
+/// segment, and the reasons why other segments were not used.
 fn record_text(found: &Identification, index: usize, record: &ConditionRecord) -> Value {
     let mut reasons = Vec::new();
     if let Some(used) = found.record_uses.get(index) {

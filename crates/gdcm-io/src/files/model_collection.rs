@@ -211,8 +211,8 @@ pub(crate) fn bare_draft(name: String, origin: Origin) -> ModelDraft {
     }
 }
 
-/// Converts a model's text; its variable gets the place `index` in the list of models. `None`
-/// if it has no size.
+/// Converts a model's text; its variable gets the place `index` in the list of models. `None` if it
+/// has no size.
 fn found_model(mut text: ModelText, index: usize) -> Option<FoundModel> {
     let origin = match text.origin() {
         Some(origin) => origin,
@@ -253,8 +253,8 @@ fn found_model(mut text: ModelText, index: usize) -> Option<FoundModel> {
     })
 }
 
-/// Returns `count` labels from channel names and units, each list possibly empty;
-/// `None` if a list has another length.
+/// Returns `count` labels from channel names and units, each list possibly empty; `None` if a list
+/// has another length.
 fn labels_from_texts(
     count: usize,
     names: Vec<LabelText>,

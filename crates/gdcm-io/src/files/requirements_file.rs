@@ -331,8 +331,8 @@ struct TolerancesText {
     tolerances: Vec<Tolerance>,
 }
 
-/// Reads level boundaries from a file, `[{"name": "Level 1", "axis": "P", "points":
-/// [[rad/s, s], ...]}]` (M17.1).
+/// Reads level boundaries from a file, `[{"name": "Level 1", "axis": "P", "points": [[rad/s, s],
+/// ...]}]` (M17.1).
 ///
 /// # Errors
 /// [`FileError`] with the line if the file cannot be read, or a boundary is invalid.

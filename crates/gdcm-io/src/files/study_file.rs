@@ -309,8 +309,8 @@ fn adopted_models(
     Ok(adopted)
 }
 
-/// Saves a study, replacing an existing file; whole, or not at all. The dataset
-/// itself is never replaced.
+/// Saves a study, replacing an existing file; whole, or not at all. The dataset itself is never
+/// replaced.
 pub fn save_study(study: &Study, loaded: &LoadedDataset, path: &Path) -> Result<(), FileError> {
     save(study, loaded, path, |dataset| path_text(dataset, path))
 }
@@ -326,8 +326,8 @@ pub(crate) fn save_recovery(
     })
 }
 
-/// Returns a dataset's settled path; without resolved links if its directory is out of reach,
-/// so that the decisions are kept all the same.
+/// Returns a dataset's settled path; without resolved links if its directory is out of reach, so
+/// that the decisions are kept all the same.
 fn settled_or_absolute(dataset: &Path) -> PathBuf {
     if let Ok(settled) = settled(dataset) {
         return settled;
@@ -485,8 +485,8 @@ fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
     slashed(&relative, study)
 }
 
-/// Returns the relative path from the folder around `file` to `folder`, the current folder if that is
-/// empty, with `/` between its parts; the unchanged folder if there is no such path.
+/// Returns the relative path from the folder around `file` to `folder`, the current folder if that
+/// is empty, with `/` between its parts; the unchanged folder if there is no such path.
 pub fn relative_folder(folder: &Path, file: &Path) -> String {
     let folder = if folder.as_os_str().is_empty() {
         Path::new(".")

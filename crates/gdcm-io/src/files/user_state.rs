@@ -1,5 +1,5 @@
-//! User state kept between program starts: recently opened and saved files, and
-//! whether it was started before.
+//! User state kept between program starts: recently opened and saved files, and whether it was
+//! started before.
 
 use std::fs::{self, File, OpenOptions, TryLockError, create_dir_all};
 use std::io::{Read, Seek, Write};
@@ -82,8 +82,8 @@ pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
 /// Marker file from an earlier start.
 const STARTED: &str = "started";
 
-/// Whether this is the first start, which is then recorded in the program's directory. Also false if
-/// the record cannot be created: otherwise every start would look like the first.
+/// Whether this is the first start, which is then recorded in the program's directory. Also false
+/// if the record cannot be created: otherwise every start would look like the first.
 pub fn is_first_start(directory: &Path) -> bool {
     let kept = create_dir_all(directory).and_then(|()| {
         OpenOptions::new()
@@ -101,8 +101,8 @@ const LOCK_EXTENSION: &str = "lock";
 /// Much longer than the time between creating and locking a file.
 const YOUNG: Duration = Duration::from_secs(60);
 
-/// Recovery file of an open window: a study file, `PROCESS-NUMBER.gdcm-study.json`. A file beside it
-/// is locked while the process lives, and contains the path to the study's own file.
+/// Recovery file of an open window: a study file, `PROCESS-NUMBER.gdcm-study.json`. A file beside
+/// it is locked while the process lives, and contains the path to the study's own file.
 #[derive(Debug)]
 pub struct RecoveryFile {
     path: PathBuf,

@@ -45,8 +45,8 @@ pub(super) fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel
     models
 }
 
-/// Returns the information on the condition; its record paths, relative to the dataset's
-/// folder, become relative to the requested path.
+/// Returns the information on the condition; its record paths, relative to the dataset's folder,
+/// become relative to the requested path.
 fn facts_of(condition: &Condition, name: &str) -> Facts {
     let state = condition.flight_state();
     let mut records = Vec::new();

@@ -49,8 +49,8 @@ impl LooseMatrix {
     }
 }
 
-/// Returns the letter at the end of a file name, and the part before it: "nominal_A" is A
-/// of "nominal".
+/// Returns the letter at the end of a file name, and the part before it: "nominal_A" is A of
+/// "nominal".
 pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
     let letter = stem.chars().last()?;
     if !matches!(letter, 'A' | 'B' | 'C' | 'D' | 'E') {
@@ -63,8 +63,8 @@ pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
     Some((letter, before.trim_end_matches(['_', '-', '.', ' '])))
 }
 
-/// Builds a model from each group; its file is the folder, or the part of the name
-/// before the letters.
+/// Builds a model from each group; its file is the folder, or the part of the name before the
+/// letters.
 pub(super) fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     let mut groups: BTreeMap<String, Vec<LooseMatrix>> = BTreeMap::new();
     for matrix in loose {

@@ -20,8 +20,8 @@ pub(super) struct TableModels {
     pub(super) unsaid: Vec<UnsaidUnit>,
 }
 
-/// Returns the responses in a table, each as a model with an input and an output. A table without any
-/// is reported as ignored, with the units that would make it a response.
+/// Returns the responses in a table, each as a model with an input and an output. A table without
+/// any is reported as ignored, with the units that would make it a response.
 pub(super) fn models_of_table(table: &TextTable, file: &str) -> Result<TableModels, VariableFault> {
     let columns = match FrequencyColumns::recognise(table) {
         Ok(columns) => columns,
@@ -108,8 +108,7 @@ fn response_model(
     }
 }
 
-/// Returns a response's values at `count` frequencies as an array, outputs x inputs x
-/// frequencies.
+/// Returns a response's values at `count` frequencies as an array, outputs x inputs x frequencies.
 fn single_response(values: Vec<f64>, count: usize) -> ResponseArray {
     ResponseArray {
         shape: [1, 1, count],

@@ -175,8 +175,8 @@ fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], name: &str)
     }
 }
 
-/// Adds ΔJ for some responses, called `name`, in every condition, as many conditions side by side as
-/// fit on a page.
+/// Adds ΔJ for some responses, called `name`, in every condition, as many conditions side by side
+/// as fit on a page.
 fn add_tables(
     page: &mut Page,
     analysis: &Analysis,

@@ -496,8 +496,7 @@ fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOption
     );
 }
 
-/// Reduces line labels in narrow frames to their names ("G", "UB"): the values are in the
-/// tables.
+/// Reduces line labels in narrow frames to their names ("G", "UB"): the values are in the tables.
 fn without_values(mut figure: Figure) -> Figure {
     let panels = figure.plots.iter_mut().flat_map(|plot| &mut plot.panels);
     for mark in panels.flat_map(|panel| &mut panel.marks) {
@@ -517,9 +516,9 @@ fn on_axis_words(source: &ConditionSource<'_>) -> &'static str {
     }
 }
 
-/// Returns the indices of listed and drawn models in a bundle. In a short bundle these
-/// are all; in a long bundle the representative, the nominal and the suggested models, rejected
-/// models, then others, evenly over the bundle.
+/// Returns the indices of listed and drawn models in a bundle. In a short bundle these are all; in
+/// a long bundle the representative, the nominal and the suggested models, rejected models, then
+/// others, evenly over the bundle.
 fn models_shown(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> BTreeSet<usize> {
     let models = result.condition.bundle(kind);
     if models.len() <= MODELS_SHOWN {

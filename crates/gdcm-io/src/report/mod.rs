@@ -1,5 +1,5 @@
-//! A study's report: a single HTML file without external resources that prints on A4 and
-//! letter. The same study makes the same bytes.
+//! A study's report: a single HTML file without external resources that prints on A4 and letter.
+//! The same study makes the same bytes.
 
 mod assessment;
 mod conditions;

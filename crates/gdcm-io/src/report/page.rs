@@ -29,8 +29,8 @@ pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
     format!("{shown} and {} more", all.len() - NAMES_SHOWN)
 }
 
-/// Maximum distance \[pt\] between a line in a figure and its original points: less than the thinnest
-/// line width, hence invisible. It reduces file sizes to a quarter.
+/// Maximum distance \[pt\] between a line in a figure and its original points: less than the
+/// thinnest line width, hence invisible. It reduces file sizes to a quarter.
 const TOLERANCE_PT: f64 = 0.1;
 /// Largest number of rows in a table; the result files have all.
 const ROWS: usize = 1000;
@@ -263,8 +263,8 @@ fn columns_between(cells: &[String], heads: usize, from: usize, to: usize) -> Ve
     [&cells[..heads], &cells[from..to]].concat()
 }
 
-/// Returns a column's class: numbers (`n`), texts short enough to stay on a line (`s`), or
-/// other texts (none).
+/// Returns a column's class: numbers (`n`), texts short enough to stay on a line (`s`), or other
+/// texts (none).
 fn class_of(table: &Table, column: usize) -> &'static str {
     let is_short = table
         .rows

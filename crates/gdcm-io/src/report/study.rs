@@ -1,5 +1,4 @@
-//! The study as a whole: its results, settings and sources, and the excluded
-//! models.
+//! The study as a whole: its results, settings and sources, and the excluded models.
 
 use std::collections::BTreeMap;
 

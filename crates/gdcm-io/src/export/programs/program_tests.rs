@@ -1,4 +1,5 @@
-//! Exported programs are run by their interpreters and compilers and compared with the schedule itself.
+//! Exported programs are run by their interpreters and compilers and compared with the schedule
+//! itself.
 
 use std::process::Command;
 use std::sync::Arc;
@@ -103,8 +104,8 @@ const NASTY: [&str; 3] = [
     "\\u{7f}\u{0}\\",
 ];
 
-/// Returns fifty airspeeds \[kt\], from below the range of the example to above it, including
-/// both its ends.
+/// Returns fifty airspeeds \[kt\], from below the range of the example to above it, including both
+/// its ends.
 fn airspeeds() -> Vec<f64> {
     (0..48)
         .map(|index| 31.0 + f64::from(index) * 2.5)
@@ -500,8 +501,8 @@ fn a_study_without_couplings_has_none_in_its_programs() {
     }
 }
 
-/// Returns the example with altitude as its second variable, and its values at fifty airspeeds
-/// and three altitudes.
+/// Returns the example with altitude as its second variable, and its values at fifty airspeeds and
+/// three altitudes.
 fn with_altitude(kind: ScheduleKind) -> (Analysis, Vec<f64>) {
     let mut study = Study::new(embedded_example().unwrap().dataset);
     let schedule = ScheduleSettings {

@@ -111,8 +111,8 @@ impl<'a> ChannelNames<'a> {
         self.by_channel(|channel| correction.pure_delay_s(channel))
     }
 
-    /// Returns signed delay and lead filter by channel (M15); `None` unless the phase
-    /// correction has leads.
+    /// Returns signed delay and lead filter by channel (M15); `None` unless the phase correction
+    /// has leads.
     pub(super) fn leads(&self, correction: &ChannelCorrection) -> Option<Value> {
         let leads = correction.leads.as_ref()?;
         let price = LeadPrice::of(leads);

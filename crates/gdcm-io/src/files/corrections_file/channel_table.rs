@@ -149,7 +149,8 @@ impl ChannelRow<'_> {
         Some(leads.taus_s[self.channel])
     }
 
-    /// Returns the weight with which each input and each output enters an input; empty without couplings.
+    /// Returns the weight with which each input and each output enters an input; empty without
+    /// couplings.
     fn coupling_cells(&self) -> Vec<String> {
         let Some(fitted) = self.results.analysis.fitted_couplings() else {
             return Vec::new();

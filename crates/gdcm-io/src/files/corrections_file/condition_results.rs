@@ -63,8 +63,8 @@ impl ConditionResults<'_> {
             .bar(self.condition.id(), scalar)
     }
 
-    /// Returns the lower (0) or upper (1) end in the total interval: a factor for a gain, seconds for
-    /// a delay.
+    /// Returns the lower (0) or upper (1) end in the total interval: a factor for a gain, seconds
+    /// for a delay.
     pub(super) fn end(&self, scalar: Scalar, end: usize) -> String {
         let ends = match &self.analysis.uncertainty {
             Some(uncertainty) => self

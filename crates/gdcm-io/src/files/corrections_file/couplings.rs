@@ -76,8 +76,8 @@ fn coupling_cost(cost: CouplingCost) -> Value {
     })
 }
 
-/// Returns a condition's mixing, with ones on the diagonal, and how the couplings affect
-/// its physics representative; null without couplings.
+/// Returns a condition's mixing, with ones on the diagonal, and how the couplings affect its
+/// physics representative; null without couplings.
 pub(super) fn condition_couplings(analysis: &Analysis, result: &ConditionAnalysis) -> Value {
     let Some(coupled) = &result.coupled else {
         return Value::Null;

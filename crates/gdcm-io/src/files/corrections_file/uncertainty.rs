@@ -14,9 +14,9 @@ use gdcm_study::stages::uncertainty::{
 
 use super::channel_names::{ChannelNames, is_empty_value, rows_of, without_empty};
 
-/// Returns a confidence interval, with the error that remains in the band after a single gain. For a
-/// gain, intervals are factors and standard deviations those of its natural logarithm; for a delay,
-/// all are in seconds.
+/// Returns a confidence interval, with the error that remains in the band after a single gain. For
+/// a gain, intervals are factors and standard deviations those of its natural logarithm; for a
+/// delay, all are in seconds.
 fn bar_json(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Value {
     let interval = bar.interval(level).map(|ends| in_units(scalar, ends));
     let inner_interval = bar.inner_interval(level).map(|ends| in_units(scalar, ends));

@@ -1,5 +1,4 @@
-//! Conversion between dataset files and datasets: drafts from texts, texts from checked
-//! datasets.
+//! Conversion between dataset files and datasets: drafts from texts, texts from checked datasets.
 
 use nalgebra::DMatrix;
 

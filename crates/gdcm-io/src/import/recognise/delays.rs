@@ -62,8 +62,8 @@ pub(super) fn timing_of(
     Ok(reading.finish())
 }
 
-/// Refuses delays beside a measured response, which already contains them. Fields that only resemble
-/// delays are ignored.
+/// Refuses delays beside a measured response, which already contains them. Fields that only
+/// resemble delays are ignored.
 pub(super) fn refuse_delays(record: &Record<'_>) -> Result<(), String> {
     for field in record.delay_fields() {
         if field.meaning.delayed != Delayed::Unclear && field.is_nonzero() {
@@ -123,8 +123,8 @@ impl DelayReading {
         }
     }
 
-    /// Returns a delay \[s\] for each of the `count` channels on one side; a single number applies to
-    /// all.
+    /// Returns a delay \[s\] for each of the `count` channels on one side; a single number applies
+    /// to all.
     fn channel_delays(
         &mut self,
         field: &DelayField<'_>,
@@ -345,7 +345,8 @@ fn sample_time_of(record: &Record<'_>) -> Result<Option<f64>, String> {
     }
 }
 
-/// Refuses a model with a time unit other than seconds, as its frequencies and delays would be wrong.
+/// Refuses a model with a time unit other than seconds, as its frequencies and delays would be
+/// wrong.
 fn refuse_other_time_units(record: &Record<'_>) -> Result<(), String> {
     let unit = record.get(&["TimeUnit"]).and_then(first_text_of);
     match unit.as_deref() {

@@ -174,8 +174,8 @@ fn name_beside(record: &Record<'_>, page: Page) -> Option<String> {
 }
 
 /// Returns the origin from a model's record and the enclosing records: role, trim offsets,
-/// identification method. Without a role, objects with a MATLAB class `id…` are identified and
-/// all others are simulated.
+/// identification method. Without a role, objects with a MATLAB class `id…` are identified and all
+/// others are simulated.
 pub(super) fn origin_of(record: &Record<'_>) -> Origin {
     let role = match text_beside(record, "role") {
         Some(word) => RowRole::of(&word.to_lowercase()),

@@ -251,8 +251,8 @@ struct ResponseLayout {
 }
 
 impl ResponseLayout {
-    /// Finds the layout for `count` frequencies along the last index as in MATLAB, or
-    /// along its first as in NumPy. A single response may be a row or a column.
+    /// Finds the layout for `count` frequencies along the last index as in MATLAB, or along its
+    /// first as in NumPy. A single response may be a row or a column.
     fn new(shape: &[usize], count: usize) -> Result<Self, String> {
         match *shape {
             [outputs, inputs, last] if last == count => Ok(Self {
@@ -289,8 +289,8 @@ impl ResponseLayout {
         }
     }
 
-    /// Reorders values to outputs x inputs x frequencies, frequency index fastest; refuses values that
-    /// are not finite.
+    /// Reorders values to outputs x inputs x frequencies, frequency index fastest; refuses values
+    /// that are not finite.
     fn ordered(&self, name: &str, values: &[f64]) -> Result<ResponseArray, String> {
         let mut ordered = Vec::with_capacity(values.len());
         for output in 0..self.outputs {

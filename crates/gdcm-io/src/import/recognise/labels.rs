@@ -129,8 +129,8 @@ fn list_of_labels(
     Ok(None)
 }
 
-/// Returns the labels in a value as texts: a list with texts, or with objects that have a name and a unit as
-/// in a dataset file; `None` for numbers.
+/// Returns the labels in a value as texts: a list with texts, or with objects that have a name and
+/// a unit as in a dataset file; `None` for numbers.
 fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String> {
     if let Some(texts) = texts_of(value) {
         return Ok(Some(texts));

@@ -10,8 +10,7 @@ use super::delay_names::{DelayField, delay_fields};
 use super::values::Field;
 use crate::formats::variables::{StructArray, Value, Variable};
 
-/// Inner parts in which MATLAB and GNU Octave objects store fields that other files store
-/// directly.
+/// Inner parts in which MATLAB and GNU Octave objects store fields that other files store directly.
 const INNER_PARTS: [&str; 4] = ["data", "structure", "lti", RESPONSE_PART];
 /// Field with the measured response in this program's models.
 const RESPONSE_PART: &str = "frequencyresponse";
@@ -126,8 +125,8 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Returns the first existing field under these names and marks it as used: exact names
-    /// first, then names without case and underscores.
+    /// Returns the first existing field under these names and marks it as used: exact names first,
+    /// then names without case and underscores.
     pub(crate) fn get(&self, names: &[&str]) -> Option<&'v Value> {
         Some(self.take(self.find(names)?))
     }

@@ -54,8 +54,8 @@ impl<T> Found<T> {
     }
 }
 
-/// Recognises a record's fields, given the variable name; `None` if they are not of the
-/// sought kind.
+/// Recognises a record's fields, given the variable name; `None` if they are not of the sought
+/// kind.
 pub(super) type Recognise<'r, T> = &'r dyn Fn(&Record<'_>, &str) -> Option<Vec<Result<T, String>>>;
 
 /// Finds everything that `recognise` accepts among variables: first all variables together, then
@@ -93,8 +93,8 @@ pub(crate) fn search<T>(
     Ok(found)
 }
 
-/// Returns a record's unused fields that hold no result themselves; `empty` are the fields
-/// without results. Paths into structs are unused in any case.
+/// Returns a record's unused fields that hold no result themselves; `empty` are the fields without
+/// results. Paths into structs are unused in any case.
 fn unused_among(record: &Record<'_>, empty: &BTreeSet<&str>) -> Vec<String> {
     let mut unused = record.unused();
     unused.retain(|name| empty.contains(name.as_str()) || name.contains('.'));

@@ -116,7 +116,8 @@ impl Fraction {
     /// Creates the fraction without leading zeros and with a monic denominator.
     ///
     /// # Errors
-    /// A zero denominator, a numerator with a higher degree than the denominator, and too many poles.
+    /// A zero denominator, a numerator with a higher degree than the denominator, and too many
+    /// poles.
     fn new(numerator: &[f64], denominator: &[f64], place: &str) -> Result<Self, String> {
         at_most(denominator.len().saturating_sub(1), "states", place)?;
         let numerator = without_leading_zeros(numerator);

@@ -57,8 +57,8 @@ pub(super) struct PagedShape {
 }
 
 impl PagedShape {
-    /// Reads an array's shape; with `pages_first` the first of three indices counts the
-    /// matrices, otherwise the indices after the second.
+    /// Reads an array's shape; with `pages_first` the first of three indices counts the matrices,
+    /// otherwise the indices after the second.
     pub(super) fn new(array: &Array, pages_first: bool) -> Self {
         let shape = &array.shape;
         if shape.len() == 3 && pages_first {
@@ -163,8 +163,8 @@ pub(super) fn complex_list_of(name: &str, value: &Value) -> Result<Vec<Complex<f
     Ok(parts.map(|(re, im)| Complex::new(re, im)).collect())
 }
 
-/// Returns the texts in a value, trimmed: a text array, a cell array with a text in each cell, or an
-/// empty array, in which MATLAB stores an empty list.
+/// Returns the texts in a value, trimmed: a text array, a cell array with a text in each cell, or
+/// an empty array, in which MATLAB stores an empty list.
 pub(in crate::import) fn texts_of(value: &Value) -> Option<Vec<String>> {
     match value {
         Value::Text(text) => Some(

@@ -76,7 +76,8 @@ pub(super) struct ColumnLabels {
 
 impl ColumnLabels {
     /// Finds the labels for a field with `count` columns: those named after the field (`u_names`),
-    /// then those for its side, then those for the whole record. Lists with another length are ignored.
+    /// then those for its side, then those for the whole record. Lists with another length are
+    /// ignored.
     pub(super) fn find(record: &Record<'_>, field: &str, count: usize) -> Self {
         let name = folded_name(field);
         // A single column called u may be a speed.

@@ -29,8 +29,8 @@ pub fn relative_entry(
 }
 
 /// Finds the path to a record's file: a requested file with this name, or the file in a requested
-/// folder. For topics joined from several files, which have no file, it is the folder around the first
-/// requested file.
+/// folder. For topics joined from several files, which have no file, it is the folder around the
+/// first requested file.
 fn place_of_record(file: &str, requested: &[PathBuf]) -> Option<PathBuf> {
     for path in requested {
         let is_file = path

@@ -30,8 +30,8 @@ struct RecordLength {
     is_timed: bool,
 }
 
-/// Returns the record in the fields, if they hold one: arrays with equal lengths, that of the
-/// time or the most frequent length.
+/// Returns the record in the fields, if they hold one: arrays with equal lengths, that of the time
+/// or the most frequent length.
 pub(super) fn array_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
     let is_model = ["A", "B", "C"]
         .iter()

@@ -697,8 +697,8 @@ fn a_first_line_that_numbers_the_columns_is_no_sample() {
 
 #[test]
 fn fdata_of_sidpac_is_read_with_the_names_of_its_columns() {
-    // SIDPAC stores flight data in the columns of fdata, and their names with units in the rows
-    // of varlab.
+    // SIDPAC stores flight data in the columns of fdata, and their names with units in the rows of
+    // varlab.
     let rows = 80;
     let column = |of: fn(f64) -> f64| (0..rows).map(move |row| of(f64::from(row)));
     let values: Vec<f64> = column(|k| 0.02 * k)

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use gdcm_io::files::dataset_file::add_dataset;
-use gdcm_io::files::model_collection::{IdentifiedModels, add_identified};
+use gdcm_io::files::identified_models::{IdentifiedModels, add_identified};
 use gdcm_io::import::record_files::relative_entry;
 use gdcm_io::output_set::{OutputSet, make_directory};
 use gdcm_model::dataset::Band;

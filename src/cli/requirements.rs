@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use gdcm_io::files::requirements_file::{
-    REQUIREMENT_FILES, add_tolerances, requirement_paths, write_requirements,
+    REQUIREMENT_FILES, RequirementResults, add_tolerances, requirement_paths, write_requirements,
 };
 use gdcm_io::output_set::{OutputSet, make_directory};
 use gdcm_method::requirements::ModeVerdict;
@@ -20,7 +20,7 @@ use gdcm_words::Table;
 use gdcm_words::time_histories::{history_cost_table, output_weights_text, share_table};
 
 use super::failure::Failure;
-use super::histories::{read_histories, simulated_histories};
+use super::histories::read_histories;
 use super::progress::TerminalProgress;
 use super::result_arguments::RequirementsArguments;
 use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study};
@@ -51,11 +51,15 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
         &KnownPoles::default(),
         &TerminalProgress::new("reading bandwidths"),
     )?;
-    let histories = simulated_histories(&analysis, &records)?;
-    let dataset = (analysis.study.dataset.name(), loaded.sha256.as_str());
-    write_requirements((&requirements, &histories), dataset, out, outputs)?;
-    report_cautions(&requirements);
-    report_missing(&requirements, &histories);
+    let histories = time_histories(&analysis, &records)?;
+    let results = RequirementResults {
+        requirements: &requirements,
+        time_histories: &histories,
+        dataset: analysis.study.dataset.name(),
+        sha256: &loaded.sha256,
+    };
+    write_requirements(results, out, outputs)?;
+    tell_cautions(&requirements, &histories);
     let files = format!(
         "{} in {}",
         REQUIREMENT_FILES.join(", "),

@@ -11,7 +11,7 @@ use gdcm_words::table::Table;
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
 
-/// Writes records of equal length, one per line; each cell is a [`plain`] one.
+/// Writes equally long records, a line for each; the cells are [`plain`].
 pub(crate) fn write_records<R>(
     file: &mut dyn Write,
     records: impl Iterator<Item = R>,
@@ -22,29 +22,37 @@ where
 {
     let mut table = csv::Writer::from_writer(file);
     for record in records {
-        // Unwrapped, so that a full disk is reported as such.
         let cells = record.into_iter().map(|cell| plain(cell.as_ref()));
-        table
-            .write_record(cells)
-            .map_err(|error| match error.into_kind() {
-                csv::ErrorKind::Io(error) => error,
-                _ => io::ErrorKind::InvalidData.into(),
-            })?;
+        table.write_record(cells).map_err(io_error)?;
     }
     table.flush()
 }
 
-/// Returns a cell that no spreadsheet takes for a formula, and no terminal for a command: a text
-/// that begins with `=`, `+`, `-` or `@` and is not a number is preceded by an apostrophe; control
-/// and invisible characters are spelled out. Numbers have the ASCII minus that programs read, and a
-/// lone dash marks a missing value. A zero has no sign.
+/// Returns the system's error inside an error of the CSV writer, so that a full disk is reported as
+/// such.
+fn io_error(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        _ => io::ErrorKind::InvalidData.into(),
+    }
+}
+
+/// Returns a cell that no spreadsheet takes for a formula, and no terminal for a command.
+///
+/// A text that begins with `=`, `+`, `-` or `@` and is not a number is preceded by an apostrophe;
+/// control and invisible characters are spelled out. Numbers have the ASCII minus, and zero has no
+/// sign. A lone dash, which marks a missing value, is unchanged.
 pub(crate) fn plain(cell: &str) -> String {
     let number = cell.replacen('\u{2212}', "-", 1);
     if number.parse::<f64>().is_ok() {
         return without_sign_of_zero(&number).to_owned();
     }
     let is_formula = cell.len() > 1 && cell.starts_with(['=', '+', '-', '@']);
-    format!("{}{}", if is_formula { "'" } else { "" }, sanitized(cell))
+    if is_formula {
+        format!("'{}", sanitized(cell))
+    } else {
+        sanitized(cell)
+    }
 }
 
 /// Writes tables: a single table as headings and rows; several one after another, each under a line
@@ -70,8 +78,8 @@ pub fn csv_text(tables: &[Table]) -> String {
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// Writes tables as CSV: the headings of each, then a line for each row. Existing files are kept or
-/// replaced according to `outputs`.
+/// Writes tables as CSV: headings, then a line for each row. Existing files are kept or replaced
+/// according to `outputs`.
 pub fn save_tables(tables: &[Table], path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
     outputs.add(path, |file| write_tables(file, tables))?;
     outputs.persist()
@@ -125,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn several_tables_stand_under_their_titles() {
+    fn several_tables_are_written_under_their_titles() {
         let text = csv_text(&[table("first, of two"), table("second")]);
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines[0], "\"first, of two\"");

@@ -28,7 +28,7 @@ pub enum ExportFault {
         quoted(found)
     )]
     FunctionName { found: String },
-    /// The file extension is none of the model formats.
+    /// The file extension belongs to no model format.
     #[error("models are written to a name that ends in .mat, .json or .npz")]
     ModelsFormat,
     /// The values cannot be written.
@@ -37,9 +37,9 @@ pub enum ExportFault {
     /// There is no schedule to export.
     #[error(transparent)]
     Schedule(#[from] ScheduleError),
-    /// The study requests couplings and has none: the export would not be the requested one.
+    /// The study requests couplings and has none, so that the export would differ from the request.
     #[error(
-        "the study asks for couplings, and there are none: {why}; mend that, or set couplings to none"
+        "the study asks for couplings, and there are none: {why}; correct that, or set couplings to none"
     )]
     NoCouplings { why: String },
     /// A condition has no result of its own.
@@ -76,7 +76,7 @@ pub enum ExportFault {
 }
 
 impl ExportFault {
-    /// Returns whether the analysis lacks the requested content; otherwise the request must change.
+    /// Whether the analysis lacks the requested content; otherwise the request must change.
     pub fn is_of_analysis(&self) -> bool {
         matches!(
             self,

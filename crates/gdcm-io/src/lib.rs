@@ -1,4 +1,15 @@
-//! Files: datasets, studies and results. The only place that touches the file system.
+//! Bytes into models and records, results into files: the only crate that touches the file system.
+//!
+//! `formats` reads single file formats into variables and columns; `import` recognises models and
+//! flight records in them. `files` holds the program's own formats (dataset, study, corrections),
+//! `export` the formats of other tools, `report` the printed report. Files are written whole or not
+//! at all.
+//!
+//! ```
+//! let example = gdcm_io::embedded_example()?;
+//! assert_eq!(example.dataset.conditions().len(), 11);
+//! # Ok::<(), gdcm_io::FileError>(())
+//! ```
 
 pub mod csv_text;
 pub mod export;
@@ -16,19 +27,14 @@ pub mod reading_budget;
 pub mod report;
 pub mod source;
 
+pub use gdcm_model::dataset::limits::LARGEST_TEXT;
+
+pub use crate::file_error::FileError;
 pub use crate::files::dataset_file::{
     DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes,
 };
-
-pub use file_error::FileError;
-
-pub use formats::mat::write as write_mat;
-
-pub use formats::FolderProgress;
-pub use gdcm_model::dataset::limits::LARGEST_TEXT;
-
-pub use crate::import::model_files::read_models;
-
-pub use output_set::Existing;
-
 pub use crate::files::study_file::{Opened, load_any, save_study};
+pub use crate::formats::FolderProgress;
+pub use crate::formats::mat::write as write_mat;
+pub use crate::import::model_files::read_models;
+pub use crate::output_set::Existing;

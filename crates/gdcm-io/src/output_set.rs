@@ -13,10 +13,10 @@ use tempfile::NamedTempFile;
 use super::file_error::FileError;
 use super::source::kind_of;
 
-/// Treatment of existing files at the places of new ones.
+/// Treatment of existing files where new files should go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
-    /// They stay, and nothing is written.
+    /// They are kept, and nothing is written.
     Keep,
     /// The new files replace them.
     Replace,
@@ -25,7 +25,7 @@ pub enum Existing {
 /// A set of files that take their places together.
 ///
 /// ```text
-/// check    nothing stands in the way                                   (before any work)
+/// check    reject places that must not be written to                   (before any work)
 /// add      write each beside its place, to the disk                    (a full disk shows here)
 /// persist  wait for other sets in the same directory; keep what each replaces aside; rename, in the order in which they were added;
 ///          on an error rename back what was kept aside
@@ -72,7 +72,7 @@ impl OutputSet {
 
     /// Rejects places that cannot or must not be written to, before the work.
     pub fn check<P: AsRef<Path>>(&self, places: &[P]) -> Result<(), FileError> {
-        let mut there = Vec::new();
+        let mut existing = Vec::new();
         for path in places.iter().map(AsRef::as_ref) {
             let Ok(found) = fs::metadata(path) else {
                 continue;
@@ -98,12 +98,12 @@ impl OutputSet {
             if found.permissions().readonly() {
                 return Err(FileError::unwritable(path, "it is read-only"));
             }
-            there.push(path.to_owned());
+            existing.push(path.to_owned());
         }
-        if there.is_empty() || self.existing == Existing::Replace {
+        if existing.is_empty() || self.existing == Existing::Replace {
             Ok(())
         } else {
-            Err(FileError::Exists { paths: there })
+            Err(FileError::Exists { paths: existing })
         }
     }
 
@@ -117,16 +117,8 @@ impl OutputSet {
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let directory = directory_of(&target);
         remove_leftovers(directory);
-        let stage = || -> io::Result<NamedTempFile> {
-            let mut temporary = temporary_file(&target, directory)?;
-            let mut buffered = BufWriter::new(temporary.as_file_mut());
-            write(&mut buffered)?;
-            buffered.flush()?;
-            drop(buffered);
-            temporary.as_file().sync_all()?;
-            Ok(temporary)
-        };
-        let temporary = stage().map_err(|error| FileError::writing(path, &error))?;
+        let temporary = write_temporary_file(&target, directory, write)
+            .map_err(|error| FileError::writing(path, &error))?;
         self.staged.push(Staged {
             path: path.to_owned(),
             target,
@@ -135,38 +127,22 @@ impl OutputSet {
         Ok(())
     }
 
-    /// Adds the SHA-256 of every file so far, in the format of `sha256sum`: this file takes its
+    /// Adds the SHA-256 of every file so far, in the format of `sha256sum`. This file takes its
     /// place last, and shows whether the others belong together.
     pub fn add_checksums(&mut self, path: &Path) -> Result<(), FileError> {
-        let line = |staged: &Staged| {
-            let name = &staged
-                .path
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy();
-            Ok(checksum(name, &fs::read(staged.temporary.path())?))
-        };
-        let lines: io::Result<String> = self.staged.iter().map(line).collect();
-        let lines = lines.map_err(|error| FileError::writing(path, &error))?;
+        let mut lines = String::new();
+        for staged in &self.staged {
+            let bytes = fs::read(staged.temporary.path())
+                .map_err(|error| FileError::writing(path, &error))?;
+            let name = staged.path.file_name().unwrap_or_default();
+            lines.push_str(&checksum(&name.to_string_lossy(), &bytes));
+        }
         self.add(path, |file| file.write_all(lines.as_bytes()))
     }
 
     /// Puts every file in its place, or none.
     pub fn persist(self) -> Result<(), FileError> {
-        // Each directory once, whatever the path to it: a set that waited for itself would wait for
-        // ever.
-        let directory = |staged: &Staged| {
-            let directory = directory_of(&staged.target);
-            fs::canonicalize(directory).unwrap_or_else(|_| directory.to_owned())
-        };
-        let directories: BTreeSet<PathBuf> = self.staged.iter().map(directory).collect();
-        // For a single file, the last writer wins.
-        let is_set = self.staged.len() > 1;
-        let _locks: Vec<SetLock> = directories
-            .iter()
-            .filter(|_| is_set)
-            .filter_map(|of| SetLock::of(of))
-            .collect();
+        let _locks = self.directory_locks();
         let mut placed: Vec<Placed> = Vec::new();
         for Staged {
             path,
@@ -179,7 +155,9 @@ impl OutputSet {
             match Placed::at(target, temporary, self.existing) {
                 Ok(file) => placed.push(file),
                 Err(error) => {
-                    placed.into_iter().rev().for_each(Placed::take_back);
+                    for file in placed.into_iter().rev() {
+                        file.take_back();
+                    }
                     return Err(match error.kind() {
                         ErrorKind::AlreadyExists => FileError::Exists { paths: vec![path] },
                         _ => FileError::writing(&path, &error),
@@ -189,10 +167,44 @@ impl OutputSet {
         }
         Ok(())
     }
+
+    /// Locks each directory in a set; a single file needs no lock, as the last writer wins.
+    fn directory_locks(&self) -> Vec<SetLock> {
+        if self.staged.len() <= 1 {
+            return Vec::new();
+        }
+        // Each directory once, whatever the path to it: a set must not wait for its own lock.
+        let mut directories = BTreeSet::new();
+        for staged in &self.staged {
+            let directory = directory_of(&staged.target);
+            directories
+                .insert(fs::canonicalize(directory).unwrap_or_else(|_| directory.to_owned()));
+        }
+        let mut locks = Vec::new();
+        for directory in &directories {
+            locks.extend(SetLock::acquire(directory));
+        }
+        locks
+    }
 }
 
-/// Returns whether an output is an input, through any links. An input that is a pipe or a device
-/// does not count, and is not opened.
+/// Writes a temporary file for the place `target`, flushed to the disk.
+fn write_temporary_file(
+    target: &Path,
+    directory: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<NamedTempFile> {
+    let mut temporary = temporary_file(target, directory)?;
+    let mut buffered = BufWriter::new(temporary.as_file_mut());
+    write(&mut buffered)?;
+    buffered.flush()?;
+    drop(buffered);
+    temporary.as_file().sync_all()?;
+    Ok(temporary)
+}
+
+/// Whether an output is an input, through any links. An input that is a pipe or a device does not
+/// count, and is not opened.
 fn is_same_file(path: &Path, input: &Path) -> bool {
     let Ok(found) = fs::metadata(input) else {
         return false;
@@ -200,7 +212,7 @@ fn is_same_file(path: &Path, input: &Path) -> bool {
     kind_of(found.file_type()).is_none() && same_file::is_same_file(path, input).unwrap_or(false)
 }
 
-/// Returns a file's line in the checksums.
+/// Returns the checksum line for a file.
 fn checksum(name: &str, bytes: &[u8]) -> String {
     format!("{:x}  {name}\n", Sha256::digest(bytes))
 }
@@ -214,7 +226,7 @@ struct SetLock {
 
 impl SetLock {
     /// Waits for the lock; `None` if the file system has no locks.
-    fn of(directory: &Path) -> Option<Self> {
+    fn acquire(directory: &Path) -> Option<Self> {
         let path = directory.join(format!("{PREFIX}lock{SUFFIX}"));
         loop {
             let file = File::options()
@@ -274,33 +286,31 @@ impl Placed {
     }
 }
 
-/// Creates a second name for a file, or a copy of it if the file system has no hard links; removed
-/// when dropped.
+/// Creates a second name for a file, or a copy if the file system has no hard links; removed when
+/// dropped.
 fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
     named().make_in(directory_of(target), |path| {
         match fs::hard_link(target, path) {
             Err(error) if error.kind() != ErrorKind::AlreadyExists => drop(fs::copy(target, path)?),
             linked => linked?,
         }
-        // Another process may take it for a leftover before the lock: then another name is chosen.
-        let removed = || io::Error::from(ErrorKind::AlreadyExists);
-        let file = File::open(path).map_err(|error| {
-            if error.kind() == ErrorKind::NotFound {
-                removed()
-            } else {
-                error
-            }
-        })?;
+        // Another process may remove it as a leftover before the lock. This error makes `make_in`
+        // try another name.
+        let removed = ErrorKind::AlreadyExists;
+        let file = match File::open(path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Err(removed.into()),
+            opened => opened?,
+        };
         let _ = file.try_lock();
         if path.exists() {
             Ok(file)
         } else {
-            Err(removed())
+            Err(removed.into())
         }
     })
 }
 
-/// Writes a file, replacing an existing one, which an error leaves untouched. Links are followed:
+/// Writes a file, replacing an existing file, which an error leaves untouched. Links are followed:
 /// their target is replaced.
 pub(super) fn write_whole(
     path: &Path,
@@ -322,7 +332,7 @@ pub fn make_directory(path: &Path) -> Result<(), FileError> {
 }
 
 /// Turns the signal for a file beyond the system's size limit (`ulimit -f`) into an ordinary error,
-/// instead of the end of the program.
+/// instead of ending the program.
 pub fn report_size_limit() {
     // If that fails, the program ends as before, and still leaves no partial file.
     #[cfg(unix)]
@@ -339,9 +349,10 @@ fn named() -> tempfile::Builder<'static, 'static> {
 }
 
 fn directory_of(file: &Path) -> &Path {
-    file.parent()
-        .filter(|parent| !parent.as_os_str().is_empty())
-        .unwrap_or(Path::new("."))
+    match file.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
 }
 
 /// Creates a temporary file, locked as long as it is open: the lock ends with its process, however
@@ -373,7 +384,7 @@ fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> 
     }
 }
 
-/// Removes the temporary files of killed runs: those without a lock.
+/// Removes temporary files from killed runs: those without a lock.
 fn remove_leftovers(directory: &Path) {
     for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
         let is_ours = entry
@@ -443,15 +454,14 @@ mod tests {
     }
 
     #[test]
-    fn a_set_whose_process_is_killed_on_the_way_is_not_whole_by_its_checksums_and_the_next_one_is()
-    {
+    fn checksums_reveal_a_set_whose_process_was_killed_and_the_next_set_is_whole() {
         // The killed process runs this very test.
         if let Some(directory) = std::env::var_os("GDCM_TEST_DIRECTORY") {
             write_set(Path::new(&directory), "after").unwrap();
         }
         let module = module_path!().split_once("::").unwrap().1;
         let name = format!(
-            "{module}::a_set_whose_process_is_killed_on_the_way_is_not_whole_by_its_checksums_and_the_next_one_is"
+            "{module}::checksums_reveal_a_set_whose_process_was_killed_and_the_next_set_is_whole"
         );
         for (end, whole) in [
             (SET[0], Some("before")),
@@ -488,7 +498,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_set_of_which_one_file_is_there_and_whose_directory_has_two_names_takes_its_place() {
+    fn a_set_with_an_existing_file_and_two_names_for_its_directory_takes_its_place() {
         let directory = tempfile::tempdir().unwrap();
         let real = directory.path().join("real");
         let link = directory.path().join("link");
@@ -500,7 +510,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_sets_that_are_written_at_once_one_is_there_whole() {
+    fn one_of_two_simultaneous_sets_is_whole() {
         let directory = tempfile::tempdir().unwrap();
         for _ in 0..200 {
             let start = std::sync::Barrier::new(2);
@@ -537,7 +547,7 @@ mod tests {
     }
 
     #[test]
-    fn a_set_of_which_one_file_cannot_take_its_place_leaves_what_was_there() {
+    fn a_set_that_cannot_be_placed_leaves_the_earlier_files() {
         let directory = tempfile::tempdir().unwrap();
         let [old, new, blocked] = ["old", "new", "blocked"].map(|name| directory.path().join(name));
         fs::write(&old, "before").unwrap();
@@ -644,7 +654,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_killed_run_left_is_removed_and_what_is_being_written_is_not() {
+    fn leftovers_of_killed_runs_are_removed_and_files_in_progress_are_not() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
         fs::write(at(".gdcm-x1y2z3.tmp"), "half of it").unwrap();
@@ -678,7 +688,7 @@ mod tests {
     }
 
     #[test]
-    fn a_directory_that_is_not_there_is_told() {
+    fn a_missing_directory_is_reported() {
         let directory = tempfile::tempdir().unwrap();
         let error = write_whole(&directory.path().join("no/such/file"), |_| Ok(())).unwrap_err();
         assert!(

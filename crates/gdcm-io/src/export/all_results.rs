@@ -1,15 +1,15 @@
-//! All results of an analysis: `corrections.json`, `corrections.csv`, and the fields of the former
-//! as one MATLAB struct.
+//! All analysis results: `corrections.json`, `corrections.csv`, and the fields of the former as a
+//! MATLAB struct.
 
 use std::collections::BTreeSet;
 
 use serde_json::{Value as Tree, json};
 
-use gdcm_model::dataset::{Channel, ConditionId, Dataset};
+use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_study::Analysis;
 
 use super::matlab_struct::{Layout, cell_of_texts};
-use super::{Export, ExportFormat, Exported};
+use super::{ExportFormat, Exported};
 use crate::files::corrections_file::{channel_table, corrections, write_corrections};
 use crate::files::export_contents::ExportContents;
 use crate::formats::mat;
@@ -23,14 +23,13 @@ pub(super) const JSON: ExportFormat = ExportFormat {
     options: &[],
     check_path: |_| Ok(()),
     contents: |analysis, _| ExportContents::of_results(analysis),
-    export: |of| {
-        let Export {
-            analysis, source, ..
-        } = *of;
-        Ok(Exported::new(move |file| {
-            write_corrections(analysis, &source.sha256, &all(analysis), file)
-        })
-        .with(of.price()))
+    export: |export| {
+        let analysis = export.analysis;
+        let sha256 = &export.source.sha256;
+        let exported = Exported::new(move |file| {
+            write_corrections(analysis, sha256, &all_conditions(analysis), file)
+        });
+        Ok(exported.with(export.price_remarks()))
     },
 };
 
@@ -42,12 +41,11 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     options: &[],
     check_path: |_| Ok(()),
     contents: |analysis, _| ExportContents::of_results(analysis),
-    export: |of| {
-        let analysis = of.analysis;
-        Ok(
-            Exported::new(move |file| channel_table(analysis, &all(analysis), file))
-                .with(of.price()),
-        )
+    export: |export| {
+        let analysis = export.analysis;
+        let exported =
+            Exported::new(move |file| channel_table(analysis, &all_conditions(analysis), file));
+        Ok(exported.with(export.price_remarks()))
     },
 };
 
@@ -59,139 +57,181 @@ pub(super) const MAT: ExportFormat = ExportFormat {
     options: &[],
     check_path: |_| Ok(()),
     contents: |analysis, _| ExportContents::of_results(analysis),
-    export: |of| {
-        let corrections = corrections(of.analysis, &of.source.sha256, &all(of.analysis));
-        let value = corrections_struct(corrections, &of.analysis.study.dataset);
-        Ok(Exported::bytes(mat::write(&[Variable {
+    export: |export| {
+        let analysis = export.analysis;
+        let corrections = corrections(analysis, &export.source.sha256, &all_conditions(analysis));
+        let variable = Variable {
             name: "corrections".to_owned(),
-            value,
-        }])?)
-        .with(of.price()))
+            value: corrections_struct(corrections, &analysis.study.dataset),
+        };
+        Ok(Exported::bytes(mat::write(&[variable])?).with(export.price_remarks()))
     },
 };
 
-fn all(analysis: &Analysis) -> BTreeSet<ConditionId> {
+fn all_conditions(analysis: &Analysis) -> BTreeSet<ConditionId> {
     analysis.conditions.keys().copied().collect()
 }
 
-/// Values of channels are arrays in the order of the dataset's `inputs` and `outputs`.
+/// Channel values are arrays, ordered as the dataset's `inputs` and `outputs`.
 const LAYOUT: Layout = Layout {
     by_channel: &["inputs", "outputs"],
     by_name: &["discontinuity"],
     columns: &["table"],
 };
 
-/// Returns the fields of `corrections.json`. Lists of responses become logical matrices with a row
-/// for each output and a column for each input, the values of `net_gains` become the matrices of
-/// `net_gain_table`; besides these, fields of earlier programs keep their names.
+/// Keys of `corrections.json` that are repeated under other names, which earlier versions wrote.
+const EARLIER_NAMES: [EarlierName; 6] = [
+    EarlierName::new("gain_objective", "gain_solution", "objective"),
+    EarlierName::new("gain_lower_bound", "gain_solution", "lower_bound"),
+    EarlierName::new("gain_proven", "gain_solution", "proven"),
+    EarlierName::new("gain_matched", "gain_solution", "matched"),
+    EarlierName::new("delay_objective_s2", "delay_solution", "objective"),
+    EarlierName::new("delay_matched", "delay_solution", "matched"),
+];
+
+/// Earlier name for a member in a solution.
+struct EarlierName {
+    name: &'static str,
+    solution: &'static str,
+    member: &'static str,
+}
+
+impl EarlierName {
+    const fn new(name: &'static str, solution: &'static str, member: &'static str) -> Self {
+        Self {
+            name,
+            solution,
+            member,
+        }
+    }
+}
+
+/// Returns the fields in `corrections.json` as a struct. Lists with responses become logical
+/// matrices with a row for each output and a column for each input; `net_gains` becomes several
+/// matrices, and its original is `net_gain_table`. Fields from earlier versions keep their names.
 fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
-    let pair_rows = |of: &dyn Fn(&str, &str) -> Tree| -> Tree {
-        let row = |output: &Channel| {
-            dataset
-                .inputs()
-                .iter()
-                .map(|input| of(&output.name, &input.name))
-                .collect::<Tree>()
-        };
-        dataset.outputs().iter().map(row).collect()
-    };
-    let marked = |pairs: &Tree| {
-        let pairs = pairs.as_array().map(Vec::as_slice).unwrap_or_default();
-        pair_rows(&|output, input| {
-            pairs
-                .iter()
-                .any(|pair| pair[0] == output && pair[1] == input)
-                .into()
-        })
-    };
     let settings = &mut corrections["settings"];
     for name in ["constrained", "ignored"] {
-        settings[name] = marked(&settings[name]);
+        settings[name] = marked_responses(&settings[name], dataset);
     }
     // Absent if coherence is not used.
     if settings.get("coherence_threshold").is_none() {
         settings["coherence_threshold"] = Tree::Null;
     }
-    for condition in corrections["conditions"]
-        .as_array_mut()
-        .into_iter()
-        .flatten()
-    {
-        condition["held"] = marked(&condition["held"]);
-        condition["held_out"] = condition.get("held_out").cloned().unwrap_or(false.into());
-        let net_gains = condition["net_gains"].take();
-        let net_gains = net_gains.as_array().map(Vec::as_slice).unwrap_or_default();
-        let metric = |key: &str, place: Option<usize>| {
-            pair_rows(&|output, input| {
-                let found = net_gains
-                    .iter()
-                    .find(|net| net["output"] == output && net["input"] == input);
-                let value = found.and_then(|net| net.get(key));
-                value
-                    .and_then(|value| place.map_or(Some(value), |place| value.get(place)))
-                    .cloned()
-                    .into()
-            })
-        };
-        condition["net_gain_table"] = net_gains
-            .chunks(dataset.inputs().len())
-            .map(|row| json!(row))
-            .collect();
-        condition["net_gains"] = metric("gain", None);
-        condition["net_gains_low"] = metric("interval", Some(0));
-        condition["net_gains_high"] = metric("interval", Some(1));
-        condition["u_physics"] = metric("u_physics", None);
-        condition["u_identification"] = metric("u_identification", None);
-        for (name, solution, field) in [
-            ("gain_objective", "gain_solution", "objective"),
-            ("gain_lower_bound", "gain_solution", "lower_bound"),
-            ("gain_proven", "gain_solution", "proven"),
-            ("gain_matched", "gain_solution", "matched"),
-            ("delay_objective_s2", "delay_solution", "objective"),
-            ("delay_matched", "delay_solution", "matched"),
-        ] {
-            condition[name] = condition[solution][field].clone();
+    if let Some(conditions) = corrections["conditions"].as_array_mut() {
+        for condition in conditions {
+            restructure_condition(condition, dataset);
         }
     }
-    // Names and units are in separate columns.
-    for side in ["inputs", "outputs"] {
-        corrections
-            .as_object_mut()
-            .and_then(|members| members.shift_remove(side));
+    // Names and units become separate columns below.
+    if let Some(members) = corrections.as_object_mut() {
+        members.shift_remove("inputs");
+        members.shift_remove("outputs");
     }
     if corrections["schedule"].is_null() {
         corrections["schedule"] = json!([]);
     }
-    for row in corrections["schedule"]
+    if let Some(rows) = corrections["schedule"]
         .get_mut("table")
         .and_then(Tree::as_array_mut)
-        .into_iter()
-        .flatten()
     {
-        for (name, side) in [("input_delays_s", "inputs"), ("output_delays_s", "outputs")] {
-            if let Some(delays) = row
-                .get("delays_s")
-                .and_then(|delays| delays[side].as_object())
-            {
-                row[name] = delays.values().cloned().collect();
-            }
+        for row in rows {
+            add_delay_lists(row);
         }
     }
-    let Value::Struct(mut records) = LAYOUT.value("", &corrections) else {
-        return LAYOUT.value("", &corrections);
-    };
-    for (side, channels) in [("input", dataset.inputs()), ("output", dataset.outputs())] {
-        let of = |part: fn(&Channel) -> &String| {
-            cell_of_texts(channels.iter().map(|channel| part(channel).clone()))
-        };
-        records
-            .fields
-            .push((format!("{side}s"), vec![of(|channel| &channel.name)]));
-        records
-            .fields
-            .push((format!("{side}_units"), vec![of(|channel| &channel.unit)]));
+    let mut value = LAYOUT.value("", &corrections);
+    if let Value::Struct(records) = &mut value {
+        for (side, channels) in [("input", dataset.inputs()), ("output", dataset.outputs())] {
+            let names = cell_of_texts(channels.iter().map(|channel| channel.name.clone()));
+            let units = cell_of_texts(channels.iter().map(|channel| channel.unit.clone()));
+            records.fields.push((format!("{side}s"), vec![names]));
+            records.fields.push((format!("{side}_units"), vec![units]));
+        }
     }
-    Value::Struct(records)
+    value
+}
+
+/// Changes a condition's members as described at [`corrections_struct`].
+fn restructure_condition(condition: &mut Tree, dataset: &Dataset) {
+    condition["held"] = marked_responses(&condition["held"], dataset);
+    condition["held_out"] = condition.get("held_out").cloned().unwrap_or(false.into());
+    let net_gains = condition["net_gains"].take();
+    let net_gains = net_gains.as_array().map(Vec::as_slice).unwrap_or_default();
+    condition["net_gain_table"] = net_gains
+        .chunks(dataset.inputs().len())
+        .map(|row| json!(row))
+        .collect();
+    for (name, key, place) in [
+        ("net_gains", "gain", None),
+        ("net_gains_low", "interval", Some(0)),
+        ("net_gains_high", "interval", Some(1)),
+        ("u_physics", "u_physics", None),
+        ("u_identification", "u_identification", None),
+    ] {
+        condition[name] = response_table(dataset, |output, input| {
+            net_gain_value(net_gains, output, input, key, place)
+        });
+    }
+    for earlier in EARLIER_NAMES {
+        condition[earlier.name] = condition[earlier.solution][earlier.member].clone();
+    }
+}
+
+/// Returns a list with a row for each output, which holds a value for each input.
+fn response_table(dataset: &Dataset, value: impl Fn(&str, &str) -> Tree) -> Tree {
+    let mut rows = Vec::new();
+    for output in dataset.outputs() {
+        let mut row = Vec::new();
+        for input in dataset.inputs() {
+            row.push(value(&output.name, &input.name));
+        }
+        rows.push(Tree::Array(row));
+    }
+    Tree::Array(rows)
+}
+
+/// Returns which responses are in a list with pairs, output and input.
+fn marked_responses(pairs: &Tree, dataset: &Dataset) -> Tree {
+    let pairs = pairs.as_array().map(Vec::as_slice).unwrap_or_default();
+    response_table(dataset, |output, input| {
+        pairs
+            .iter()
+            .any(|pair| pair[0] == output && pair[1] == input)
+            .into()
+    })
+}
+
+/// Returns the member `key` of a response's net gain, or its entry at `place` in a list; null if it
+/// is missing.
+fn net_gain_value(
+    net_gains: &[Tree],
+    output: &str,
+    input: &str,
+    key: &str,
+    place: Option<usize>,
+) -> Tree {
+    let net_gain = net_gains
+        .iter()
+        .find(|net_gain| net_gain["output"] == output && net_gain["input"] == input);
+    let Some(value) = net_gain.and_then(|net_gain| net_gain.get(key)) else {
+        return Tree::Null;
+    };
+    match place {
+        Some(place) => value.get(place).cloned().unwrap_or(Tree::Null),
+        None => value.clone(),
+    }
+}
+
+/// Adds the delays in a schedule row as lists in channel order.
+fn add_delay_lists(row: &mut Tree) {
+    for (name, side) in [("input_delays_s", "inputs"), ("output_delays_s", "outputs")] {
+        if let Some(delays) = row
+            .get("delays_s")
+            .and_then(|delays| delays[side].as_object())
+        {
+            row[name] = delays.values().cloned().collect();
+        }
+    }
 }
 
 #[cfg(test)]
@@ -277,7 +317,7 @@ mod tests {
             analysis.uncertainty = Some(Arc::new(
                 engine.uncertainty(&analysis, &Unobserved).unwrap(),
             ));
-            let corrections = corrections(&analysis, "ba78", &all(&analysis));
+            let corrections = corrections(&analysis, "ba78", &all_conditions(&analysis));
             json_paths(&corrections, "", &mut of_json);
             struct_paths(
                 &corrections_struct(corrections, &study.dataset),

@@ -1,7 +1,10 @@
-//! Conversion of serde-serialisable data to MATLAB values: one schema for JSON and for `.mat`.
+//! Conversion from JSON to MATLAB values: the same schema for JSON and for `.mat`.
 
 use serde_json::Value as Json;
 
+use gdcm_model::dataset::Dataset;
+
+use crate::files::export_contents::ExportContents;
 use crate::formats::strides::first_index_fastest;
 use crate::formats::variables::{Array, CellArray, ElementKind, StructArray, Value};
 
@@ -10,17 +13,18 @@ pub(super) const LONGEST_NAME: usize = 63;
 
 static NULL: Json = Json::Null;
 
-/// Members that are not simply lists and objects.
+/// Names of members that are not converted as plain lists and objects.
 pub(super) struct Layout {
-    /// Objects with a member for each channel: arrays in the order of the channels.
+    /// Objects with a member for each channel, which become arrays in channel order.
     pub(super) by_channel: &'static [&'static str],
-    /// Objects with member names that MATLAB does not accept: structs of `name` and `value`.
+    /// Objects with member names that MATLAB does not accept, which become structs with the fields
+    /// `name` and `value`.
     pub(super) by_name: &'static [&'static str],
-    /// Lists of objects that become one struct of columns instead of an array of structs.
+    /// Lists with objects that become a single struct with columns instead of a struct array.
     pub(super) columns: &'static [&'static str],
 }
 
-/// Returns whether the value is a number or null, which represents a missing number.
+/// Whether a value is a number, or null for a missing number.
 fn is_number(json: &Json) -> bool {
     matches!(json, Json::Number(_) | Json::Null)
 }
@@ -31,9 +35,8 @@ fn number(json: &Json) -> f64 {
 }
 
 impl Layout {
-    /// Converts a JSON value: objects become structs, lists of objects arrays of structs,
-    /// rectangular lists of numbers matrices, lists of texts columns of cells, and null becomes
-    /// NaN.
+    /// Converts a JSON value: objects become structs, lists with objects struct arrays, rectangular
+    /// lists with numbers matrices, lists with texts cell columns, and null becomes NaN.
     pub(super) fn value(&self, name: &str, json: &Json) -> Value {
         match json {
             Json::Null | Json::Number(_) => Value::number(number(json)),
@@ -65,9 +68,10 @@ impl Layout {
         }
         if entries.iter().all(Json::is_object) {
             let entries: Vec<&Json> = entries.iter().collect();
-            return match self.columns.contains(&name) {
-                true => self.gathered(&[entries.len()], entries),
-                false => self.records(&entries),
+            return if self.columns.contains(&name) {
+                self.gathered(&[entries.len()], entries)
+            } else {
+                self.records(&entries)
             };
         }
         if entries.iter().all(is_number) {
@@ -83,132 +87,157 @@ impl Layout {
         }
     }
 
-    /// Returns a row of structs with the same fields; missing members are empty.
+    /// Returns structs with the same fields in a row; missing members are empty.
     fn records(&self, objects: &[&Json]) -> Value {
-        let of = |name: &str| {
-            let values = objects.iter().map(|object| object.get(name));
-            values
-                .map(|value| value.map_or_else(Value::empty, |value| self.value(name, value)))
-                .collect()
-        };
-        let fields = names_of(objects)
-            .into_iter()
-            .map(|name| (valid_name(name), of(name)))
-            .collect();
+        let mut fields = Vec::new();
+        for name in names_of(objects) {
+            let mut values = Vec::with_capacity(objects.len());
+            for object in objects {
+                values.push(match object.get(name) {
+                    Some(value) => self.value(name, value),
+                    None => Value::empty(),
+                });
+            }
+            fields.push((valid_name(name), values));
+        }
         Value::Struct(StructArray {
             shape: vec![1, objects.len()],
             fields,
         })
     }
 
-    /// Returns leaves of an array of this shape, with its last index running fastest: objects
-    /// become a struct of arrays, numbers an array.
-    fn gathered<'j>(&self, shape: &[usize], leaves: Vec<&'j Json>) -> Value {
+    /// Returns the leaves as an array with this shape; the last index is fastest among the leaves.
+    /// Objects become a struct with arrays, numbers an array, truth values a logical array, rows
+    /// with numbers an array with another index, all others cells.
+    fn gathered(&self, shape: &[usize], leaves: Vec<&Json>) -> Value {
         if leaves.iter().any(|leaf| leaf.is_object()) {
-            let mut fields = Fields::default();
-            for name in names_of(&leaves) {
-                let values: Vec<&Json> = leaves
-                    .iter()
-                    .map(|leaf| leaf.get(name).unwrap_or(&NULL))
-                    .collect();
-                let lengths = values
-                    .iter()
-                    .filter_map(|value| Some(value.as_object()?.len()));
-                let value = match lengths.max().filter(|_| self.by_channel.contains(&name)) {
-                    Some(length) => {
-                        let member_at = |value: &'j Json, at: usize| {
-                            value
-                                .as_object()
-                                .and_then(|of| of.values().nth(at))
-                                .unwrap_or(&NULL)
-                        };
-                        let members = values
-                            .iter()
-                            .flat_map(|value| (0..length).map(move |at| member_at(value, at)));
-                        self.gathered(&[shape, &[length]].concat(), members.collect())
-                    }
-                    None => self.gathered(shape, values),
-                };
-                fields.add(&valid_name(name), value);
-            }
-            return fields.record();
+            return self.gathered_objects(shape, &leaves);
         }
         if leaves.iter().all(|leaf| is_number(leaf)) {
-            return array(
-                shape,
-                leaves.into_iter().map(number).collect(),
-                ElementKind::Float,
-            );
+            let numbers = leaves.into_iter().map(number).collect();
+            return array(shape, numbers, ElementKind::Float);
         }
-        if let Some(flags) = leaves
-            .iter()
-            .map(|leaf| leaf.as_bool())
-            .collect::<Option<Vec<_>>>()
-        {
-            let numbers = flags
-                .into_iter()
-                .map(|flag| f64::from(u8::from(flag)))
-                .collect();
-            return array(shape, numbers, ElementKind::Logical);
+        if let Some(flags) = truth_values(&leaves) {
+            return array(shape, flags, ElementKind::Logical);
         }
-        let length = leaves.iter().find_map(|leaf| Some(leaf.as_array()?.len()));
-        let is_row = |leaf: &&Json| match leaf {
-            Json::Array(list) => Some(list.len()) == length && list.iter().all(is_number),
-            leaf => leaf.is_null(),
-        };
-        if let Some(length) = length.filter(|&length| length > 0 && leaves.iter().all(is_row)) {
-            let numbers = leaves.iter().flat_map(|leaf| match leaf {
-                Json::Array(list) => list.iter().map(number).collect(),
-                _ => vec![f64::NAN; length],
+        if let Some(length) = row_length(&leaves) {
+            let mut numbers = Vec::new();
+            for leaf in leaves {
+                match leaf {
+                    Json::Array(list) => numbers.extend(list.iter().map(number)),
+                    _ => numbers.extend(std::iter::repeat_n(f64::NAN, length)),
+                }
+            }
+            return array(&[shape, &[length]].concat(), numbers, ElementKind::Float);
+        }
+        let mut values = Vec::with_capacity(leaves.len());
+        for leaf in leaves {
+            values.push(match leaf {
+                Json::Null => Value::empty(),
+                leaf => self.value("", leaf),
             });
-            return array(
-                &[shape, &[length]].concat(),
-                numbers.collect(),
-                ElementKind::Float,
-            );
         }
-        let values = leaves.iter().map(|leaf| match leaf {
-            Json::Null => Value::empty(),
-            leaf => self.value("", leaf),
-        });
         let shape = sides(shape);
         Value::Cell(CellArray {
-            values: first_index_fastest(&shape, values.collect()),
+            values: first_index_fastest(&shape, values),
             shape,
         })
     }
+
+    /// Returns a struct with an array for each member name; members by channel add an index to the
+    /// array.
+    fn gathered_objects(&self, shape: &[usize], leaves: &[&Json]) -> Value {
+        let mut fields = Fields::default();
+        for name in names_of(leaves) {
+            let values: Vec<&Json> = leaves
+                .iter()
+                .map(|leaf| leaf.get(name).unwrap_or(&NULL))
+                .collect();
+            let channels = values
+                .iter()
+                .filter_map(|value| Some(value.as_object()?.len()))
+                .max();
+            let value = match channels {
+                Some(channels) if self.by_channel.contains(&name) => {
+                    let mut members = Vec::new();
+                    for value in values {
+                        for at in 0..channels {
+                            members.push(member_at(value, at));
+                        }
+                    }
+                    self.gathered(&[shape, &[channels]].concat(), members)
+                }
+                _ => self.gathered(shape, values),
+            };
+            fields.add(&valid_name(name), value);
+        }
+        fields.record()
+    }
 }
 
-/// Returns the distinct member names of all objects, in order of appearance.
+/// Returns an object's member at a position; null if there is none.
+fn member_at(value: &Json, at: usize) -> &Json {
+    match value {
+        Json::Object(members) => members.values().nth(at).unwrap_or(&NULL),
+        _ => &NULL,
+    }
+}
+
+/// Returns the leaves as ones and zeros, if all are truth values.
+fn truth_values(leaves: &[&Json]) -> Option<Vec<f64>> {
+    let mut numbers = Vec::with_capacity(leaves.len());
+    for leaf in leaves {
+        numbers.push(f64::from(u8::from(leaf.as_bool()?)));
+    }
+    Some(numbers)
+}
+
+/// Returns the common length, if all leaves are rows with equally many numbers; null replaces a
+/// missing row.
+fn row_length(leaves: &[&Json]) -> Option<usize> {
+    let length = leaves
+        .iter()
+        .find_map(|leaf| Some(leaf.as_array()?.len()))?;
+    let are_rows = leaves.iter().all(|leaf| match leaf {
+        Json::Array(list) => list.len() == length && list.iter().all(is_number),
+        leaf => leaf.is_null(),
+    });
+    if length == 0 || !are_rows {
+        return None;
+    }
+    Some(length)
+}
+
+/// Returns all distinct member names, ordered by appearance.
 fn names_of<'j>(objects: &[&'j Json]) -> Vec<&'j str> {
     let mut names: Vec<&str> = Vec::new();
-    for name in objects
-        .iter()
-        .filter_map(|object| object.as_object())
-        .flat_map(|members| members.keys())
-    {
-        if !names.contains(&name.as_str()) {
-            names.push(name);
+    for object in objects {
+        let Json::Object(members) = object else {
+            continue;
+        };
+        for name in members.keys() {
+            if !names.contains(&name.as_str()) {
+                names.push(name);
+            }
         }
     }
     names
 }
 
-/// Returns a name that MATLAB accepts for a field: a letter, then letters, digits and _.
+/// Returns a field name that MATLAB accepts: a letter, then letters, digits and _.
 fn valid_name(name: &str) -> String {
-    let letters = name.chars().map(|letter| {
-        if letter.is_ascii_alphanumeric() {
-            letter
-        } else {
-            '_'
+    let mut valid = String::new();
+    if !name.starts_with(|first: char| first.is_ascii_alphabetic()) {
+        valid.push('x');
+    }
+    for letter in name.chars() {
+        if valid.len() == LONGEST_NAME {
+            break;
         }
-    });
-    let first = if name.starts_with(|first: char| first.is_ascii_alphabetic()) {
-        ""
-    } else {
-        "x"
-    };
-    first.chars().chain(letters).take(LONGEST_NAME).collect()
+        let is_valid = letter.is_ascii_alphanumeric();
+        valid.push(if is_valid { letter } else { '_' });
+    }
+    valid
 }
 
 /// Returns at least two dimensions; a list becomes a column.
@@ -230,7 +259,7 @@ fn array(shape: &[usize], numbers: Vec<f64>, kind: ElementKind) -> Value {
     })
 }
 
-/// The fields of a record, in order.
+/// Struct fields, in order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Fields {
     fields: Vec<(String, Value)>,
@@ -248,7 +277,7 @@ impl Fields {
     }
 }
 
-/// Returns a row of records with the same fields.
+/// Returns records with the same fields in a row.
 pub(super) fn records(records: Vec<Fields>) -> Value {
     let shape = vec![1, records.len()];
     let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
@@ -263,7 +292,7 @@ pub(super) fn records(records: Vec<Fields>) -> Value {
     Value::Struct(StructArray { shape, fields })
 }
 
-/// Returns a column of texts, each in a cell.
+/// Returns texts in a column, each in a cell.
 pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
     let values: Vec<Value> = texts.into_iter().map(Value::text).collect();
     Value::Cell(CellArray {
@@ -272,13 +301,13 @@ pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
     })
 }
 
-/// Returns a row of numbers.
+/// Returns numbers in a row.
 pub(super) fn row(values: impl IntoIterator<Item = f64>) -> Value {
     let values: Vec<f64> = values.into_iter().collect();
     matrix(1, values.len(), values)
 }
 
-/// Returns a column of numbers.
+/// Returns numbers in a column.
 pub(super) fn column(values: impl IntoIterator<Item = f64>) -> Value {
     let values: Vec<f64> = values.into_iter().collect();
     matrix(values.len(), 1, values)
@@ -287,6 +316,16 @@ pub(super) fn column(values: impl IntoIterator<Item = f64>) -> Value {
 /// Returns a matrix from its values by columns.
 pub(super) fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Value {
     Value::Array(Array::matrix(rows, columns, values))
+}
+
+/// Returns the correction parts in a file: the source of each, and the omitted parts.
+pub(super) fn contained_parts(contents: &ExportContents, dataset: &Dataset) -> Value {
+    let mut fields = Fields::default();
+    for (name, source) in contents.parts() {
+        fields.add(name, Value::text(source.word()));
+    }
+    fields.add("left_out", cell_of_texts(contents.left_out_words(dataset)));
+    fields.record()
 }
 
 #[cfg(test)]
@@ -310,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn tables_are_matrices_and_what_is_null_is_nan() {
+    fn tables_are_matrices_and_null_is_nan() {
         let Value::Array(table) = field("{\"G\": [[1, 2, 3], [4, null, 6]]}", &["G"]) else {
             panic!("an array")
         };

@@ -4,11 +4,14 @@
 
 mod all_results;
 mod corrected_models;
+mod exported_model;
 pub mod figure_file;
 mod lookup_table;
 mod matlab_struct;
+mod program_text;
 mod programs;
 mod scheduled;
+mod table_error;
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -17,32 +20,32 @@ use gdcm_method::correction::Pade;
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::{Analysis, AssessedCorrection};
 
+use self::scheduled::Scheduled;
 use crate::export_fault::ExportFault;
 use crate::file_error::FileError;
 use crate::files::export_contents::ExportContents;
 use crate::output_set::OutputSet;
-use scheduled::Scheduled;
 
 /// A format for exporting a study's corrections.
 #[derive(Clone, Copy, Debug)]
 pub struct ExportFormat {
     /// Its name on the command line.
     pub name: &'static str,
-    /// Extension of a file name.
+    /// File extension.
     pub extension: &'static str,
     /// Description for people.
     pub words: &'static str,
-    /// Accepted options of the command line.
+    /// Accepted command-line options.
     pub options: &'static [&'static str],
     /// Rejects an unsuitable file name, before the work.
     check_path: fn(&Path) -> Result<(), ExportFault>,
-    /// Contents of the correction in the file.
+    /// Returns the correction parts in the file.
     contents: fn(&Analysis, &ExportRequest) -> ExportContents,
-    /// The contents of the file.
+    /// Returns the file contents.
     export: for<'e> fn(&Export<'e>) -> Result<Exported<'e>, ExportFault>,
 }
 
-/// All exports, in the order of their list; the first is the default.
+/// All exports, in display order; the first is the default.
 pub static EXPORTERS: [ExportFormat; 9] = [
     all_results::MAT,
     programs::MATLAB,
@@ -74,7 +77,7 @@ impl PartialEq for ExportFormat {
     }
 }
 
-/// Physics model of a condition to be exported.
+/// Physics model to be exported from a condition.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum ExportedRole {
     /// The model at the condition's own trim.
@@ -91,23 +94,23 @@ pub enum ExportedRole {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExportRequest {
     pub format: ExportFormat,
-    /// Airspeeds of a lookup table \[kt\]; by default the distinct airspeeds of the scheduled
+    /// Airspeeds in a lookup table \[kt\]; by default the distinct airspeeds of the scheduled
     /// conditions.
     pub breakpoints_kt: Option<Vec<f64>>,
-    /// Condition of the exported model; all conditions if `None`.
+    /// Condition to be exported; all if `None`.
     pub condition: Option<ConditionId>,
     /// Model of the condition.
     pub role: ExportedRole,
     /// Correction of the model.
     pub correction: AssessedCorrection,
-    /// Approximant of its delays.
+    /// Delay approximant.
     pub pade: Pade,
 }
 
 /// Origin of a correction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExportSource {
-    /// Name of the study.
+    /// Study name.
     pub name: String,
     /// SHA-256 of the dataset's file, in hexadecimal.
     pub sha256: String,
@@ -120,53 +123,52 @@ pub struct Export<'e> {
     /// Origin of the correction.
     pub source: &'e ExportSource,
     pub request: &'e ExportRequest,
-    /// Path of the output file.
+    /// Output file.
     pub path: &'e Path,
 }
 
 impl<'e> Export<'e> {
-    /// Describes the cost of the scheduled leads, for a file that contains them as numbers.
-    fn price(&self) -> Vec<String> {
-        let (inputs, outputs) = self.analysis.study.dataset.names_of_channels();
-        let price = self
-            .analysis
-            .schedule
-            .as_ref()
-            .ok()
-            .and_then(|schedule| schedule.lead_price());
-        price
-            .into_iter()
-            .map(|price| price.words(&inputs, &outputs))
-            .collect()
+    /// Returns a remark on the cost of scheduled leads, for a file with their numbers.
+    fn price_remarks(&self) -> Vec<String> {
+        let Ok(schedule) = &self.analysis.schedule else {
+            return Vec::new();
+        };
+        match schedule.lead_price() {
+            Some(price) => {
+                let (inputs, outputs) = self.analysis.study.dataset.names_of_channels();
+                vec![price.words(&inputs, &outputs)]
+            }
+            None => Vec::new(),
+        }
     }
 
-    /// Returns the schedule of the study.
+    /// Returns the study's schedule with its couplings.
+    ///
+    /// # Errors
+    /// A study without a schedule, or without the couplings that it requests.
     fn scheduled(&self) -> Result<Scheduled<'e>, ExportFault> {
-        let schedule = self
-            .analysis
-            .schedule
-            .as_ref()
-            .map_err(|error| ExportFault::Schedule(*error))?;
-        let couplings = self
-            .analysis
+        let analysis = self.analysis;
+        let schedule = match &analysis.schedule {
+            Ok(schedule) => schedule,
+            Err(error) => return Err(ExportFault::Schedule(*error)),
+        };
+        let couplings = analysis
             .asked_couplings()
             .map_err(|why| ExportFault::NoCouplings { why })?;
-        let couplings = couplings.map(|fitted| fitted.matrices());
-        let contents = ExportContents::of_scheduled(self.analysis);
         Ok(Scheduled {
             schedule,
-            dataset: &self.analysis.study.dataset,
+            dataset: &analysis.study.dataset,
             source: self.source,
-            couplings,
-            contents,
+            couplings: couplings.map(|fitted| fitted.matrices()),
+            contents: ExportContents::of_scheduled(analysis),
         })
     }
 }
 
-/// Writer of the contents of a file.
+/// Function that writes a file.
 type Writing<'e> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'e>;
 
-/// The contents of a file, with remarks, line by line.
+/// File contents, and remarks on them, line by line.
 pub struct Exported<'e> {
     write: Writing<'e>,
     remarks: Vec<String>,
@@ -198,7 +200,7 @@ pub fn check_export(format: ExportFormat, path: &Path) -> Result<(), FileError> 
     (format.check_path)(path).map_err(|fault| FileError::export(path, fault))
 }
 
-/// Returns the contents of the correction in the requested file.
+/// Returns the correction parts in the requested file.
 pub fn export_contents(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
     (request.format.contents)(analysis, request)
 }
@@ -213,14 +215,15 @@ pub fn write_export(
     mut outputs: OutputSet,
 ) -> Result<Vec<String>, FileError> {
     check_export(request.format, path)?;
-    let exported = (request.format.export)(&Export {
+    let export = Export {
         analysis,
         source,
         request,
         path,
-    });
-    let Exported { write, remarks } = exported.map_err(|fault| FileError::export(path, fault))?;
-    outputs.add(path, write)?;
+    };
+    let exported =
+        (request.format.export)(&export).map_err(|fault| FileError::export(path, fault))?;
+    outputs.add(path, exported.write)?;
     outputs.persist()?;
-    Ok(remarks)
+    Ok(exported.remarks)
 }

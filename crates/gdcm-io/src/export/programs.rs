@@ -10,30 +10,64 @@ use minijinja::{Environment, Value, context};
 use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;
 use gdcm_method::schedule::{Airspeeds, Regression};
-use gdcm_plot::figure::all_channels;
 
 use super::matlab_struct::LONGEST_NAME;
-use super::scheduled::{Curve, Scheduled, number};
+use super::program_text::{c_text, comment, number, number_list, python_text};
+use super::scheduled::{Curve, Scheduled};
 use super::{Export, ExportFormat, Exported};
 use crate::export_fault::ExportFault;
 use crate::files::export_contents::ExportContents;
 
-/// A programming language: the template of a file, and its expression for the value of a curve.
+#[cfg(test)]
+mod program_tests;
+
+/// A programming language: the template of a file, and the names in its expressions.
 struct Language {
     template: &'static str,
     exp: &'static str,
     min: &'static str,
     max: &'static str,
-    /// Of coefficients and the scaled airspeed `v`.
+    /// Function of coefficients and the scaled airspeed `v`.
     polynomial: &'static str,
-    /// Of airspeeds, values and the airspeed `a`.
+    /// Function of airspeeds, values and the airspeed `a`.
     table: &'static str,
     /// Whether a list of numbers is a previously declared array; otherwise it is written in square
     /// brackets.
     declares_arrays: bool,
-    /// Quotes a text, if the file contains the names of channels.
+    /// Quotes the name of a channel.
     text: fn(&str) -> String,
 }
+
+const MATLAB_LANGUAGE: Language = Language {
+    template: include_str!("templates/matlab_function.m.jinja"),
+    exp: "exp",
+    min: "min",
+    max: "max",
+    polynomial: "gdcm_polynomial",
+    table: "gdcm_table",
+    declares_arrays: false,
+    text: comment,
+};
+const PYTHON_LANGUAGE: Language = Language {
+    template: include_str!("templates/python_module.py.jinja"),
+    exp: "math.exp",
+    min: "min",
+    max: "max",
+    polynomial: "_polynomial",
+    table: "_table",
+    declares_arrays: false,
+    text: python_text,
+};
+const C_LANGUAGE: Language = Language {
+    template: include_str!("templates/c_header.h.jinja"),
+    exp: "exp",
+    min: "fmin",
+    max: "fmax",
+    polynomial: "GDCM_POLYNOMIAL",
+    table: "GDCM_TABLE",
+    declares_arrays: true,
+    text: c_text,
+};
 
 /// A MATLAB function, called by the name of its file.
 pub(super) const MATLAB: ExportFormat = ExportFormat {
@@ -43,19 +77,7 @@ pub(super) const MATLAB: ExportFormat = ExportFormat {
     options: &[],
     check_path: |path| check_function_name(&stem(path)),
     contents: |analysis, _| ExportContents::of_scheduled(analysis),
-    export: |of| {
-        let language = Language {
-            template: include_str!("templates/matlab_function.m.jinja"),
-            exp: "exp",
-            min: "min",
-            max: "max",
-            polynomial: "gdcm_polynomial",
-            table: "gdcm_table",
-            declares_arrays: false,
-            text: comment,
-        };
-        language.export(of)
-    },
+    export: |export| MATLAB_LANGUAGE.export(export),
 };
 
 /// A Python module.
@@ -66,19 +88,7 @@ pub(super) const PYTHON: ExportFormat = ExportFormat {
     options: &[],
     check_path: |_| Ok(()),
     contents: |analysis, _| ExportContents::of_scheduled(analysis),
-    export: |of| {
-        let language = Language {
-            template: include_str!("templates/python_module.py.jinja"),
-            exp: "math.exp",
-            min: "min",
-            max: "max",
-            polynomial: "_polynomial",
-            table: "_table",
-            declares_arrays: false,
-            text: python_text,
-        };
-        language.export(of)
-    },
+    export: |export| PYTHON_LANGUAGE.export(export),
 };
 
 /// A C header.
@@ -89,26 +99,14 @@ pub(super) const C: ExportFormat = ExportFormat {
     options: &[],
     check_path: |_| Ok(()),
     contents: |analysis, _| ExportContents::of_scheduled(analysis),
-    export: |of| {
-        let language = Language {
-            template: include_str!("templates/c_header.h.jinja"),
-            exp: "exp",
-            min: "fmin",
-            max: "fmax",
-            polynomial: "GDCM_POLYNOMIAL",
-            table: "GDCM_TABLE",
-            declares_arrays: true,
-            text: c_text,
-        };
-        language.export(of)
-    },
+    export: |export| C_LANGUAGE.export(export),
 };
 
 impl Language {
-    fn export<'e>(self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
-        let scheduled = of.scheduled()?;
+    fn export<'e>(self, export: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+        let scheduled = export.scheduled()?;
         scheduled.check()?;
-        let name = stem(of.path);
+        let name = stem(export.path);
         let remarks = scheduled.notes_of_curves();
         let write = move |file: &mut dyn io::Write| {
             file.write_all(self.text(&scheduled, &name)?.as_bytes())
@@ -117,112 +115,114 @@ impl Language {
     }
 
     /// Returns the text of the file; `name` is the file name without its extension.
-    fn text(&self, of: &Scheduled<'_>, name: &str) -> io::Result<String> {
-        let airspeeds = &of.schedule.airspeeds;
-        let second = of.schedule.second.as_ref().map(|term| {
-            let name = format!("{}_{}", term.variable.name(), term.variable.unit());
-            context! {
-                capitals => name.to_uppercase(),
-                name,
-                words => format!("{} [{}]", term.variable.name(), term.variable.unit()),
-                least => number(term.range[0]),
-                most => number(term.range[1]),
-                scaled => format!("(b - ({})) / {}", number(term.middle()), number(term.half_range())),
-            }
-        });
-        let lead = of.schedule.leads.as_ref().map(|leads| {
-            context! {
-                order => leads.design.settings().order.number(),
-                lag_s => number(leads.design.lag_s()),
-                limit_rad_s => number(leads.design.band_top_rad_s()),
-            }
-        });
-        let is_input = |channel: &Channel| matches!(channel, Channel::Input(_));
-        let (inputs, outputs) = all_channels(of.dataset)
-            .into_iter()
-            .partition::<Vec<_>, _>(is_input);
+    fn text(&self, scheduled: &Scheduled<'_>, name: &str) -> io::Result<String> {
+        let airspeeds = &scheduled.schedule.airspeeds;
+        let inputs: Vec<Channel> = (0..scheduled.dataset.inputs().len())
+            .map(Channel::Input)
+            .collect();
+        let outputs: Vec<Channel> = (0..scheduled.dataset.outputs().len())
+            .map(Channel::Output)
+            .collect();
+        let couplings = scheduled
+            .couplings
+            .map(|couplings| self.coupling_values(couplings));
         let values = context! {
             name,
             capitals => name.to_ascii_uppercase(),
-            heading => of.heading(&of.notes_of_curves()),
+            heading => scheduled.heading(&scheduled.notes_of_curves()),
             least => number(airspeeds.min_kt),
             most => number(airspeeds.max_kt),
-            scaled => scaled(airspeeds),
-            second,
-            lead,
-            couplings => of.couplings.map(|couplings| self.couplings(couplings)),
-            contains => self.contents(of),
-            sides => vec![self.side(of, "Input", &inputs), self.side(of, "Output", &outputs)],
+            scaled => scaled_airspeed(airspeeds),
+            second => second_variable_values(scheduled),
+            lead => lead_values(scheduled),
+            couplings,
+            contains => self.contained_parts(scheduled),
+            sides => vec![
+                self.side_values(scheduled, "Input", &inputs),
+                self.side_values(scheduled, "Output", &outputs),
+            ],
         };
-        let mut environment = Environment::new();
         let whole_lines = SyntaxConfig::builder()
             .trim_blocks(true)
             .lstrip_blocks(true)
             .keep_trailing_newline(true)
             .build();
+        let mut environment = Environment::new();
         environment.set_syntax(whole_lines.map_err(io::Error::other)?);
         environment
             .render_str(self.template, values)
             .map_err(io::Error::other)
     }
 
-    /// Returns the contents of the file: for each part its name and source, and the omitted parts,
-    /// as texts of the language.
-    fn contents(&self, of: &Scheduled<'_>) -> Value {
+    /// Returns the parts of the correction: name and source of each, and the omitted parts, as
+    /// texts of the language.
+    fn contained_parts(&self, scheduled: &Scheduled<'_>) -> Value {
         let mut parts = Vec::new();
-        for (name, source) in of.contents.parts() {
+        for (name, source) in scheduled.contents.parts() {
             parts.push(context! { name, capitals => name.to_uppercase(), text => (self.text)(source.word()) });
         }
         let mut left_out = Vec::new();
-        for words in of.contents.left_out_words(of.dataset) {
+        for words in scheduled.contents.left_out_words(scheduled.dataset) {
             left_out.push((self.text)(&words));
         }
         context! { parts, left_out }
     }
 
-    /// Returns `M~(V)` of the airspeed `V`, clamped and scaled as for the couplings, and `K`, row
-    /// by row.
-    fn couplings(&self, of: &CouplingMatrices) -> Value {
-        let airspeeds = of.airspeeds();
-        let (inputs, outputs) = of.feedback().shape();
-        let curve = |to, from| self.expression(&Curve::plain(of.mixing_curve(to, from).clone()));
-        let mixing = |to: usize| {
-            let entry = |from: usize| {
-                context! { column => from, own => curve(to, from), of => curve(from, from), is_unit => to == from }
-            };
-            (0..inputs).map(entry).collect::<Vec<_>>()
-        };
-        let feedback = |to: usize| {
-            (0..outputs)
-                .map(|from| number(of.feedback()[(to, from)]))
-                .collect::<Vec<_>>()
-                .join(", ")
-        };
+    /// Returns the mixing `M~(V)` at the airspeed `V`, clamped and scaled as for the couplings, and
+    /// the feedback `K`, both row by row.
+    fn coupling_values(&self, couplings: &CouplingMatrices) -> Value {
+        let airspeeds = couplings.airspeeds();
+        let (inputs, outputs) = couplings.feedback().shape();
+        let mut mixing = Vec::with_capacity(inputs);
+        let mut feedback = Vec::with_capacity(inputs);
+        for to in 0..inputs {
+            let mut row = Vec::with_capacity(inputs);
+            for from in 0..inputs {
+                row.push(context! {
+                    column => from,
+                    own => self.mixing_expression(couplings, to, from),
+                    of => self.mixing_expression(couplings, from, from),
+                    is_unit => to == from,
+                });
+            }
+            mixing.push(row);
+            let gains: Vec<f64> = couplings.feedback().row(to).iter().copied().collect();
+            feedback.push(number_list(&gains));
+        }
         context! {
             least => number(airspeeds.min_kt),
             most => number(airspeeds.max_kt),
-            scaled => scaled(airspeeds),
-            mixing => (0..inputs).map(mixing).collect::<Vec<_>>(),
-            feedback => (0..inputs).map(feedback).collect::<Vec<_>>(),
+            scaled => scaled_airspeed(airspeeds),
+            mixing,
+            feedback,
             inputs,
             outputs,
         }
     }
 
-    fn side(&self, of: &Scheduled<'_>, capital: &str, channels: &[Channel]) -> Value {
-        let (inputs, outputs) = of.dataset.names_of_channels();
-        let entry = |(index, &channel): (usize, &Channel)| {
+    fn mixing_expression(&self, couplings: &CouplingMatrices, to: usize, from: usize) -> Value {
+        self.expression(&Curve::plain(couplings.mixing_curve(to, from).clone()))
+    }
+
+    /// Returns the values of the channels on one side; `capital` is "Input" or "Output".
+    fn side_values(&self, scheduled: &Scheduled<'_>, capital: &str, channels: &[Channel]) -> Value {
+        let (inputs, outputs) = scheduled.dataset.names_of_channels();
+        let mut entries = Vec::with_capacity(channels.len());
+        for (index, &channel) in channels.iter().enumerate() {
             let name = channel.name(&inputs, &outputs);
-            context! {
+            let zero = scheduled
+                .zero_s(channel)
+                .map(|zero_s| self.expression(&zero_s));
+            entries.push(context! {
                 index,
                 number => index + 1,
                 text => (self.text)(&name),
                 comment => comment(&name),
-                gain => self.expression(&of.gain(channel)),
-                delay => self.expression(&of.delay_s(channel)),
-                zero => of.zero_s(channel).map(|zero_s| self.expression(&zero_s)),
-            }
-        };
+                gain => self.expression(&scheduled.gain(channel)),
+                delay => self.expression(&scheduled.delay_s(channel)),
+                zero,
+            });
+        }
         let lower = capital.to_lowercase();
         context! {
             capital,
@@ -230,46 +230,15 @@ impl Language {
             short => lower.trim_end_matches("put"),
             letter => &lower[..1],
             count => channels.len(),
-            channels => channels.iter().enumerate().map(entry).collect::<Vec<_>>(),
+            channels => entries,
         }
     }
 
-    /// Returns the expression for the value of a curve at the airspeed `a`, the scaled airspeed `v`
-    /// and the scaled second variable `z`, with its arrays `c0`, `c1` and so on.
+    /// Returns the expression for a curve in terms of the airspeed `a`, the scaled airspeed `v` and
+    /// the scaled second variable `z`, with its arrays `c0`, `c1` and so on.
     fn expression(&self, curve: &Curve) -> Value {
         let mut arrays = Vec::new();
-        let mut array = |numbers: &[f64]| {
-            let numbers = numbers
-                .iter()
-                .map(|&value| number(value))
-                .collect::<Vec<_>>()
-                .join(", ");
-            if !self.declares_arrays {
-                return format!("[{numbers}]");
-            }
-            arrays.push(numbers);
-            format!("c{}", arrays.len() - 1)
-        };
-        let mut figures = |of: &Regression| match of {
-            Regression::Polynomial { coefficients } if coefficients.len() == 1 => {
-                number(coefficients[0])
-            }
-            Regression::Polynomial { coefficients } => {
-                format!("{}({}, v)", self.polynomial, array(coefficients))
-            }
-            Regression::Table {
-                airspeeds_kt,
-                values,
-            } => {
-                format!(
-                    "{}({}, {}, a)",
-                    self.table,
-                    array(airspeeds_kt),
-                    array(values)
-                )
-            }
-        };
-        let mut value = figures(&curve.figures);
+        let mut value = self.regression_expression(&curve.figures, &mut arrays);
         if let Some(slope) = curve.slope {
             value = format!("{value} + ({}) * z", number(slope));
         }
@@ -277,35 +246,91 @@ impl Language {
             value = format!("{}({value})", self.exp);
         }
         if let Some(upper) = &curve.upper {
+            let upper = self.regression_expression(upper, &mut arrays);
             value = format!(
-                "{}({}({value}, {}), {})",
+                "{}({}({value}, {upper}), {})",
                 self.max,
                 self.min,
-                figures(upper),
                 number(0.0)
             );
         }
         context! { arrays, value }
     }
+
+    fn regression_expression(&self, regression: &Regression, arrays: &mut Vec<String>) -> String {
+        match regression {
+            Regression::Polynomial { coefficients } if coefficients.len() == 1 => {
+                number(coefficients[0])
+            }
+            Regression::Polynomial { coefficients } => {
+                let coefficients = self.array_expression(coefficients, arrays);
+                format!("{}({coefficients}, v)", self.polynomial)
+            }
+            Regression::Table {
+                airspeeds_kt,
+                values,
+            } => {
+                let airspeeds = self.array_expression(airspeeds_kt, arrays);
+                let values = self.array_expression(values, arrays);
+                format!("{}({airspeeds}, {values}, a)", self.table)
+            }
+        }
+    }
+
+    /// Returns the expression for a list of numbers; a language that declares arrays gets another
+    /// entry in `arrays`.
+    fn array_expression(&self, values: &[f64], arrays: &mut Vec<String>) -> String {
+        let numbers = number_list(values);
+        if !self.declares_arrays {
+            return format!("[{numbers}]");
+        }
+        arrays.push(numbers);
+        format!("c{}", arrays.len() - 1)
+    }
+}
+
+/// Returns the values of the second variable for templates, if the schedule has one.
+fn second_variable_values(scheduled: &Scheduled<'_>) -> Option<Value> {
+    let term = scheduled.schedule.second.as_ref()?;
+    let name = format!("{}_{}", term.variable.name(), term.variable.unit());
+    Some(context! {
+        capitals => name.to_uppercase(),
+        name,
+        words => format!("{} [{}]", term.variable.name(), term.variable.unit()),
+        least => number(term.range[0]),
+        most => number(term.range[1]),
+        scaled => format!("(b - ({})) / {}", number(term.middle()), number(term.half_range())),
+    })
+}
+
+/// Returns the values of the lead filters for templates, if the schedule has any.
+fn lead_values(scheduled: &Scheduled<'_>) -> Option<Value> {
+    let leads = scheduled.schedule.leads.as_ref()?;
+    Some(context! {
+        order => leads.design.settings().order.number(),
+        lag_s => number(leads.design.lag_s()),
+        limit_rad_s => number(leads.design.band_top_rad_s()),
+    })
 }
 
 /// Returns the expression for the scaled airspeed, the same in every language.
-fn scaled(airspeeds: &Airspeeds) -> String {
-    match airspeeds.half_range_kt {
-        0.0 => number(0.0),
-        half_range_kt => format!(
-            "(a - ({})) / {}",
-            number(airspeeds.mean_kt),
-            number(half_range_kt)
-        ),
+fn scaled_airspeed(airspeeds: &Airspeeds) -> String {
+    if airspeeds.half_range_kt == 0.0 {
+        return number(0.0);
     }
+    format!(
+        "(a - ({})) / {}",
+        number(airspeeds.mean_kt),
+        number(airspeeds.half_range_kt)
+    )
 }
 
 /// Returns a file name without its extension.
 fn stem(path: &Path) -> String {
-    path.file_stem()
-        .map(|stem| stem.to_string_lossy().into_owned())
-        .unwrap_or_default()
+    match path.file_stem() {
+        Some(stem) => stem.to_string_lossy().into_owned(),
+        None => String::new(),
+    }
 }
 
 /// Reserved words of MATLAB (`iskeyword`) and GNU Octave, and the functions in the file.
@@ -320,797 +345,11 @@ fn check_function_name(name: &str) -> Result<(), ExportFault> {
         && name
             .chars()
             .all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
-    if is_name && !KEYWORDS.split(' ').any(|word| word == name) {
-        return Ok(());
+    let is_keyword = KEYWORDS.split(' ').any(|word| word == name);
+    if !is_name || is_keyword {
+        return Err(ExportFault::FunctionName {
+            found: name.to_owned(),
+        });
     }
-    Err(ExportFault::FunctionName {
-        found: name.to_owned(),
-    })
-}
-
-/// Escapes a text for a comment in any language: visible ASCII characters remain, special signs of
-/// the program's own texts are replaced by equivalents, all others by their Unicode numbers;
-/// nothing can end or begin a comment.
-pub(super) fn comment(text: &str) -> String {
-    let mut plain = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            // Two characters that begin or end comments, continue lines or are escapes never stand
-            // next to each other.
-            '*' | '/' | '\\' | '?' | '%' | '{' | '}' | '"' | '\''
-                if plain.ends_with(['*', '/', '?', '%', '"', '\'']) =>
-            {
-                plain.push(' ');
-                plain.push(character);
-            }
-            ' '..='~' => plain.push(character),
-            '\u{2212}' | '\u{2013}' => plain.push('-'),
-            '±' => plain.push_str("+-"),
-            '≈' => plain.push('~'),
-            '²' => plain.push_str("^2"),
-            '°' => plain.push_str("deg"),
-            'α' => plain.push_str("alpha"),
-            'τ' => plain.push_str("tau"),
-            _ => plain.push_str(&format!("<U+{:04X}>", u32::from(character))),
-        }
-    }
-    // A comment line that ends in a backslash continues on the next.
-    if plain.ends_with('\\') {
-        plain.push('.');
-    }
-    plain
-}
-
-/// Quotes a text for C: bytes other than plain characters become three octal digits.
-fn c_text(text: &str) -> String {
-    let escaped = |byte: u8| match byte {
-        // A question mark could begin a trigraph.
-        b'"' | b'\\' | b'?' | 0..0x20 | 0x7f.. => format!("\\{byte:03o}"),
-        _ => char::from(byte).to_string(),
-    };
-    format!("\"{}\"", text.bytes().map(escaped).collect::<String>())
-}
-
-/// Quotes a text for Python.
-fn python_text(text: &str) -> String {
-    let escaped = |character: char| match character {
-        '"' | '\\' => format!("\\{character}"),
-        ' '..='~' => character.to_string(),
-        _ => format!("\\U{:08x}", u32::from(character)),
-    };
-    format!("\"{}\"", text.chars().map(escaped).collect::<String>())
-}
-
-// Exported programs are run by their interpreters and compilers and compared with the schedule
-// itself.
-#[cfg(test)]
-mod tests {
-    use std::process::Command;
-    use std::sync::Arc;
-
-    use nalgebra::DMatrix;
-    use proptest::prelude::*;
-
-    use gdcm_method::schedule::{
-        DelayScheduling, ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable,
-    };
-    use gdcm_model::dataset::Dataset;
-    use gdcm_model::progress::Unobserved;
-    use gdcm_study::decisions::setting;
-    use gdcm_study::{Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, Study};
-
-    use super::*;
-    use crate::export::{EXPORTERS, ExportRequest, ExportSource};
-    use crate::files::dataset_file::embedded_example;
-
-    /// The example under every form of the schedule: kind, quantity, delays.
-    fn analyses() -> Vec<(String, Analysis)> {
-        let mut engine = Engine::default();
-        let kinds = [ScheduleKind::Polynomial { degree: 2 }, ScheduleKind::Table];
-        let mut analyses = Vec::new();
-        for kind in kinds {
-            for quantity in [ScheduledQuantity::LnGain, ScheduledQuantity::Gain] {
-                for delays in [false, true] {
-                    let mut study = Study::new(embedded_example().unwrap().dataset);
-                    let schedule = ScheduleSettings {
-                        kind,
-                        quantity,
-                        delays,
-                        ..ScheduleSettings::default()
-                    };
-                    study.settings.schedule = schedule;
-                    study.settings.set_delay_scheduling(delays.into());
-                    let analysis = engine.analyze(&study, &Unobserved).unwrap();
-                    analyses.push((format!("{kind:?}, {quantity:?}, delays {delays}"), analysis));
-                }
-            }
-        }
-        // Leads, of one signed delay for all airspeeds and of one that varies with them.
-        for tau_degree in [0, 2] {
-            let mut study = Study::new(embedded_example().unwrap().dataset);
-            let schedule = ScheduleSettings {
-                tau_degree,
-                ..ScheduleSettings::default()
-            };
-            study
-                .apply(&setting::PHASE.to(PhaseCorrection::Lead))
-                .unwrap();
-            study.settings.schedule = schedule;
-            let analysis = engine.analyze(&study, &Unobserved).unwrap();
-            analyses.push((format!("leads of degree {tau_degree}"), analysis));
-        }
-        // One airspeed: the range is empty.
-        let mut study = Study::new(embedded_example().unwrap().dataset);
-        let conditions = study.dataset.clone();
-        let at = conditions.conditions()[3].flight_state().airspeed_kt;
-        for condition in conditions
-            .conditions()
-            .iter()
-            .filter(|other| other.flight_state().airspeed_kt != at)
-        {
-            study
-                .apply(&Edit::SetScheduled {
-                    condition: condition.id(),
-                    scheduled: false,
-                })
-                .unwrap();
-        }
-        analyses.push((
-            "one airspeed".to_owned(),
-            engine.analyze(&study, &Unobserved).unwrap(),
-        ));
-        analyses
-    }
-
-    /// Returns the schedule of an analysis as a program in a language; `name` is its file name.
-    fn program(language: &str, analysis: &Analysis, name: &str) -> String {
-        let source = &ExportSource {
-            name: NASTY[0].to_owned(),
-            sha256: "ba78".to_owned(),
-        };
-        let path = format!("{}.{language}", if name.is_empty() { "c" } else { name });
-        let export = Export {
-            analysis,
-            source,
-            request: &ExportRequest::default(),
-            path: Path::new(&path),
-        };
-        let exported = (ExportFormat::named(language).unwrap().export)(&export).unwrap();
-        let mut text = Vec::new();
-        (exported.write)(&mut text).unwrap();
-        String::from_utf8(text).unwrap()
-    }
-
-    /// Names that would end a comment or a text if they were written unescaped.
-    const NASTY: [&str; 3] = [
-        "LAT \"x\" 'y' */ \\ %d\n%}\r*/ end",
-        "δ_a ??/ /* \u{2028} ''' \"\"\" ${x}",
-        "\\u{7f}\u{0}\\",
-    ];
-
-    /// Returns fifty airspeeds \[kt\], from below the range of the example to above it, including
-    /// both its ends.
-    fn airspeeds() -> Vec<f64> {
-        (0..48)
-            .map(|index| 31.0 + f64::from(index) * 2.5)
-            .chain([45.0, 140.0])
-            .collect()
-    }
-
-    /// Returns the values of this program, in the order in which the exported programs print.
-    fn expected(analysis: &Analysis) -> Vec<f64> {
-        let schedule = analysis.schedule.as_ref().unwrap();
-        let values = |airspeed: f64| {
-            let at = schedule.at(airspeed);
-            [
-                at.input_gains,
-                at.output_gains,
-                at.input_delays_s,
-                at.output_delays_s,
-            ]
-            .concat()
-        };
-        airspeeds().into_iter().flat_map(values).collect()
-    }
-
-    fn assert_same(words: &str, found: &[f64], expected: &[f64]) {
-        assert_eq!(found.len(), expected.len(), "{words}");
-        for (index, (a, b)) in found.iter().zip(expected).enumerate() {
-            // A delay that crosses zero is clipped there: next to it, less than a femtosecond is
-            // negligible.
-            assert!(
-                (a - b).abs() <= 1e-12 * b.abs() + 1e-16,
-                "{words}, value {index}: {a} instead of {b}"
-            );
-        }
-    }
-
-    /// Runs a program and compares its output; prints a message if the interpreter or compiler is
-    /// missing.
-    fn assert_run(
-        words: &str,
-        program: &str,
-        arguments: &[&str],
-        folder: &std::path::Path,
-        expected: &[f64],
-    ) {
-        let output = Command::new(program)
-            .args(arguments)
-            .current_dir(folder)
-            .output()
-            .unwrap();
-        assert!(
-            output.status.success(),
-            "{words}: {}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-        let text = String::from_utf8(output.stdout).unwrap();
-        let found: Vec<f64> = text
-            .split_whitespace()
-            .map(|word| word.parse().unwrap())
-            .collect();
-        assert_same(&format!("{program}, {words}"), &found, expected);
-    }
-
-    fn is_there(program: &str) -> bool {
-        let found = Command::new(program).arg("--version").output().is_ok();
-        if !found {
-            eprintln!(
-                "SKIPPED: {program} is not installed, its programs are not run against the schedule"
-            );
-        }
-        found
-    }
-
-    fn listed() -> String {
-        airspeeds()
-            .iter()
-            .map(|kt| format!("{kt:?}"))
-            .collect::<Vec<_>>()
-            .join(", ")
-    }
-
-    #[test]
-    fn delays_that_are_not_scheduled_are_zero_and_a_note_says_so() {
-        for (words, analysis) in analyses() {
-            let settings = &analysis.study.settings;
-            let has_delays = settings.schedule_delays == DelayScheduling::Always
-                || settings.phase == PhaseCorrection::Lead;
-            let text = program("py", &analysis, "");
-            assert_eq!(
-                text.contains("# Note: delays are not scheduled in this study"),
-                !has_delays,
-                "{words}"
-            );
-        }
-    }
-
-    #[test]
-    fn leads_say_their_limit_and_their_gain_above_the_band_in_ascii() {
-        for (words, analysis) in analyses() {
-            let price = analysis.schedule.as_ref().unwrap().lead_price();
-            assert_eq!(
-                price.is_some(),
-                analysis.study.settings.phase == PhaseCorrection::Lead,
-                "{words}"
-            );
-            for (language, limit) in [
-                ("m", ""),
-                ("py", "NOT_VALID_ABOVE_RAD_S = 1.2"),
-                ("h", "GDCM_NOT_VALID_ABOVE_RAD_S 1.2"),
-            ] {
-                let text = program(language, &analysis, "k");
-                let says = text.contains("Note: not valid above 12 rad/s: at 120 rad/s");
-                let has_number = text.contains(limit);
-                assert!(
-                    text.is_ascii() && says == price.is_some(),
-                    "{words}: {text}"
-                );
-                assert!(
-                    limit.is_empty() || has_number == price.is_some(),
-                    "{words}: {text}"
-                );
-            }
-            let source = ExportSource {
-                name: "example".to_owned(),
-                sha256: "ba78".to_owned(),
-            };
-            for exporter in EXPORTERS.iter() {
-                let path = Path::new("k").with_extension(exporter.extension);
-                let request = ExportRequest::default();
-                let export = Export {
-                    analysis: &analysis,
-                    source: &source,
-                    request: &request,
-                    path: &path,
-                };
-                let Ok(exported) = (exporter.export)(&export) else {
-                    continue;
-                };
-                let says = exported
-                    .remarks
-                    .iter()
-                    .any(|remark| remark.contains("not valid above 12 rad/s: at 120 rad/s"));
-                assert_eq!(
-                    says,
-                    price.is_some(),
-                    "{words}, {}: {:?}",
-                    exporter.name,
-                    exported.remarks
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn a_module_of_python_gives_the_programs_own_numbers() {
-        if !is_there("python3") {
-            return;
-        }
-        for (words, analysis) in analyses() {
-            let folder = tempfile::tempdir().unwrap();
-            std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
-            let program = format!(
-                "import c\nfor a in [{}]:\n    mi, mo, ti, to = c.gdcm_correction(a)\n    \
-                 print(*[repr(m[k][k]) for m in (mi, mo) for k in range(len(m))], *map(repr, ti + to))",
-                listed()
-            );
-            assert_run(
-                &words,
-                "python3",
-                &["-c", &program],
-                folder.path(),
-                &expected(&analysis),
-            );
-        }
-    }
-
-    #[test]
-    fn a_header_of_c_gives_the_programs_own_numbers() {
-        if !is_there("cc") {
-            return;
-        }
-        for (words, analysis) in analyses() {
-            let folder = tempfile::tempdir().unwrap();
-            let header = program("h", &analysis, "");
-            let main = format!(
-                "{header}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}};\n\
-                 double v[2 * (GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT)]; unsigned k, j;\n\
-                 for (k = 0; k < sizeof s / sizeof *s; k++) {{\n\
-                 gdcm_correction(s[k], v, v + GDCM_INPUT_COUNT, v + GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT,\n\
-                 v + 2 * GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT);\n\
-                 for (j = 0; j < sizeof v / sizeof *v; j++) printf(\"%.17g \", v[j]); }}\nreturn 0; }}\n",
-                listed()
-            );
-            std::fs::write(folder.path().join("main.c"), main).unwrap();
-            let flags = [
-                "-std=c99",
-                "-Wall",
-                "-Wextra",
-                "-Wshadow",
-                "-Werror",
-                "-pedantic",
-                "-o",
-                "main",
-                "main.c",
-                "-lm",
-            ];
-            let built = Command::new("cc")
-                .args(flags)
-                .current_dir(&folder)
-                .output()
-                .unwrap();
-            assert!(
-                built.status.success(),
-                "{words}: {}",
-                String::from_utf8_lossy(&built.stderr)
-            );
-            let program = folder.path().join("main").display().to_string();
-            assert_run(&words, &program, &[], folder.path(), &expected(&analysis));
-        }
-    }
-
-    #[test]
-    fn a_function_of_matlab_gives_the_programs_own_numbers() {
-        if !is_there("octave-cli") {
-            return;
-        }
-        for (words, analysis) in analyses() {
-            let folder = tempfile::tempdir().unwrap();
-            let function = program("m", &analysis, "my_study");
-            std::fs::write(folder.path().join("my_study.m"), function).unwrap();
-            let program = format!(
-                "for s = [{}], [Mi, Mo, ti, to] = my_study(s); printf('%.17g ', [diag(Mi); diag(Mo); ti; to]); end",
-                listed()
-            );
-            assert_run(
-                &words,
-                "octave-cli",
-                &["--eval", &program],
-                folder.path(),
-                &expected(&analysis),
-            );
-        }
-    }
-
-    /// Returns the example with mixing and feedback, gains only.
-    fn coupled() -> Analysis {
-        let mut study = Study::new(embedded_example().unwrap().dataset);
-        study
-            .apply(&setting::PHASE.to(PhaseCorrection::None))
-            .unwrap();
-        study
-            .apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
-            .unwrap();
-        Engine::default().analyze(&study, &Unobserved).unwrap()
-    }
-
-    /// Returns a 6 x 4 feed-through with numbers that every language writes alike.
-    fn feed_through() -> DMatrix<f64> {
-        DMatrix::from_fn(6, 4, |output, input| {
-            0.25 * (output as f64 - 2.0) * (input as f64 + 1.0) / 4.0
-        })
-    }
-
-    fn list_of_rows(of: &DMatrix<f64>, [open, close]: [char; 2]) -> String {
-        let row = |row: usize| {
-            let values: Vec<String> = of
-                .row(row)
-                .iter()
-                .map(|value| format!("{value:?}"))
-                .collect();
-            format!("{open}{}{close}", values.join(", "))
-        };
-        format!(
-            "{open}{}{close}",
-            (0..of.nrows()).map(row).collect::<Vec<_>>().join(", ")
-        )
-    }
-
-    /// Returns, at each airspeed, the mixing, the feedback, and the feedback closed through the
-    /// feed-through, row by row.
-    fn expected_couplings(analysis: &Analysis) -> Vec<f64> {
-        let matrices = analysis.fitted_couplings().unwrap().matrices();
-        let feedback = matrices.feedback();
-        let closed = feedback
-            * (DMatrix::identity(6, 6) - feed_through() * feedback)
-                .try_inverse()
-                .unwrap();
-        let values = |airspeed: f64| {
-            let of = [&matrices.normalised_mixing(airspeed), feedback, &closed];
-            of.map(|of| of.transpose().as_slice().to_vec()).concat()
-        };
-        airspeeds().into_iter().flat_map(values).collect()
-    }
-
-    #[test]
-    fn couplings_of_every_program_are_the_programs_own_and_are_closed_through_a_feed_through() {
-        let analysis = coupled();
-        let expected = expected_couplings(&analysis);
-        let folder = tempfile::tempdir().unwrap();
-        if is_there("python3") {
-            std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
-            let program = format!(
-                "import c\nfor a in [{}]:\n    m, k = c.gdcm_couplings(a)\n    f = c.gdcm_closed_feedback(k, {})\n    \
-                 print(*[repr(x) for rows in (m, k, f) for row in rows for x in row])",
-                listed(),
-                list_of_rows(&feed_through(), ['[', ']'])
-            );
-            assert_run(
-                "couplings",
-                "python3",
-                &["-c", &program],
-                folder.path(),
-                &expected,
-            );
-        }
-        if is_there("cc") {
-            let main = format!(
-                "{}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}}; double d[6][4] = {};\n\
-                 double m[4][4], k[4][6]; unsigned n; int i, turn;\n\
-                 for (n = 0; n < sizeof s / sizeof *s; n++) {{ if (gdcm_couplings(s[n], m, k) < 0) return 1;\n\
-                 for (i = 0; i < 16; i++) printf(\"%.17g \", (&m[0][0])[i]);\n\
-                 for (turn = 0; turn < 2; turn++) {{ if (turn == 1 && gdcm_close_feedback(k, d)) return 2;\n\
-                 for (i = 0; i < 24; i++) printf(\"%.17g \", (&k[0][0])[i]); }} }}\nreturn 0; }}\n",
-                program("h", &analysis, ""),
-                listed(),
-                list_of_rows(&feed_through(), ['{', '}'])
-            );
-            std::fs::write(folder.path().join("main.c"), main).unwrap();
-            let flags = [
-                "-std=c99",
-                "-Wall",
-                "-Wextra",
-                "-Wshadow",
-                "-Werror",
-                "-pedantic",
-                "-o",
-                "main",
-                "main.c",
-                "-lm",
-            ];
-            let built = Command::new("cc")
-                .args(flags)
-                .current_dir(&folder)
-                .output()
-                .unwrap();
-            assert!(
-                built.status.success(),
-                "{}",
-                String::from_utf8_lossy(&built.stderr)
-            );
-            let program = folder.path().join("main").display().to_string();
-            assert_run("couplings", &program, &[], folder.path(), &expected);
-        }
-        if is_there("octave-cli") {
-            std::fs::write(
-                folder.path().join("my_study.m"),
-                program("m", &analysis, "my_study"),
-            )
-            .unwrap();
-            let rows: Vec<String> = feed_through()
-                .row_iter()
-                .map(|row| format!("{:?}", row.iter().collect::<Vec<_>>()))
-                .collect();
-            let program = format!(
-                "D = [{}]; for s = [{}], [~, ~, ~, ~, m, k] = my_study(s); [~, ~, ~, ~, ~, f] = my_study(s, D); \
-                 printf('%.17g ', m', k', f'); end",
-                rows.join("; "),
-                listed()
-            );
-            assert_run(
-                "couplings",
-                "octave-cli",
-                &["--eval", &program],
-                folder.path(),
-                &expected,
-            );
-        }
-    }
-
-    #[test]
-    fn a_study_without_couplings_has_none_in_its_programs() {
-        let analysis = Engine::default()
-            .analyze(
-                &Study::new(embedded_example().unwrap().dataset),
-                &Unobserved,
-            )
-            .unwrap();
-        for language in ["m", "py", "h"] {
-            let text = program(language, &analysis, "k").to_lowercase();
-            assert!(
-                !text.contains("mixing") && !text.contains("feedback"),
-                "{language}: {text}"
-            );
-        }
-    }
-
-    /// Returns the example with altitude as its second variable, and its values at fifty airspeeds
-    /// and three altitudes.
-    fn with_altitude(kind: ScheduleKind) -> (Analysis, Vec<f64>) {
-        let mut study = Study::new(embedded_example().unwrap().dataset);
-        let schedule = ScheduleSettings {
-            kind,
-            second: Some(SecondVariable::Altitude),
-            ..ScheduleSettings::default()
-        };
-        study.settings.schedule = schedule;
-        let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
-        let schedule = analysis.schedule.clone().unwrap();
-        let values = |airspeed: f64, altitude: f64| {
-            let at = schedule.evaluate(airspeed, Some(altitude));
-            [
-                at.input_gains,
-                at.output_gains,
-                at.input_delays_s,
-                at.output_delays_s,
-            ]
-            .concat()
-        };
-        let pairs = || {
-            airspeeds()
-                .into_iter()
-                .flat_map(|airspeed| ALTITUDES.map(|altitude| (airspeed, altitude)))
-        };
-        let expected = pairs()
-            .flat_map(|(airspeed, altitude)| values(airspeed, altitude))
-            .collect();
-        (analysis, expected)
-    }
-
-    /// Below, within and above the range of the example \[ft\].
-    const ALTITUDES: [f64; 3] = [0.0, 4321.0, 20_000.0];
-
-    #[test]
-    fn a_second_variable_is_the_second_argument_of_every_program() {
-        for kind in [ScheduleKind::Polynomial { degree: 2 }, ScheduleKind::Table] {
-            let (analysis, expected) = with_altitude(kind);
-            let words = format!("{kind:?} and altitude");
-            if is_there("python3") {
-                let folder = tempfile::tempdir().unwrap();
-                std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
-                let program = format!(
-                    "import c\nfor a in [{}]:\n  for h in {ALTITUDES:?}:\n    mi, mo, ti, to = c.gdcm_correction(a, h)\n    \
-                     print(*[repr(m[k][k]) for m in (mi, mo) for k in range(len(m))], *map(repr, ti + to))",
-                    listed()
-                );
-                assert_run(
-                    &words,
-                    "python3",
-                    &["-c", &program],
-                    folder.path(),
-                    &expected,
-                );
-            }
-            if is_there("cc") {
-                let folder = tempfile::tempdir().unwrap();
-                let header = program("h", &analysis, "");
-                let main = format!(
-                    "{header}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}}, h[] = {{0, 4321, 20000}};\n\
-                     double v[2 * (GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT)]; unsigned k, l, j;\n\
-                     for (k = 0; k < sizeof s / sizeof *s; k++) for (l = 0; l < 3; l++) {{\n\
-                     gdcm_correction(s[k], h[l], v, v + GDCM_INPUT_COUNT, v + GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT,\n\
-                     v + 2 * GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT);\n\
-                     for (j = 0; j < sizeof v / sizeof *v; j++) printf(\"%.17g \", v[j]); }}\nreturn 0; }}\n",
-                    listed()
-                );
-                std::fs::write(folder.path().join("main.c"), main).unwrap();
-                let flags = [
-                    "-std=c99",
-                    "-Wall",
-                    "-Wextra",
-                    "-Werror",
-                    "-pedantic",
-                    "-o",
-                    "main",
-                    "main.c",
-                    "-lm",
-                ];
-                let built = Command::new("cc")
-                    .args(flags)
-                    .current_dir(&folder)
-                    .output()
-                    .unwrap();
-                assert!(
-                    built.status.success(),
-                    "{words}: {}",
-                    String::from_utf8_lossy(&built.stderr)
-                );
-                let program = folder.path().join("main").display().to_string();
-                assert_run(&words, &program, &[], folder.path(), &expected);
-            }
-            let function = program("m", &analysis, "my_study");
-            assert!(
-                function.contains("my_study(airspeed_kt, altitude_ft)"),
-                "{function}"
-            );
-        }
-    }
-
-    /// Returns the example with channel names that are hard to write: one input and two outputs.
-    fn with_nasty_names() -> Analysis {
-        let example = embedded_example().unwrap().dataset;
-        let mut header = example.header();
-        header.inputs[0].name = NASTY[0].to_owned();
-        header.outputs[0].name = NASTY[1].to_owned();
-        header.outputs[1].name = NASTY[2].to_owned();
-        let conditions = example
-            .conditions()
-            .iter()
-            .map(|condition| condition.as_ref().clone())
-            .collect();
-        let study = Study::new(Arc::new(Dataset::new(header, conditions).unwrap()));
-        Engine::default().analyze(&study, &Unobserved).unwrap()
-    }
-
-    #[test]
-    fn names_come_back_byte_by_byte() {
-        let analysis = with_nasty_names();
-        let folder = tempfile::tempdir().unwrap();
-        let expected: Vec<f64> = NASTY.concat().bytes().map(f64::from).collect();
-        if is_there("python3") {
-            std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
-            let lists = "import c\nfor name in c.INPUTS[:1] + c.OUTPUTS[:2]:\n    print(*list(name.encode()))";
-            assert_run("names", "python3", &["-c", lists], folder.path(), &expected);
-        }
-        if is_there("cc") {
-            let main = format!(
-                "{}\n#include <stdio.h>\nint main(void) {{\n\
-                 const char *n[] = {{GDCM_INPUT_NAME_0, GDCM_OUTPUT_NAME_0, GDCM_OUTPUT_NAME_1}};\n\
-                 const unsigned sizes[] = {{sizeof GDCM_INPUT_NAME_0, sizeof GDCM_OUTPUT_NAME_0, sizeof GDCM_OUTPUT_NAME_1}};\n\
-                 unsigned k, j; for (k = 0; k < 3; k++) for (j = 0; j + 1 < sizes[k]; j++) printf(\"%d \", (unsigned char)n[k][j]);\n\
-                 return 0; }}\n",
-                program("h", &analysis, "")
-            );
-            std::fs::write(folder.path().join("main.c"), main).unwrap();
-            let flags = [
-                "-std=c99",
-                "-Wall",
-                "-Wextra",
-                "-Werror",
-                "-pedantic",
-                "-o",
-                "main",
-                "main.c",
-                "-lm",
-            ];
-            let built = Command::new("cc")
-                .args(flags)
-                .current_dir(&folder)
-                .output()
-                .unwrap();
-            assert!(
-                built.status.success(),
-                "{}",
-                String::from_utf8_lossy(&built.stderr)
-            );
-            let program = folder.path().join("main").display().to_string();
-            assert_run("names", &program, &[], folder.path(), &expected);
-        }
-    }
-
-    #[test]
-    fn every_line_of_a_function_of_matlab_that_is_no_code_is_a_comment() {
-        let text = program("m", &with_nasty_names(), "k2_v");
-        assert!(
-            text.is_ascii() && text.starts_with("function [Mi, Mo, tau_i, tau_o] = k2_v("),
-            "{text}"
-        );
-        let code = ["function ", "  ", "end", "%"];
-        for line in text.lines().filter(|line| !line.is_empty()) {
-            assert!(code.iter().any(|start| line.starts_with(start)), "{line}");
-            assert!(!matches!(line.trim(), "%{" | "%}"));
-        }
-        assert_eq!(
-            text.lines()
-                .filter(|line| line.starts_with("% Input"))
-                .count(),
-            4
-        );
-    }
-
-    #[test]
-    fn a_name_that_matlab_cannot_call_is_refused() {
-        for name in [
-            "2nd",
-            "my-study",
-            "gdcm_table",
-            "end",
-            "parfor",
-            "endfunction",
-            "\u{e9}t\u{e9}",
-            &"x".repeat(64),
-        ] {
-            let refused = (MATLAB.check_path)(Path::new(&format!("folder/{name}.m")));
-            assert_eq!(
-                refused,
-                Err(ExportFault::FunctionName {
-                    found: name.to_owned()
-                })
-            );
-        }
-        assert_eq!((MATLAB.check_path)(Path::new("k2_v.m")), Ok(()));
-    }
-
-    #[test]
-    fn a_comment_stays_one_line_and_is_not_ended() {
-        assert_eq!(comment("a\n*/b"), "a<U+000A>* /b");
-        assert_eq!(comment("δ\\"), "<U+03B4>\\.");
-        assert_eq!(comment("−3 ± 2 dB"), "-3 +- 2 dB");
-    }
-
-    proptest! {
-        #[test]
-        fn no_comment_is_ended(text in "[*/\\\\?%{}\"'a\\n]{0,20}") {
-            let plain = comment(&text);
-            for mark in ["*/", "/*", "//", "??", "%{", "%}", "\n", "\"\"", "'''"] {
-                prop_assert!(!plain.contains(mark), "{}", plain);
-            }
-        }
-
-        #[test]
-        fn a_number_comes_back_to_the_last_digit(value in proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL) {
-            prop_assert_eq!(number(value).parse::<f64>().unwrap(), value);
-        }
-    }
+    Ok(())
 }

@@ -9,9 +9,12 @@ use gdcm_model::message_text::shortened;
 use gdcm_plot::figure::all_channels;
 
 use super::ExportSource;
-use super::programs::comment;
+use super::program_text::{comment, number};
 use crate::export_fault::ExportFault;
 use crate::files::export_contents::ExportContents;
+
+/// Airspeed intervals in which an airspeed-dependent lead filter is linear.
+const LEAD_INTERVALS: u32 = 100;
 
 /// A schedule with its dataset and study.
 #[derive(Clone)]
@@ -19,9 +22,9 @@ pub(super) struct Scheduled<'e> {
     pub(super) schedule: &'e Schedule,
     pub(super) dataset: &'e Dataset,
     pub(super) source: &'e ExportSource,
-    /// Mixing and feedback of the model, if any.
+    /// Mixing and feedback, if any.
     pub(super) couplings: Option<&'e CouplingMatrices>,
-    /// Contents of a file with the schedule.
+    /// Correction parts in a file with the schedule.
     pub(super) contents: ExportContents,
 }
 
@@ -31,13 +34,14 @@ pub(super) struct Curve {
     pub(super) figures: Regression,
     /// Coefficient of the scaled second variable, for an added term.
     pub(super) slope: Option<f64>,
-    /// Whether the sum is the natural logarithm of the value.
+    /// Whether the sum is the value's natural logarithm.
     pub(super) of_logarithm: bool,
     /// If present, the value is clipped between zero and this table.
     pub(super) upper: Option<Regression>,
 }
 
 impl Curve {
+    /// Creates a curve from a regression alone.
     pub(super) fn plain(figures: Regression) -> Self {
         Self {
             figures,
@@ -54,7 +58,10 @@ impl Curve {
     }
 
     fn is_finite(&self) -> bool {
-        let upper = self.upper.as_ref().map_or(&[][..], Regression::figures);
+        let upper = match &self.upper {
+            Some(upper) => upper.figures(),
+            None => &[],
+        };
         self.figures
             .figures()
             .iter()
@@ -64,126 +71,115 @@ impl Curve {
     }
 }
 
-/// Intervals of airspeed in which an airspeed-dependent lead filter is linear.
-const LEAD_POINTS: u32 = 100;
-
 impl Scheduled<'_> {
-    /// Returns the gain of a channel \[-\].
+    /// Returns a channel's gain \[-\].
     pub(super) fn gain(&self, channel: Channel) -> Curve {
+        let second = self.schedule.second.as_ref();
         Curve {
-            slope: self
-                .schedule
-                .second
-                .as_ref()
-                .map(|term| term.slopes[channel]),
+            slope: second.map(|term| term.slopes[channel]),
             of_logarithm: self.schedule.settings.quantity == ScheduledQuantity::LnGain,
             ..Curve::plain(self.schedule.gains[channel].clone())
         }
     }
 
-    /// Returns the delay of a channel \[s\]; zero if delays are not scheduled.
+    /// Returns a channel's delay \[s\]; zero if delays are not scheduled.
     pub(super) fn delay_s(&self, channel: Channel) -> Curve {
-        let (figures, upper) = match (&self.schedule.leads, &self.schedule.delays) {
-            (Some(leads), _) => {
-                let airspeeds_kt = vec![self.schedule.airspeeds.min_kt];
-                let values = vec![leads.bounds_s[1]];
-                (
-                    &leads.taus_s[channel],
-                    Regression::Table {
-                        airspeeds_kt,
-                        values,
-                    },
-                )
-            }
-            (None, Some(delays)) => (&delays.taus_s[channel], delays.upper_s.clone()),
-            (None, None) => return Curve::constant(0.0),
-        };
-        Curve {
-            upper: Some(upper),
-            ..Curve::plain(figures.clone())
+        if let Some(leads) = &self.schedule.leads {
+            let upper = Regression::Table {
+                airspeeds_kt: vec![self.schedule.airspeeds.min_kt],
+                values: vec![leads.bounds_s[1]],
+            };
+            return Curve {
+                upper: Some(upper),
+                ..Curve::plain(leads.taus_s[channel].clone())
+            };
+        }
+        match &self.schedule.delays {
+            Some(delays) => Curve {
+                upper: Some(delays.upper_s.clone()),
+                ..Curve::plain(delays.taus_s[channel].clone())
+            },
+            None => Curve::constant(0.0),
         }
     }
 
-    /// Returns the time constant `a` of the numerator of a channel's lead filter \[s\]: equal to
+    /// Returns the time constant `a` \[s\] in the numerator of a channel's lead filter: equal to
     /// `b` without a lead. `None` for a schedule without leads.
     pub(super) fn zero_s(&self, channel: Channel) -> Option<Curve> {
         let leads = self.schedule.leads.as_ref()?;
         let least = self.schedule.airspeeds.min_kt;
         let most = self.schedule.airspeeds.max_kt;
-        let figures = &leads.taus_s[channel];
-        let at = |kt: f64| {
-            let tau_s = figures
-                .at(&self.schedule.airspeeds, kt)
-                .clamp(leads.bounds_s[0], leads.bounds_s[1]);
-            leads
-                .design
-                .filter(tau_s)
-                .map_or(leads.design.lag_s(), |filter| filter.zero_s)
-        };
-        if figures.figures().len() == 1 || least == most {
-            return Some(Curve::constant(at(least)));
+        if leads.taus_s[channel].figures().len() == 1 || least == most {
+            return Some(Curve::constant(self.zero_at_s(channel, least)?));
         }
-        // The numerator for a signed delay is not a polynomial of it.
-        let kt = |place: u32| least + (most - least) * f64::from(place) / f64::from(LEAD_POINTS);
-        let airspeeds_kt: Vec<f64> = (0..=LEAD_POINTS).map(kt).collect();
-        let values = airspeeds_kt.iter().map(|&kt| at(kt)).collect();
+        // The numerator for a signed delay is not a polynomial in it.
+        let mut airspeeds_kt = Vec::new();
+        let mut values = Vec::new();
+        for place in 0..=LEAD_INTERVALS {
+            let airspeed_kt = least + (most - least) * f64::from(place) / f64::from(LEAD_INTERVALS);
+            airspeeds_kt.push(airspeed_kt);
+            values.push(self.zero_at_s(channel, airspeed_kt)?);
+        }
         Some(Curve::plain(Regression::Table {
             airspeeds_kt,
             values,
         }))
     }
 
-    /// Returns the remarks on the schedule.
-    pub(super) fn notes(&self) -> Vec<String> {
-        let unscheduled = "delays are not scheduled in this study: they are zero here".to_owned();
-        let (inputs, outputs) = self.dataset.names_of_channels();
-        let cautions = self
-            .schedule
-            .cautions
-            .iter()
-            .map(|caution| caution.words(&inputs, &outputs));
-        let price = self
-            .schedule
-            .lead_price()
-            .map(|price| price.words(&inputs, &outputs));
-        let cautions = price.into_iter().chain(cautions);
-        (!self.schedule.has_delays())
-            .then_some(unscheduled)
-            .into_iter()
-            .chain(cautions)
-            .collect()
+    /// Returns the numerator time constant \[s\] of a channel's lead filter at an airspeed.
+    fn zero_at_s(&self, channel: Channel, airspeed_kt: f64) -> Option<f64> {
+        let leads = self.schedule.leads.as_ref()?;
+        let tau_s = leads.taus_s[channel]
+            .at(&self.schedule.airspeeds, airspeed_kt)
+            .clamp(leads.bounds_s[0], leads.bounds_s[1]);
+        match leads.design.filter(tau_s) {
+            Some(filter) => Some(filter.zero_s),
+            None => Some(leads.design.lag_s()),
+        }
     }
 
-    /// Returns the same remarks, and those on parts omitted from the curves.
+    /// Returns the remarks on the schedule.
+    pub(super) fn notes(&self) -> Vec<String> {
+        let (inputs, outputs) = self.dataset.names_of_channels();
+        let mut notes = Vec::new();
+        if !self.schedule.has_delays() {
+            notes.push("delays are not scheduled in this study: they are zero here".to_owned());
+        }
+        if let Some(price) = self.schedule.lead_price() {
+            notes.push(price.words(&inputs, &outputs));
+        }
+        for caution in &self.schedule.cautions {
+            notes.push(caution.words(&inputs, &outputs));
+        }
+        notes
+    }
+
+    /// Returns the same remarks, and a remark on lead filters that are tables.
     pub(super) fn notes_of_curves(&self) -> Vec<String> {
-        let is_table = |channel| {
+        let mut notes = self.notes();
+        let has_lead_table = all_channels(self.dataset).into_iter().any(|channel| {
             self.zero_s(channel)
                 .is_some_and(|zero_s| zero_s.figures.figures().len() > 1)
-        };
-        let points = LEAD_POINTS + 1;
-        let tables =
-            format!("the lead filters are tables over airspeed, linear between {points} points");
-        self.notes()
-            .into_iter()
-            .chain(
-                all_channels(self.dataset)
-                    .into_iter()
-                    .any(is_table)
-                    .then_some(tables),
-            )
-            .collect()
+        });
+        if has_lead_table {
+            notes.push(format!(
+                "the lead filters are tables over airspeed, linear between {} points",
+                LEAD_INTERVALS + 1
+            ));
+        }
+        notes
     }
 
     /// Describes a file with the schedule, line by line, with these notes.
     pub(super) fn heading(&self, notes: &[String]) -> Vec<String> {
         let airspeeds = &self.schedule.airspeeds;
-        let what = if self.schedule.has_delays() {
+        let quantities = if self.schedule.has_delays() {
             "Gains and delays"
         } else {
             "Gains (no delays)"
         };
         let mut lines = vec![
-            format!("{what} that correct a model of a helicopter, scheduled with airspeed."),
+            format!("{quantities} that correct a model of a helicopter, scheduled with airspeed."),
             "The model gets the input Mi*u(t - tau_i); its output ym gives y(t) = Mo*ym(t - tau_o).".to_owned(),
             "Units: airspeed in knots, delays in seconds, gains without a unit.".to_owned(),
             format!(
@@ -195,21 +191,7 @@ impl Scheduled<'_> {
             format!("SHA-256 of the dataset: {}", comment(&self.source.sha256)),
             concat!("Written by: gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
         ];
-        if let Some(leads) = &self.schedule.leads {
-            let lag_s = leads.design.lag_s();
-            let filter = match leads.design.settings().order.number() {
-                1 => "L(s) = (1 + a*s)/(1 + b*s)",
-                _ => "L(s) = (1 + sqrt(2)*a*s + a^2*s^2)/(1 + sqrt(2)*b*s + b^2*s^2)",
-            };
-            lines.extend([
-                format!("Lead: each input, after its gain and delay, and each output, before them, passes {filter},"),
-                format!(
-                    "with b = {} s for all, and a in seconds for each; where a = b there is no lead.",
-                    number(lag_s)
-                ),
-                format!("In fixed-step code use Tustin's rule and a step of at most {} s.", number(0.5 * lag_s)),
-            ]);
-        }
+        lines.extend(self.lead_lines());
         if self.couplings.is_some() {
             lines.extend(
                 [
@@ -224,36 +206,62 @@ impl Scheduled<'_> {
         for words in self.contents.left_out_words(self.dataset) {
             lines.push(format!("Left out: {}.", comment(&words)));
         }
-        lines.extend(notes.iter().map(|note| format!("Note: {}", comment(note))));
+        for note in notes {
+            lines.push(format!("Note: {}", comment(note)));
+        }
         lines
     }
 
-    /// Rejects numbers that no program can compute with.
+    /// Describes the lead filters; empty without them.
+    fn lead_lines(&self) -> Vec<String> {
+        let Some(leads) = &self.schedule.leads else {
+            return Vec::new();
+        };
+        let lag_s = leads.design.lag_s();
+        let filter = match leads.design.settings().order.number() {
+            1 => "L(s) = (1 + a*s)/(1 + b*s)",
+            _ => "L(s) = (1 + sqrt(2)*a*s + a^2*s^2)/(1 + sqrt(2)*b*s + b^2*s^2)",
+        };
+        vec![
+            format!(
+                "Lead: each input, after its gain and delay, and each output, before them, passes {filter},"
+            ),
+            format!(
+                "with b = {} s for all, and a in seconds for each; where a = b there is no lead.",
+                number(lag_s)
+            ),
+            format!(
+                "In fixed-step code use Tustin's rule and a step of at most {} s.",
+                number(0.5 * lag_s)
+            ),
+        ]
+    }
+
+    /// Rejects curves with numbers that are not finite.
     pub(super) fn check(&self) -> Result<(), ExportFault> {
-        let (inputs, outputs) = self.dataset.names_of_channels();
         for channel in all_channels(self.dataset) {
-            let curves = [
-                ("gain", Some(self.gain(channel))),
-                ("delay", Some(self.delay_s(channel))),
-            ];
-            for (curve, of) in curves
-                .into_iter()
-                .chain([("lead numerator", self.zero_s(channel))])
-            {
-                if of.is_some_and(|of| !of.is_finite()) {
-                    return Err(ExportFault::Curve {
-                        channel: channel.name(&inputs, &outputs),
-                        curve,
-                    });
-                }
+            self.check_curve(channel, "gain", &self.gain(channel))?;
+            self.check_curve(channel, "delay", &self.delay_s(channel))?;
+            if let Some(zero_s) = self.zero_s(channel) {
+                self.check_curve(channel, "lead numerator", &zero_s)?;
             }
         }
         Ok(())
     }
-}
 
-/// Formats a finite number with 17 significant digits: every language reads back the same value.
-pub(super) fn number(value: f64) -> String {
-    // Adding zero turns minus zero into zero.
-    format!("{:.16e}", value + 0.0)
+    fn check_curve(
+        &self,
+        channel: Channel,
+        quantity: &'static str,
+        curve: &Curve,
+    ) -> Result<(), ExportFault> {
+        if curve.is_finite() {
+            return Ok(());
+        }
+        let (inputs, outputs) = self.dataset.names_of_channels();
+        Err(ExportFault::Curve {
+            channel: channel.name(&inputs, &outputs),
+            curve: quantity,
+        })
+    }
 }

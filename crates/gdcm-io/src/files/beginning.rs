@@ -1,10 +1,10 @@
-//! Errors in the beginning of a dataset or a study, without reading the rest.
+//! Errors near the beginning of a dataset or a study, without reading the rest.
 //!
 //! ```text
 //! n <- 64 KiB
-//! 1  text <- the first n bytes, unpacked; where that is all of it, the reader proper says what is wrong
+//! 1  text <- the first n bytes, unpacked; if that is the whole file, stop: the full reader checks it
 //! 2  read text up to its last comma as a dataset or a study
-//! 3  an error other than the end of the text: it stands, whatever follows
+//! 3  an error other than the end of the text: report it
 //! 4  n <- 16 n, and again up to 16 MiB
 //! ```
 //!
@@ -20,25 +20,25 @@ use crate::location::Outline;
 use crate::reading_budget::ReadingBudget;
 use crate::source::{text_reader, without_mark};
 
-/// Length of the first beginning \[bytes\].
+/// Length read first \[bytes\].
 const FIRST: usize = 1 << 16;
 /// Growth factor from each beginning to the next.
 const GROWTH: usize = 16;
-/// Length of the last beginning \[bytes\].
+/// Length read last \[bytes\].
 const LAST: usize = 16 << 20;
 
 /// Looks for the first structural error of a dataset or a study: text that is not JSON, another
-/// format or version, values of a type other than their keys require, lists that are too long.
+/// format or version, values with a type other than their keys require, lists that are too long.
 ///
 /// # Errors
-/// Returns that error if it lies in the beginning of the file, and an error if the file is missing.
+/// Returns this error if it is within the first 16 MiB, and an error if the file is missing.
 pub fn check_beginning(path: &Path) -> Result<(), FileError> {
     let mut reader = text_reader(path)?;
     let mut text = Vec::new();
     let mut length = FIRST;
     while length <= LAST {
         let wanted = length - text.len();
-        // A file that cannot be read or unpacked is reported by the reader proper.
+        // The full reader reports a file that cannot be read or unpacked.
         let Ok(found) = reader.by_ref().take(wanted as u64).read_to_end(&mut text) else {
             return Ok(());
         };

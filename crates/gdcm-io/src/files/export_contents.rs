@@ -9,7 +9,7 @@ use gdcm_study::results::schedule_losses::DelayedChannel;
 use gdcm_study::{Analysis, AssessedCorrection, PhaseCorrection};
 use gdcm_words::schedule::delayed_channel_text;
 
-/// Source of a part of an exported correction.
+/// Source of a part in an exported correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartSource {
     Scheduled,
@@ -44,7 +44,7 @@ impl PartSource {
         if is_own { Self::Own } else { Self::None }
     }
 
-    /// Combines this part with the same part of the schedule.
+    /// Combines this part with the same part in the schedule.
     fn beside(self, scheduled: Self) -> Self {
         match (self, scheduled) {
             (Self::Own, Self::Scheduled) => Self::OwnAndScheduled,
@@ -54,13 +54,12 @@ impl PartSource {
     }
 }
 
-/// A part of the conditions' corrections that an export does not contain.
+/// A part in the conditions' corrections that an export does not contain.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LeftOutPart {
-    /// A channel's delays in the own corrections of some conditions that the schedule does not
-    /// have.
+    /// A channel's delays in some conditions' own corrections that the schedule does not have.
     Delay(DelayedChannel),
-    /// The lead filters of the schedule.
+    /// The scheduled lead filters.
     Leads,
     /// The requested couplings, and the reason why there are none.
     Couplings(String),
@@ -79,28 +78,30 @@ impl LeftOutPart {
     /// Describes it in words: "delay of output NX: 5.3 ms in condition 4 (not scheduled)".
     pub fn words(&self, dataset: &Dataset) -> String {
         match self {
-            Self::Delay(of) => format!("{} (not scheduled)", delayed_channel_text(of, dataset)),
+            Self::Delay(delayed) => {
+                format!("{} (not scheduled)", delayed_channel_text(delayed, dataset))
+            }
             Self::Leads => "the lead filters of the schedule".to_owned(),
             Self::Couplings(why) => format!("the couplings that the study asks for: {why}"),
         }
     }
 }
 
-/// Contents of an export, and the parts it omits.
+/// Export contents, and the parts that it omits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExportContents {
     pub gains: PartSource,
     pub delays: PartSource,
     pub leads: PartSource,
-    /// Mixing and feedback of the models, the same for all conditions.
+    /// Mixing and feedback, the same for all conditions.
     pub couplings: PartSource,
     /// The omitted parts.
     pub left_out: Vec<LeftOutPart>,
 }
 
 impl ExportContents {
-    /// Returns the contents of the result files: each condition's own correction, beside the
-    /// schedule if the study has one.
+    /// Returns the contents for the result files: each condition's own correction, beside the
+    /// schedule if it exists.
     pub fn of_results(analysis: &Analysis) -> Self {
         let own = Self::of_own(analysis);
         let Ok(schedule) = &analysis.schedule else {
@@ -122,7 +123,7 @@ impl ExportContents {
         }
     }
 
-    /// Returns the contents of the study's schedule; empty for a study without one.
+    /// Returns the contents for the study's schedule; empty without a schedule.
     pub fn of_scheduled(analysis: &Analysis) -> Self {
         match &analysis.schedule {
             Ok(schedule) => Self::of_schedule(analysis, schedule),
@@ -130,7 +131,7 @@ impl ExportContents {
         }
     }
 
-    /// Returns the contents of the corrected models of these conditions.
+    /// Returns the contents for corrected models in these conditions.
     ///
     /// # Errors
     /// [`ScheduleError`] if a schedule is requested and there is none.
@@ -209,7 +210,7 @@ impl ExportContents {
         contents
     }
 
-    /// Returns each part with its name, in the order of reports.
+    /// Returns each part with its name, in report order.
     pub fn parts(&self) -> [(&'static str, PartSource); 4] {
         [
             ("gains", self.gains),
@@ -243,7 +244,7 @@ impl ExportContents {
         lines
     }
 
-    /// Returns the block `contains` of files.
+    /// Returns the block `contains` for files.
     pub fn json(&self, dataset: &Dataset) -> Value {
         json!({
             "gains": self.gains.word(),

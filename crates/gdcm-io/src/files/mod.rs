@@ -4,6 +4,7 @@ pub mod beginning;
 pub mod corrections_file;
 pub mod dataset_file;
 pub mod export_contents;
+pub mod identified_models;
 pub mod model_collection;
 pub mod requirements_file;
 pub mod rules_file;

@@ -1,12 +1,10 @@
-//! Files of requirements (M17): `requirements.json` and `requirements.csv`, with the same numbers.
+//! Requirement files (M17): `requirements.json` and `requirements.csv`, with the same numbers.
 
-use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use gdcm_method::requirements::tolerance::ToleranceError;
 use gdcm_method::requirements::{BandwidthRule, LevelBoundaries, Tolerance, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::dataset::location::Location;
@@ -25,10 +23,10 @@ use crate::source::Source;
 const NAME: &str = "gdcm-requirements";
 const VERSION: u64 = 1;
 
-/// Names of the files of requirements.
+/// Requirement file names.
 pub const REQUIREMENT_FILES: [&str; 2] = ["requirements.json", "requirements.csv"];
 
-/// Returns the paths of the files of requirements in a directory.
+/// Returns the requirement file paths in a directory.
 pub fn requirement_paths(directory: &Path) -> [PathBuf; 2] {
     REQUIREMENT_FILES.map(|name| directory.join(name))
 }
@@ -51,15 +49,29 @@ struct DatasetName<'a> {
     sha256: &'a str,
 }
 
+/// Findings on the requirements, and the dataset that they concern.
+#[derive(Clone, Copy)]
+pub struct RequirementResults<'a> {
+    pub requirements: &'a Requirements,
+    pub time_histories: &'a TimeHistories,
+    /// Dataset name.
+    pub dataset: &'a str,
+    /// SHA-256 of the dataset's file.
+    pub sha256: &'a str,
+}
+
 /// Writes both files into a directory, created if missing: both, or none.
-///
-/// `dataset` is the name of the dataset and the SHA-256 of its file.
 pub fn write_requirements(
-    (requirements, time_histories): (&Requirements, &TimeHistories),
-    (name, sha256): (&str, &str),
+    results: RequirementResults<'_>,
     directory: &Path,
     mut outputs: OutputSet,
 ) -> Result<(), FileError> {
+    let RequirementResults {
+        requirements,
+        time_histories,
+        dataset,
+        sha256,
+    } = results;
     let [json, table] = requirement_paths(directory);
     outputs.check(&[&json, &table])?;
     make_directory(directory)?;
@@ -67,7 +79,10 @@ pub fn write_requirements(
         format: NAME,
         version: VERSION,
         software: concat!("gdcm ", env!("CARGO_PKG_VERSION")),
-        dataset: DatasetName { name, sha256 },
+        dataset: DatasetName {
+            name: dataset,
+            sha256,
+        },
         requirements,
         time_histories,
     };
@@ -78,7 +93,7 @@ pub fn write_requirements(
     outputs.persist()
 }
 
-/// Headings of the columns.
+/// Column headings.
 const HEADING: &str = "question condition airspeed_kt role model output input mode record tolerance quantity value low high remark";
 
 /// Writes a row for each number.
@@ -87,19 +102,20 @@ fn write_rows(
     time_histories: &TimeHistories,
     file: &mut dyn Write,
 ) -> io::Result<()> {
-    let heading: Vec<String> = HEADING.split(' ').map(str::to_owned).collect();
-    let bandwidth = requirements.bandwidth.iter().flat_map(bandwidth_rows);
-    let modes = requirements.modes.iter().flat_map(mode_rows);
-    let summary = requirements.summary.iter().flat_map(summary_rows);
-    let histories = time_histories.records.iter().flat_map(history_rows);
-    write_records(
-        file,
-        std::iter::once(heading)
-            .chain(bandwidth)
-            .chain(modes)
-            .chain(summary)
-            .chain(histories),
-    )
+    let mut rows: Vec<Vec<String>> = vec![HEADING.split(' ').map(str::to_owned).collect()];
+    for finding in &requirements.bandwidth {
+        rows.extend(bandwidth_rows(finding));
+    }
+    for finding in &requirements.modes {
+        rows.extend(mode_rows(finding));
+    }
+    for finding in &requirements.summary {
+        rows.extend(summary_rows(finding));
+    }
+    for finding in &time_histories.records {
+        rows.extend(history_rows(finding));
+    }
+    write_records(file, rows.into_iter())
 }
 
 /// Subject of a number: the first ten cells of a row.
@@ -118,6 +134,7 @@ struct Subject<'a> {
 }
 
 impl Subject<'_> {
+    /// Returns the row for a number with this name.
     fn row(
         &self,
         name: &str,
@@ -125,7 +142,6 @@ impl Subject<'_> {
         interval: Option<[f64; 2]>,
         remark: String,
     ) -> Vec<String> {
-        let cell = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
         vec![
             self.question.to_owned(),
             self.condition.to_string(),
@@ -146,6 +162,14 @@ impl Subject<'_> {
     }
 }
 
+/// Formats a number; empty if it is missing.
+fn cell(value: Option<f64>) -> String {
+    match value {
+        Some(value) => value.to_string(),
+        None => String::new(),
+    }
+}
+
 fn bandwidth_rows(finding: &BandwidthFinding) -> Vec<Vec<String>> {
     let subject = Subject {
         question: "bandwidth",
@@ -157,16 +181,13 @@ fn bandwidth_rows(finding: &BandwidthFinding) -> Vec<Vec<String>> {
         input: &finding.input,
         ..Subject::default()
     };
-    let row = |(name, value)| {
+    let mut rows = Vec::new();
+    for (name, value) in finding.quantities() {
         let interval = finding.interval.get(name).copied();
-        subject.row(
-            name,
-            value,
-            interval,
-            bandwidth_remark(finding, name, value.is_some()),
-        )
-    };
-    finding.quantities().into_iter().map(row).collect()
+        let remark = bandwidth_remark(finding, name, value.is_some());
+        rows.push(subject.row(name, value, interval, remark));
+    }
+    rows
 }
 
 /// Returns the reason why a number is missing, or its basis.
@@ -197,47 +218,37 @@ fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bo
 }
 
 fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
-    let name = finding
-        .name
-        .map_or_else(String::new, |name| format!(" {name}"));
-    let mode = format!("{}{name}", finding.number);
-    let rows = |role: &str, numbers: &ModeNumbers| -> Vec<Vec<String>> {
-        let subject = Subject {
-            question: "modes",
-            condition: finding.condition,
-            airspeed_kt: finding.airspeed_kt,
-            role,
-            model: &numbers.model,
-            mode: &mode,
-            ..Subject::default()
-        };
-        let why = |name: &str| {
-            numbers
-                .absent
-                .get(name)
-                .copied()
-                .unwrap_or_default()
-                .to_owned()
-        };
-        numbers
-            .quantities()
-            .into_iter()
-            .map(|(name, value)| subject.row(name, value, None, why(name)))
-            .collect()
+    let mut rows = model_mode_rows(finding, "identified", &finding.identified);
+    if let Some(numbers) = &finding.physics {
+        rows.extend(model_mode_rows(finding, "physics", numbers));
+    }
+    if let Some(numbers) = &finding.corrected {
+        rows.extend(model_mode_rows(finding, "corrected", numbers));
+    }
+    rows
+}
+
+/// Returns a mode's rows for the model with this role.
+fn model_mode_rows(finding: &ModeFinding, role: &str, numbers: &ModeNumbers) -> Vec<Vec<String>> {
+    let mode = match finding.name {
+        Some(name) => format!("{} {name}", finding.number),
+        None => finding.number.to_string(),
     };
-    let physics = finding
-        .physics
-        .iter()
-        .flat_map(|numbers| rows("physics", numbers));
-    let corrected = finding
-        .corrected
-        .iter()
-        .flat_map(|numbers| rows("corrected", numbers));
-    rows("identified", &finding.identified)
-        .into_iter()
-        .chain(physics)
-        .chain(corrected)
-        .collect()
+    let subject = Subject {
+        question: "modes",
+        condition: finding.condition,
+        airspeed_kt: finding.airspeed_kt,
+        role,
+        model: &numbers.model,
+        mode: &mode,
+        ..Subject::default()
+    };
+    let mut rows = Vec::new();
+    for (name, value) in numbers.quantities() {
+        let why = numbers.absent.get(name).copied().unwrap_or_default();
+        rows.push(subject.row(name, value, None, why.to_owned()));
+    }
+    rows
 }
 
 fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {
@@ -249,13 +260,12 @@ fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {
         model: &finding.model,
         ..Subject::default()
     };
-    let absent: &BTreeMap<&'static str, String> = &finding.absent;
-    let why = |name: &str| absent.get(name).cloned().unwrap_or_default();
-    finding
-        .quantities()
-        .into_iter()
-        .map(|(name, value)| subject.row(name, value, None, why(name)))
-        .collect()
+    let mut rows = Vec::new();
+    for (name, value) in finding.quantities() {
+        let why = finding.absent.get(name).cloned().unwrap_or_default();
+        rows.push(subject.row(name, value, None, why));
+    }
+    rows
 }
 
 /// Returns rows for values without a tolerance first, then for each tolerance.
@@ -275,25 +285,26 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
         (Some(_), []) => String::new(),
         (Some(_), left_out) => format!("without {}", left_out.join(", ")),
     };
-    let rms = subject.row("j_rms", finding.j_rms, None, remark);
-    let theil = finding.theil.iter().map(|(output, theil)| {
-        Subject { output, ..subject }.row("theil", Some(*theil), None, String::new())
-    });
-    let against = finding.tolerances.iter().flat_map(|of| {
+    let mut rows = vec![subject.row("j_rms", finding.j_rms, None, remark)];
+    for (output, theil) in &finding.theil {
+        let subject = Subject { output, ..subject };
+        rows.push(subject.row("theil", Some(*theil), None, String::new()));
+    }
+    for tolerance in &finding.tolerances {
         let subject = Subject {
-            output: &of.output,
-            tolerance: &of.quantity,
+            output: &tolerance.output,
+            tolerance: &tolerance.quantity,
             ..subject
         };
-        let row = |(name, value): (&str, Option<f64>)| {
-            subject.row(name, value, None, tolerance_remark(of, name))
-        };
-        of.quantities().map(row)
-    });
-    std::iter::once(rms).chain(theil).chain(against).collect()
+        for (name, value) in tolerance.quantities() {
+            let remark = tolerance_remark(tolerance, name);
+            rows.push(subject.row(name, value, None, remark));
+        }
+    }
+    rows
 }
 
-/// Returns the unit of an excess, and the trend indicated by a correlation.
+/// Returns the unit for an excess, and the trend that a correlation indicates.
 fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
     match (name, finding.correlation, finding.trend) {
         ("largest_excess", ..) => finding.unit.clone(),
@@ -303,8 +314,8 @@ fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
     }
 }
 
-// The engineer's own tables for requirements, each a separate file, for any study (M17): levels of
-// bandwidth and phase delay, tolerances of time histories.
+// The engineer's own tables for requirements, each a separate file, for any study (M17): levels for
+// bandwidth and phase delay, tolerances for time histories.
 
 const TOLERANCES: Format = Format {
     name: "gdcm-tolerances",
@@ -320,8 +331,8 @@ struct TolerancesText {
     tolerances: Vec<Tolerance>,
 }
 
-/// Reads the boundaries of levels from a file, `[{"name": "Level 1", "axis": "P", "points":
-/// [[rad/s, s], ...]}]` (M17.1).
+/// Reads level boundaries from a file, `[{"name": "Level 1", "axis": "P", "points": [[rad/s, s],
+/// ...]}]` (M17.1).
 ///
 /// # Errors
 /// [`FileError`] with the line if the file cannot be read, or a boundary is invalid.
@@ -332,21 +343,21 @@ pub fn read_levels(path: &Path) -> Result<LevelBoundaries, FileError> {
         .map_err(|error| json_error(text, path, Location::default(), &error))
 }
 
-/// Reads a table of tolerances; whole, or not at all. Unknown keys are cautions.
+/// Reads a tolerance table; whole, or not at all. Unknown keys are cautions.
 pub fn load_tolerances(path: &Path) -> Result<(ToleranceTable, Vec<String>), FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
     let (text, cautions) = TOLERANCES.decode::<TolerancesText>(source.text(), path, &budget)?;
-    let refused =
-        |error: ToleranceError| ContentError::new(Location::default(), ContentFault::from(error));
-    let table = ToleranceTable::new(text.source, text.tolerances);
-    Ok((
-        table.map_err(|error| FileError::content(path, refused(error)))?,
-        cautions,
-    ))
+    match ToleranceTable::new(text.source, text.tolerances) {
+        Ok(table) => Ok((table, cautions)),
+        Err(error) => {
+            let error = ContentError::new(Location::default(), ContentFault::from(error));
+            Err(FileError::content(path, error))
+        }
+    }
 }
 
-/// Adds a table of tolerances to `outputs`.
+/// Adds a tolerance table to `outputs`.
 pub fn add_tolerances(
     table: &ToleranceTable,
     path: &Path,
@@ -367,7 +378,7 @@ mod table_tests {
     use crate::output_set::Existing;
 
     #[test]
-    fn levels_are_read_and_what_is_wrong_with_them_is_said_with_its_place() {
+    fn levels_are_read_and_faults_in_them_reported_with_their_place() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("levels.json");
         let read = |text: &str| {
@@ -415,7 +426,7 @@ mod table_tests {
     }
 
     #[test]
-    fn what_is_wrong_with_a_table_is_said_with_its_row() {
+    fn faults_in_a_table_are_reported_with_their_row() {
         let (_folder, path) = written(&ToleranceTable::default());
         let right = std::fs::read_to_string(&path).unwrap();
         for (from, to, words) in [

@@ -1,4 +1,4 @@
-//! Rules files, `*.gdcm-rules.json`: the engineer's rules for the files of a folder, reusable for
+//! Rules files, `*.gdcm-rules.json`: the engineer's rules for the files in a folder, reusable for
 //! later folders.
 
 use std::collections::BTreeMap;
@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::assembly::declarations::{ScopedDeclarations, Signs};
+use gdcm_model::assembly::declarations::{ChannelDeclarations, ScopedDeclarations, Signs};
 use gdcm_model::assembly::{RowRule, Rules, UnitRule};
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
 use gdcm_model::dataset::location::Location;
-use gdcm_model::names::{ChannelRule, NamePattern, standard_patterns};
+use gdcm_model::names::channel_rule::ChannelRule;
+use gdcm_model::names::name_pattern::{NamePattern, standard_patterns};
 use gdcm_model::whole_number::whole;
 
 use crate::file_error::{ContentError, ContentFault, FileError};
@@ -19,15 +20,15 @@ use crate::output_set::OutputSet;
 use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 
-/// Extension of a rules file.
+/// File extension.
 const RULES_EXTENSION: &str = "gdcm-rules.json";
 
-/// Returns the path of the rules beside a dataset: "week.gdcm-rules.json" beside "week.json.gz".
+/// Returns the path for rules beside a dataset: "week.gdcm-rules.json" beside "week.json.gz".
 pub fn rules_path(dataset: &Path) -> PathBuf {
-    let name = dataset
-        .file_name()
-        .map(|name| name.to_string_lossy().into_owned())
-        .unwrap_or_default();
+    let name = match dataset.file_name() {
+        Some(name) => name.to_string_lossy().into_owned(),
+        None => String::new(),
+    };
     let stem = name.trim_end_matches(".gz").trim_end_matches(".json");
     dataset.with_file_name(format!("{stem}.{RULES_EXTENSION}"))
 }
@@ -37,172 +38,167 @@ pub fn load_rules(path: &Path) -> Result<(Rules, Vec<String>), FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
     let (text, cautions) = FORMAT.decode::<RulesText>(source.text(), path, &budget)?;
-    let rules = rules_of(text).map_err(|flaw| FileError::content(path, flaw))?;
+    let rules = text
+        .into_rules()
+        .map_err(|error| FileError::content(path, error))?;
     Ok((rules, cautions))
 }
 
 /// Adds a rules file to `outputs`.
 pub fn add_rules(rules: &Rules, path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
-    let text = text_of(rules);
+    let text = RulesText::from_rules(rules);
     outputs.add(path, |file| write_pretty(&text, file))
 }
 
-fn rules_of(text: RulesText) -> Result<Rules, ContentError> {
-    let pattern = |(index, text): (usize, &String)| {
-        NamePattern::new(text).map_err(|error| {
-            let fault = ContentFault::Word {
-                expected: error.to_string(),
-                found: text.clone(),
-            };
-            ContentError::new(
-                Location::entry(format!("patterns, entry {}", index + 1)),
-                fault,
-            )
-        })
+/// Returns the error for an entry with a word other than expected.
+fn word_error(entry: String, expected: &str, found: String) -> ContentError {
+    let fault = ContentFault::Word {
+        expected: expected.to_owned(),
+        found,
     };
-    let patterns = text
-        .patterns
-        .iter()
-        .enumerate()
-        .map(pattern)
-        .collect::<Result<_, _>>()?;
-    check_declarations(&text)?;
-    let of_roles = text
-        .role_signs
-        .iter()
-        .map(|(role, signs)| (format!("role_signs, {role}"), signs));
-    let of_models = text
-        .models
-        .iter()
-        .filter_map(|(key, row)| Some((format!("models, {key}, signs"), row.signs.as_ref()?)));
-    for (place, signs) in std::iter::once(("signs".to_owned(), &text.signs))
-        .chain(of_roles)
-        .chain(of_models)
-    {
-        if let Some((channel, sign)) = signs.iter().find(|(_, sign)| sign.abs() != 1.0) {
-            let fault = ContentFault::Word {
-                expected: "1 or -1".to_owned(),
-                found: sign.to_string(),
-            };
-            return Err(ContentError::new(
-                Location::entry(format!("{place}, {channel}")),
-                fault,
-            ));
-        }
-    }
-    if let Some(role) = text
-        .role_signs
-        .keys()
-        .find(|role| !matches!(role.as_str(), "identified" | "physics"))
-    {
-        let fault = ContentFault::Word {
-            expected: "\"identified\" or \"physics\"".to_owned(),
-            found: role.clone(),
-        };
-        return Err(ContentError::new(
-            Location::entry("role_signs".to_owned()),
-            fault,
-        ));
-    }
-    let mut rules = Rules {
-        name: text.name,
-        description: text.description,
-        inputs: text.inputs,
-        outputs: text.outputs,
-        on_axis: text.on_axis,
-        band: (text.band_rad_s[0], text.band_rad_s[1]),
-        patterns,
-        units: text.conversions,
-        signs: text.signs,
-        role_signs: text.role_signs,
-        declarations: Vec::new(),
-        sample_time_s: text.sample_time_s,
-        headings: text.headings,
-        rows: text.models,
-    };
-    for ScopedDeclarations { of, channels } in text.declarations {
-        rules.declare(of, &channels);
-    }
-    Ok(rules)
+    ContentError::new(Location::entry(entry), fault)
 }
 
-/// Rejects a factor that converts nothing, an empty unit, an invalid sign, and a unit beside a
-/// factor of the same channel.
-fn check_declarations(text: &RulesText) -> Result<(), ContentError> {
-    let of_scopes = text.declarations.iter().map(|declared| {
-        let place = format!("declarations, {}", declared.of);
-        (place, declared.channels.clone())
-    });
-    let of_models = text
-        .models
-        .iter()
-        .map(|(key, row)| (format!("models, {key}"), row.declarations()));
-    for (place, declared) in of_scopes.chain(of_models) {
-        let wrong = |key: &str, channel: &str, expected: &str, found: String| {
-            let fault = ContentFault::Word {
-                expected: expected.to_owned(),
-                found,
-            };
-            Err(ContentError::new(
-                Location::entry(format!("{place}, {key}, {channel}")),
-                fault,
-            ))
+impl RulesText {
+    fn into_rules(self) -> Result<Rules, ContentError> {
+        let mut patterns = Vec::with_capacity(self.patterns.len());
+        for (index, text) in self.patterns.iter().enumerate() {
+            patterns.push(NamePattern::new(text).map_err(|error| {
+                let entry = format!("patterns, entry {}", index + 1);
+                word_error(entry, &error.to_string(), text.clone())
+            })?);
+        }
+        self.check_declarations()?;
+        self.check_signs()?;
+        for role in self.role_signs.keys() {
+            if !matches!(role.as_str(), "identified" | "physics") {
+                return Err(word_error(
+                    "role_signs".to_owned(),
+                    "\"identified\" or \"physics\"",
+                    role.clone(),
+                ));
+            }
+        }
+        let mut rules = Rules {
+            name: self.name,
+            description: self.description,
+            inputs: self.inputs,
+            outputs: self.outputs,
+            on_axis: self.on_axis,
+            band: (self.band_rad_s[0], self.band_rad_s[1]),
+            patterns,
+            units: self.conversions,
+            signs: self.signs,
+            role_signs: self.role_signs,
+            declarations: Vec::new(),
+            sample_time_s: self.sample_time_s,
+            headings: self.headings,
+            rows: self.models,
         };
-        for (channel, factor) in &declared.factors {
-            if !factor.is_finite() || *factor == 0.0 {
-                return wrong(
-                    "factors",
-                    channel,
-                    "a number other than 0",
-                    factor.to_string(),
-                );
-            }
-            if let Some(unit) = declared.units.get(channel) {
-                return wrong(
-                    "factors",
-                    channel,
-                    "a unit or a factor, not both",
-                    format!("{unit} and {factor}"),
-                );
+        for ScopedDeclarations { of, channels } in self.declarations {
+            rules.declare(of, &channels);
+        }
+        Ok(rules)
+    }
+
+    /// Rejects invalid signs for all files, for roles and for single models.
+    fn check_signs(&self) -> Result<(), ContentError> {
+        check_signs("signs", &self.signs)?;
+        for (role, signs) in &self.role_signs {
+            check_signs(&format!("role_signs, {role}"), signs)?;
+        }
+        for (key, row) in &self.models {
+            if let Some(signs) = &row.signs {
+                check_signs(&format!("models, {key}, signs"), signs)?;
             }
         }
-        if let Some((channel, unit)) = declared
-            .units
-            .iter()
-            .find(|(_, unit)| unit.trim().is_empty())
-        {
-            return wrong("units", channel, "a unit", unit.clone());
+        Ok(())
+    }
+
+    /// Rejects invalid declarations for roles, folders and files, and for single models.
+    fn check_declarations(&self) -> Result<(), ContentError> {
+        for scoped in &self.declarations {
+            check_declarations(&format!("declarations, {}", scoped.of), &scoped.channels)?;
         }
-        if let Some((channel, sign)) = declared.signs.iter().find(|(_, sign)| sign.abs() != 1.0) {
-            return wrong("signs", channel, "1 or -1", sign.to_string());
+        for (key, row) in &self.models {
+            check_declarations(&format!("models, {key}"), &row.declarations())?;
+        }
+        Ok(())
+    }
+
+    fn from_rules(rules: &Rules) -> Self {
+        Self {
+            format: FORMAT.name.to_owned(),
+            version: FORMAT.version,
+            name: rules.name.clone(),
+            description: rules.description.clone(),
+            inputs: rules.inputs.clone(),
+            outputs: rules.outputs.clone(),
+            on_axis: rules.on_axis.clone(),
+            band_rad_s: [rules.band.0, rules.band.1],
+            conversions: rules.units.clone(),
+            patterns: pattern_texts(&rules.patterns),
+            signs: rules.signs.clone(),
+            role_signs: rules.role_signs.clone(),
+            declarations: rules.declarations.clone(),
+            sample_time_s: rules.sample_time_s,
+            headings: rules.headings.clone(),
+            models: rules.rows.clone(),
+        }
+    }
+}
+
+/// Rejects signs other than 1 and -1.
+fn check_signs(place: &str, signs: &Signs) -> Result<(), ContentError> {
+    for (channel, sign) in signs {
+        if sign.abs() != 1.0 {
+            return Err(word_error(
+                format!("{place}, {channel}"),
+                "1 or -1",
+                sign.to_string(),
+            ));
         }
     }
     Ok(())
 }
 
-fn text_of(rules: &Rules) -> RulesText {
-    RulesText {
-        format: FORMAT.name.to_owned(),
-        version: FORMAT.version,
-        name: rules.name.clone(),
-        description: rules.description.clone(),
-        inputs: rules.inputs.clone(),
-        outputs: rules.outputs.clone(),
-        on_axis: rules.on_axis.clone(),
-        band_rad_s: [rules.band.0, rules.band.1],
-        conversions: rules.units.clone(),
-        patterns: rules
-            .patterns
-            .iter()
-            .map(|pattern| pattern.as_str().to_owned())
-            .collect(),
-        signs: rules.signs.clone(),
-        role_signs: rules.role_signs.clone(),
-        declarations: rules.declarations.clone(),
-        sample_time_s: rules.sample_time_s,
-        headings: rules.headings.clone(),
-        models: rules.rows.clone(),
+/// Rejects a factor that converts nothing, a unit beside a factor for the same channel, an empty
+/// unit, and an invalid sign.
+fn check_declarations(place: &str, declared: &ChannelDeclarations) -> Result<(), ContentError> {
+    for (channel, factor) in &declared.factors {
+        let entry = format!("{place}, factors, {channel}");
+        if !factor.is_finite() || *factor == 0.0 {
+            return Err(word_error(
+                entry,
+                "a number other than 0",
+                factor.to_string(),
+            ));
+        }
+        if let Some(unit) = declared.units.get(channel) {
+            return Err(word_error(
+                entry,
+                "a unit or a factor, not both",
+                format!("{unit} and {factor}"),
+            ));
+        }
     }
+    for (channel, unit) in &declared.units {
+        if unit.trim().is_empty() {
+            return Err(word_error(
+                format!("{place}, units, {channel}"),
+                "a unit",
+                unit.clone(),
+            ));
+        }
+    }
+    check_signs(&format!("{place}, signs"), &declared.signs)
+}
+
+fn pattern_texts(patterns: &[NamePattern]) -> Vec<String> {
+    patterns
+        .iter()
+        .map(|pattern| pattern.as_str().to_owned())
+        .collect()
 }
 
 /// Format and version of a rules file.
@@ -211,10 +207,10 @@ pub(crate) const FORMAT: Format = Format {
     version: 1,
 };
 
-/// Maximum number of patterns, and of conversions, in a rules file.
+/// Largest number of patterns, and of conversions, in a rules file.
 const MOST_PATTERNS: usize = 200;
 
-/// Maximum number of declarations in a rules file, each for a role, for folders or for a file.
+/// Largest number of declarations in a rules file, each for a role, for folders or for a file.
 const MOST_DECLARATIONS: usize = 1000;
 
 #[derive(Deserialize, Serialize)]
@@ -236,23 +232,23 @@ pub(crate) struct RulesText {
     pub(crate) conversions: Vec<UnitRule>,
     #[serde(default = "standard", deserialize_with = "list::<MOST_PATTERNS, _, _>")]
     pub(crate) patterns: Vec<String>,
-    /// Signs of channels in all files.
+    /// Channel signs for all files.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) signs: Signs,
-    /// Signs of channels in the models of a role, "identified" or "physics".
+    /// Channel signs for the models with a role, "identified" or "physics".
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) role_signs: BTreeMap<String, Signs>,
-    /// Units, factors and signs of channels in the models of a role, of folders, or of a file.
+    /// Channel units, factors and signs for the models with a role, in folders, or in a file.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
         deserialize_with = "list::<MOST_DECLARATIONS, _, _>"
     )]
     pub(crate) declarations: Vec<ScopedDeclarations>,
-    /// Sample time of models without one \[s\], 0 for continuous-time models.
+    /// Sample time \[s\] for models without a sample time; 0 for continuous time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) sample_time_s: Option<f64>,
-    /// Column headings of tables, by file.
+    /// Column headings for tables, by file.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) headings: BTreeMap<String, Vec<String>>,
     /// Rules for single models, by file and variable.
@@ -260,12 +256,9 @@ pub(crate) struct RulesText {
     pub(crate) models: BTreeMap<String, RowRule>,
 }
 
-/// Returns the patterns of a file without any.
+/// Returns the patterns for a file without any.
 fn standard() -> Vec<String> {
-    standard_patterns()
-        .iter()
-        .map(|pattern| pattern.as_str().to_owned())
-        .collect()
+    pattern_texts(standard_patterns())
 }
 
 #[cfg(test)]

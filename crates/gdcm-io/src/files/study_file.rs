@@ -1,4 +1,4 @@
-//! Study files, `*.gdcm-study.json`: the decisions of a study, and a reference to its dataset.
+//! Study files, `*.gdcm-study.json`: a study's decisions, and a reference to its dataset.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -23,6 +23,7 @@ use gdcm_study::decisions::signs::TurnedChannel;
 
 use super::dataset_file::{
     DatasetOrigin, LoadedDataset, ModelText, RecordText, dataset_from, embedded_example,
+    load_dataset_within,
 };
 use crate::file_error::{ContentError, ContentFault, FileError};
 use crate::json_text::{Format, list, write_pretty};
@@ -31,7 +32,7 @@ use crate::output_set::{Existing, OutputSet};
 use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 
-/// Maximum number of variants in a study file.
+/// Largest number of variants in a study file.
 pub(crate) const MOST_VARIANTS: usize = 1000;
 
 /// Format and version of a study file.
@@ -40,19 +41,19 @@ const FORMAT: Format = Format {
     version: 1,
 };
 
-/// Extension of a study file.
+/// File extension of a study.
 pub const STUDY_EXTENSION: &str = "gdcm-study.json";
 /// Replaces a path if a study uses the embedded example.
 const EMBEDDED: &str = "embedded example";
 
-/// A study with its dataset, and the changes of the dataset since the study was saved.
+/// A study with its dataset, and the dataset's changes since the study was saved.
 #[derive(Clone, Debug)]
 pub struct OpenedStudy {
     /// The study, with every decision that still applies.
     pub study: Study,
     pub loaded: LoadedDataset,
     pub path: PathBuf,
-    /// Changes of the dataset, and the decisions that no longer apply; empty if it is unchanged.
+    /// Changes in the dataset, and decisions that no longer apply; empty if it is unchanged.
     pub differences: Vec<Difference>,
 }
 
@@ -84,7 +85,7 @@ struct StudyText {
     /// Inputs for the requirements; absent if nothing was decided.
     #[serde(default, skip_serializing_if = "is_default")]
     requirements: RequirementSettings,
-    /// Named decisions; absent in studies of older programs.
+    /// Named decisions; absent in older studies.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
@@ -113,8 +114,8 @@ struct VariantText {
     conditions: Vec<ConditionText>,
 }
 
-/// Reference to the dataset of a study.
-#[derive(Deserialize, Serialize)]
+/// Reference to a study's dataset.
+#[derive(Clone, Deserialize, Serialize)]
 struct DatasetReference {
     /// Path relative to the study's directory, with `/` between its parts; `None` for the embedded
     /// example.
@@ -122,7 +123,7 @@ struct DatasetReference {
     /// The dataset's name, for people; "embedded example" for the embedded example.
     name: String,
     sha256: String,
-    /// Inventory of its content; absent in studies of older programs.
+    /// Content inventory; absent in older studies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     holds: Option<Inventory>,
 }
@@ -135,13 +136,13 @@ struct ConditionText {
     physics: BundleChoice,
     identified: BundleChoice,
     scheduled: bool,
-    /// Whether it is held out; absent in studies of older programs.
+    /// Whether it is held out; absent in older studies.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     held_out: bool,
 }
 
 impl ConditionText {
-    fn of(condition: &Condition, study: &Study) -> Self {
+    fn from_condition(condition: &Condition, study: &Study) -> Self {
         let ConditionChoice {
             physics,
             identified,
@@ -157,43 +158,50 @@ impl ConditionText {
         }
     }
 
-    fn all(study: &Study) -> Vec<Self> {
-        study
-            .dataset
-            .conditions()
-            .iter()
-            .map(|condition| Self::of(condition, study))
+    /// Returns the choices for all conditions.
+    fn from_study(study: &Study) -> Vec<Self> {
+        let conditions = study.dataset.conditions().iter();
+        conditions
+            .map(|condition| Self::from_condition(condition, study))
             .collect()
     }
 }
 
 impl StudyText {
-    fn of(study: &Study, dataset: DatasetReference) -> Self {
-        let variants = study.variants.iter().filter_map(|variant| {
-            let of_variant = study.of_variant(&variant.name)?;
-            let settings = variant.settings.named(&study.dataset);
-            Some(VariantText {
-                name: variant.name.clone(),
-                settings,
-                conditions: ConditionText::all(&of_variant),
-            })
-        });
-        let taken = study.taken_models().map(|(condition, taken)| TakenText {
-            condition: condition.0,
-            identified_models: taken.models.iter().map(ModelText::of_model).collect(),
-            records: taken.records.iter().map(RecordText::of).collect(),
-        });
+    fn new(study: &Study, dataset: DatasetReference) -> Self {
+        let mut variants = Vec::new();
+        for variant in &study.variants {
+            if let Some(variant_study) = study.of_variant(&variant.name) {
+                variants.push(VariantText {
+                    name: variant.name.clone(),
+                    settings: variant.settings.named(&study.dataset),
+                    conditions: ConditionText::from_study(&variant_study),
+                });
+            }
+        }
+        let mut taken = Vec::new();
+        for (condition, adopted) in study.taken_models() {
+            taken.push(TakenText {
+                condition: condition.0,
+                identified_models: adopted.models.iter().map(ModelText::of_model).collect(),
+                records: adopted
+                    .records
+                    .iter()
+                    .map(RecordText::from_record)
+                    .collect(),
+            });
+        }
         Self {
             format: FORMAT.name.to_owned(),
             version: FORMAT.version,
             software: concat!("gdcm ", env!("CARGO_PKG_VERSION")).to_owned(),
             dataset,
             settings: study.settings.named(&study.dataset),
-            conditions: ConditionText::all(study),
-            taken: taken.collect(),
+            conditions: ConditionText::from_study(study),
+            taken,
             signs: study.turned_channels(),
             requirements: study.requirements.as_ref().clone(),
-            variants: variants.collect(),
+            variants,
         }
     }
 }
@@ -203,32 +211,32 @@ fn is_default(settings: &RequirementSettings) -> bool {
 }
 
 /// Returns the decisions in a study file about its dataset.
-fn decisions_of(
-    settings: Settings<ResponseNames>,
-    conditions: Vec<ConditionText>,
-    taken: Vec<TakenText>,
-    variants: Vec<VariantText>,
-    dataset: &Dataset,
-) -> Result<Decisions, ContentError> {
-    let mut decisions = present_decisions(settings, conditions, dataset)?;
-    decisions.taken = taken_of(taken, dataset)?;
-    for VariantText {
-        name,
-        settings,
-        conditions,
-    } in variants
-    {
-        let of_variant =
-            present_decisions(settings, conditions, dataset).map_err(|mut error| {
+fn decisions_of(text: StudyText, dataset: &Dataset) -> Result<Decisions, ContentError> {
+    let mut decisions = present_decisions(text.settings, text.conditions, dataset)?;
+    decisions.taken = adopted_models(text.taken, dataset)?;
+    for variant in text.variants {
+        let VariantText {
+            name,
+            settings,
+            conditions,
+        } = variant;
+        match present_decisions(settings, conditions, dataset) {
+            Ok(variant) => decisions.variants.push((name, variant)),
+            Err(mut error) => {
                 error.place.entry = format!("variant \"{name}\", {}", error.place.entry);
-                error
-            })?;
-        decisions.variants.push((name, of_variant));
+                return Err(error);
+            }
+        }
     }
+    decisions.signs = text.signs;
+    decisions.requirements = Arc::new(text.requirements);
     Ok(decisions)
 }
 
-/// Returns decisions without variants; each setting must be within its range.
+/// Returns decisions without variants.
+///
+/// # Errors
+/// A setting outside its range, and a condition given twice.
 fn present_decisions(
     mut settings: Settings<ResponseNames>,
     conditions: Vec<ConditionText>,
@@ -277,35 +285,34 @@ fn present_decisions(
     })
 }
 
-/// Returns the models adopted by a study, for its dataset.
-fn taken_of(
-    text: Vec<TakenText>,
+/// Returns the models adopted by a study, checked against its dataset.
+fn adopted_models(
+    texts: Vec<TakenText>,
     dataset: &Dataset,
 ) -> Result<Vec<(ConditionId, Arc<AdoptedModels>)>, ContentError> {
-    let of = |(index, text): (usize, TakenText)| {
+    let mut adopted = Vec::with_capacity(texts.len());
+    for (index, text) in texts.into_iter().enumerate() {
         let mut place = Location::condition(index + 1, text.condition);
         place.entry = "taken".to_owned();
-        let drafts = text
-            .identified_models
-            .into_iter()
-            .map(ModelText::into_identified);
-        let models = drafts
-            .map(|draft| Ok(dataset.identified_model(draft)?.0))
-            .collect::<Result<_, ContentError>>()?;
-        let records = text.records.into_iter().enumerate();
-        let records = records
-            .map(|(index, record)| record.into_record(&place, index + 1))
-            .collect::<Result<_, _>>()?;
-        Ok((
+        let mut models = Vec::with_capacity(text.identified_models.len());
+        for model in text.identified_models {
+            let (model, _) = dataset.identified_model(model.into_identified())?;
+            models.push(model);
+        }
+        let mut records = Vec::with_capacity(text.records.len());
+        for (index, record) in text.records.into_iter().enumerate() {
+            records.push(record.into_record(&place, index + 1)?);
+        }
+        adopted.push((
             ConditionId(text.condition),
             Arc::new(AdoptedModels { models, records }),
-        ))
-    };
-    text.into_iter().enumerate().map(of).collect()
+        ));
+    }
+    Ok(adopted)
 }
 
-/// Saves a study of a loaded dataset, replacing an existing file; whole, or not at all. The dataset
-/// itself is never replaced.
+/// Saves a study, replacing an existing file; whole, or not at all. The dataset itself is never
+/// replaced.
 pub fn save_study(study: &Study, loaded: &LoadedDataset, path: &Path) -> Result<(), FileError> {
     save(study, loaded, path, |dataset| path_text(dataset, path))
 }
@@ -316,13 +323,18 @@ pub(crate) fn save_recovery(
     loaded: &LoadedDataset,
     path: &Path,
 ) -> Result<(), FileError> {
-    // Its directory may be out of reach at the moment: the decisions are kept all the same.
-    let absolute = |dataset: &Path| {
-        settled(dataset).or_else(|_| Ok(std::path::absolute(dataset).unwrap_or(dataset.into())))
-    };
     save(study, loaded, path, |dataset| {
-        slashed(&absolute(dataset)?, path)
+        slashed(&settled_or_absolute(dataset), path)
     })
+}
+
+/// Returns a dataset's settled path; without resolved links if its directory is out of reach, so
+/// that the decisions are kept all the same.
+fn settled_or_absolute(dataset: &Path) -> PathBuf {
+    if let Ok(settled) = settled(dataset) {
+        return settled;
+    }
+    std::path::absolute(dataset).unwrap_or(dataset.into())
 }
 
 fn save(
@@ -347,7 +359,7 @@ fn save(
             holds,
         },
     };
-    let text = StudyText::of(study, reference);
+    let text = StudyText::new(study, reference);
     let mut output = OutputSet::new(
         Existing::Replace,
         loaded.origin.file().into_iter().collect(),
@@ -356,17 +368,20 @@ fn save(
     output.persist()
 }
 
-/// Returns the file name of the dataset in a study file. `None` if the study cannot be read.
+/// Returns the dataset's file name in a study file. `None` if the study cannot be read.
 pub(crate) fn dataset_of_study(path: &Path) -> Option<String> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget).ok()?;
     let (text, _) = FORMAT
         .decode::<StudyText>(source.text(), path, &budget)
         .ok()?;
-    Some(match text.dataset.path {
-        None => format!("the {EMBEDDED}"),
-        Some(path) => Path::new(&path).file_name()?.to_string_lossy().into_owned(),
-    })
+    match text.dataset.path {
+        None => Some(format!("the {EMBEDDED}")),
+        Some(path) => {
+            let name = Path::new(&path).file_name()?;
+            Some(name.to_string_lossy().into_owned())
+        }
+    }
 }
 
 /// Opens a study and its dataset: at the path in the study, otherwise beside the study.
@@ -375,7 +390,7 @@ pub fn open_study(path: &Path) -> Result<OpenedStudy, FileError> {
     study_from(&Source::read(path, &budget)?, path, None, &budget)
 }
 
-/// Opens a study whose dataset has moved to `dataset`, both within one budget.
+/// Opens a study whose dataset has moved to `dataset`, both within the same budget.
 pub fn open_study_of(
     path: &Path,
     dataset: &Path,
@@ -384,7 +399,7 @@ pub fn open_study_of(
     study_from(&Source::read(path, budget)?, path, Some(dataset), budget)
 }
 
-/// Checks the structure of a study's text, as far as it goes.
+/// Checks the structure in a study's text, as far as the text goes.
 pub(crate) fn check_study_text(
     text: &[u8],
     path: &Path,
@@ -402,22 +417,15 @@ pub(crate) fn study_from(
 ) -> Result<OpenedStudy, FileError> {
     let (text, unknown) = FORMAT.decode::<StudyText>(source.text(), path, budget)?;
     let mut loaded = load_referenced(&text.dataset, path, moved, budget)?;
-    let mut decisions = decisions_of(
-        text.settings,
-        text.conditions,
-        text.taken,
-        text.variants,
-        &loaded.dataset,
-    )
-    .map_err(|error| FileError::content(path, error))?;
-    decisions.signs = text.signs;
-    decisions.requirements = Arc::new(text.requirements);
+    let DatasetReference { sha256, holds, .. } = text.dataset.clone();
+    let decisions =
+        decisions_of(text, &loaded.dataset).map_err(|error| FileError::content(path, error))?;
     let (study, not_applied) = decisions.applied_to(loaded.dataset.clone());
-    let mut differences = match text.dataset.holds {
-        _ if text.dataset.sha256 == loaded.sha256 => Vec::new(),
-        Some(held) => held.differences(&loaded.dataset),
+    let mut differences = match holds {
+        _ if sha256 == loaded.sha256 => Vec::new(),
+        Some(inventory) => inventory.differences(&loaded.dataset),
         None => vec![Difference::AnotherFile {
-            expected: text.dataset.sha256,
+            expected: sha256,
             found: loaded.sha256.clone(),
         }],
     };
@@ -431,6 +439,7 @@ pub(crate) fn study_from(
     })
 }
 
+/// Loads a study's dataset, at `moved` or at the path in the study.
 fn load_referenced(
     reference: &DatasetReference,
     study: &Path,
@@ -442,35 +451,28 @@ fn load_referenced(
         (None, None) => return embedded_example(),
         (None, Some(relative)) => referenced_path(study, relative),
     };
-    let load = |path: PathBuf| {
-        dataset_from(
-            &Source::read(&path, budget)?,
-            DatasetOrigin::File(path),
-            budget,
-        )
-    };
-    let lost = |error: FileError| FileError::StudyDataset {
-        path: study.to_owned(),
-        dataset: Box::new(error),
-    };
-    // A dataset whose reading was stopped is not missing.
-    load(path).map_err(|error| {
-        if error.is_stopped() {
-            error
-        } else {
-            lost(error)
-        }
-    })
+    match load_dataset_within(&path, budget) {
+        Ok(loaded) => Ok(loaded),
+        // A dataset whose reading was stopped is not missing.
+        Err(error) if error.is_stopped() => Err(error),
+        Err(error) => Err(FileError::StudyDataset {
+            path: study.to_owned(),
+            dataset: Box::new(error),
+        }),
+    }
 }
 
-/// Returns the path of the dataset in the study, or beside the study if it exists only there.
+/// Returns the path to the dataset: as in the study, or beside the study if it exists only there.
 fn referenced_path(study: &Path, relative: &str) -> PathBuf {
     let directory = study.parent().unwrap_or(Path::new(""));
-    let said = directory.join(relative);
-    let beside = said.file_name().map(|name| directory.join(name));
-    beside
-        .filter(|beside| !said.exists() && beside.exists())
-        .unwrap_or(said)
+    let referenced = directory.join(relative);
+    if let Some(name) = referenced.file_name() {
+        let beside = directory.join(name);
+        if !referenced.exists() && beside.exists() {
+            return beside;
+        }
+    }
+    referenced
 }
 
 /// Returns the dataset's path as written in the study at `study`.
@@ -485,37 +487,39 @@ fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
     slashed(&relative, study)
 }
 
-/// Returns the relative path from the folder of `file` to `folder`, the current one if that is
-/// empty, with `/` between its parts; the unchanged folder if there is no such path.
+/// Returns the relative path from the folder around `file` to `folder`, the current folder if that
+/// is empty, with `/` between its parts; the unchanged folder if there is no such path.
 pub fn relative_folder(folder: &Path, file: &Path) -> String {
     let folder = if folder.as_os_str().is_empty() {
         Path::new(".")
     } else {
         folder
     };
-    let absolute = |path: &Path| std::path::absolute(path).ok();
-    let base = absolute(file).and_then(|file| file.parent().map(Path::to_owned));
-    let way = absolute(folder)
-        .zip(base)
-        .and_then(|(folder, base)| pathdiff::diff_paths(folder, base));
-    way.as_deref()
-        .unwrap_or(folder)
-        .to_string_lossy()
+    let relative = relative_path(folder, file);
+    let path = relative.as_deref().unwrap_or(folder);
+    path.to_string_lossy()
         .replace(std::path::MAIN_SEPARATOR, "/")
+}
+
+/// Returns the relative path from the folder around `file` to `folder`, if it exists.
+fn relative_path(folder: &Path, file: &Path) -> Option<PathBuf> {
+    let folder = std::path::absolute(folder).ok()?;
+    let file = std::path::absolute(file).ok()?;
+    pathdiff::diff_paths(folder, file.parent()?)
 }
 
 /// Returns a path with `/` between its parts.
 fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
-    let unreadable = || FileError::unwritable(study, "the dataset's path is not valid Unicode");
-    let text = path.to_str().ok_or_else(unreadable)?;
-    Ok(if std::path::MAIN_SEPARATOR == '/' {
-        text.to_owned()
-    } else {
-        text.replace(std::path::MAIN_SEPARATOR, "/")
-    })
+    match path.to_str() {
+        Some(text) => Ok(text.replace(std::path::MAIN_SEPARATOR, "/")),
+        None => Err(FileError::unwritable(
+            study,
+            "the dataset's path is not valid Unicode",
+        )),
+    }
 }
 
-/// Returns the absolute path of a file, with the links of its directory resolved: `..` after a link
+/// Returns the absolute path to a file, with links in its directory resolved: `..` after a link
 /// would lead elsewhere.
 fn settled(path: &Path) -> Result<PathBuf, FileError> {
     let failed = |error: std::io::Error| FileError::writing(path, &error);
@@ -557,17 +561,17 @@ impl Opened {
     }
 }
 
-/// Returns whether a path is a folder, or a file that by its name and its first character can only
-/// provide models: neither a dataset nor a study.
+/// Whether a path is a folder, or a file that by its name and its first character can only hold
+/// models: neither a dataset nor a study.
 pub fn holds_models(path: &Path) -> bool {
     let extension = path
         .extension()
         .map(|extension| extension.to_string_lossy().to_lowercase());
-    let by_name = !matches!(extension.as_deref(), Some("json" | "gz"));
-    path.is_dir() || path.is_file() && by_name && !begins_an_object(path)
+    let is_json = matches!(extension.as_deref(), Some("json" | "gz"));
+    path.is_dir() || path.is_file() && !is_json && !begins_an_object(path)
 }
 
-/// Returns whether the first character of a file opens a JSON object.
+/// Whether the first character of a file opens a JSON object.
 fn begins_an_object(path: &Path) -> bool {
     let mut first = Vec::new();
     let read = std::fs::File::open(path).and_then(|file| file.take(64).read_to_end(&mut first));

@@ -1,5 +1,5 @@
-//! State of the user kept between starts of the program: recently opened and saved files, and
-//! whether it was started before.
+//! User state kept between program starts: recently opened and saved files, and whether it was
+//! started before.
 
 use std::fs::{self, File, OpenOptions, TryLockError, create_dir_all};
 use std::io::{Read, Seek, Write};
@@ -20,9 +20,9 @@ use crate::output_set::{make_directory, write_whole};
 use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
 
-/// Maximum number of listed files.
+/// Largest number of listed files.
 const MOST: usize = 10;
-/// Name of the list in the program's directory.
+/// File name in the program's directory.
 const NAME: &str = "recent-files.json";
 /// Format and version of the list.
 const FORMAT: Format = Format {
@@ -45,11 +45,10 @@ pub fn recent_files(directory: &Path) -> Vec<PathBuf> {
     let Ok(source) = Source::read(&path, &budget) else {
         return Vec::new();
     };
-    let decoded = FORMAT.decode::<RecentText>(source.text(), &path, &budget);
-    decoded.map_or_else(
-        |_| Vec::new(),
-        |(text, _)| text.files.into_iter().map(PathBuf::from).collect(),
-    )
+    match FORMAT.decode::<RecentText>(source.text(), &path, &budget) {
+        Ok((text, _)) => text.files.into_iter().map(PathBuf::from).collect(),
+        Err(_) => Vec::new(),
+    }
 }
 
 /// Puts a file at the front of the list, which another window may have changed in the meantime.
@@ -57,21 +56,20 @@ pub fn recent_files(directory: &Path) -> Vec<PathBuf> {
 /// # Errors
 /// Returned if the list cannot be written.
 pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
-    let Some(file) = std::path::absolute(file)
-        .ok()
-        .and_then(|path| path.to_str().map(str::to_owned))
-    else {
+    let absolute = std::path::absolute(file).ok();
+    let Some(file) = absolute.as_deref().and_then(Path::to_str) else {
         // A name that is not valid Unicode cannot be listed.
         return Ok(());
     };
-    let others = recent_files(directory)
-        .into_iter()
-        .filter_map(|path| path.to_str().map(str::to_owned));
-    let others = others.filter(|other| *other != file);
-    let files = std::iter::once(file.clone())
-        .chain(others)
-        .take(MOST)
-        .collect();
+    let mut files = vec![file.to_owned()];
+    for path in recent_files(directory) {
+        if let Some(other) = path.to_str()
+            && other != file
+            && files.len() < MOST
+        {
+            files.push(other.to_owned());
+        }
+    }
     let text = RecentText {
         format: FORMAT.name.to_owned(),
         version: FORMAT.version,
@@ -81,12 +79,11 @@ pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
     write_whole(&directory.join(NAME), |writer| write_pretty(&text, writer))
 }
 
-/// The marker file of an earlier start.
+/// Marker file from an earlier start.
 const STARTED: &str = "started";
 
-/// Returns whether this is the first start, and records it in the program's directory. Also false
-/// if the record cannot be created: otherwise the content of the first start would appear at every
-/// start.
+/// Whether this is the first start, which is then recorded in the program's directory. Also false
+/// if the record cannot be created: otherwise every start would look like the first.
 pub fn is_first_start(directory: &Path) -> bool {
     let kept = create_dir_all(directory).and_then(|()| {
         OpenOptions::new()
@@ -99,14 +96,13 @@ pub fn is_first_start(directory: &Path) -> bool {
 
 // Recovery files: unsaved decisions that survive a crash or a kill.
 
-/// Extension of the file whose lock shows whether the process lives.
+/// File extension for locks that show whether a process lives.
 const LOCK_EXTENSION: &str = "lock";
-/// Much longer than the time between the creation of a lock file and its lock.
+/// Much longer than the time between creating and locking a file.
 const YOUNG: Duration = Duration::from_secs(60);
 
-/// The recovery file of an open window. It is a study file, `PROCESS-NUMBER.gdcm-study.json`;
-/// beside it lies a file that is locked as long as the process lives, and that contains the path of
-/// the study's own file.
+/// Recovery file of an open window: a study file, `PROCESS-NUMBER.gdcm-study.json`. A file beside
+/// it is locked while the process lives, and contains the path to the study's own file.
 #[derive(Debug)]
 pub struct RecoveryFile {
     path: PathBuf,
@@ -120,7 +116,7 @@ impl RecoveryFile {
     /// # Errors
     /// Returned if the directory or the lock cannot be created.
     pub fn claim(directory: &Path) -> Result<Self, FileError> {
-        /// Two windows of the same process have different names.
+        /// Windows in the same process have different names.
         static NUMBER: AtomicUsize = AtomicUsize::new(1);
         make_directory(directory)?;
         loop {
@@ -131,7 +127,7 @@ impl RecoveryFile {
             );
             let path = directory.join(format!("{name}.{STUDY_EXTENSION}"));
             let lock_path = directory.join(format!("{name}.{LOCK_EXTENSION}"));
-            // A file of an earlier process with this number may be waiting there to be restored.
+            // A file from an earlier process with this number may be waiting there to be restored.
             if path.exists() || lock_path.exists() {
                 continue;
             }
@@ -147,7 +143,7 @@ impl RecoveryFile {
         }
     }
 
-    /// Returns the path of the kept decisions.
+    /// Returns the path to the kept decisions.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -197,8 +193,8 @@ impl Drop for RecoveryFile {
     }
 }
 
-/// The recovery file of a window that ended without saving; it is not offered to other windows as
-/// long as this value exists.
+/// Recovery file of a window that ended without saving. It is not offered to other windows while
+/// this value exists.
 #[derive(Debug)]
 pub struct LostStudy {
     path: PathBuf,
@@ -208,12 +204,12 @@ pub struct LostStudy {
     pub kept_at: SystemTime,
     /// Their dataset, in words.
     pub dataset: String,
-    /// The study's own file, if it had one.
+    /// The study's own file, if any.
     pub saved_as: Option<PathBuf>,
 }
 
 impl LostStudy {
-    /// Returns the path of the decisions.
+    /// Returns the path to the decisions.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -234,8 +230,10 @@ pub fn lost_studies(directory: &Path) -> Vec<LostStudy> {
     let Ok(entries) = fs::read_dir(directory) else {
         return Vec::new();
     };
-    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
-    let mut lost: Vec<LostStudy> = paths.filter_map(|path| lost_study(&path)).collect();
+    let mut lost: Vec<LostStudy> = Vec::new();
+    for entry in entries.flatten() {
+        lost.extend(lost_study(&entry.path()));
+    }
     lost.sort_by_key(|lost| std::cmp::Reverse(lost.kept_at));
     lost
 }
@@ -255,14 +253,12 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
         Ok(()) => {}
         Err(TryLockError::WouldBlock | TryLockError::Error(_)) => return None,
     }
-    let Ok(kept_at) = fs::metadata(&path).and_then(|there| there.modified()) else {
-        let made_at = lock.metadata().and_then(|there| there.modified()).ok();
-        // Left by a process without decisions; a young one may belong to another process that has
+    let Ok(kept_at) = fs::metadata(&path).and_then(|study| study.modified()) else {
+        // Left by a process without decisions; a young file may belong to another process that has
         // created but not yet locked it.
-        if made_at
-            .and_then(|at| at.elapsed().ok())
-            .is_some_and(|age| age > YOUNG)
-        {
+        let created_at = lock.metadata().and_then(|lock| lock.modified()).ok();
+        let age = created_at.and_then(|time| time.elapsed().ok());
+        if age.is_some_and(|age| age > YOUNG) {
             let _ = remove(lock_path);
         }
         return None;
@@ -270,9 +266,12 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
     let mut name = String::new();
     // An unreadable name is treated as unknown.
     let _ = lock.read_to_string(&mut name);
-    let saved_as = (!name.is_empty()).then(|| PathBuf::from(name));
-    let dataset =
-        dataset_of_study(&path).unwrap_or_else(|| "a dataset that cannot be told".to_owned());
+    let saved_as = if name.is_empty() {
+        None
+    } else {
+        Some(PathBuf::from(name))
+    };
+    let dataset = dataset_of_study(&path).unwrap_or_else(|| "an unknown dataset".to_owned());
     Some(LostStudy {
         path,
         lock_path: lock_path.to_owned(),
@@ -310,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_list_is_an_empty_one_and_is_mended_by_the_next_file() {
+    fn a_damaged_list_counts_as_empty_and_is_replaced_with_the_next_file() {
         let directory = tempfile::tempdir().unwrap();
         std::fs::write(directory.path().join(NAME), "{\"format\": ").unwrap();
         assert!(recent_files(directory.path()).is_empty());
@@ -319,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn only_one_start_is_the_first_and_none_where_nothing_can_be_kept() {
+    fn a_single_start_is_the_first_and_none_if_nothing_can_be_kept() {
         let folder = tempfile::tempdir().unwrap();
         let directory = folder.path().join("gdcm");
         assert!(is_first_start(&directory));
@@ -354,7 +353,7 @@ mod recovery_tests {
     }
 
     #[test]
-    fn the_file_of_a_window_that_is_open_is_not_offered_and_that_of_one_that_is_gone_is() {
+    fn only_recovery_files_of_closed_windows_are_offered() {
         let directory = tempfile::tempdir().unwrap();
         let mine = written(directory.path());
         let other = written(directory.path());
@@ -376,7 +375,7 @@ mod recovery_tests {
     }
 
     #[test]
-    fn what_one_window_is_offered_no_other_is_and_later_it_is_offered_again() {
+    fn a_lost_study_is_offered_to_one_window_at_a_time() {
         let directory = tempfile::tempdir().unwrap();
         drop(written(directory.path()));
         let offered = lost_studies(directory.path());
@@ -389,7 +388,7 @@ mod recovery_tests {
     }
 
     #[test]
-    fn what_is_saved_or_removed_leaves_nothing_behind() {
+    fn saved_or_removed_studies_leave_nothing_behind() {
         let directory = tempfile::tempdir().unwrap();
         let mut file = written(directory.path());
         file.clear().unwrap();

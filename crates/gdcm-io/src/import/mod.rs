@@ -1,5 +1,8 @@
-//! Models and records recognised in files of any format.
+//! Models and records recognised in files, whatever their format.
 
+mod dataset_models;
+mod loose_matrices;
 pub mod model_files;
 pub mod recognise;
 pub mod record_files;
+mod response_tables;

@@ -1,5 +1,5 @@
 //! Value of the scheduled correction, uncertainty of the results (M13), and meaning, value and cost
-//! of the couplings of the physics models (M16).
+//! of couplings in the physics models (M16).
 
 use std::sync::Arc;
 
@@ -14,9 +14,9 @@ use gdcm_plot::figure::assessment::{
 };
 use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::poles::couplings_figure;
-use gdcm_study::results::assessment_table::AssessmentChoice;
-use gdcm_study::{Analysis, AssessmentTable, Engine};
-use gdcm_words::Table;
+use gdcm_study::results::analysis::Analysis;
+use gdcm_study::results::assessment_table::AssessmentTable;
+use gdcm_study::stages::engine::Engine;
 use gdcm_words::assessment::{
     held_out_verdict, missing_cost_text, not_assessed_text, summary_text,
 };
@@ -24,6 +24,7 @@ use gdcm_words::couplings::{
     analysis_coupling_remarks, coupling_cost_table, coupling_matrix_tables, couplings_heading,
     pole_table,
 };
+use gdcm_words::table::Table;
 use gdcm_words::uncertainty::{
     bar_table, difference_table, difference_text, differences_summary, scatter_table,
     second_variable_table,
@@ -64,19 +65,18 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
          the identification uncertainty; the bar is Student's t times the root of the sum of squares (M13). What neither explains is \
          a physical effect, or a model-form error. An error common to all identified models is not seen, and a bar is not a bound.",
     );
-    let beyond: Vec<_> = uncertainty
-        .differences
-        .iter()
-        .filter(|of| of.is_significant(uncertainty.level))
-        .collect();
     page.paragraph(&differences_summary(uncertainty));
-    page.list(beyond.iter().map(|of| {
-        format!(
-            "{}: {}.",
-            dataset.pair_name(of.pair),
-            difference_text(of, uncertainty.level)
-        )
-    }));
+    let mut significant = Vec::new();
+    for difference in &uncertainty.differences {
+        if difference.is_significant(uncertainty.level) {
+            significant.push(format!(
+                "{}: {}.",
+                dataset.pair_name(difference.pair),
+                difference_text(difference, uncertainty.level)
+            ));
+        }
+    }
+    page.list(significant);
     let pairs: Vec<Pair> = dataset
         .measuring_pairs()
         .marked()
@@ -96,9 +96,9 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// Responses in one figure, in four rows.
+/// Largest number of responses in a figure, in four rows.
 const IN_A_FIGURE: usize = 12;
-/// Conditions side by side in a table that fits on a page.
+/// Largest number of conditions side by side in a table that fits on a page.
 const CONDITIONS: usize = 12;
 
 /// Adds the section on the assessment.
@@ -111,40 +111,50 @@ pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
          below 0 is better. J takes {} over frequency; up to {ACCEPTABLE} is acceptable, up to 50 next to indistinguishable.",
         average_word(choice.average)
     ));
-    page.list(table.left_out.iter().map(|of| {
-        let why = not_assessed_text(&of.why, &analysis.study.dataset);
-        format!("Condition {} is left out: {why}.", of.condition)
-    }));
+    let mut left_out = Vec::new();
+    for condition in &table.left_out {
+        left_out.push(format!(
+            "Condition {} is left out: {}.",
+            condition.condition,
+            not_assessed_text(&condition.why, &analysis.study.dataset)
+        ));
+    }
+    page.list(left_out);
     let measuring = analysis.study.dataset.measuring_pairs();
     let has_on_axis = analysis.study.dataset.on_axis().marked().next().is_some();
     let on_axis: Vec<Pair> = measuring.marked().collect();
     let off_axis: Vec<Pair> = measuring.pairs().filter(|pair| !measuring[*pair]).collect();
-    let of_on_axis = if has_on_axis {
+    let on_axis_name = if has_on_axis {
         "on-axis responses"
     } else {
         "responses"
     };
-    for (pairs, of) in [(on_axis, of_on_axis), (off_axis, "off-axis responses")] {
-        if pairs.is_empty() {
-            continue;
-        }
-        page.subsection(&capital(of));
-        let marked = PairTable::from_fn(measuring.outputs(), measuring.inputs(), |pair| {
-            pairs.contains(&pair)
-        });
-        page.paragraph(&format!(
-            "{}.",
-            capital(&summary_text(
-                &table.summary(&marked),
-                &analysis.study.dataset
-            ))
-        ));
-        add_figures(page, analysis, choice, &pairs, of);
-        add_tables(page, analysis, &table, &pairs, of);
-        if of == of_on_axis {
-            page.table(&parts_table(analysis, &table, &pairs));
-        }
+    if !on_axis.is_empty() {
+        add_responses(page, analysis, &table, &on_axis, on_axis_name);
+        page.table(&parts_table(analysis, &table, &on_axis));
     }
+    if !off_axis.is_empty() {
+        add_responses(page, analysis, &table, &off_axis, "off-axis responses");
+    }
+}
+
+/// Adds the changes in J for some responses, called `name`: a summary, figures and tables.
+fn add_responses(
+    page: &mut Page,
+    analysis: &Analysis,
+    table: &AssessmentTable,
+    pairs: &[Pair],
+    name: &str,
+) {
+    page.subsection(&capital(name));
+    let measuring = analysis.study.dataset.measuring_pairs();
+    let marked = PairTable::from_fn(measuring.outputs(), measuring.inputs(), |pair| {
+        pairs.contains(&pair)
+    });
+    let summary = summary_text(&table.summary(&marked), &analysis.study.dataset);
+    page.paragraph(&format!("{}.", capital(&summary)));
+    add_figures(page, analysis, pairs, name);
+    add_tables(page, analysis, table, pairs, name);
 }
 
 /// Capitalises the first letter; a leading symbol is unchanged ("α of the gains").
@@ -156,19 +166,14 @@ pub(super) fn capital(words: &str) -> String {
     capital
 }
 
-fn add_figures(
-    page: &mut Page,
-    analysis: &Analysis,
-    choice: AssessmentChoice,
-    pairs: &[Pair],
-    of: &str,
-) {
+/// Adds figures with the changes in J for some responses, called `name`.
+fn add_figures(page: &mut Page, analysis: &Analysis, pairs: &[Pair], name: &str) {
     let drawn = &pairs[..pairs.len().min(PAIRS_DRAWN)];
     for pairs in drawn.chunks(IN_A_FIGURE) {
-        let figure = assessment_figure(analysis, pairs, choice);
+        let figure = assessment_figure(analysis, pairs, usual_choice(analysis));
         page.figure(
             &figure,
-            &format!("Change of J of {of}"),
+            &format!("Change of J of {name}"),
             "The whole, its magnitude part and its phase part.",
         );
     }
@@ -181,53 +186,53 @@ fn add_figures(
     }
 }
 
-/// Adds ΔJ of every response in every condition, as many conditions side by side as fit.
+/// Adds ΔJ for some responses, called `name`, in every condition, as many conditions side by side
+/// as fit on a page.
 fn add_tables(
     page: &mut Page,
     analysis: &Analysis,
-    found: &AssessmentTable,
+    assessment: &AssessmentTable,
     pairs: &[Pair],
-    of: &str,
+    name: &str,
 ) {
-    let shown = &found.conditions[..found.conditions.len().min(CONDITIONS_DRAWN)];
-    let conditions: Vec<(ConditionId, String)> = shown
-        .iter()
-        .map(|of| (of.condition, format!("cond. {}", of.condition)))
-        .collect();
-    let made_of = (&*analysis.study.dataset, found);
+    let dataset = &*analysis.study.dataset;
+    let shown = &assessment.conditions[..assessment.conditions.len().min(CONDITIONS_DRAWN)];
+    let mut conditions: Vec<(ConditionId, String)> = Vec::with_capacity(shown.len());
+    for assessed in shown {
+        conditions.push((assessed.condition, format!("cond. {}", assessed.condition)));
+    }
     let table = change_table(
-        format!("ΔJ of {of}"),
-        made_of,
+        format!("ΔJ of {name}"),
+        (dataset, assessment),
         pairs,
         &conditions,
         CostChange::total,
     );
     page.wide_table(&table, CONDITIONS);
-    let more = found.conditions.len() - shown.len();
+    let more = assessment.conditions.len() - shown.len();
     if more > 0 {
         page.paragraph(&format!(
             "{more} more conditions are assessed: gdcm analyze writes them all into assessment.csv."
         ));
     }
-    let missing = shown.iter().flat_map(|assessed| {
-        let of_these = assessed
-            .missing
-            .iter()
-            .filter(|(pair, _)| pairs.contains(pair));
-        of_these.map(|(pair, why)| {
-            format!(
-                "Condition {}: no ΔJ of {}: {}.",
-                assessed.condition,
-                analysis.study.dataset.pair_name(*pair),
-                missing_cost_text(*why)
-            )
-        })
-    });
+    let mut missing = Vec::new();
+    for assessed in shown {
+        for (pair, why) in &assessed.missing {
+            if pairs.contains(pair) {
+                missing.push(format!(
+                    "Condition {}: no ΔJ of {}: {}.",
+                    assessed.condition,
+                    dataset.pair_name(*pair),
+                    missing_cost_text(*why)
+                ));
+            }
+        }
+    }
     page.list(missing);
 }
 
-/// Tabulates J before and after, and the parts of its change, for every condition and response.
-fn parts_table(analysis: &Analysis, found: &AssessmentTable, pairs: &[Pair]) -> Table {
+/// Tabulates J before and after, and its change by part, for every condition and response.
+fn parts_table(analysis: &Analysis, assessment: &AssessmentTable, pairs: &[Pair]) -> Table {
     let columns = [
         "condition",
         "model",
@@ -242,11 +247,11 @@ fn parts_table(analysis: &Analysis, found: &AssessmentTable, pairs: &[Pair]) -> 
         "J of the nominal models before and under the schedule",
         columns,
     );
-    for assessed in &found.conditions {
-        for (pair, change) in pairs
-            .iter()
-            .filter_map(|pair| Some((pair, assessed.changes[*pair]?)))
-        {
+    for assessed in &assessment.conditions {
+        for pair in pairs {
+            let Some(change) = assessed.changes[*pair] else {
+                continue;
+            };
             table.row([
                 assessed.condition.to_string(),
                 assessed.model.clone(),
@@ -262,10 +267,10 @@ fn parts_table(analysis: &Analysis, found: &AssessmentTable, pairs: &[Pair]) -> 
     table
 }
 
-/// Columns of a matrix that fit on a page.
+/// Largest number of matrix columns that fit on a page.
 const MATRIX_COLUMNS: usize = 8;
 
-/// Returns the analysis with the value of its couplings, if it has any.
+/// Returns the analysis with its couplings assessed, if it has any.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -297,19 +302,16 @@ pub(super) fn add_couplings(page: &mut Page, analysis: &Analysis) {
          corrections of the channels: what representatives, G, D, gains, delays, leads and J of this report are found on is the physics \
          model with them. Which model represents its bundle, and which is suspected, is decided without them.",
     );
-    page.list(
-        analysis_coupling_remarks(analysis)
-            .into_iter()
-            .map(|remark| remark.text),
-    );
+    let remarks = analysis_coupling_remarks(analysis).into_iter();
+    page.list(remarks.map(|remark| remark.text));
     let Some(assessment) = &analysis.coupling_assessment else {
         return;
     };
     page.paragraph(&format!("{}.", capital(&couplings_heading(assessment))));
     page.table(&coupling_cost_table(assessment));
-    coupling_matrix_tables(assessment, &analysis.study.dataset)
-        .iter()
-        .for_each(|table| page.wide_table(table, MATRIX_COLUMNS));
+    for table in coupling_matrix_tables(assessment, &analysis.study.dataset) {
+        page.wide_table(&table, MATRIX_COLUMNS);
+    }
     page.table(&pole_table(assessment));
     if let Some(figure) = couplings_figure(assessment, None, FrequencyUnit::default()) {
         let caption = "The least singular value of I \u{2212} K H at the sticks, of each condition: 1 is no loop, under 0.5 the loop is close \

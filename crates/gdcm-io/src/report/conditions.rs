@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use gdcm_method::correction::{Channel, Outcome};
 use gdcm_method::fidelity::SUGGESTION_RATIO;
-use gdcm_model::dataset::{BundleKind, Condition, ConditionId, ModelId, Pair};
+use gdcm_model::dataset::{BundleKind, Condition, ModelId, Pair};
 use gdcm_model::number_format::{compact, decimals};
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 use gdcm_model::units::{number, s_to_ms, signed};
@@ -27,8 +27,11 @@ use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, MODELS_SHOWN, PAIRS_DRAWN, PAIRS_LISTED, Page, names};
 
 /// Adds the section on the conditions: representatives, gains and delays with their basis, and
-/// plots of each.
-pub(super) fn add(
+/// plots for each.
+///
+/// # Errors
+/// [`Cancelled`] soon after `progress` requests it.
+pub(super) fn add_conditions(
     page: &mut Page,
     analysis: &Analysis,
     engine: &mut Engine,
@@ -50,7 +53,8 @@ pub(super) fn add(
             Some(Ok(result)) => {
                 add_result(page, analysis, result);
                 if index < CONDITIONS_DRAWN {
-                    draw(page, analysis, condition.id(), (engine, progress))?;
+                    let step = Unobtrusive(progress);
+                    add_condition_plots(page, analysis, result, engine, &step)?;
                 }
             }
             Some(Err(failure)) => page.paragraph(&format!(
@@ -64,21 +68,22 @@ pub(super) fn add(
     Ok(())
 }
 
-fn draw(
+/// Computes a condition's curves and adds its plots.
+fn add_condition_plots(
     page: &mut Page,
     analysis: &Analysis,
-    id: ConditionId,
-    (engine, progress): (&mut Engine, &dyn Progress),
+    result: &ConditionAnalysis,
+    engine: &mut Engine,
+    progress: &dyn Progress,
 ) -> Result<(), Cancelled> {
     let study = &analysis.study;
     let grid = (curves_band(&study.settings), CURVE_POINTS);
-    let curves = engine.curves(&study.dataset, id, grid, &Unobtrusive(progress))?;
-    if let Some((curves, result)) = curves.zip(analysis.condition(id)) {
-        let schedule = analysis.schedule.as_ref().ok();
+    let curves = engine.curves(&study.dataset, result.condition.id(), grid, progress)?;
+    if let Some(curves) = curves {
         let source = ConditionSource {
             study,
             analysis: Some(result),
-            schedule,
+            schedule: analysis.schedule.as_ref().ok(),
             curves: &curves,
             variant: None,
         };
@@ -87,18 +92,20 @@ fn draw(
     Ok(())
 }
 
+/// Adds a condition's results as text and tables.
 fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) {
     page.facts(facts(analysis, result));
     let study = &analysis.study;
-    let said = remarks(study, result, None)
-        .into_iter()
-        .map(|remark| match remark.kind {
+    let mut lines = Vec::new();
+    for remark in remarks(study, result, None) {
+        lines.push(match remark.kind {
             RemarkKind::Good => remark.text,
             RemarkKind::Caution => format!("Caution: {}", remark.text),
             RemarkKind::Trouble => format!("Not matched: {}", remark.text),
         });
+    }
     page.heading_within("What was matched, what was not and why");
-    page.list(said);
+    page.list(lines);
     page.fine_list(details(study, result));
     if result.compensated.is_some() {
         page.heading_within("What the leads do and what they cost");
@@ -106,12 +113,12 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
     }
     add_responses(page, study, result);
     page.table(&channel_table(analysis, result));
-    BundleKind::BOTH
-        .into_iter()
-        .for_each(|kind| add_models(page, study, result, kind));
+    for kind in BundleKind::BOTH {
+        add_models(page, study, result, kind);
+    }
 }
 
-/// Returns the proof status of the gains in a word.
+/// Returns the gains' proof status in a word.
 pub(super) fn proof_word(result: &ConditionAnalysis) -> &'static str {
     match result.gains.proof.outcome {
         Outcome::Proven { .. } => "global optimum",
@@ -174,24 +181,23 @@ fn facts<'a>(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<(&'a str, S
     ]
 }
 
+/// Describes a flight state: "80 kt, sea level, 0 ft, light, 6500 kg".
 fn flight_words(condition: &Condition) -> String {
     let state = condition.flight_state();
-    let altitude = state
-        .altitude_ft
-        .map(|altitude| format!("{} ft", number(altitude)));
-    let mass = state.mass_kg.map(|mass| format!("{} kg", number(mass)));
     let [altitude_class, weight_class] = class_names(state);
-    let parts = [
-        Some(format!("{} kt", number(state.airspeed_kt))),
-        altitude_class,
-        altitude,
-        weight_class,
-        mass,
-    ];
-    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    let mut parts = vec![format!("{} kt", number(state.airspeed_kt))];
+    parts.extend(altitude_class);
+    if let Some(altitude_ft) = state.altitude_ft {
+        parts.push(format!("{} ft", number(altitude_ft)));
+    }
+    parts.extend(weight_class);
+    if let Some(mass_kg) = state.mass_kg {
+        parts.push(format!("{} kg", number(mass_kg)));
+    }
+    parts.join(", ")
 }
 
-/// Describes the number of kept models in a bundle, and its representative.
+/// Describes how many models are kept in a bundle, and its representative.
 fn representative(analysis: &Analysis, result: &ConditionAnalysis, kind: BundleKind) -> String {
     let choice = analysis.study.choice(result.condition.id()).bundle(kind);
     let name = result.representative_name(kind);
@@ -217,10 +223,9 @@ fn channel_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     let mut table = Table::new(title, ["channel", "side", "gain k", "delay τ [ms]"]);
     let (inputs, outputs) = dataset.names_of_channels();
     for channel in all_channels(dataset) {
-        let side = if matches!(channel, Channel::Input(_)) {
-            "input"
-        } else {
-            "output"
+        let side = match channel {
+            Channel::Input(_) => "input",
+            Channel::Output(_) => "output",
         };
         let gain = correction.gain(channel);
         let delay_s = correction.delay_s(channel);
@@ -249,22 +254,22 @@ const RESPONSE_COLUMNS: [&str; 11] = [
     "ΔJ phase",
 ];
 
-/// Adds the table of the responses, and the reasons why some of them have no G and no D.
+/// Adds the response table, and the reasons why some responses have no G and no D.
 fn add_responses(page: &mut Page, study: &Study, result: &ConditionAnalysis) {
     let all: Vec<Pair> = study.dataset.on_axis().pairs().collect();
     let measuring = study.dataset.measuring_pairs();
-    let matters = |pair: &Pair| {
-        all.len() <= PAIRS_LISTED || measuring[*pair] || study.settings.constrained[*pair]
-    };
-    let shown: Vec<Pair> = all.iter().copied().filter(matters).collect();
-    let id = result.condition.id();
+    let mut shown = all.clone();
+    if all.len() > PAIRS_LISTED {
+        shown.retain(|pair| measuring[*pair] || study.settings.constrained[*pair]);
+    }
     let title = format!(
-        "Condition {id}: G, D and J of the representative before and after its own correction"
+        "Condition {}: G, D and J of the representative before and after its own correction",
+        result.condition.id()
     );
     let mut table = Table::new(title, RESPONSE_COLUMNS);
-    shown
-        .iter()
-        .for_each(|pair| table.row(response_cells(study, result, *pair)));
+    for pair in &shown {
+        table.row(response_cells(study, result, *pair));
+    }
     page.table(&table);
     if shown.len() < all.len() {
         page.paragraph(&format!(
@@ -272,48 +277,59 @@ fn add_responses(page: &mut Page, study: &Study, result: &ConditionAnalysis) {
             all.len() - shown.len()
         ));
     }
-    page.list(undefined(study, result));
+    page.list(undefined_lines(study, result));
+}
+
+/// Stands in tables for a missing value.
+const MISSING: &str = "–";
+
+/// Formats a value with this many decimals.
+fn decimals_or_missing(value: Option<f64>, digits: usize) -> String {
+    match value {
+        Some(value) => decimals(value, digits),
+        None => MISSING.to_owned(),
+    }
+}
+
+/// Formats a change with its sign and a decimal.
+fn change_or_missing(value: Option<f64>) -> String {
+    match value {
+        Some(value) => signed(value, 1),
+        None => MISSING.to_owned(),
+    }
 }
 
 fn response_cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [String; 11] {
     let cost = result.cost[pair];
     let is_defined = result.wanted_gain(pair).is_some();
-    let treated = match (
-        is_defined,
-        result.held()[pair],
-        !study.settings.ignored[pair],
-    ) {
-        (false, ..) => "no G, no D",
-        (true, true, _) => "held",
-        (true, false, true) => "fitted",
-        (true, false, false) => "ignored",
+    let treatment = if !is_defined {
+        "no G, no D"
+    } else if result.held()[pair] {
+        "held"
+    } else if study.settings.ignored[pair] {
+        "ignored"
+    } else {
+        "fitted"
     };
-    let of = |value: Option<f64>, digits: usize| {
-        value.map_or("–".to_owned(), |value| decimals(value, digits))
-    };
-    let change = |value: Option<f64>| value.map_or("–".to_owned(), |value| signed(value, 1));
+    let is_on_axis = study.dataset.on_axis()[pair];
+    let wanted_delay_ms = result.wanted_delay_s(pair).map(s_to_ms);
     [
         study.dataset.pair_name(pair),
-        if study.dataset.on_axis()[pair] {
-            "yes"
-        } else {
-            "no"
-        }
-        .to_owned(),
-        treated.to_owned(),
-        of(result.wanted_gain(pair), 3),
-        of(Some(result.correction.net_gain(pair)), 3),
-        of(result.wanted_delay_s(pair).map(s_to_ms), 1),
-        of(Some(s_to_ms(result.correction.net_delay_s(pair))), 1),
-        of(cost.map(|cost| cost.uncorrected.total()), 1),
-        of(cost.map(|cost| cost.corrected.total()), 1),
-        change(cost.map(|cost| cost.magnitude())),
-        change(cost.map(|cost| cost.phase())),
+        if is_on_axis { "yes" } else { "no" }.to_owned(),
+        treatment.to_owned(),
+        decimals_or_missing(result.wanted_gain(pair), 3),
+        decimals(result.correction.net_gain(pair), 3),
+        decimals_or_missing(wanted_delay_ms, 1),
+        decimals(s_to_ms(result.correction.net_delay_s(pair)), 1),
+        decimals_or_missing(cost.map(|cost| cost.uncorrected.total()), 1),
+        decimals_or_missing(cost.map(|cost| cost.corrected.total()), 1),
+        change_or_missing(cost.map(|cost| cost.magnitude())),
+        change_or_missing(cost.map(|cost| cost.phase())),
     ]
 }
 
 /// Returns a sentence for each reason why responses have no G and no D.
-fn undefined(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
+fn undefined_lines(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
     for (pair, why) in result.comparison.undefined.iter() {
         let Some(why) = why.map(undefined_text) else {
@@ -325,12 +341,14 @@ fn undefined(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
             None => reasons.push((why, vec![name])),
         }
     }
-    let sentence =
-        |(why, pairs): (String, Vec<String>)| format!("No G and no D of {}: {why}.", names(&pairs));
-    reasons.into_iter().map(sentence).collect()
+    let mut lines = Vec::with_capacity(reasons.len());
+    for (why, pairs) in reasons {
+        lines.push(format!("No G and no D of {}: {why}.", names(&pairs)));
+    }
+    lines
 }
 
-/// Adds the table of a bundle's models; for a long bundle, of the most important ones.
+/// Adds a table with a bundle's models, for a long bundle with the most important models.
 fn add_models(page: &mut Page, study: &Study, result: &ConditionAnalysis, kind: BundleKind) {
     let models = result.condition.bundle(kind);
     let shown = models_shown(study, result, kind);
@@ -353,26 +371,27 @@ fn add_models(page: &mut Page, study: &Study, result: &ConditionAnalysis, kind: 
     );
     for &index in &shown {
         let model = &models[index];
-        let ratio = result
-            .discontinuity_ratio(&model.name)
-            .filter(|_| is_physics);
-        let mark = if ratio.is_some_and(|ratio| ratio > SUGGESTION_RATIO) {
-            " (suspect)"
+        let ratio = if is_physics {
+            result.discontinuity_ratio(&model.name)
         } else {
-            ""
+            None
+        };
+        let ratio_words = match ratio {
+            Some(ratio) if ratio > SUGGESTION_RATIO => {
+                format!("{} (suspect)", decimals(ratio, 2))
+            }
+            ratio => decimals_or_missing(ratio, 2),
+        };
+        let order = match model.order() {
+            Some(order) => order.to_string(),
+            None => MISSING.to_owned(),
         };
         table.row([
             model.name.clone(),
             kept_word(study, result, kind, &model.name).to_owned(),
-            model
-                .order()
-                .map_or("–".to_owned(), |order| order.to_string()),
-            result
-                .score(kind, &model.name)
-                .map_or("–".to_owned(), |score| decimals(score, 2)),
-            ratio.map_or("–".to_owned(), |ratio| {
-                format!("{}{mark}", decimals(ratio, 2))
-            }),
+            order,
+            decimals_or_missing(result.score(kind, &model.name), 2),
+            ratio_words,
         ]);
     }
     page.table(&table);
@@ -385,6 +404,7 @@ fn add_models(page: &mut Page, study: &Study, result: &ConditionAnalysis, kind: 
     }
 }
 
+/// Returns whether a model is kept, in a word.
 fn kept_word(
     study: &Study,
     result: &ConditionAnalysis,
@@ -407,31 +427,35 @@ fn kept_word(
     }
 }
 
-/// Responses side by side in one figure, in two rows at most.
+/// Largest number of responses in a figure, in two rows at most.
 const IN_A_FIGURE: usize = 10;
 
-/// Adds plots of the important responses, their errors in the fit, all responses, and the poles.
+/// Adds plots for important responses, their errors in the fit, all responses, and the poles.
 fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSource<'_>) {
-    let id = source.curves.condition.id();
-    let measuring: Vec<Pair> = source.study.dataset.measuring_pairs().marked().collect();
-    let drawn = &measuring[..measuring.len().min(PAIRS_DRAWN)];
     let options = BodeOptions {
         hidden_models: models_hidden(source.study, result),
         ..BodeOptions::default()
     };
+    add_response_plots(page, source, &options);
+    add_overview(page, source, &options);
+    add_poles(page, source, &options);
+}
+
+/// Adds plots for the responses that measure a model, and for their errors in the fit.
+fn add_response_plots(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
+    let id = source.curves.condition.id();
+    let measuring: Vec<Pair> = source.study.dataset.measuring_pairs().marked().collect();
+    let drawn = &measuring[..measuring.len().min(PAIRS_DRAWN)];
     for pairs in drawn.chunks(IN_A_FIGURE) {
         let title = format!("Condition {id}, responses{}", on_axis_words(source));
         let caption = "Magnitude and phase of every model, and of the representative under its own and under the scheduled \
                        correction.";
-        page.figure(&bode_figure(source, pairs, &options), &title, caption);
+        page.figure(&bode_figure(source, pairs, options), &title, caption);
         let title = format!("Condition {id}, what the fit sees of them");
         let caption = "Ratio and phase difference of the identified representative and each kept physics model, with G, D, the \
                        bounds and the quantiles.";
-        page.figure(
-            &without_values(error_figure(source, pairs, &options)),
-            &title,
-            caption,
-        );
+        let figure = without_values(error_figure(source, pairs, options));
+        page.figure(&figure, &title, caption);
     }
     if drawn.len() < measuring.len() {
         page.paragraph(&format!(
@@ -440,38 +464,43 @@ fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSour
             measuring.len()
         ));
     }
-    let few = BTreeSet::from([Role::Perturbed, Role::Identified, Role::Rejected]);
-    let overview = overview_figure(
-        source,
-        &BodeOptions {
-            hidden: few,
-            ..options.clone()
-        },
-    );
+}
+
+/// Adds all response magnitudes, unless there are too many for a figure.
+fn add_overview(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
+    let without_bundles = BodeOptions {
+        hidden: BTreeSet::from([Role::Perturbed, Role::Identified, Role::Rejected]),
+        ..options.clone()
+    };
+    let overview = overview_figure(source, &without_bundles);
     if overview.plots.len() <= 6 * IN_A_FIGURE {
-        let title = format!("Condition {id}, magnitude of every response");
+        let id = source.curves.condition.id();
         page.figure(
             &overview,
-            &title,
+            &format!("Condition {id}, magnitude of every response"),
             "With J before and after the correction; * is held exactly.",
-        );
-    }
-    if let Ok(modes) = ConditionModes::of(&source.curves.condition, &Unobserved) {
-        let title = format!("Condition {id}, poles of its models");
-        let shifts = source
-            .analysis
-            .map(ConditionAnalysis::pole_shifts)
-            .unwrap_or_default();
-        page.figure(
-            &poles_figure(source, &modes, &options, (&|_| Vec::new(), &shifts)),
-            &title,
-            "Physics models ×, identified ones +; rays of equal damping ratio. A correction of channels moves no pole; couplings do.",
         );
     }
 }
 
-/// Reduces labels of lines across narrow frames to their names ("G", "UB"): their values are in the
-/// tables.
+/// Adds the model poles, with their shifts by couplings.
+fn add_poles(page: &mut Page, source: &ConditionSource<'_>, options: &BodeOptions) {
+    let Ok(modes) = ConditionModes::of(&source.curves.condition, &Unobserved) else {
+        return;
+    };
+    let shifts = match source.analysis {
+        Some(result) => result.pole_shifts(),
+        None => Default::default(),
+    };
+    let id = source.curves.condition.id();
+    page.figure(
+        &poles_figure(source, &modes, options, (&|_| Vec::new(), &shifts)),
+        &format!("Condition {id}, poles of its models"),
+        "Physics models ×, identified ones +; rays of equal damping ratio. A correction of channels moves no pole; couplings do.",
+    );
+}
+
+/// Reduces line labels in narrow frames to their names ("G", "UB"): the values are in the tables.
 fn without_values(mut figure: Figure) -> Figure {
     let panels = figure.plots.iter_mut().flat_map(|plot| &mut plot.panels);
     for mark in panels.flat_map(|panel| &mut panel.marks) {
@@ -482,7 +511,7 @@ fn without_values(mut figure: Figure) -> Figure {
     figure
 }
 
-/// Returns " on axis" if responses are marked as such; otherwise all of them measure a model.
+/// Returns " on axis" if responses are marked as such; otherwise all responses measure a model.
 fn on_axis_words(source: &ConditionSource<'_>) -> &'static str {
     if source.study.dataset.on_axis().marked().next().is_some() {
         " on axis"
@@ -491,8 +520,8 @@ fn on_axis_words(source: &ConditionSource<'_>) -> &'static str {
     }
 }
 
-/// Returns the indices of the models of a bundle that are listed and drawn: all of a short one; of
-/// a long one the representative, the nominal and the suggested ones, the rejected ones, then the
+/// Returns the indices of listed and drawn models in a bundle. In a short bundle these are all; in
+/// a long bundle the representative, the nominal and the suggested models, rejected models, then
 /// others, evenly over the bundle.
 fn models_shown(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> BTreeSet<usize> {
     let models = result.condition.bundle(kind);
@@ -500,19 +529,22 @@ fn models_shown(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> 
         return (0..models.len()).collect();
     }
     let suggested = result.suggested();
-    let id = |index: usize| ModelId::new(result.condition.id(), kind, &models[index].name);
-    let matters = |index: &usize| {
-        let name = &models[*index].name;
-        let is_suggested = kind == BundleKind::Physics && suggested.contains(name);
-        models[*index].is_nominal() || result.representative_name(kind) == name || is_suggested
-    };
-    let rejected = (0..models.len())
-        .filter(|&index| study.is_rejected(&id(index)))
-        .take(MODELS_SHOWN / 2);
-    let first = (0..models.len()).filter(matters).chain(rejected);
+    let mut important = Vec::new();
+    let mut rejected = Vec::new();
+    for (index, model) in models.iter().enumerate() {
+        let is_suggested = kind == BundleKind::Physics && suggested.contains(&model.name);
+        let is_representative = result.representative_name(kind) == model.name;
+        if model.is_nominal() || is_representative || is_suggested {
+            important.push(index);
+        }
+        if study.is_rejected(&ModelId::new(result.condition.id(), kind, &model.name)) {
+            rejected.push(index);
+        }
+    }
+    rejected.truncate(MODELS_SHOWN / 2);
     let evenly = (0..MODELS_SHOWN).map(|part| part * models.len() / MODELS_SHOWN);
     let mut shown = BTreeSet::new();
-    for index in first.chain(evenly) {
+    for index in important.into_iter().chain(rejected).chain(evenly) {
         if shown.len() < MODELS_SHOWN {
             shown.insert(index);
         }
@@ -520,13 +552,16 @@ fn models_shown(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> 
     shown
 }
 
-/// Returns the models of a condition that are not drawn.
+/// Returns the models in a condition that are not drawn.
 fn models_hidden(study: &Study, result: &ConditionAnalysis) -> BTreeSet<ModelId> {
-    let of_bundle = |kind: BundleKind| {
+    let mut hidden = BTreeSet::new();
+    for kind in BundleKind::BOTH {
         let shown = models_shown(study, result, kind);
-        let models = result.condition.bundle(kind).iter().enumerate();
-        let hidden = models.filter(move |(index, _)| !shown.contains(index));
-        hidden.map(move |(_, model)| ModelId::new(result.condition.id(), kind, &model.name))
-    };
-    BundleKind::BOTH.into_iter().flat_map(of_bundle).collect()
+        for (index, model) in result.condition.bundle(kind).iter().enumerate() {
+            if !shown.contains(&index) {
+                hidden.insert(ModelId::new(result.condition.id(), kind, &model.name));
+            }
+        }
+    }
+    hidden
 }

@@ -1,5 +1,5 @@
-//! The report of a study: a single HTML file without external resources that prints on A4 and
-//! letter. The same study makes the same bytes.
+//! A study's report: a single HTML file without external resources that prints on A4 and letter.
+//! The same study makes the same bytes.
 
 mod assessment;
 mod conditions;
@@ -16,58 +16,57 @@ use gdcm_study::results::required_modes::KnownPoles;
 use gdcm_study::results::time_histories::TimeHistories;
 use gdcm_study::{Analysis, Engine};
 
+use self::page::Page;
 use crate::file_error::FileError;
 use crate::files::dataset_file::LoadedDataset;
 use crate::output_set::OutputSet;
-use page::Page;
 
-pub use study::assessment_sentence;
+pub use self::study::assessment_sentence;
 
 const PROGRAM: &str = concat!("gdcm ", env!("CARGO_PKG_VERSION"));
 
-/// Information in a report on the files of a study.
+/// A study's files, as a report names them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReportSource {
-    /// Name of the study's file; `None` for a study that is not saved.
+    /// The study's file name; `None` for a study that is not saved.
     pub study: Option<String>,
-    /// Name of the dataset's file, or its replacement.
+    /// The dataset's file name, or its replacement.
     pub dataset: String,
     /// SHA-256 of that file, in hexadecimal.
     pub sha256: String,
-    /// Its oddities.
+    /// Oddities in that file.
     pub cautions: Vec<String>,
 }
 
 impl ReportSource {
-    /// Creates the information on the files of a study: its dataset, and its own file if any. They
-    /// are named without their folders, so that the report does not depend on their location.
+    /// Takes a study's files: its dataset, and its own file if any. They are named without their
+    /// folders, so that the report does not depend on their location.
     pub fn of(loaded: &LoadedDataset, study: Option<&Path>) -> Self {
         let study = study
             .and_then(Path::file_name)
             .map(|name| sanitized(&name.to_string_lossy()));
-        let cautions = loaded.cautions.clone();
         Self {
             study,
             dataset: loaded.file_name(),
             sha256: loaded.sha256.clone(),
-            cautions,
+            cautions: loaded.cautions.clone(),
         }
     }
 }
 
-/// Subject of a report.
+/// Report subject.
 #[derive(Clone, Copy, Debug)]
 pub struct ReportSubject<'a> {
-    /// With the requirements of its study.
+    /// With its study's requirements.
     pub analysis: &'a Analysis,
-    /// Responses of its models to flight records, if available.
+    /// Model responses to flight records, if available.
     pub histories: Option<&'a TimeHistories>,
     /// The identified poles.
     pub known: &'a KnownPoles,
 }
 
-/// Creates the report of an analysis; `engine` provides the responses to be drawn. Each condition
-/// is a step of the progress.
+/// Creates the report on an analysis; `engine` provides the responses to be drawn. Each condition
+/// is a progress step.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` requests it.
@@ -85,7 +84,7 @@ pub fn report(
     study::add_files(&mut page, &analysis.study, source);
     study::add_left_out(&mut page, analysis);
     assessment::add_couplings(&mut page, analysis);
-    conditions::add(&mut page, analysis, engine, progress)?;
+    conditions::add_conditions(&mut page, analysis, engine, progress)?;
     schedule::add_schedule(&mut page, analysis);
     assessment::add_uncertainty(&mut page, analysis);
     assessment::add_assessment(&mut page, analysis);
@@ -105,20 +104,15 @@ pub fn report(
         "Gain and delay corrections of {}",
         analysis.study.dataset.name()
     );
-    let study = source
-        .study
-        .as_ref()
-        .map_or(String::new(), |study| format!("Study {study}. "));
-    Ok(page.finish(
-        &title,
-        &[format!(
-            "{study}Dataset {}. Made by {PROGRAM}.",
-            source.dataset
-        )],
-    ))
+    let study = match &source.study {
+        Some(study) => format!("Study {study}. "),
+        None => String::new(),
+    };
+    let origin = format!("{study}Dataset {}. Made by {PROGRAM}.", source.dataset);
+    Ok(page.finish(&title, &[origin]))
 }
 
-/// Forwards cancellation only, not the progress of inner steps.
+/// Forwards cancellation only, not the progress in inner steps.
 struct Unobtrusive<'a>(&'a dyn Progress);
 
 impl Progress for Unobtrusive<'_> {

@@ -7,43 +7,39 @@ use gdcm_plot::figure::{ColumnWidth, Figure};
 use gdcm_plot::paper::{escaped, inline_svg};
 use gdcm_words::Table;
 
-/// Maximum number of conditions with figures; all have tables.
+/// Largest number of conditions with figures; all have tables.
 pub(super) const CONDITIONS_DRAWN: usize = 60;
-/// Maximum number of responses of a kind with figures.
+/// Largest number of on-axis responses with figures, and of off-axis responses.
 pub(super) const PAIRS_DRAWN: usize = 40;
-/// Maximum number of responses in a table of all; beyond, it lists the on-axis and the constrained
-/// ones.
+/// Largest number of responses in a table with all; a longer table lists only on-axis and
+/// constrained responses.
 pub(super) const PAIRS_LISTED: usize = 48;
-/// Maximum number of models of a bundle that are listed and drawn.
+/// Largest number of models in a bundle that are listed and drawn.
 pub(super) const MODELS_SHOWN: usize = 40;
-/// Maximum number of names in a sentence.
+/// Largest number of names in a sentence.
 pub(super) const NAMES_SHOWN: usize = 12;
 
-/// Lists names with commas; for many, the first ones and the number of the others.
+/// Lists names with commas; for many, the first names and how many follow.
 pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
-    let shown = all
-        .iter()
-        .take(NAMES_SHOWN)
-        .map(AsRef::as_ref)
-        .collect::<Vec<_>>()
-        .join(", ");
-    match all.len().saturating_sub(NAMES_SHOWN) {
-        0 => shown,
-        more => format!("{shown} and {more} more"),
+    let shown: Vec<&str> = all.iter().take(NAMES_SHOWN).map(AsRef::as_ref).collect();
+    let shown = shown.join(", ");
+    if all.len() <= NAMES_SHOWN {
+        return shown;
     }
+    format!("{shown} and {} more", all.len() - NAMES_SHOWN)
 }
 
-/// Maximum distance of a line in a figure from its original points \[pt\]: less than the width of
-/// the thinnest line, hence invisible, and a quarter of the file size.
+/// Maximum distance \[pt\] between a line in a figure and its original points: less than the
+/// thinnest line width, hence invisible. It reduces file sizes to a quarter.
 const TOLERANCE_PT: f64 = 0.1;
-/// Maximum number of rows of a table; beyond, see the result files.
+/// Largest number of rows in a table; the result files have all.
 const ROWS: usize = 1000;
-/// A table of no more rows is not split between pages.
+/// Largest number of rows in a table that is not split between pages.
 const ROWS_ON_A_SHEET: usize = 30;
-/// Maximum number of letters of a text that stays on one line.
+/// Largest number of letters in a text that stays on a line.
 const SHORT: usize = 24;
 const STYLE: &str = include_str!("style.css");
-/// Nothing is fetched and nothing is run, whatever the content of a page.
+/// Nothing is fetched and nothing is run, whatever a page contains.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'";
 
 /// A heading in the table of contents.
@@ -100,21 +96,22 @@ impl Page {
 
     /// Adds a list; nothing if it is empty.
     pub(super) fn list(&mut self, items: impl IntoIterator<Item = impl AsRef<str>>) {
-        self.list_of("", items);
+        self.add_list("", items);
     }
 
-    /// Adds a list in small print, for details of interest to few readers.
+    /// Adds a list in small print, for details.
     pub(super) fn fine_list(&mut self, items: impl IntoIterator<Item = impl AsRef<str>>) {
-        self.list_of(" class=\"fine\"", items);
+        self.add_list(" class=\"fine\"", items);
     }
 
-    fn list_of(&mut self, class: &str, items: impl IntoIterator<Item = impl AsRef<str>>) {
-        let items: String = items
-            .into_iter()
-            .map(|item| element("li", item.as_ref()))
-            .collect();
-        if !items.is_empty() {
-            self.body.push_str(&format!("<ul{class}>\n{items}</ul>\n"));
+    fn add_list(&mut self, class: &str, items: impl IntoIterator<Item = impl AsRef<str>>) {
+        let mut elements = String::new();
+        for item in items {
+            elements.push_str(&element("li", item.as_ref()));
+        }
+        if !elements.is_empty() {
+            self.body
+                .push_str(&format!("<ul{class}>\n{elements}</ul>\n"));
         }
     }
 
@@ -137,21 +134,11 @@ impl Page {
         if table.rows.is_empty() {
             return;
         }
-        let more = table.rows.len().saturating_sub(ROWS);
         self.tables += 1;
-        let classes: Vec<&str> = (0..table.columns.len())
-            .map(|column| class_of(table, column))
-            .collect();
-        let row = |tag: &str, cells: &[String]| {
-            let cells = cells
-                .iter()
-                .zip(&classes)
-                .map(|(text, class)| match *class {
-                    "" => element(tag, text),
-                    class => classed(tag, class, text),
-                });
-            format!("<tr>\n{}</tr>\n", cells.collect::<String>())
-        };
+        let mut classes = Vec::with_capacity(table.columns.len());
+        for column in 0..table.columns.len() {
+            classes.push(class_of(table, column));
+        }
         let class = if table.rows.len() <= ROWS_ON_A_SHEET {
             " class=\"whole\""
         } else {
@@ -162,12 +149,15 @@ impl Page {
             "<table{class}>\n{}<thead>\n",
             element("caption", &title)
         ));
-        self.body.push_str(&row("th", &table.columns));
-        self.body.push_str("</thead>\n<tbody>\n");
         self.body
-            .extend(table.rows.iter().take(ROWS).map(|cells| row("td", cells)));
+            .push_str(&table_row("th", &table.columns, &classes));
+        self.body.push_str("</thead>\n<tbody>\n");
+        for cells in table.rows.iter().take(ROWS) {
+            self.body.push_str(&table_row("td", cells, &classes));
+        }
         self.body.push_str("</tbody>\n</table>\n");
-        if more > 0 {
+        if table.rows.len() > ROWS {
+            let more = table.rows.len() - ROWS;
             self.paragraph(&format!("{more} more rows are left out here."));
         }
     }
@@ -180,21 +170,17 @@ impl Page {
     /// Adds a wide table with `heads` leading columns repeated.
     pub(super) fn wide_table_behind(&mut self, table: &Table, heads: usize, columns: usize) {
         for from in (heads..table.columns.len()).step_by(columns) {
-            let part = |cells: &[String]| {
-                let to = (from + columns).min(cells.len());
-                cells[..heads]
-                    .iter()
-                    .chain(&cells[from..to])
-                    .cloned()
-                    .collect::<Vec<_>>()
-            };
-            let mut sheet = Table::new(table.title.clone(), part(&table.columns));
-            sheet.rows = table.rows.iter().map(|row| part(row)).collect();
+            let to = from + columns;
+            let heading = columns_between(&table.columns, heads, from, to);
+            let mut sheet = Table::new(table.title.clone(), heading);
+            for row in &table.rows {
+                sheet.rows.push(columns_between(row, heads, from, to));
+            }
             self.table(&sheet);
         }
     }
 
-    /// Adds a figure under its number, with this title and caption instead of its own.
+    /// Adds a numbered figure, with this title and caption instead of its own.
     pub(super) fn figure(&mut self, figure: &Figure, title: &str, caption: &str) {
         self.figures += 1;
         let bare = Figure {
@@ -215,17 +201,17 @@ impl Page {
         ));
     }
 
-    /// Adds fixed markup of the program itself.
+    /// Adds fixed markup from the program itself.
     pub(super) fn fixed(&mut self, markup: &'static str) {
         self.body.push_str(markup);
     }
 
     /// Finishes the page with a title and the `lines` below it.
     pub(super) fn finish(self, title: &str, lines: &[String]) -> String {
-        let below: String = lines
-            .iter()
-            .map(|line| classed("p", "below", line))
-            .collect();
+        let mut below = String::new();
+        for line in lines {
+            below.push_str(&classed("p", "below", line));
+        }
         let contents = self.contents();
         let head = words(title);
         let style = STYLE.trim_end();
@@ -239,24 +225,46 @@ impl Page {
         )
     }
 
+    /// Returns the table of contents.
     fn contents(&self) -> String {
-        let entry = |Heading { number, title }: &Heading| {
+        let mut entries = String::new();
+        for Heading { number, title } in &self.headings {
             let class = if number.contains('.') {
                 "part"
             } else {
                 "section"
             };
-            format!(
+            entries.push_str(&format!(
                 "<li class=\"{class}\"><a href=\"#s{number}\">{number} {}</a></li>\n",
                 words(title)
-            )
-        };
-        let entries: String = self.headings.iter().map(entry).collect();
+            ));
+        }
         format!("<nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ul>\n{entries}</ul>\n</nav>\n")
     }
 }
 
-/// Returns the class of a column: numbers, or texts short enough to stay on one line.
+/// Returns a table row, with a class for each column.
+fn table_row(tag: &str, cells: &[String], classes: &[&str]) -> String {
+    let mut row = String::from("<tr>\n");
+    for (text, class) in cells.iter().zip(classes) {
+        if class.is_empty() {
+            row.push_str(&element(tag, text));
+        } else {
+            row.push_str(&classed(tag, class, text));
+        }
+    }
+    row.push_str("</tr>\n");
+    row
+}
+
+/// Returns the first `heads` cells in a row, and those from `from` up to `to`.
+fn columns_between(cells: &[String], heads: usize, from: usize, to: usize) -> Vec<String> {
+    let to = to.min(cells.len());
+    [&cells[..heads], &cells[from..to]].concat()
+}
+
+/// Returns a column's class: numbers (`n`), texts short enough to stay on a line (`s`), or other
+/// texts (none).
 fn class_of(table: &Table, column: usize) -> &'static str {
     let is_short = table
         .rows
@@ -279,7 +287,7 @@ fn element(tag: &str, text: &str) -> String {
     format!("<{tag}>{}</{tag}>\n", words(text))
 }
 
-/// Returns an element of a class with this text.
+/// Returns an element with a class and this text.
 fn classed(tag: &str, class: &str, text: &str) -> String {
     format!("<{tag} class=\"{class}\">{}</{tag}>\n", words(text))
 }
@@ -384,7 +392,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_says_what_it_shows_to_who_cannot_see_it() {
+    fn a_figure_has_a_description_for_screen_readers() {
         let text = page();
         let document = parsed(&text);
         let labels: Vec<_> = document

@@ -1,4 +1,4 @@
-//! Requirements of a qualification on the models (M17): the numbers of `gdcm requirements`.
+//! Qualification requirements on the models (M17): the same numbers as `gdcm requirements`.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use gdcm_words::time_histories::{record_table, share_table};
 use super::page::Page;
 use super::{ReportSubject, Unobtrusive};
 
-/// Columns of a table that fit on a page.
+/// Largest number of columns in a table that fits on a page.
 const COLUMNS: usize = 9;
 
 /// Adds the section on the requirements; with the responses to flight records if available.
@@ -25,14 +25,15 @@ const COLUMNS: usize = 9;
 /// [`Cancelled`] soon after `progress` requests it.
 pub(super) fn add_requirements(
     page: &mut Page,
-    ReportSubject {
-        analysis,
-        histories,
-        known,
-    }: ReportSubject<'_>,
+    subject: ReportSubject<'_>,
     engine: &Engine,
     progress: &dyn Progress,
 ) -> Result<(), Cancelled> {
+    let ReportSubject {
+        analysis,
+        histories,
+        known,
+    } = subject;
     let requirements = engine.requirements(analysis, known, &Unobtrusive(progress))?;
     page.section("Requirements");
     page.paragraph(
@@ -55,22 +56,19 @@ pub(super) fn add_requirements(
     if let Some(histories) = histories {
         add_histories(page, histories);
     }
-    let missing = requirements
-        .missing
-        .iter()
-        .map(|of| (of.condition, format!("no {}: {}", of.what, of.why)));
-    page.list(by_words(
-        missing.chain(
-            requirements
-                .cautions
-                .iter()
-                .map(|of| (Some(of.condition), of.text.clone())),
-        ),
-    ));
+    let mut remarks = ConditionRemarks::default();
+    for missing in &requirements.missing {
+        let words = format!("no {}: {}", missing.what, missing.why);
+        remarks.add(missing.condition, words);
+    }
+    for caution in &requirements.cautions {
+        remarks.add(Some(caution.condition), caution.text.clone());
+    }
+    page.list(remarks.lines());
     Ok(())
 }
 
-/// Adds bandwidth and phase delay of the responses for which either is defined, and the reasons why
+/// Adds bandwidth and phase delay for the responses in which either is defined, and the reasons why
 /// others have none.
 fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
     let dataset = &study.dataset;
@@ -80,28 +78,32 @@ fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
          which 45\u{b0} of phase margin and 6 dB of gain margin are left; the phase delay is the phase lost from \u{3c9}180 to \
          2 \u{3c9}180 over 2 \u{3c9}180. Levels depend on the mission task and the category; only the engineer's own are drawn.",
     );
-    let is_known =
-        |of: &&BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
-    let (known, unknown): (Vec<&BandwidthFinding>, Vec<_>) =
-        requirements.bandwidth.iter().partition(is_known);
-    if !known.is_empty() {
+    let mut known = requirements.clone();
+    known.bandwidth.retain(is_known);
+    if !known.bandwidth.is_empty() {
         let figure = requirements_figure(requirements, dataset, &study.requirements.levels);
         let caption = "Phase delay over bandwidth; arrows lead from physics to corrected models.";
         page.figure(&figure, &figure.title, caption);
     }
-    let known = Requirements {
-        bandwidth: known.into_iter().cloned().collect(),
-        ..requirements.clone()
-    };
     page.table(&bandwidth_table(&known, dataset));
-    let why = |of: &BandwidthFinding| of.absent.get("omega_bw_rad_s").cloned().unwrap_or_default();
-    let reason = |of: &BandwidthFinding| {
-        (
-            Some(of.condition),
-            format!("{}: {}", dataset.pair_name(of.pair), why(of)),
-        )
-    };
-    page.list(by_words(unknown.into_iter().map(reason)));
+    let mut remarks = ConditionRemarks::default();
+    for finding in &requirements.bandwidth {
+        if !is_known(finding) {
+            let why = finding.absent.get("omega_bw_rad_s").cloned();
+            let words = format!(
+                "{}: {}",
+                dataset.pair_name(finding.pair),
+                why.unwrap_or_default()
+            );
+            remarks.add(Some(finding.condition), words);
+        }
+    }
+    page.list(remarks.lines());
+}
+
+/// Whether the bandwidth or the phase delay is defined.
+fn is_known(finding: &BandwidthFinding) -> bool {
+    finding.omega_bw_rad_s.is_some() || finding.phase_delay_s.is_some()
 }
 
 fn add_modes(page: &mut Page, requirements: &Requirements) {
@@ -111,12 +113,12 @@ fn add_modes(page: &mut Page, requirements: &Requirements) {
          table C2A, 2.c.3.a and 2.d.3.a. Gains and delays move no pole; couplings do, and where there are some the corrected model's \
          stand beside them.",
     );
-    let mut conditions: Vec<ConditionId> =
-        requirements.modes.iter().map(|of| of.condition).collect();
+    let modes = requirements.modes.iter();
+    let mut conditions: Vec<ConditionId> = modes.map(|finding| finding.condition).collect();
     conditions.dedup();
-    conditions
-        .into_iter()
-        .for_each(|id| page.wide_table(&mode_table(requirements, id), COLUMNS));
+    for id in conditions {
+        page.wide_table(&mode_table(requirements, id), COLUMNS);
+    }
 }
 
 /// Adds time histories within tolerances, and those that are not compared.
@@ -134,17 +136,15 @@ fn add_histories(page: &mut Page, histories: &TimeHistories) {
     page.table(&tolerance_table(histories));
     if !histories.records.is_empty() {
         page.table(&share_table(histories));
-        histories
-            .conditions()
-            .into_iter()
-            .for_each(|(id, _)| page.table(&record_table(histories, id)));
+        for (id, _) in histories.conditions() {
+            page.table(&record_table(histories, id));
+        }
     }
-    page.list(by_words(
-        histories
-            .missing
-            .iter()
-            .map(|of| (of.condition, of.why.clone())),
-    ));
+    let mut remarks = ConditionRemarks::default();
+    for missing in &histories.missing {
+        remarks.add(missing.condition, missing.why.clone());
+    }
+    page.list(remarks.lines());
 }
 
 /// Tabulates the requested tolerances.
@@ -160,9 +160,10 @@ fn tolerance_table(histories: &TimeHistories) -> Table {
             row.channel.clone()
         };
         let absolute = format!("\u{b1}{} {}", row.absolute, row.unit);
-        let relative = row
-            .relative
-            .map_or_else(String::new, |share| format!("\u{b1}{}", 100.0 * share));
+        let relative = match row.relative {
+            Some(share) => format!("\u{b1}{}", 100.0 * share),
+            None => String::new(),
+        };
         table.row([
             row.quantity.clone(),
             from,
@@ -174,20 +175,34 @@ fn tolerance_table(histories: &TimeHistories) -> Table {
     table
 }
 
-/// Returns distinct texts, each after the conditions to which it applies.
-fn by_words(said: impl Iterator<Item = (Option<ConditionId>, String)>) -> Vec<String> {
-    let mut grouped: BTreeMap<String, Vec<ConditionId>> = BTreeMap::new();
-    for (condition, words) in said {
-        let conditions = grouped.entry(words).or_default();
-        conditions.extend(condition.filter(|id| !conditions.contains(id)));
-    }
-    let line = |(words, conditions): (String, Vec<ConditionId>)| {
-        let ids: Vec<String> = conditions.iter().map(ToString::to_string).collect();
-        match ids.as_slice() {
-            [] => format!("{words}."),
-            [one] => format!("Condition {one}: {words}."),
-            _ => format!("Conditions {}: {words}.", ids.join(", ")),
+/// Distinct remarks, with the conditions to which each applies.
+#[derive(Default)]
+struct ConditionRemarks {
+    conditions_by_words: BTreeMap<String, Vec<ConditionId>>,
+}
+
+impl ConditionRemarks {
+    /// Adds a remark on a condition, or on all conditions.
+    fn add(&mut self, condition: Option<ConditionId>, words: String) {
+        let conditions = self.conditions_by_words.entry(words).or_default();
+        if let Some(id) = condition
+            && !conditions.contains(&id)
+        {
+            conditions.push(id);
         }
-    };
-    grouped.into_iter().map(line).collect()
+    }
+
+    /// Returns a line for each remark, in alphabetical order.
+    fn lines(&self) -> Vec<String> {
+        let mut lines = Vec::with_capacity(self.conditions_by_words.len());
+        for (words, conditions) in &self.conditions_by_words {
+            let ids: Vec<String> = conditions.iter().map(ToString::to_string).collect();
+            lines.push(match ids.as_slice() {
+                [] => format!("{words}."),
+                [id] => format!("Condition {id}: {words}."),
+                _ => format!("Conditions {}: {words}.", ids.join(", ")),
+            });
+        }
+        lines
+    }
 }

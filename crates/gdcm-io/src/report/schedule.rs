@@ -2,7 +2,7 @@
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::Schedule;
-use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::number_format::{compact, decimals};
 use gdcm_model::units::{number, s_to_ms};
 use gdcm_plot::figure::all_channels;
@@ -15,31 +15,25 @@ use gdcm_words::schedule::delayed_channel_text;
 use super::page::{PAIRS_DRAWN, Page, names};
 use super::study::schedule_words;
 
-/// Channels in one figure, in two rows.
+/// Largest number of channels in a figure, in two rows.
 const IN_A_FIGURE: usize = 12;
-/// Responses in one figure, in two rows.
+/// Largest number of responses in a figure, in two rows.
 const PAIRS_IN_A_FIGURE: usize = 10;
-/// Value columns of a table that fits on a page.
+/// Largest number of value columns in a table that fits on a page.
 const COLUMNS: usize = 10;
 
 /// Adds the section on the schedule.
 pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     page.section("Channels and schedule");
     page.subsection("Channels over the conditions");
-    let is_input = |channel: &Channel| matches!(channel, Channel::Input(_));
-    let (inputs, outputs): (Vec<_>, Vec<_>) = all_channels(&analysis.study.dataset)
-        .into_iter()
-        .partition(is_input);
-    for (measure, what) in [(Measure::Gain, "Gains"), (Measure::Delay, "Delays")] {
-        for (of, channels) in [("inputs", &inputs), ("outputs", &outputs)] {
-            let title = format!("{what} of the {of} over conditions");
-            add_channels(
-                page,
-                analysis,
-                channels,
-                (measure, Across::Conditions),
-                &title,
-            );
+    let dataset = &analysis.study.dataset;
+    let inputs: Vec<Channel> = (0..dataset.inputs().len()).map(Channel::Input).collect();
+    let outputs: Vec<Channel> = (0..dataset.outputs().len()).map(Channel::Output).collect();
+    for (measure, quantity) in [(Measure::Gain, "Gains"), (Measure::Delay, "Delays")] {
+        for (side, channels) in [("inputs", &inputs), ("outputs", &outputs)] {
+            let title = format!("{quantity} of the {side} over conditions");
+            let axes = (measure, Across::Conditions);
+            add_channels(page, analysis, channels, axes, &title);
         }
     }
     page.subsection("Schedule over airspeed");
@@ -49,78 +43,36 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     }
 }
 
+/// Adds channel figures; `axes` are the drawn quantity and the horizontal axis.
 fn add_channels(
     page: &mut Page,
     analysis: &Analysis,
     channels: &[Channel],
-    (measure, across): (Measure, Across),
+    axes: (Measure, Across),
     title: &str,
 ) {
     for channels in channels.chunks(IN_A_FIGURE) {
-        let figure = channels_figure(
-            analysis,
-            analysis.uncertainty.as_deref(),
-            channels,
-            (measure, across),
-        );
+        let uncertainty = analysis.uncertainty.as_deref();
+        let figure = channels_figure(analysis, uncertainty, channels, axes);
         let caption = "Each condition's optimum, within the bounds it was looked for in; dashed: no correction.";
         page.figure(&figure, title, caption);
     }
 }
 
+/// Adds the schedule over airspeed.
 fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, channels: &[Channel]) {
-    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
-    let low = number(schedule.airspeeds.min_kt);
-    let high = number(schedule.airspeeds.max_kt);
-    let left_out = not_scheduled(analysis);
-    page.facts([
-        ("Form", schedule_words(&schedule.settings)),
-        (
-            "Degree used",
-            schedule
-                .degree()
-                .map_or("–".to_owned(), |degree| degree.to_string()),
-        ),
-        (
-            "Airspeeds",
-            format!("{low} to {high} kt; outside, the end value holds"),
-        ),
-        (
-            "Conditions left out of it",
-            if left_out.is_empty() {
-                "none".to_owned()
-            } else {
-                names(&left_out)
-            },
-        ),
-    ]);
-    let price = schedule
-        .lead_price()
-        .map(|price| format!("Leads: {}.", price.words(&inputs, &outputs)));
-    let cautions = schedule
-        .cautions
-        .iter()
-        .map(|of| format!("Caution: {}.", of.words(&inputs, &outputs)));
-    let left_out = analysis.unscheduled_delays().into_iter();
-    let left_out = left_out.map(|of| {
-        let text = delayed_channel_text(&of, &analysis.study.dataset);
-        format!("Left out: {text}.")
-    });
-    page.list(price.into_iter().chain(cautions).chain(left_out));
-    add_coefficients(page, schedule, (&inputs, &outputs));
+    add_schedule_facts(page, analysis, schedule);
+    add_schedule_remarks(page, analysis, schedule);
+    add_coefficients(page, analysis, schedule);
     add_gains(page, analysis, schedule);
-    let measures = [(Measure::Gain, "gains")]
-        .into_iter()
-        .chain(schedule.has_delays().then_some((Measure::Delay, "delays")));
-    for (measure, what) in measures {
-        let title = format!("Channel {what} over airspeed, and their schedule");
-        add_channels(
-            page,
-            analysis,
-            channels,
-            (measure, Across::Airspeed),
-            &title,
-        );
+    let mut measures = vec![(Measure::Gain, "gains")];
+    if schedule.has_delays() {
+        measures.push((Measure::Delay, "delays"));
+    }
+    for (measure, quantity) in measures {
+        let title = format!("Channel {quantity} over airspeed, and their schedule");
+        let axes = (measure, Across::Airspeed);
+        add_channels(page, analysis, channels, axes, &title);
     }
     for pairs in shown_pairs(&analysis.study).chunks(PAIRS_IN_A_FIGURE) {
         let figure = net_gain_figure(analysis, analysis.uncertainty.as_deref(), pairs);
@@ -130,18 +82,60 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
     }
 }
 
-/// Returns the conditions with a result that are excluded from the schedule by hand.
+fn add_schedule_facts(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
+    let low = number(schedule.airspeeds.min_kt);
+    let high = number(schedule.airspeeds.max_kt);
+    let degree = match schedule.degree() {
+        Some(degree) => degree.to_string(),
+        None => "–".to_owned(),
+    };
+    let not_scheduled = not_scheduled(analysis);
+    let left_out = if not_scheduled.is_empty() {
+        "none".to_owned()
+    } else {
+        names(&not_scheduled)
+    };
+    page.facts([
+        ("Form", schedule_words(&schedule.settings)),
+        ("Degree used", degree),
+        (
+            "Airspeeds",
+            format!("{low} to {high} kt; outside, the end value holds"),
+        ),
+        ("Conditions left out of it", left_out),
+    ]);
+}
+
+/// Adds lead costs, cautions about the schedule, and the delays that it omits.
+fn add_schedule_remarks(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
+    let dataset = &analysis.study.dataset;
+    let (inputs, outputs) = dataset.names_of_channels();
+    let mut lines = Vec::new();
+    if let Some(price) = schedule.lead_price() {
+        lines.push(format!("Leads: {}.", price.words(&inputs, &outputs)));
+    }
+    for caution in &schedule.cautions {
+        lines.push(format!("Caution: {}.", caution.words(&inputs, &outputs)));
+    }
+    for delayed in analysis.unscheduled_delays() {
+        lines.push(format!(
+            "Left out: {}.",
+            delayed_channel_text(&delayed, dataset)
+        ));
+    }
+    page.list(lines);
+}
+
+/// Returns the conditions that are not in the schedule.
 fn not_scheduled(analysis: &Analysis) -> Vec<String> {
     let scheduled: Vec<ConditionId> = analysis.scheduled();
-    let all = analysis
-        .study
-        .dataset
-        .conditions()
-        .iter()
-        .map(|condition| condition.id());
-    all.filter(|id| !scheduled.contains(id))
-        .map(|id| id.to_string())
-        .collect()
+    let mut names = Vec::new();
+    for condition in analysis.study.dataset.conditions() {
+        if !scheduled.contains(&condition.id()) {
+            names.push(condition.id().to_string());
+        }
+    }
+    names
 }
 
 /// Returns the responses that measure a model, and the constrained ones.
@@ -151,99 +145,90 @@ fn shown_pairs(study: &Study) -> Vec<Pair> {
     shown.marked().take(PAIRS_DRAWN).collect()
 }
 
-fn add_coefficients(
-    page: &mut Page,
-    schedule: &Schedule,
-    (inputs, outputs): (&[String], &[String]),
-) {
-    let found = schedule.coefficients(inputs, outputs);
-    let of = quantity_symbol(schedule.settings.quantity);
-    let title = if found.scale.is_empty() {
-        format!("The schedule: {of} at each airspeed, linear between")
+fn add_coefficients(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
+    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    let coefficients = schedule.coefficients(&inputs, &outputs);
+    let quantity = quantity_symbol(schedule.settings.quantity);
+    let title = if coefficients.scale.is_empty() {
+        format!("The schedule: {quantity} at each airspeed, linear between")
     } else {
         format!(
-            "The schedule: coefficients of {of} in the scaled airspeed, {}",
-            found.scale
+            "The schedule: coefficients of {quantity} in the scaled airspeed, {}",
+            coefficients.scale
         )
     };
-    let columns = std::iter::once("channel".to_owned()).chain(found.columns.iter().cloned());
+    let mut columns = vec!["channel".to_owned()];
+    columns.extend(coefficients.columns.iter().cloned());
     let mut table = Table::new(title, columns);
-    for row in &found.rows {
-        let values = row.figures.iter().map(|value| compact(*value));
-        table.row(std::iter::once(row.name.clone()).chain(values));
+    for row in &coefficients.rows {
+        let mut cells = vec![row.name.clone()];
+        cells.extend(row.figures.iter().map(|value| compact(*value)));
+        table.row(cells);
     }
     page.wide_table(&table, COLUMNS);
 }
 
-/// Adds the scheduled gains, net gains and, if scheduled, delays at the airspeeds of the
+/// Adds the scheduled gains, net gains and, if scheduled, delays at the airspeeds of all
 /// conditions.
 fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let dataset = &analysis.study.dataset;
-    let (inputs, outputs) = dataset.names_of_channels();
     let channels = all_channels(dataset);
     let pairs = shown_pairs(&analysis.study);
-    let named = |symbol: &str| -> Vec<String> {
-        channels
-            .iter()
-            .map(|channel| format!("{symbol}_{}", channel.name(&inputs, &outputs)))
-            .collect()
-    };
+    let gains = channels.iter().map(|&channel| AirspeedColumn {
+        name: format!("k_{}", channel_name(dataset, channel)),
+        cell: Box::new(move |correction| decimals(correction.gain(channel), 4)),
+    });
     add_over_airspeed(
         page,
         schedule,
         "Scheduled gains of the channels",
-        &named("k"),
-        |correction| {
-            channels
-                .iter()
-                .map(|channel| decimals(correction.gain(*channel), 4))
-                .collect()
-        },
+        gains.collect(),
     );
-    let names: Vec<String> = pairs.iter().map(|pair| dataset.pair_name(*pair)).collect();
-    add_over_airspeed(
-        page,
-        schedule,
-        "Scheduled net gains",
-        &names,
-        |correction| {
-            pairs
-                .iter()
-                .map(|pair| decimals(correction.net_gain(*pair), 4))
-                .collect()
-        },
-    );
+    let net_gains = pairs.iter().map(|&pair| AirspeedColumn {
+        name: dataset.pair_name(pair),
+        cell: Box::new(move |correction| decimals(correction.net_gain(pair), 4)),
+    });
+    add_over_airspeed(page, schedule, "Scheduled net gains", net_gains.collect());
     if schedule.has_delays() {
+        let delays = channels.iter().map(|&channel| AirspeedColumn {
+            name: format!("τ_{}", channel_name(dataset, channel)),
+            cell: Box::new(move |correction| decimals(s_to_ms(correction.delay_s(channel)), 2)),
+        });
         add_over_airspeed(
             page,
             schedule,
             "Scheduled delays of the channels [ms]",
-            &named("τ"),
-            |correction| {
-                channels
-                    .iter()
-                    .map(|channel| decimals(s_to_ms(correction.delay_s(*channel)), 2))
-                    .collect()
-            },
+            delays.collect(),
         );
     }
 }
 
-/// Adds tables with a row for each airspeed, as many as needed for all columns to fit.
+fn channel_name(dataset: &Dataset, channel: Channel) -> String {
+    let (inputs, outputs) = dataset.names_of_channels();
+    channel.name(&inputs, &outputs)
+}
+
+/// Column in a table over airspeed: its name, and its cell for the correction at an airspeed.
+struct AirspeedColumn {
+    name: String,
+    cell: Box<dyn Fn(&ChannelCorrection) -> String>,
+}
+
+/// Adds a table with a row for each airspeed, in parts that fit on a page.
 fn add_over_airspeed(
     page: &mut Page,
     schedule: &Schedule,
     title: &str,
-    names: &[String],
-    cells: impl Fn(&ChannelCorrection) -> Vec<String>,
+    columns: Vec<AirspeedColumn>,
 ) {
-    let mut table = Table::new(
-        title,
-        std::iter::once("V [kt]").chain(names.iter().map(String::as_str)),
-    );
+    let mut heading = vec!["V [kt]".to_owned()];
+    heading.extend(columns.iter().map(|column| column.name.clone()));
+    let mut table = Table::new(title, heading);
     for airspeed_kt in schedule.airspeeds.clusters_kt() {
-        table
-            .row(std::iter::once(decimals(airspeed_kt, 1)).chain(cells(&schedule.at(airspeed_kt))));
+        let correction = schedule.at(airspeed_kt);
+        let mut cells = vec![decimals(airspeed_kt, 1)];
+        cells.extend(columns.iter().map(|column| (column.cell)(&correction)));
+        table.row(cells);
     }
     page.wide_table(&table, COLUMNS);
 }

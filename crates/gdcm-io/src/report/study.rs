@@ -1,12 +1,11 @@
-//! The study as a whole: its results, its settings, the sources of its numbers, and the excluded
-//! models.
+//! The study as a whole: its results, settings and sources, and the excluded models.
 
 use std::collections::BTreeMap;
 
 use gdcm_method::fidelity::SUGGESTION_RATIO;
-use gdcm_method::schedule::{Schedule, ScheduleKind, ScheduleSettings};
+use gdcm_method::schedule::{ScheduleKind, ScheduleSettings};
 use gdcm_model::dataset::model::Provenance;
-use gdcm_model::dataset::{BundleKind, Channel, Condition, ModelId, Pair, PairTable};
+use gdcm_model::dataset::{BundleKind, Channel, Condition, Dataset, ModelId, PairTable};
 use gdcm_model::number_format::decimals;
 use gdcm_model::units::{number, six_digits};
 use gdcm_plot::figure::assessment::usual_choice;
@@ -24,37 +23,35 @@ use super::conditions::proof_word;
 use super::page::{NAMES_SHOWN, Page, names};
 use super::{PROGRAM, ReportSource};
 
-/// Adds a summary of the results.
+/// Adds a summary.
 pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     page.section("Summary");
     let conditions = analysis.study.dataset.conditions();
-    let solved = conditions
-        .iter()
-        .filter(|condition| analysis.condition(condition.id()).is_some())
-        .count();
-    let rejected: usize = conditions
-        .iter()
-        .map(|of| analysis.study.rejected_names(of.id()).len())
-        .sum();
+    let mut solved = 0;
+    let mut rejected = 0;
+    let mut failures = Vec::new();
+    for condition in conditions {
+        let id = condition.id();
+        rejected += analysis.study.rejected_names(id).len();
+        if analysis.condition(id).is_some() {
+            solved += 1;
+        }
+        if let Some(Err(failure)) = analysis.conditions.get(&id) {
+            let why = failure_text(failure, &analysis.study.dataset);
+            failures.push(format!("Condition {id} has no result: {why}."));
+        }
+    }
     let scheduled = analysis.scheduled().len();
     page.paragraph(&format!(
         "{solved} of {} conditions have a result, {scheduled} of them make the schedule; {rejected} models are rejected.",
         conditions.len()
     ));
     page.paragraph(&assessment_sentence(analysis));
-    let without = conditions.iter().filter_map(|condition| {
-        let failure = analysis.conditions.get(&condition.id())?.as_ref().err()?;
-        Some(format!(
-            "Condition {} has no result: {}.",
-            condition.id(),
-            failure_text(failure, &analysis.study.dataset)
-        ))
-    });
-    page.list(without);
+    page.list(failures);
     page.table(&condition_table(analysis));
 }
 
-/// Describes the value of the schedule for the nominal models in a sentence.
+/// Describes the schedule's value for the nominal models in a sentence.
 pub fn assessment_sentence(analysis: &Analysis) -> String {
     let dataset = &analysis.study.dataset;
     let measuring = dataset.measuring_pairs();
@@ -65,11 +62,11 @@ pub fn assessment_sentence(analysis: &Analysis) -> String {
     };
     let table = AssessmentTable::of(analysis, usual_choice(analysis));
     let found = summary_text(&table.summary(&measuring), dataset);
-    let between = if analysis
-        .schedule
-        .as_ref()
-        .is_ok_and(Schedule::interpolation_fails)
-    {
+    let fails_between = match &analysis.schedule {
+        Ok(schedule) => schedule.interpolation_fails(),
+        Err(_) => false,
+    };
+    let between = if fails_between {
         " Between the conditions' airspeeds the schedule must not be used (see its cautions)."
     } else {
         ""
@@ -78,6 +75,9 @@ pub fn assessment_sentence(analysis: &Analysis) -> String {
         "J of the nominal models under the schedule, over the {which} of every condition assessed: {found}.{between}"
     )
 }
+
+/// Stands in tables for a missing value.
+const MISSING: &str = "–";
 
 fn condition_table(analysis: &Analysis) -> Table {
     let title = "The conditions: models kept of those there are, held responses matched of those held, and how sure the gains are";
@@ -96,24 +96,32 @@ fn condition_table(analysis: &Analysis) -> Table {
     for condition in analysis.study.dataset.conditions() {
         let state = condition.flight_state();
         let result = analysis.condition(condition.id());
-        let [gains, delays] = result.map_or(["–".to_owned(), "–".to_owned()], matched);
+        let (gains, delays, optimum) = match result {
+            Some(result) => (
+                matched_words(result, result.gains.unmatched.len()),
+                matched_words(result, result.delays.unmatched.len()),
+                proof_word(result),
+            ),
+            None => (MISSING.to_owned(), MISSING.to_owned(), "no result"),
+        };
         let scheduled = result.is_some() && analysis.study.choice(condition.id()).scheduled;
         table.row([
             state.id.to_string(),
             state.name.clone(),
             number(state.airspeed_kt),
-            kept(&analysis.study, condition, BundleKind::Physics),
-            kept(&analysis.study, condition, BundleKind::Identified),
+            kept_words(&analysis.study, condition, BundleKind::Physics),
+            kept_words(&analysis.study, condition, BundleKind::Identified),
             gains,
             delays,
-            result.map_or("no result", proof_word).to_owned(),
+            optimum.to_owned(),
             if scheduled { "yes" } else { "no" }.to_owned(),
         ]);
     }
     table
 }
 
-fn kept(study: &Study, condition: &Condition, kind: BundleKind) -> String {
+/// Returns how many models are kept in a bundle: "8 of 9".
+fn kept_words(study: &Study, condition: &Condition, kind: BundleKind) -> String {
     let models = condition.bundle(kind);
     let rejected = &study.choice(condition.id()).bundle(kind).rejected;
     let kept = models
@@ -123,14 +131,10 @@ fn kept(study: &Study, condition: &Condition, kind: BundleKind) -> String {
     format!("{kept} of {}", models.len())
 }
 
-/// Returns the numbers of matched gains and delays among the constrained ones.
-fn matched(result: &ConditionAnalysis) -> [String; 2] {
+/// Returns how many constrained responses are matched: "4 of 5".
+fn matched_words(result: &ConditionAnalysis, unmatched: usize) -> String {
     let held = result.held().marked().count();
-    let of = |unmatched: usize| format!("{} of {held}", held.saturating_sub(unmatched));
-    [
-        of(result.gains.unmatched.len()),
-        of(result.delays.unmatched.len()),
-    ]
+    format!("{} of {held}", held.saturating_sub(unmatched))
 }
 
 /// Adds the section on the settings: constrained and ignored responses, then every setting that has
@@ -139,118 +143,116 @@ pub(super) fn add_settings(page: &mut Page, study: &Study) {
     page.section("Settings");
     let settings = &study.settings;
     let dataset = &study.dataset;
-    let pairs = |marked: &PairTable<bool>| {
-        let found: Vec<String> = marked
-            .marked()
-            .map(|pair: Pair| dataset.pair_name(pair))
-            .collect();
-        if found.is_empty() {
-            "none".to_owned()
-        } else {
-            names(&found)
-        }
-    };
     page.facts([
-        ("On-axis responses", pairs(dataset.on_axis())),
-        ("Held exactly", pairs(&settings.constrained)),
-        ("Ignored in the objective", pairs(&settings.ignored)),
+        ("On-axis responses", pair_names(dataset, dataset.on_axis())),
+        ("Held exactly", pair_names(dataset, &settings.constrained)),
+        (
+            "Ignored in the objective",
+            pair_names(dataset, &settings.ignored),
+        ),
     ]);
-    let in_effect = SETTINGS
-        .into_iter()
-        .filter(|setting| (setting.control.applies)(study));
-    let words = in_effect.map(|row| {
+    let mut facts: Vec<(String, String)> = Vec::new();
+    for row in SETTINGS {
+        if !(row.control.applies)(study) {
+            continue;
+        }
         let words = if *row == setting::GAIN_SOURCE {
             settings.gain_source_words()
         } else {
             row.words(settings)
         };
-        (capital(row.name), words)
-    });
-    let words: Vec<(String, String)> = words.collect();
+        facts.push((capital(row.name), words));
+    }
     page.facts(
-        words
+        facts
             .iter()
             .map(|(name, words)| (name.as_str(), words.clone())),
     );
 }
 
-/// Describes the form of a schedule.
+/// Lists the marked responses.
+fn pair_names(dataset: &Dataset, marked: &PairTable<bool>) -> String {
+    let pairs: Vec<String> = marked
+        .marked()
+        .map(|pair| dataset.pair_name(pair))
+        .collect();
+    if pairs.is_empty() {
+        "none".to_owned()
+    } else {
+        names(&pairs)
+    }
+}
+
+/// Describes a schedule's form.
 pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
     let kind = match settings.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed"),
         ScheduleKind::Table => "table over airspeed, linear between its points".to_owned(),
     };
-    let of = quantity_symbol(settings.quantity);
+    let quantity = quantity_symbol(settings.quantity);
     let delays = if settings.delays {
         "delays are scheduled too"
     } else {
         "delays are not scheduled"
     };
-    let second = settings
-        .second
-        .map_or_else(String::new, |variable| format!(" and {variable}"));
+    let second = match settings.second {
+        Some(variable) => format!(" and {variable}"),
+        None => String::new(),
+    };
     format!(
-        "{kind}{second}, of {of}; airspeeds within {} kt are one; {delays}",
+        "{kind}{second}, of {quantity}; airspeeds within {} kt are one; {delays}",
         six_digits(settings.airspeed_tolerance_kt)
     )
 }
 
-/// Adds the section on the files of the study.
+/// Adds the section on the study's files.
 pub(super) fn add_files(page: &mut Page, study: &Study, source: &ReportSource) {
     page.section("Provenance");
-    let channels = |all: &[Channel]| {
-        let all: Vec<String> = all
-            .iter()
-            .map(|channel| format!("{} [{}]", channel.name, channel.unit))
-            .collect();
-        all.join(", ")
-    };
     let dataset = &study.dataset;
+    let study_file = match &source.study {
+        Some(file) => file.clone(),
+        None => "not saved in a file".to_owned(),
+    };
     page.facts([
         ("Dataset", dataset.name().to_owned()),
         ("Its file", source.dataset.clone()),
         ("SHA-256 of that file", source.sha256.clone()),
-        (
-            "Study",
-            source
-                .study
-                .clone()
-                .unwrap_or_else(|| "not saved in a file".to_owned()),
-        ),
+        ("Study", study_file),
         ("Program", PROGRAM.to_owned()),
-        ("Inputs", channels(dataset.inputs())),
-        ("Outputs", channels(dataset.outputs())),
+        ("Inputs", channel_words(dataset.inputs())),
+        ("Outputs", channel_words(dataset.outputs())),
     ]);
-    dataset
-        .description()
-        .lines()
-        .filter(|line| !line.trim().is_empty())
-        .for_each(|line| page.paragraph(line));
-    page.list(
-        source
-            .cautions
-            .iter()
-            .map(|caution| format!("Caution about the file: {caution}.")),
-    );
+    for line in dataset.description().lines() {
+        if !line.trim().is_empty() {
+            page.paragraph(line);
+        }
+    }
+    let cautions = source.cautions.iter();
+    page.list(cautions.map(|caution| format!("Caution about the file: {caution}.")));
 }
 
-/// Adds the section on the source files of the models, if any is known.
+/// Lists channels with their units: "LON [%], LAT [%]".
+fn channel_words(channels: &[Channel]) -> String {
+    let words: Vec<String> = channels
+        .iter()
+        .map(|channel| format!("{} [{}]", channel.name, channel.unit))
+        .collect();
+    words.join(", ")
+}
+
+/// Adds the section on the models' source files, if any is known.
 pub(super) fn add_models(page: &mut Page, study: &Study) {
     let mut models: BTreeMap<[String; 5], Vec<String>> = BTreeMap::new();
     let mut unknown = 0;
     for condition in study.dataset.conditions() {
-        for model in BundleKind::BOTH
-            .into_iter()
-            .flat_map(|kind| condition.bundle(kind))
-        {
-            match &model.source {
-                Some(source) => {
-                    models
-                        .entry(source_cells(source))
-                        .or_default()
-                        .push(format!("{}: {}", condition.id(), model.name));
-                }
-                None => unknown += 1,
+        for kind in BundleKind::BOTH {
+            for model in condition.bundle(kind) {
+                let Some(source) = &model.source else {
+                    unknown += 1;
+                    continue;
+                };
+                let models_of_file = models.entry(source_cells(source)).or_default();
+                models_of_file.push(format!("{}: {}", condition.id(), model.name));
             }
         }
     }
@@ -268,8 +270,8 @@ pub(super) fn add_models(page: &mut Page, study: &Study) {
         "models, by condition",
     ];
     let mut table = Table::new("The files that the models were made from", columns);
-    for (cells, of) in models {
-        table.row(cells.into_iter().chain([names(&of)]));
+    for (cells, models) in models {
+        table.row(cells.into_iter().chain([names(&models)]));
     }
     page.table(&table);
     if unknown > 0 {
@@ -277,6 +279,7 @@ pub(super) fn add_models(page: &mut Page, study: &Study) {
     }
 }
 
+/// Returns file, hash, variable (or records), date and note from a model's source.
 fn source_cells(source: &Provenance) -> [String; 5] {
     let Provenance {
         file,
@@ -287,8 +290,10 @@ fn source_cells(source: &Provenance) -> [String; 5] {
         records,
         ..
     } = source;
-    let records = Some(format!("records {}", records.join(", "))).filter(|_| !records.is_empty());
-    let variable = variable.clone().or(records);
+    let mut variable = variable.clone();
+    if variable.is_none() && !records.is_empty() {
+        variable = Some(format!("records {}", records.join(", ")));
+    }
     [file, sha256, &variable, made, note].map(|part| part.clone().unwrap_or_default())
 }
 
@@ -307,13 +312,10 @@ pub(super) fn add_left_out(page: &mut Page, analysis: &Analysis) {
         ));
     }
     page.table(&rejected);
-    let lines: Vec<String> = analysis
-        .study
-        .dataset
-        .conditions()
-        .iter()
-        .flat_map(|of| left_out_lines(analysis, of))
-        .collect();
+    let mut lines = Vec::new();
+    for condition in analysis.study.dataset.conditions() {
+        lines.extend(left_out_lines(analysis, condition));
+    }
     page.list(lines);
 }
 
@@ -334,78 +336,72 @@ fn rejected_table(analysis: &Analysis) -> Table {
     table
 }
 
-/// Adds a row for each rejected model; among many without a reason, the last are only counted.
+/// Adds a row for each rejected model. If many have no reason, the last are only counted.
 fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, table: &mut Table) {
     let study = &analysis.study;
-    let id = |name: &str| ModelId::new(condition.id(), kind, name);
     let result = analysis.condition(condition.id());
-    let rejected = condition
-        .bundle(kind)
-        .iter()
-        .filter(|model| study.is_rejected(&id(&model.name)));
-    let mut bare = 0;
-    let mut more = 0;
-    for model in rejected {
-        let reason = study.reason(&id(&model.name));
-        bare += usize::from(reason.is_none());
-        if reason.is_none() && bare > NAMES_SHOWN {
-            more += 1;
+    let mut without_reason = 0;
+    for model in condition.bundle(kind) {
+        let id = ModelId::new(condition.id(), kind, &model.name);
+        if !study.is_rejected(&id) {
             continue;
         }
-        let ratio = result.filter(|_| kind == BundleKind::Physics);
-        let ratio = ratio.and_then(|result| result.discontinuity_ratio(&model.name));
-        let ratio = ratio.map_or("–".to_owned(), |ratio| decimals(ratio, 2));
-        let reason = reason.unwrap_or(NO_REASON).to_owned();
+        let reason = study.reason(&id);
+        if reason.is_none() {
+            without_reason += 1;
+            if without_reason > NAMES_SHOWN {
+                continue;
+            }
+        }
+        let ratio = match result {
+            Some(result) if kind == BundleKind::Physics => result.discontinuity_ratio(&model.name),
+            _ => None,
+        };
         table.row([
             condition.id().to_string(),
             kind.to_string(),
             model.name.clone(),
-            ratio,
-            reason,
+            ratio.map_or(MISSING.to_owned(), |ratio| decimals(ratio, 2)),
+            reason.unwrap_or(NO_REASON).to_owned(),
         ]);
     }
-    if more > 0 {
-        let model = format!("{more} more");
+    if without_reason > NAMES_SHOWN {
         table.row([
             condition.id().to_string(),
             kind.to_string(),
-            model,
-            "–".to_owned(),
+            format!("{} more", without_reason - NAMES_SHOWN),
+            MISSING.to_owned(),
             NO_REASON.to_owned(),
         ]);
     }
 }
 
-/// Describes the models of a condition that are set aside, those suspected but kept, and the pinned
-/// ones.
+/// Describes the models in a condition that are set aside, suspected but kept, or pinned by the
+/// analyst.
 fn left_out_lines(analysis: &Analysis, condition: &Condition) -> Vec<String> {
     let study = &analysis.study;
     let id = condition.id();
     let Some(result) = analysis.condition(id) else {
         return Vec::new();
     };
-    let aside = result
-        .cautions
-        .iter()
-        .filter(|caution| matches!(caution, Caution::SetAside { .. }));
-    let aside: Vec<String> = aside
-        .map(|caution| caution_text(caution, |pair| study.dataset.pair_name(pair)))
-        .collect();
-    let more = aside.len().saturating_sub(NAMES_SHOWN);
-    let mut lines: Vec<String> = aside
-        .into_iter()
-        .take(NAMES_SHOWN)
-        .map(|words| format!("Condition {id}: {words}."))
-        .collect();
-    if more > 0 {
+    let mut lines = Vec::new();
+    let mut set_aside = 0;
+    for caution in &result.cautions {
+        if let Caution::SetAside { .. } = caution {
+            set_aside += 1;
+            if set_aside <= NAMES_SHOWN {
+                let words = caution_text(caution, |pair| study.dataset.pair_name(pair));
+                lines.push(format!("Condition {id}: {words}."));
+            }
+        }
+    }
+    if set_aside > NAMES_SHOWN {
+        let more = set_aside - NAMES_SHOWN;
         lines.push(format!("Condition {id}: {more} more models are set aside."));
     }
     let rejected = &study.choice(id).physics.rejected;
-    let kept: Vec<String> = result
-        .suggested()
-        .into_iter()
-        .filter(|name| !rejected.contains(name))
-        .collect();
+    let mut kept = result.suggested();
+    kept.retain(|name| !rejected.contains(name));
     if !kept.is_empty() {
         lines.push(format!(
             "Condition {id}: suspected by their discontinuity ratios, and kept: {}.",

@@ -22,15 +22,17 @@ pub fn figure_format(path: &Path) -> Result<FigureFormat, FileError> {
         .and_then(|extension| extension.to_str())
         .unwrap_or_default()
         .to_lowercase();
-    let found = FigureFormat::ALL
-        .into_iter()
-        .find(|format| format.extension() == extension);
-    found.ok_or_else(|| FileError::FigureFormat {
+    for format in FigureFormat::ALL {
+        if format.extension() == extension {
+            return Ok(format);
+        }
+    }
+    Err(FileError::FigureFormat {
         path: path.to_owned(),
     })
 }
 
-/// Writes a figure to a file, in the format of its extension.
+/// Writes a figure to a file, in the format that its extension names.
 ///
 /// # Errors
 /// [`FileError::FigureWithoutNumbers`] if CSV is requested for a figure without numbers; otherwise

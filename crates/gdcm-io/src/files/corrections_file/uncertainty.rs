@@ -1,31 +1,30 @@
 //! The text of `corrections.json` about the uncertainty of the results (M13).
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use gdcm_method::correction::Channel;
+use gdcm_method::schedule::Schedule;
+use gdcm_method::uncertainty::spread::ScalarTable;
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceDecomposition};
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_study::Analysis;
 use gdcm_study::results::uncertainty::{
-    AirspeedDifference, PairScatter, SecondVariableTest, Uncertainty,
+    AirspeedDifference, PairScatter, ScheduleBands, SecondVariableTest, Uncertainty,
 };
 use gdcm_words::uncertainty::{difference_text, second_variable_text};
 
-use super::corrections::{ChannelNames, rows_of, says_nothing, without_empty};
+use super::channel_names::{ChannelNames, is_empty_value, rows_of, without_empty};
 
-/// Returns a confidence interval, with the remaining error in the band after one gain. For a gain
-/// the intervals are factors and the standard deviations those of its natural logarithm; for a
-/// delay both are in seconds.
-fn bar(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Value {
-    let told = |interval: Option<[f64; 2]>| {
-        interval.map(|ends| ends.map(|end| if scalar.is_delay() { end } else { end.exp() }))
-    };
-    let members = [
-        ("interval", json!(told(bar.interval(level)))),
-        (
-            "interval_identification",
-            json!(told(bar.inner_interval(level))),
-        ),
+/// Returns a confidence interval, with the error that remains in the band after a single gain. For
+/// a gain, intervals are factors and standard deviations those of its natural logarithm; for a
+/// delay, all are in seconds.
+fn bar_json(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Value {
+    let interval = bar.interval(level).map(|ends| in_units(scalar, ends));
+    let inner_interval = bar.inner_interval(level).map(|ends| in_units(scalar, ends));
+    let mut members = Map::new();
+    for (name, value) in [
+        ("interval", json!(interval)),
+        ("interval_identification", json!(inner_interval)),
         (
             "u_physics",
             json!(bar.trim.map(|part| part.variance.sqrt())),
@@ -37,163 +36,198 @@ fn bar(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Valu
         ("degrees_of_freedom", json!(bar.degrees_of_freedom())),
         ("left_in_band", json!(left_in_band)),
         ("remarks", json!(bar.remarks())),
-    ];
-    members
-        .into_iter()
-        .filter(|(_, value)| !says_nothing(value))
-        .collect()
+    ] {
+        if !is_empty_value(&value) {
+            members.insert(name.to_owned(), value);
+        }
+    }
+    Value::Object(members)
 }
 
-/// Returns the interval of a net gain.
+/// Returns an interval in the file's units: factors for gains, seconds for delays.
+fn in_units(scalar: Scalar, ends: [f64; 2]) -> [f64; 2] {
+    if scalar.is_delay() {
+        ends
+    } else {
+        ends.map(f64::exp)
+    }
+}
+
+/// Returns a net gain's interval.
 pub(super) fn net_gain_bar(
     analysis: &Analysis,
     condition: ConditionId,
     pair: Pair,
 ) -> Option<Value> {
     let uncertainty = analysis.uncertainty.as_ref()?;
-    let of = uncertainty.bar(condition, Scalar::NetGain(pair))?;
+    let scalar = Scalar::NetGain(pair);
+    let bar = uncertainty.bar(condition, scalar)?;
     let left_in_band = uncertainty.conditions.get(&condition)?.left_in_band[pair];
-    Some(bar(
-        Scalar::NetGain(pair),
-        of,
-        uncertainty.level,
-        left_in_band,
-    ))
+    Some(bar_json(scalar, bar, uncertainty.level, left_in_band))
 }
 
-/// Returns the intervals of the other quantities of a condition.
-pub(super) fn bars(names: &ChannelNames, condition: ConditionId) -> Option<Value> {
+/// Returns the other confidence intervals in a condition.
+pub(super) fn bars(names: &ChannelNames<'_>, condition: ConditionId) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
-    let of = uncertainty.conditions.get(&condition)?;
-    let entry = |scalar| {
-        of.bars[scalar].as_ref().map_or(Value::Null, |found| {
-            bar(scalar, found, uncertainty.level, None)
-        })
+    let bars = ConditionBars {
+        names,
+        bars: &uncertainty.conditions.get(&condition)?.bars,
+        level: uncertainty.level,
     };
-    let table = |scalar: fn(Pair) -> Scalar| {
-        rows_of(names.outputs.len(), names.inputs.len(), |pair| {
-            entry(scalar(pair))
-        })
+    let band_delays = if names.analysis.condition(condition)?.asks_band_delays() {
+        bars.by_response(Scalar::BandDelay)
+    } else {
+        Value::Null
     };
-    let channels =
-        |scalar: fn(Channel) -> Scalar| names.by_channel(|channel| entry(scalar(channel)));
-    let asks_band_delays = names.analysis.condition(condition)?.asks_band_delays();
-    let bars = json!({
-        "G": table(Scalar::Gain),
-        "D_s": table(Scalar::Delay),
-        "D_band_s": asks_band_delays.then(|| table(Scalar::BandDelay)),
-        "gains": channels(Scalar::ChannelGain),
-        "delays_s": channels(Scalar::ChannelDelay),
+    let members = json!({
+        "G": bars.by_response(Scalar::Gain),
+        "D_s": bars.by_response(Scalar::Delay),
+        "D_band_s": band_delays,
+        "gains": bars.by_channel(Scalar::ChannelGain),
+        "delays_s": bars.by_channel(Scalar::ChannelDelay),
     });
-    Some(without_empty(bars, &["D_band_s"]))
+    Some(without_empty(members, &["D_band_s"]))
 }
 
-/// Returns the consequences of the intervals of all conditions, if they are available.
-pub(super) fn uncertainty(names: &ChannelNames) -> Option<Value> {
+/// Confidence intervals in a condition.
+struct ConditionBars<'a> {
+    names: &'a ChannelNames<'a>,
+    bars: &'a ScalarTable<Option<Bar>>,
+    level: f64,
+}
+
+impl ConditionBars<'_> {
+    fn bar(&self, scalar: Scalar) -> Value {
+        match &self.bars[scalar] {
+            Some(bar) => bar_json(scalar, bar, self.level, None),
+            None => Value::Null,
+        }
+    }
+
+    fn by_response(&self, scalar: fn(Pair) -> Scalar) -> Value {
+        let outputs = self.names.outputs.len();
+        let inputs = self.names.inputs.len();
+        rows_of(outputs, inputs, |pair| self.bar(scalar(pair)))
+    }
+
+    fn by_channel(&self, scalar: fn(Channel) -> Scalar) -> Value {
+        self.names.by_channel(|channel| self.bar(scalar(channel)))
+    }
+}
+
+/// Returns the consequences that follow from all intervals, if these are available.
+pub(super) fn uncertainty(names: &ChannelNames<'_>) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let level = uncertainty.level;
-    let differences = uncertainty
-        .differences
-        .iter()
-        .map(|of| names.of_pair(of.pair, difference(of, level)));
-    let scatter = uncertainty
-        .scatter
-        .iter()
-        .map(|of| names.of_pair(of.pair, scatter(of, level)));
-    let tests = uncertainty
-        .second_variables
-        .iter()
-        .map(|of| names.of_pair(of.pair, second_variable(of)));
+    let mut differences = Vec::new();
+    for difference in &uncertainty.differences {
+        let entries = difference_json(difference, level);
+        differences.push(names.response_entries(difference.pair, entries));
+    }
+    let mut scatters = Vec::new();
+    for scatter in &uncertainty.scatter {
+        scatters.push(names.response_entries(scatter.pair, scatter_json(scatter, level)));
+    }
+    let mut second_variables = Vec::new();
+    for test in &uncertainty.second_variables {
+        second_variables.push(names.response_entries(test.pair, second_variable_json(test)));
+    }
     Some(json!({
         "level": level,
-        "differences": differences.collect::<Value>(),
-        "scatter": scatter.collect::<Value>(),
+        "differences": differences,
+        "scatter": scatters,
         "schedule_band": bands(names, uncertainty),
-        "second_variable": tests.collect::<Value>(),
+        "second_variable": second_variables,
     }))
 }
 
-fn difference(of: &AirspeedDifference, level: f64) -> Value {
+fn difference_json(difference: &AirspeedDifference, level: f64) -> Value {
     json!({
-        "conditions": of.conditions.map(|id| id.0),
-        "airspeed_kt": of.airspeed_kt,
-        "delta": of.difference.delta,
-        "u": of.difference.deviation,
-        "degrees_of_freedom": of.difference.degrees_of_freedom,
-        "ratio": of.difference.ratio(),
-        "p": of.difference.p(),
-        "p_holm": of.p_holm,
-        "words": difference_text(of, level),
+        "conditions": difference.conditions.map(|id| id.0),
+        "airspeed_kt": difference.airspeed_kt,
+        "delta": difference.difference.delta,
+        "u": difference.difference.deviation,
+        "degrees_of_freedom": difference.difference.degrees_of_freedom,
+        "ratio": difference.difference.ratio(),
+        "p": difference.difference.p(),
+        "p_holm": difference.p_holm,
+        "words": difference_text(difference, level),
     })
 }
 
-/// Returns the contributions to the scatter of a net gain, as standard deviations of the natural
+/// Returns the contributions to a net gain's scatter, as standard deviations of the natural
 /// logarithm.
-fn scatter(of: &PairScatter, level: f64) -> Value {
-    let split = |split: &VarianceDecomposition| {
-        json!({
-            "degrees_of_freedom": split.freedom,
-            "scatter": split.scatter.sqrt(),
-            "physics": split.trim.sqrt(),
-            "identification": split.identification.sqrt(),
-            "rest": split.unexplained().sqrt(),
-            "rest_interval": split.unexplained_interval(level),
-            "shares": split.shares(),
-            "ratio": split.ratio(),
-            "p": split.p(),
-        })
-    };
+fn scatter_json(scatter: &PairScatter, level: f64) -> Value {
+    let same_airspeed = scatter.same_airspeed.as_ref();
+    let about_schedule = scatter.about_schedule.as_ref();
     json!({
-        "same_airspeed": of.same_airspeed.as_ref().map(split),
-        "about_schedule": of.about_schedule.as_ref().map(split),
+        "same_airspeed": same_airspeed.map(|split| decomposition_json(split, level)),
+        "about_schedule": about_schedule.map(|split| decomposition_json(split, level)),
     })
 }
 
-/// Returns the scheduled net gains of responses that measure a model with their bands, as natural
-/// logarithms.
-fn bands(names: &ChannelNames, uncertainty: &Uncertainty) -> Value {
+fn decomposition_json(split: &VarianceDecomposition, level: f64) -> Value {
+    json!({
+        "degrees_of_freedom": split.freedom,
+        "scatter": split.scatter.sqrt(),
+        "physics": split.trim.sqrt(),
+        "identification": split.identification.sqrt(),
+        "rest": split.unexplained().sqrt(),
+        "rest_interval": split.unexplained_interval(level),
+        "shares": split.shares(),
+        "ratio": split.ratio(),
+        "p": split.p(),
+    })
+}
+
+/// Returns the scheduled net gains and their bands, as natural logarithms, for the responses that
+/// measure a model.
+fn bands(names: &ChannelNames<'_>, uncertainty: &Uncertainty) -> Value {
     let (Ok(schedule), Some(bands)) = (&names.analysis.schedule, &uncertainty.bands) else {
         return json!([]);
     };
-    let airspeed_kt = schedule.airspeeds.clusters_kt();
-    let entry = |pair: Pair| {
-        let widths = airspeed_kt
-            .iter()
-            .map(|&airspeed| bands.at(schedule, Scalar::NetGain(pair), airspeed));
-        let widths: Vec<_> = widths.collect::<Option<_>>()?;
-        let fit = airspeed_kt
-            .iter()
-            .map(|&airspeed| schedule.at(airspeed).net_gain(pair).ln());
-        let band = json!({
-            "airspeed_kt": airspeed_kt,
-            "fit": fit.collect::<Value>(),
-            "confidence": widths.iter().map(|widths| widths.confidence).collect::<Value>(),
-            "scatter": widths.iter().map(|widths| widths.scatter).collect::<Value>(),
-        });
-        Some(names.of_pair(pair, band))
-    };
-    names
-        .analysis
-        .study
-        .dataset
-        .measuring_pairs()
-        .marked()
-        .filter_map(entry)
-        .collect()
+    let pairs = names.analysis.study.dataset.measuring_pairs();
+    let mut list = Vec::new();
+    for pair in pairs.marked() {
+        if let Some(band) = band_json(schedule, bands, pair) {
+            list.push(names.response_entries(pair, band));
+        }
+    }
+    Value::Array(list)
 }
 
-/// Returns whether the schedule of a net gain needs a second variable.
-fn second_variable(of: &SecondVariableTest) -> Value {
-    let effect = of.effect.as_ref().ok();
+/// Returns a net gain's band at the distinct scheduled airspeeds; `None` unless all have it.
+fn band_json(schedule: &Schedule, bands: &ScheduleBands, pair: Pair) -> Option<Value> {
+    let airspeeds_kt = schedule.airspeeds.clusters_kt();
+    let mut fit = Vec::new();
+    let mut confidence = Vec::new();
+    let mut scatter = Vec::new();
+    for &airspeed_kt in &airspeeds_kt {
+        let widths = bands.at(schedule, Scalar::NetGain(pair), airspeed_kt)?;
+        fit.push(schedule.at(airspeed_kt).net_gain(pair).ln());
+        confidence.push(widths.confidence);
+        scatter.push(widths.scatter);
+    }
+    Some(json!({
+        "airspeed_kt": airspeeds_kt,
+        "fit": fit,
+        "confidence": confidence,
+        "scatter": scatter,
+    }))
+}
+
+/// Returns whether a scheduled net gain needs a second variable.
+fn second_variable_json(test: &SecondVariableTest) -> Value {
+    let effect = test.effect.as_ref().ok();
     json!({
-        "variable": of.variable.name(),
+        "variable": test.variable.name(),
         "effect": effect.map(|effect| effect.effect),
         "visible": effect.map(|effect| effect.visible),
         "p": effect.map(|effect| effect.p),
-        "p_holm": of.p_holm,
+        "p_holm": test.p_holm,
         "left_out_without": effect.and_then(|effect| effect.left_out_without),
         "left_out_with": effect.and_then(|effect| effect.left_out_with),
-        "needed": of.needed,
-        "words": second_variable_text(of),
+        "needed": test.needed,
+        "words": second_variable_text(test),
     })
 }

@@ -1,5 +1,6 @@
 //! Dataset files, `*.json` and `*.json.gz`.
 
+mod conversion;
 mod text;
 
 use std::fmt;
@@ -13,22 +14,22 @@ use flate2::write::GzEncoder;
 use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::{sanitized, sanitized_path};
 
+use self::conversion::CautionedDraft;
+use self::text::{DatasetText, FORMAT};
 use crate::file_error::{ContentError, FileError};
 use crate::json_text::write_compact;
 use crate::output_set::{Existing, OutputSet, make_directory};
 use crate::reading_budget::ReadingBudget;
 use crate::source::Source;
-use text::{DatasetText, FORMAT};
 
-pub(crate) use text::{LabelText, ModelText, RecordText};
+pub(crate) use self::text::{LabelText, ModelText, RecordText};
 
-/// The example dataset: a synthetic UH-60A-class helicopter at the paper's eleven flight
-/// conditions.
+/// The example dataset: a synthetic UH-60A-class helicopter at eleven flight conditions.
 const EXAMPLE: &[u8] = include_bytes!("../../../../../assets/example-dataset.json.gz");
 /// Name under which the example is written.
 const EXAMPLE_NAME: &str = "example-dataset.json";
 
-/// Origin of a dataset.
+/// Dataset origin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DatasetOrigin {
     File(PathBuf),
@@ -46,7 +47,7 @@ impl fmt::Display for DatasetOrigin {
 }
 
 impl DatasetOrigin {
-    /// Returns the file, if it comes from one.
+    /// Returns the file; `None` for the embedded example.
     pub fn file(&self) -> Option<PathBuf> {
         match self {
             DatasetOrigin::File(path) => Some(path.clone()),
@@ -63,11 +64,11 @@ impl DatasetOrigin {
     }
 }
 
-/// A dataset with the identification and the cautions of its file.
+/// A dataset with its file's hash and cautions.
 #[derive(Clone, Debug)]
 pub struct LoadedDataset {
     pub dataset: Arc<Dataset>,
-    /// SHA-256 of the stored bytes of the file, in lower-case hexadecimal.
+    /// SHA-256 of the file as stored, in lower-case hexadecimal.
     pub sha256: String,
     pub origin: DatasetOrigin,
     /// Unknown keys and other oddities, each with its place.
@@ -83,13 +84,12 @@ impl LoadedDataset {
         }
     }
 
-    /// Returns the name of the dataset's file, or its replacement.
+    /// Returns the dataset's file name, or its replacement.
     pub fn file_name(&self) -> String {
-        let name = self.path().and_then(Path::file_name);
-        name.map_or_else(
-            || self.origin.to_string(),
-            |name| sanitized(&name.to_string_lossy()),
-        )
+        match self.path().and_then(Path::file_name) {
+            Some(name) => sanitized(&name.to_string_lossy()),
+            None => self.origin.to_string(),
+        }
     }
 }
 
@@ -110,20 +110,23 @@ pub fn load_dataset_within(
     )
 }
 
-/// Returns everything that is wrong in a dataset's file, each with its place; empty if it can be
-/// loaded. Text that cannot be read at all is an error.
+/// Returns all faults in a dataset's file, each with its place; empty if it can be loaded.
+///
+/// # Errors
+/// A text that cannot be read at all.
 pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
     let (text, _) = FORMAT.decode::<DatasetText>(source.text(), path, &budget)?;
-    let (draft, _) = text
-        .into_draft()
-        .map_err(|error| FileError::content_of(path, error, source.text()))?;
-    let told = |error| FileError::content_of(path, ContentError::from(error), source.text());
-    Ok(draft.faults().into_iter().map(told).collect())
+    let error = |fault| FileError::content_of(path, fault, source.text());
+    let CautionedDraft { draft, .. } = text.into_draft().map_err(error)?;
+    let faults = draft.faults().into_iter();
+    Ok(faults
+        .map(|fault| error(ContentError::from(fault)))
+        .collect())
 }
 
-/// Checks the structure of a dataset's text, as far as it goes.
+/// Checks the structure in a dataset's text, as far as the text goes.
 pub(crate) fn check_dataset_text(
     text: &[u8],
     path: &Path,
@@ -177,14 +180,14 @@ pub fn add_dataset(
     path: &Path,
     outputs: &mut OutputSet,
 ) -> Result<(), FileError> {
-    let text = DatasetText::of(dataset);
+    let text = DatasetText::from_dataset(dataset);
     let packed = path
         .extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
     outputs.add(path, |file| {
         if packed {
-            // The encoder clears a buffer of its own at each piece, and the pieces of JSON are
-            // single numbers and punctuation marks.
+            // Buffered: JSON is written in single numbers and punctuation marks, and the encoder
+            // clears a buffer for each.
             let mut pieces =
                 BufWriter::with_capacity(1 << 16, GzEncoder::new(file, Compression::default()));
             write_compact(&text, &mut pieces)?;
@@ -203,18 +206,19 @@ pub(crate) fn dataset_from(
     budget: &ReadingBudget<'_>,
 ) -> Result<LoadedDataset, FileError> {
     let path = origin.path();
+    let error = |fault| FileError::content_of(&path, fault, source.text());
     let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path, budget)?;
-    let (draft, misplaced) = text
-        .into_draft()
-        .map_err(|error| FileError::content_of(&path, error, source.text()))?;
+    let CautionedDraft {
+        draft,
+        cautions: misplaced,
+    } = text.into_draft().map_err(error)?;
     cautions.extend(misplaced);
-    let (dataset, odd) = draft
+    let (dataset, oddities) = draft
         .checked()
-        .map_err(|error| FileError::content_of(&path, ContentError::from(error), source.text()))?;
-    cautions.extend(
-        odd.into_iter()
-            .map(|odd| format!("{}{}", odd.place.before(), odd.words)),
-    );
+        .map_err(|fault| error(ContentError::from(fault)))?;
+    for odd in oddities {
+        cautions.push(format!("{}{}", odd.place.before(), odd.words));
+    }
     Ok(LoadedDataset {
         dataset: Arc::new(dataset),
         sha256: source.sha256.clone(),

@@ -1,0 +1,76 @@
+//! Numbers and texts in exported programs and tables.
+
+/// Formats a finite number with 17 significant digits: every language reads back the same value.
+pub(super) fn number(value: f64) -> String {
+    // Adding zero turns minus zero into zero.
+    format!("{:.16e}", value + 0.0)
+}
+
+/// Formats numbers as a list with commas.
+pub(super) fn number_list(values: &[f64]) -> String {
+    let numbers: Vec<String> = values.iter().map(|&value| number(value)).collect();
+    numbers.join(", ")
+}
+
+/// Escapes a text for a comment in any language: visible ASCII characters remain, special signs of
+/// the program's own texts are replaced by equivalents, all others by their Unicode numbers.
+/// Nothing in the result can end or begin a comment.
+pub(super) fn comment(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            // In pairs, these characters may begin or end comments, continue lines, or be escapes.
+            '*' | '/' | '\\' | '?' | '%' | '{' | '}' | '"' | '\''
+                if plain.ends_with(['*', '/', '?', '%', '"', '\'']) =>
+            {
+                plain.push(' ');
+                plain.push(character);
+            }
+            ' '..='~' => plain.push(character),
+            '\u{2212}' | '\u{2013}' => plain.push('-'),
+            '±' => plain.push_str("+-"),
+            '≈' => plain.push('~'),
+            '²' => plain.push_str("^2"),
+            '°' => plain.push_str("deg"),
+            'α' => plain.push_str("alpha"),
+            'τ' => plain.push_str("tau"),
+            _ => plain.push_str(&format!("<U+{:04X}>", u32::from(character))),
+        }
+    }
+    // A comment line that ends in a backslash continues on the next.
+    if plain.ends_with('\\') {
+        plain.push('.');
+    }
+    plain
+}
+
+/// Quotes a text for C: bytes other than plain characters become three octal digits.
+pub(super) fn c_text(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for byte in text.bytes() {
+        match byte {
+            // A question mark could begin a trigraph.
+            b'"' | b'\\' | b'?' | 0..0x20 | 0x7f.. => quoted.push_str(&format!("\\{byte:03o}")),
+            _ => quoted.push(char::from(byte)),
+        }
+    }
+    quoted.push('"');
+    quoted
+}
+
+/// Quotes a text for Python.
+pub(super) fn python_text(text: &str) -> String {
+    let mut quoted = String::from("\"");
+    for character in text.chars() {
+        match character {
+            '"' | '\\' => {
+                quoted.push('\\');
+                quoted.push(character);
+            }
+            ' '..='~' => quoted.push(character),
+            _ => quoted.push_str(&format!("\\U{:08x}", u32::from(character))),
+        }
+    }
+    quoted.push('"');
+    quoted
+}

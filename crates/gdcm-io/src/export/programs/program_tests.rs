@@ -1,0 +1,732 @@
+//! Exported programs are run by their interpreters and compilers and compared with the schedule
+//! itself.
+
+use std::process::Command;
+use std::sync::Arc;
+
+use nalgebra::DMatrix;
+use proptest::prelude::*;
+
+use gdcm_method::schedule::{
+    DelayScheduling, ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable,
+};
+use gdcm_model::dataset::Dataset;
+use gdcm_model::progress::Unobserved;
+use gdcm_study::decisions::setting;
+use gdcm_study::{Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, Study};
+
+use super::*;
+use crate::export::{EXPORTERS, ExportRequest, ExportSource};
+use crate::files::dataset_file::embedded_example;
+
+/// The example under every form of the schedule: kind, quantity, delays.
+fn analyses() -> Vec<(String, Analysis)> {
+    let mut engine = Engine::default();
+    let kinds = [ScheduleKind::Polynomial { degree: 2 }, ScheduleKind::Table];
+    let mut analyses = Vec::new();
+    for kind in kinds {
+        for quantity in [ScheduledQuantity::LnGain, ScheduledQuantity::Gain] {
+            for delays in [false, true] {
+                let mut study = Study::new(embedded_example().unwrap().dataset);
+                let schedule = ScheduleSettings {
+                    kind,
+                    quantity,
+                    delays,
+                    ..ScheduleSettings::default()
+                };
+                study.settings.schedule = schedule;
+                study.settings.set_delay_scheduling(delays.into());
+                let analysis = engine.analyze(&study, &Unobserved).unwrap();
+                analyses.push((format!("{kind:?}, {quantity:?}, delays {delays}"), analysis));
+            }
+        }
+    }
+    // Leads, of one signed delay for all airspeeds and of one that varies with them.
+    for tau_degree in [0, 2] {
+        let mut study = Study::new(embedded_example().unwrap().dataset);
+        let schedule = ScheduleSettings {
+            tau_degree,
+            ..ScheduleSettings::default()
+        };
+        study
+            .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+            .unwrap();
+        study.settings.schedule = schedule;
+        let analysis = engine.analyze(&study, &Unobserved).unwrap();
+        analyses.push((format!("leads of degree {tau_degree}"), analysis));
+    }
+    // One airspeed: the range is empty.
+    let mut study = Study::new(embedded_example().unwrap().dataset);
+    let conditions = study.dataset.clone();
+    let at = conditions.conditions()[3].flight_state().airspeed_kt;
+    for condition in conditions
+        .conditions()
+        .iter()
+        .filter(|other| other.flight_state().airspeed_kt != at)
+    {
+        study
+            .apply(&Edit::SetScheduled {
+                condition: condition.id(),
+                scheduled: false,
+            })
+            .unwrap();
+    }
+    analyses.push((
+        "one airspeed".to_owned(),
+        engine.analyze(&study, &Unobserved).unwrap(),
+    ));
+    analyses
+}
+
+/// Returns the schedule of an analysis as a program in a language; `name` is its file name.
+fn program(language: &str, analysis: &Analysis, name: &str) -> String {
+    let source = &ExportSource {
+        name: NASTY[0].to_owned(),
+        sha256: "ba78".to_owned(),
+    };
+    let path = format!("{}.{language}", if name.is_empty() { "c" } else { name });
+    let export = Export {
+        analysis,
+        source,
+        request: &ExportRequest::default(),
+        path: Path::new(&path),
+    };
+    let exported = (ExportFormat::named(language).unwrap().export)(&export).unwrap();
+    let mut text = Vec::new();
+    (exported.write)(&mut text).unwrap();
+    String::from_utf8(text).unwrap()
+}
+
+/// Names that would end a comment or a text if they were written unescaped.
+const NASTY: [&str; 3] = [
+    "LAT \"x\" 'y' */ \\ %d\n%}\r*/ end",
+    "δ_a ??/ /* \u{2028} ''' \"\"\" ${x}",
+    "\\u{7f}\u{0}\\",
+];
+
+/// Returns fifty airspeeds \[kt\], from below the range of the example to above it, including both
+/// its ends.
+fn airspeeds() -> Vec<f64> {
+    (0..48)
+        .map(|index| 31.0 + f64::from(index) * 2.5)
+        .chain([45.0, 140.0])
+        .collect()
+}
+
+/// Returns the values of this program, in the order in which the exported programs print.
+fn expected(analysis: &Analysis) -> Vec<f64> {
+    let schedule = analysis.schedule.as_ref().unwrap();
+    let values = |airspeed: f64| {
+        let at = schedule.at(airspeed);
+        [
+            at.input_gains,
+            at.output_gains,
+            at.input_delays_s,
+            at.output_delays_s,
+        ]
+        .concat()
+    };
+    airspeeds().into_iter().flat_map(values).collect()
+}
+
+fn assert_same(words: &str, found: &[f64], expected: &[f64]) {
+    assert_eq!(found.len(), expected.len(), "{words}");
+    for (index, (a, b)) in found.iter().zip(expected).enumerate() {
+        // A delay that crosses zero is clipped there: next to it, less than a femtosecond is
+        // negligible.
+        assert!(
+            (a - b).abs() <= 1e-12 * b.abs() + 1e-16,
+            "{words}, value {index}: {a} instead of {b}"
+        );
+    }
+}
+
+/// Runs a program and compares its output; prints a message if the interpreter or compiler is
+/// missing.
+fn assert_run(
+    words: &str,
+    program: &str,
+    arguments: &[&str],
+    folder: &std::path::Path,
+    expected: &[f64],
+) {
+    let output = Command::new(program)
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{words}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let text = String::from_utf8(output.stdout).unwrap();
+    let found: Vec<f64> = text
+        .split_whitespace()
+        .map(|word| word.parse().unwrap())
+        .collect();
+    assert_same(&format!("{program}, {words}"), &found, expected);
+}
+
+fn is_there(program: &str) -> bool {
+    let found = Command::new(program).arg("--version").output().is_ok();
+    if !found {
+        eprintln!(
+            "SKIPPED: {program} is not installed, its programs are not run against the schedule"
+        );
+    }
+    found
+}
+
+fn listed() -> String {
+    airspeeds()
+        .iter()
+        .map(|kt| format!("{kt:?}"))
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+#[test]
+fn unscheduled_delays_are_zero_with_a_note() {
+    for (words, analysis) in analyses() {
+        let settings = &analysis.study.settings;
+        let has_delays = settings.schedule_delays == DelayScheduling::Always
+            || settings.phase == PhaseCorrection::Lead;
+        let text = program("py", &analysis, "");
+        assert_eq!(
+            text.contains("# Note: delays are not scheduled in this study"),
+            !has_delays,
+            "{words}"
+        );
+    }
+}
+
+#[test]
+fn leads_say_their_limit_and_their_gain_above_the_band_in_ascii() {
+    for (words, analysis) in analyses() {
+        let price = analysis.schedule.as_ref().unwrap().lead_price();
+        assert_eq!(
+            price.is_some(),
+            analysis.study.settings.phase == PhaseCorrection::Lead,
+            "{words}"
+        );
+        for (language, limit) in [
+            ("m", ""),
+            ("py", "NOT_VALID_ABOVE_RAD_S = 1.2"),
+            ("h", "GDCM_NOT_VALID_ABOVE_RAD_S 1.2"),
+        ] {
+            let text = program(language, &analysis, "k");
+            let says = text.contains("Note: not valid above 12 rad/s: at 120 rad/s");
+            let has_number = text.contains(limit);
+            assert!(
+                text.is_ascii() && says == price.is_some(),
+                "{words}: {text}"
+            );
+            assert!(
+                limit.is_empty() || has_number == price.is_some(),
+                "{words}: {text}"
+            );
+        }
+        let source = ExportSource {
+            name: "example".to_owned(),
+            sha256: "ba78".to_owned(),
+        };
+        for exporter in EXPORTERS.iter() {
+            let path = Path::new("k").with_extension(exporter.extension);
+            let request = ExportRequest::default();
+            let export = Export {
+                analysis: &analysis,
+                source: &source,
+                request: &request,
+                path: &path,
+            };
+            let Ok(exported) = (exporter.export)(&export) else {
+                continue;
+            };
+            let says = exported
+                .remarks
+                .iter()
+                .any(|remark| remark.contains("not valid above 12 rad/s: at 120 rad/s"));
+            assert_eq!(
+                says,
+                price.is_some(),
+                "{words}, {}: {:?}",
+                exporter.name,
+                exported.remarks
+            );
+        }
+    }
+}
+
+#[test]
+fn a_module_of_python_gives_the_programs_own_numbers() {
+    if !is_there("python3") {
+        return;
+    }
+    for (words, analysis) in analyses() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
+        let program = format!(
+            "import c\nfor a in [{}]:\n    mi, mo, ti, to = c.gdcm_correction(a)\n    \
+             print(*[repr(m[k][k]) for m in (mi, mo) for k in range(len(m))], *map(repr, ti + to))",
+            listed()
+        );
+        assert_run(
+            &words,
+            "python3",
+            &["-c", &program],
+            folder.path(),
+            &expected(&analysis),
+        );
+    }
+}
+
+#[test]
+fn a_header_of_c_gives_the_programs_own_numbers() {
+    if !is_there("cc") {
+        return;
+    }
+    for (words, analysis) in analyses() {
+        let folder = tempfile::tempdir().unwrap();
+        let header = program("h", &analysis, "");
+        let main = format!(
+            "{header}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}};\n\
+             double v[2 * (GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT)]; unsigned k, j;\n\
+             for (k = 0; k < sizeof s / sizeof *s; k++) {{\n\
+             gdcm_correction(s[k], v, v + GDCM_INPUT_COUNT, v + GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT,\n\
+             v + 2 * GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT);\n\
+             for (j = 0; j < sizeof v / sizeof *v; j++) printf(\"%.17g \", v[j]); }}\nreturn 0; }}\n",
+            listed()
+        );
+        std::fs::write(folder.path().join("main.c"), main).unwrap();
+        let flags = [
+            "-std=c99",
+            "-Wall",
+            "-Wextra",
+            "-Wshadow",
+            "-Werror",
+            "-pedantic",
+            "-o",
+            "main",
+            "main.c",
+            "-lm",
+        ];
+        let built = Command::new("cc")
+            .args(flags)
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        assert!(
+            built.status.success(),
+            "{words}: {}",
+            String::from_utf8_lossy(&built.stderr)
+        );
+        let program = folder.path().join("main").display().to_string();
+        assert_run(&words, &program, &[], folder.path(), &expected(&analysis));
+    }
+}
+
+#[test]
+fn a_function_of_matlab_gives_the_programs_own_numbers() {
+    if !is_there("octave-cli") {
+        return;
+    }
+    for (words, analysis) in analyses() {
+        let folder = tempfile::tempdir().unwrap();
+        let function = program("m", &analysis, "my_study");
+        std::fs::write(folder.path().join("my_study.m"), function).unwrap();
+        let program = format!(
+            "for s = [{}], [Mi, Mo, ti, to] = my_study(s); printf('%.17g ', [diag(Mi); diag(Mo); ti; to]); end",
+            listed()
+        );
+        assert_run(
+            &words,
+            "octave-cli",
+            &["--eval", &program],
+            folder.path(),
+            &expected(&analysis),
+        );
+    }
+}
+
+/// Returns the example with mixing and feedback, gains only.
+fn coupled() -> Analysis {
+    let mut study = Study::new(embedded_example().unwrap().dataset);
+    study
+        .apply(&setting::PHASE.to(PhaseCorrection::None))
+        .unwrap();
+    study
+        .apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
+        .unwrap();
+    Engine::default().analyze(&study, &Unobserved).unwrap()
+}
+
+/// Returns a 6 x 4 feed-through with numbers that every language writes alike.
+fn feed_through() -> DMatrix<f64> {
+    DMatrix::from_fn(6, 4, |output, input| {
+        0.25 * (output as f64 - 2.0) * (input as f64 + 1.0) / 4.0
+    })
+}
+
+fn list_of_rows(of: &DMatrix<f64>, [open, close]: [char; 2]) -> String {
+    let row = |row: usize| {
+        let values: Vec<String> = of
+            .row(row)
+            .iter()
+            .map(|value| format!("{value:?}"))
+            .collect();
+        format!("{open}{}{close}", values.join(", "))
+    };
+    format!(
+        "{open}{}{close}",
+        (0..of.nrows()).map(row).collect::<Vec<_>>().join(", ")
+    )
+}
+
+/// Returns, at each airspeed, the mixing, the feedback, and the feedback closed through the
+/// feed-through, row by row.
+fn expected_couplings(analysis: &Analysis) -> Vec<f64> {
+    let matrices = analysis.fitted_couplings().unwrap().matrices();
+    let feedback = matrices.feedback();
+    let closed = feedback
+        * (DMatrix::identity(6, 6) - feed_through() * feedback)
+            .try_inverse()
+            .unwrap();
+    let values = |airspeed: f64| {
+        let of = [&matrices.normalised_mixing(airspeed), feedback, &closed];
+        of.map(|of| of.transpose().as_slice().to_vec()).concat()
+    };
+    airspeeds().into_iter().flat_map(values).collect()
+}
+
+#[test]
+fn couplings_of_every_program_are_the_programs_own_and_are_closed_through_a_feed_through() {
+    let analysis = coupled();
+    let expected = expected_couplings(&analysis);
+    let folder = tempfile::tempdir().unwrap();
+    if is_there("python3") {
+        std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
+        let program = format!(
+            "import c\nfor a in [{}]:\n    m, k = c.gdcm_couplings(a)\n    f = c.gdcm_closed_feedback(k, {})\n    \
+             print(*[repr(x) for rows in (m, k, f) for row in rows for x in row])",
+            listed(),
+            list_of_rows(&feed_through(), ['[', ']'])
+        );
+        assert_run(
+            "couplings",
+            "python3",
+            &["-c", &program],
+            folder.path(),
+            &expected,
+        );
+    }
+    if is_there("cc") {
+        let main = format!(
+            "{}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}}; double d[6][4] = {};\n\
+             double m[4][4], k[4][6]; unsigned n; int i, turn;\n\
+             for (n = 0; n < sizeof s / sizeof *s; n++) {{ if (gdcm_couplings(s[n], m, k) < 0) return 1;\n\
+             for (i = 0; i < 16; i++) printf(\"%.17g \", (&m[0][0])[i]);\n\
+             for (turn = 0; turn < 2; turn++) {{ if (turn == 1 && gdcm_close_feedback(k, d)) return 2;\n\
+             for (i = 0; i < 24; i++) printf(\"%.17g \", (&k[0][0])[i]); }} }}\nreturn 0; }}\n",
+            program("h", &analysis, ""),
+            listed(),
+            list_of_rows(&feed_through(), ['{', '}'])
+        );
+        std::fs::write(folder.path().join("main.c"), main).unwrap();
+        let flags = [
+            "-std=c99",
+            "-Wall",
+            "-Wextra",
+            "-Wshadow",
+            "-Werror",
+            "-pedantic",
+            "-o",
+            "main",
+            "main.c",
+            "-lm",
+        ];
+        let built = Command::new("cc")
+            .args(flags)
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        assert!(
+            built.status.success(),
+            "{}",
+            String::from_utf8_lossy(&built.stderr)
+        );
+        let program = folder.path().join("main").display().to_string();
+        assert_run("couplings", &program, &[], folder.path(), &expected);
+    }
+    if is_there("octave-cli") {
+        std::fs::write(
+            folder.path().join("my_study.m"),
+            program("m", &analysis, "my_study"),
+        )
+        .unwrap();
+        let rows: Vec<String> = feed_through()
+            .row_iter()
+            .map(|row| format!("{:?}", row.iter().collect::<Vec<_>>()))
+            .collect();
+        let program = format!(
+            "D = [{}]; for s = [{}], [~, ~, ~, ~, m, k] = my_study(s); [~, ~, ~, ~, ~, f] = my_study(s, D); \
+             printf('%.17g ', m', k', f'); end",
+            rows.join("; "),
+            listed()
+        );
+        assert_run(
+            "couplings",
+            "octave-cli",
+            &["--eval", &program],
+            folder.path(),
+            &expected,
+        );
+    }
+}
+
+#[test]
+fn a_study_without_couplings_has_none_in_its_programs() {
+    let analysis = Engine::default()
+        .analyze(
+            &Study::new(embedded_example().unwrap().dataset),
+            &Unobserved,
+        )
+        .unwrap();
+    for language in ["m", "py", "h"] {
+        let text = program(language, &analysis, "k").to_lowercase();
+        assert!(
+            !text.contains("mixing") && !text.contains("feedback"),
+            "{language}: {text}"
+        );
+    }
+}
+
+/// Returns the example with altitude as its second variable, and its values at fifty airspeeds and
+/// three altitudes.
+fn with_altitude(kind: ScheduleKind) -> (Analysis, Vec<f64>) {
+    let mut study = Study::new(embedded_example().unwrap().dataset);
+    let schedule = ScheduleSettings {
+        kind,
+        second: Some(SecondVariable::Altitude),
+        ..ScheduleSettings::default()
+    };
+    study.settings.schedule = schedule;
+    let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
+    let schedule = analysis.schedule.clone().unwrap();
+    let values = |airspeed: f64, altitude: f64| {
+        let at = schedule.evaluate(airspeed, Some(altitude));
+        [
+            at.input_gains,
+            at.output_gains,
+            at.input_delays_s,
+            at.output_delays_s,
+        ]
+        .concat()
+    };
+    let pairs = || {
+        airspeeds()
+            .into_iter()
+            .flat_map(|airspeed| ALTITUDES.map(|altitude| (airspeed, altitude)))
+    };
+    let expected = pairs()
+        .flat_map(|(airspeed, altitude)| values(airspeed, altitude))
+        .collect();
+    (analysis, expected)
+}
+
+/// Below, within and above the range of the example \[ft\].
+const ALTITUDES: [f64; 3] = [0.0, 4321.0, 20_000.0];
+
+#[test]
+fn a_second_variable_is_the_second_argument_of_every_program() {
+    for kind in [ScheduleKind::Polynomial { degree: 2 }, ScheduleKind::Table] {
+        let (analysis, expected) = with_altitude(kind);
+        let words = format!("{kind:?} and altitude");
+        if is_there("python3") {
+            let folder = tempfile::tempdir().unwrap();
+            std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
+            let program = format!(
+                "import c\nfor a in [{}]:\n  for h in {ALTITUDES:?}:\n    mi, mo, ti, to = c.gdcm_correction(a, h)\n    \
+                 print(*[repr(m[k][k]) for m in (mi, mo) for k in range(len(m))], *map(repr, ti + to))",
+                listed()
+            );
+            assert_run(
+                &words,
+                "python3",
+                &["-c", &program],
+                folder.path(),
+                &expected,
+            );
+        }
+        if is_there("cc") {
+            let folder = tempfile::tempdir().unwrap();
+            let header = program("h", &analysis, "");
+            let main = format!(
+                "{header}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}}, h[] = {{0, 4321, 20000}};\n\
+                 double v[2 * (GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT)]; unsigned k, l, j;\n\
+                 for (k = 0; k < sizeof s / sizeof *s; k++) for (l = 0; l < 3; l++) {{\n\
+                 gdcm_correction(s[k], h[l], v, v + GDCM_INPUT_COUNT, v + GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT,\n\
+                 v + 2 * GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT);\n\
+                 for (j = 0; j < sizeof v / sizeof *v; j++) printf(\"%.17g \", v[j]); }}\nreturn 0; }}\n",
+                listed()
+            );
+            std::fs::write(folder.path().join("main.c"), main).unwrap();
+            let flags = [
+                "-std=c99",
+                "-Wall",
+                "-Wextra",
+                "-Werror",
+                "-pedantic",
+                "-o",
+                "main",
+                "main.c",
+                "-lm",
+            ];
+            let built = Command::new("cc")
+                .args(flags)
+                .current_dir(&folder)
+                .output()
+                .unwrap();
+            assert!(
+                built.status.success(),
+                "{words}: {}",
+                String::from_utf8_lossy(&built.stderr)
+            );
+            let program = folder.path().join("main").display().to_string();
+            assert_run(&words, &program, &[], folder.path(), &expected);
+        }
+        let function = program("m", &analysis, "my_study");
+        assert!(
+            function.contains("my_study(airspeed_kt, altitude_ft)"),
+            "{function}"
+        );
+    }
+}
+
+/// Returns the example with channel names that are hard to write: one input and two outputs.
+fn with_nasty_names() -> Analysis {
+    let example = embedded_example().unwrap().dataset;
+    let mut header = example.header();
+    header.inputs[0].name = NASTY[0].to_owned();
+    header.outputs[0].name = NASTY[1].to_owned();
+    header.outputs[1].name = NASTY[2].to_owned();
+    let conditions = example
+        .conditions()
+        .iter()
+        .map(|condition| condition.as_ref().clone())
+        .collect();
+    let study = Study::new(Arc::new(Dataset::new(header, conditions).unwrap()));
+    Engine::default().analyze(&study, &Unobserved).unwrap()
+}
+
+#[test]
+fn names_come_back_byte_by_byte() {
+    let analysis = with_nasty_names();
+    let folder = tempfile::tempdir().unwrap();
+    let expected: Vec<f64> = NASTY.concat().bytes().map(f64::from).collect();
+    if is_there("python3") {
+        std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
+        let lists =
+            "import c\nfor name in c.INPUTS[:1] + c.OUTPUTS[:2]:\n    print(*list(name.encode()))";
+        assert_run("names", "python3", &["-c", lists], folder.path(), &expected);
+    }
+    if is_there("cc") {
+        let main = format!(
+            "{}\n#include <stdio.h>\nint main(void) {{\n\
+             const char *n[] = {{GDCM_INPUT_NAME_0, GDCM_OUTPUT_NAME_0, GDCM_OUTPUT_NAME_1}};\n\
+             const unsigned sizes[] = {{sizeof GDCM_INPUT_NAME_0, sizeof GDCM_OUTPUT_NAME_0, sizeof GDCM_OUTPUT_NAME_1}};\n\
+             unsigned k, j; for (k = 0; k < 3; k++) for (j = 0; j + 1 < sizes[k]; j++) printf(\"%d \", (unsigned char)n[k][j]);\n\
+             return 0; }}\n",
+            program("h", &analysis, "")
+        );
+        std::fs::write(folder.path().join("main.c"), main).unwrap();
+        let flags = [
+            "-std=c99",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            "-pedantic",
+            "-o",
+            "main",
+            "main.c",
+            "-lm",
+        ];
+        let built = Command::new("cc")
+            .args(flags)
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        assert!(
+            built.status.success(),
+            "{}",
+            String::from_utf8_lossy(&built.stderr)
+        );
+        let program = folder.path().join("main").display().to_string();
+        assert_run("names", &program, &[], folder.path(), &expected);
+    }
+}
+
+#[test]
+fn every_line_of_a_function_of_matlab_that_is_no_code_is_a_comment() {
+    let text = program("m", &with_nasty_names(), "k2_v");
+    assert!(
+        text.is_ascii() && text.starts_with("function [Mi, Mo, tau_i, tau_o] = k2_v("),
+        "{text}"
+    );
+    let code = ["function ", "  ", "end", "%"];
+    for line in text.lines().filter(|line| !line.is_empty()) {
+        assert!(code.iter().any(|start| line.starts_with(start)), "{line}");
+        assert!(!matches!(line.trim(), "%{" | "%}"));
+    }
+    assert_eq!(
+        text.lines()
+            .filter(|line| line.starts_with("% Input"))
+            .count(),
+        4
+    );
+}
+
+#[test]
+fn a_name_that_matlab_cannot_call_is_refused() {
+    for name in [
+        "2nd",
+        "my-study",
+        "gdcm_table",
+        "end",
+        "parfor",
+        "endfunction",
+        "\u{e9}t\u{e9}",
+        &"x".repeat(64),
+    ] {
+        let refused = (MATLAB.check_path)(Path::new(&format!("folder/{name}.m")));
+        assert_eq!(
+            refused,
+            Err(ExportFault::FunctionName {
+                found: name.to_owned()
+            })
+        );
+    }
+    assert_eq!((MATLAB.check_path)(Path::new("k2_v.m")), Ok(()));
+}
+
+#[test]
+fn a_comment_stays_on_its_line_and_is_not_ended() {
+    assert_eq!(comment("a\n*/b"), "a<U+000A>* /b");
+    assert_eq!(comment("δ\\"), "<U+03B4>\\.");
+    assert_eq!(comment("−3 ± 2 dB"), "-3 +- 2 dB");
+}
+
+proptest! {
+    #[test]
+    fn no_comment_is_ended(text in "[*/\\\\?%{}\"'a\\n]{0,20}") {
+        let plain = comment(&text);
+        for mark in ["*/", "/*", "//", "??", "%{", "%}", "\n", "\"\"", "'''"] {
+            prop_assert!(!plain.contains(mark), "{}", plain);
+        }
+    }
+
+    #[test]
+    fn a_number_comes_back_to_the_last_digit(value in proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL) {
+        prop_assert_eq!(number(value).parse::<f64>().unwrap(), value);
+    }
+}

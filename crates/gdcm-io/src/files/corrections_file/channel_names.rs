@@ -1,0 +1,132 @@
+//! JSON values by channel and by response, with a dataset's channel names.
+
+use serde_json::{Map, Value, json};
+
+use gdcm_method::correction::{Channel, ChannelCorrection, Channels, LeadPrice};
+use gdcm_method::schedule::Regression;
+use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_study::Analysis;
+
+/// Whether a member is empty: null, false, or an empty list.
+pub(super) fn is_empty_value(value: &Value) -> bool {
+    match value {
+        Value::Null | Value::Bool(false) => true,
+        Value::Array(list) => list.is_empty(),
+        _ => false,
+    }
+}
+
+/// Returns an object without the named members that are empty.
+pub(crate) fn without_empty(mut object: Value, members: &[&str]) -> Value {
+    if let Value::Object(all) = &mut object {
+        all.retain(|name, value| !(members.contains(&name.as_str()) && is_empty_value(value)));
+    }
+    object
+}
+
+/// Returns a table as a list with a row for each output. Values that are not finite become null,
+/// since JSON has no such numbers.
+pub(super) fn rows<T>(table: &PairTable<Option<T>>, figure: impl Fn(&T) -> f64) -> Value {
+    rows_of(table.outputs(), table.inputs(), |pair| {
+        table[pair].as_ref().map(&figure).into()
+    })
+}
+
+/// Returns table entries as a list with a row for each output.
+pub(super) fn rows_of(outputs: usize, inputs: usize, entry: impl Fn(Pair) -> Value) -> Value {
+    let mut rows = Vec::with_capacity(outputs);
+    for output in 0..outputs {
+        let mut row = Vec::with_capacity(inputs);
+        for input in 0..inputs {
+            row.push(entry(Pair { output, input }));
+        }
+        rows.push(Value::Array(row));
+    }
+    Value::Array(rows)
+}
+
+/// An analysis with its dataset's channel names.
+pub(super) struct ChannelNames<'a> {
+    pub(super) analysis: &'a Analysis,
+    pub(super) inputs: Vec<String>,
+    pub(super) outputs: Vec<String>,
+}
+
+impl<'a> ChannelNames<'a> {
+    pub(super) fn new(analysis: &'a Analysis) -> Self {
+        let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+        Self {
+            analysis,
+            inputs,
+            outputs,
+        }
+    }
+
+    /// Returns a response's channel names, output first.
+    pub(super) fn pair(&self, pair: Pair) -> (String, String) {
+        self.analysis.study.dataset.channel_names(pair)
+    }
+
+    /// Returns the channel names for each response, output first.
+    pub(super) fn pairs(&self, pairs: impl IntoIterator<Item = Pair>) -> Vec<(String, String)> {
+        pairs.into_iter().map(|pair| self.pair(pair)).collect()
+    }
+
+    /// Returns a response's entries, preceded by its output and its input.
+    pub(super) fn response_entries(&self, pair: Pair, entries: Value) -> Value {
+        let (output, input) = self.pair(pair);
+        let mut members = Map::new();
+        members.insert("output".to_owned(), output.into());
+        members.insert("input".to_owned(), input.into());
+        if let Value::Object(entries) = entries {
+            members.extend(entries);
+        }
+        Value::Object(members)
+    }
+
+    /// Returns a value for each channel, by its name.
+    pub(super) fn by_channel<T: Into<Value>>(&self, value: impl Fn(Channel) -> T) -> Value {
+        let mut inputs = Map::new();
+        for (index, name) in self.inputs.iter().enumerate() {
+            inputs.insert(name.clone(), value(Channel::Input(index)).into());
+        }
+        let mut outputs = Map::new();
+        for (index, name) in self.outputs.iter().enumerate() {
+            outputs.insert(name.clone(), value(Channel::Output(index)).into());
+        }
+        json!({"inputs": inputs, "outputs": outputs})
+    }
+
+    /// Returns regression coefficients by channel.
+    pub(super) fn coefficients(&self, regressions: &Channels<Regression>) -> Value {
+        self.by_channel(|channel| regressions[channel].figures().to_vec())
+    }
+
+    pub(super) fn gains(&self, correction: &ChannelCorrection) -> Value {
+        self.by_channel(|channel| correction.gain(channel))
+    }
+
+    /// Returns the delays \[s\].
+    pub(super) fn delays_s(&self, correction: &ChannelCorrection) -> Value {
+        self.by_channel(|channel| correction.pure_delay_s(channel))
+    }
+
+    /// Returns signed delay and lead filter by channel (M15); `None` unless the phase correction
+    /// has leads.
+    pub(super) fn leads(&self, correction: &ChannelCorrection) -> Option<Value> {
+        let leads = correction.leads.as_ref()?;
+        let price = LeadPrice::of(leads);
+        Some(self.by_channel(|channel| {
+            let filter = leads.filters()[channel];
+            json!({
+                "tau_s": leads.taus_s[channel],
+                "lead_s": filter.map(|filter| filter.lead_s()),
+                "zero_rad_s": filter.map(|filter| filter.zero_rad_s()),
+                "lag_rad_s": filter.map(|filter| filter.lag_rad_s()),
+                "gain_at_infinity_db": filter.map(|filter| filter.gain_at_infinity_db()),
+                "gain_above_band_db": price.as_ref().map(|price| price.gains_db[channel]),
+                "not_valid_above_rad_s": price.as_ref().map(|price| price.limit_rad_s),
+            })
+        }))
+    }
+}

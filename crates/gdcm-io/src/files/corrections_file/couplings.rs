@@ -1,0 +1,124 @@
+//! The text of `corrections.json` about couplings in the physics models, and their value (M16).
+
+use nalgebra::{DMatrix, Scalar};
+use serde_json::{Value, json};
+
+use gdcm_method::couplings::PoleShift;
+use gdcm_study::results::couplings_assessment::{AxisCost, CouplingCost, CouplingsAssessment};
+use gdcm_study::{Analysis, ConditionAnalysis};
+use gdcm_words::couplings::analysis_coupling_remarks;
+
+use super::channel_names::{rows_of, without_empty};
+
+/// Returns the study's mixing and feedback, in the dataset's units; null without couplings.
+pub(super) fn couplings(analysis: &Analysis) -> Value {
+    let fitted = match &analysis.couplings {
+        None => return Value::Null,
+        Some(Err(error)) => {
+            let (inputs, _) = analysis.study.dataset.names_of_channels();
+            return json!({"why": error.words(&inputs)});
+        }
+        Some(Ok(fitted)) => fitted,
+    };
+    let assessment = analysis.coupling_assessment.as_deref();
+    let feedback_sd = assessment
+        .map(CouplingsAssessment::feedback)
+        .map(|feedback| matrix_rows(&feedback.map(|entry| entry.deviation)));
+    let costs = assessment.map(|assessment| &assessment.costs);
+    let mut conditions = Vec::new();
+    for condition in &fitted.problem.conditions {
+        conditions.push(condition.id.0);
+    }
+    let mut words = Vec::new();
+    for remark in analysis_coupling_remarks(analysis) {
+        words.push(remark.text);
+    }
+    let couplings = json!({
+        "conditions": conditions,
+        "feedback": matrix_rows(fitted.matrices().feedback()),
+        "feedback_sd": feedback_sd,
+        "residual": fitted.fit.residual,
+        "uncorrected": costs.map(|costs| axis_cost(costs.uncorrected)),
+        "own": costs.map(|costs| coupling_cost(costs.own)),
+        "scheduled": costs.map(|costs| coupling_cost(costs.scheduled)),
+        "left_out": costs.and_then(|costs| costs.left_out).map(coupling_cost),
+        "words": words,
+    });
+    without_empty(
+        couplings,
+        &[
+            "feedback_sd",
+            "uncorrected",
+            "own",
+            "scheduled",
+            "left_out",
+            "words",
+        ],
+    )
+}
+
+/// Returns a matrix as a list with a row for each receiving input.
+fn matrix_rows<T: Scalar + Into<Value>>(matrix: &DMatrix<T>) -> Value {
+    rows_of(matrix.nrows(), matrix.ncols(), |at| {
+        matrix[(at.output, at.input)].clone().into()
+    })
+}
+
+fn axis_cost(cost: AxisCost) -> Value {
+    json!({"on_axis": cost.on_axis, "others": cost.others})
+}
+
+fn coupling_cost(cost: CouplingCost) -> Value {
+    json!({
+        "on_axis": cost.with.on_axis,
+        "others": cost.with.others,
+        "without_on_axis": cost.without.on_axis,
+        "without_others": cost.without.others,
+    })
+}
+
+/// Returns a condition's mixing, with ones on the diagonal, and how the couplings affect its
+/// physics representative; null without couplings.
+pub(super) fn condition_couplings(analysis: &Analysis, result: &ConditionAnalysis) -> Value {
+    let Some(coupled) = &result.coupled else {
+        return Value::Null;
+    };
+    let airspeed_kt = result.condition.flight_state().airspeed_kt;
+    let mixing = coupled.fitted.matrices().normalised_mixing(airspeed_kt);
+    let assessment = analysis.coupling_assessment.as_deref();
+    let mixing_sd = assessment
+        .map(|assessment| assessment.mixing(airspeed_kt))
+        .map(|mixing| matrix_rows(&mixing.map(|entry| entry.deviation)));
+    let assessed =
+        assessment.and_then(|assessment| assessment.conditions.get(&result.condition.id()));
+    let poles_moved = assessed
+        .and_then(|assessed| assessed.poles.as_ref().ok())
+        .map(|shifts| shifts.iter().map(pole_shift).collect::<Value>());
+    let couplings = json!({
+        "mixing": matrix_rows(&mixing),
+        "mixing_sd": mixing_sd,
+        "poles_moved": poles_moved,
+        "least_singular_value": assessed.and_then(|assessed| assessed.margin).map(|margin| {
+            json!({"value": margin.least, "omega_rad_s": margin.omega_rad_s})
+        }),
+        "left_out": assessed.and_then(|assessed| assessed.left_out).map(coupling_cost),
+    });
+    without_empty(
+        couplings,
+        &[
+            "mixing_sd",
+            "poles_moved",
+            "least_singular_value",
+            "left_out",
+        ],
+    )
+}
+
+fn pole_shift(shift: &PoleShift) -> Value {
+    json!({
+        "before_real_rad_s": shift.before.map(|before| before.re),
+        "before_imaginary_rad_s": shift.before.map(|before| before.im),
+        "after_real_rad_s": shift.after.re,
+        "after_imaginary_rad_s": shift.after.im,
+    })
+}

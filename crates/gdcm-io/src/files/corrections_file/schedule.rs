@@ -1,0 +1,122 @@
+//! The text of `corrections.json` about the schedule.
+
+use serde_json::{Value, json};
+
+use gdcm_method::schedule::{Schedule, ScheduleCaution, ScheduleKind, ScheduledQuantity};
+
+use super::channel_names::{ChannelNames, without_empty};
+
+/// Returns gains and delays over airspeed.
+pub(super) fn schedule_json(names: &ChannelNames<'_>, schedule: &Schedule) -> Value {
+    let airspeeds = &schedule.airspeeds;
+    let gains = names.coefficients(&schedule.gains);
+    let second_variable = schedule.second.as_ref().map(|term| {
+        let slopes = names.by_channel(|channel| term.slopes[channel]);
+        json!({
+            "variable": term.variable.name(),
+            "unit": term.variable.unit(),
+            "middle": term.middle(),
+            "half_range": term.half_range(),
+            "inputs": slopes["inputs"],
+            "outputs": slopes["outputs"],
+        })
+    });
+    let delays_s = schedule.delays.as_ref().map(|delays| {
+        let mut coefficients = names.coefficients(&delays.taus_s);
+        coefficients["upper_s"] = delays.upper_s.figures().into();
+        coefficients
+    });
+    let tau_s = schedule.leads.as_ref().map(|leads| {
+        let mut coefficients = names.coefficients(&leads.taus_s);
+        coefficients["bounds_s"] = json!(leads.bounds_s);
+        coefficients
+    });
+    let mut cautions = Vec::new();
+    let mut caution_notes = Vec::new();
+    for caution in &schedule.cautions {
+        cautions.push(caution.words(&names.inputs, &names.outputs));
+        caution_notes.push(schedule_caution(names, caution));
+    }
+    let members = json!({
+        "kind": match schedule.settings.kind {
+            ScheduleKind::Polynomial { .. } => "polynomial",
+            ScheduleKind::Table => "table",
+        },
+        "of": match schedule.settings.quantity {
+            ScheduledQuantity::LnGain => "ln k",
+            ScheduledQuantity::Gain => "k",
+        },
+        "degree": schedule.degree(),
+        "airspeed_tolerance_kt": schedule.settings.airspeed_tolerance_kt,
+        "airspeed_mean_kt": airspeeds.mean_kt,
+        "airspeed_half_range_kt": airspeeds.half_range_kt,
+        "airspeed_range_kt": [airspeeds.min_kt, airspeeds.max_kt],
+        "inputs": gains["inputs"],
+        "outputs": gains["outputs"],
+        "second_variable": second_variable,
+        "delays_s": delays_s,
+        "tau_s": tau_s,
+        "table": schedule_table(names, schedule),
+        "cautions": cautions,
+        "caution_notes": caution_notes,
+    });
+    without_empty(members, &["second_variable", "tau_s", "caution_notes"])
+}
+
+/// Returns the correction at each distinct scheduled airspeed.
+fn schedule_table(names: &ChannelNames<'_>, schedule: &Schedule) -> Value {
+    let mut rows = Vec::new();
+    for airspeed_kt in schedule.airspeeds.clusters_kt() {
+        let correction = schedule.at(airspeed_kt);
+        let gains = names.gains(&correction);
+        let delays_s = schedule
+            .delays
+            .as_ref()
+            .map(|_| names.delays_s(&correction));
+        let row = json!({
+            "airspeed_kt": airspeed_kt,
+            "inputs": gains["inputs"],
+            "outputs": gains["outputs"],
+            "delays_s": delays_s,
+            "lead": names.leads(&correction),
+        });
+        rows.push(without_empty(row, &["delays_s", "lead"]));
+    }
+    Value::Array(rows)
+}
+
+/// Returns a caution about the schedule by its code, with its numbers if it concerns a single
+/// condition.
+fn schedule_caution(names: &ChannelNames<'_>, caution: &ScheduleCaution) -> Value {
+    let text = caution.words(&names.inputs, &names.outputs);
+    match caution {
+        ScheduleCaution::CostsMore(cost) => json!({
+            "code": caution.code(),
+            "condition": cost.condition.0,
+            "model": cost.model,
+            "value": cost.scheduled,
+            "own": cost.own,
+            "unit": "J",
+            "text": text,
+        }),
+        ScheduleCaution::SignedDelayApart {
+            channel,
+            condition,
+            tau_s,
+            elsewhere_s,
+        } => json!({
+            "code": caution.code(),
+            "condition": condition.0,
+            "channel": channel.name(&names.inputs, &names.outputs),
+            "value": tau_s,
+            "elsewhere": elsewhere_s,
+            "unit": "s",
+            "text": text,
+        }),
+        ScheduleCaution::DegreeLowered { .. }
+        | ScheduleCaution::Overshoot { .. }
+        | ScheduleCaution::NotPositive => {
+            json!({"code": caution.code(), "text": text})
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Models in a whole dataset, found among other model files.
+
+use std::path::Path;
+
+use gdcm_model::assembly::FoundModel;
+use gdcm_model::assembly::found_model::Facts;
+use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_model::dataset::model::Provenance;
+use gdcm_model::dataset::unchecked_dataset::ModelDraft;
+use gdcm_model::dataset::{BundleKind, Condition, Dataset};
+
+use crate::files::model_collection::labels;
+
+/// Returns every model, with the dataset's information on it and its condition; `name` is the name
+/// of the dataset's file, relative to the requested path.
+pub(super) fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel> {
+    let mut models = Vec::new();
+    for condition in dataset.conditions() {
+        let facts = facts_of(condition, name);
+        let id = condition.flight_state().id;
+        for kind in BundleKind::BOTH {
+            for model in condition.bundle(kind) {
+                let original = model.source.clone().unwrap_or_default();
+                let notes = original.note.clone().into_iter().collect();
+                let source = Provenance {
+                    variable: Some(format!("{id}/{kind}/{}", model.name)),
+                    note: None,
+                    file: None,
+                    sha256: None,
+                    ..original
+                };
+                models.push(FoundModel {
+                    draft: ModelDraft {
+                        source: Some(source),
+                        ..ModelDraft::from_model(model)
+                    },
+                    inputs: labels(dataset.inputs()),
+                    outputs: labels(dataset.outputs()),
+                    facts: facts.clone(),
+                    notes,
+                });
+            }
+        }
+    }
+    models
+}
+
+/// Returns the information on the condition; its record paths, relative to the dataset's folder,
+/// become relative to the requested path.
+fn facts_of(condition: &Condition, name: &str) -> Facts {
+    let state = condition.flight_state();
+    let mut records = Vec::new();
+    for record in condition.records() {
+        let file = match name.rsplit_once('/') {
+            Some((folder, _)) if !Path::new(&record.file).is_absolute() => {
+                format!("{folder}/{}", record.file)
+            }
+            _ => record.file.clone(),
+        };
+        records.push(ConditionRecord {
+            file,
+            ..record.clone()
+        });
+    }
+    Facts {
+        condition: Some(state.id.0),
+        airspeed_kt: Some(state.airspeed_kt),
+        altitude_ft: state.altitude_ft,
+        mass_kg: state.mass_kg,
+        name: None,
+        is_of_dataset: true,
+        records,
+    }
+}

@@ -1,0 +1,158 @@
+//! Models whose matrices are in separate files: `nominal_A.csv`, `nominal_B.csv`, ...
+
+use std::collections::BTreeMap;
+
+use gdcm_model::assembly::FoundModel;
+use gdcm_model::dataset::model::Provenance;
+
+use super::recognise::{Found, recognise};
+use crate::formats::variables::{Value, Variable};
+use crate::reading_budget::ReadingBudget;
+
+/// A matrix in a separate file.
+pub(super) struct LooseMatrix {
+    /// The folder, and the file name before the letter: matrices with the same group are a model.
+    group: String,
+    file: String,
+    sha256: String,
+    /// The matrix, named by its letter.
+    variable: Variable,
+}
+
+impl LooseMatrix {
+    /// Takes the only variable in a file that is named as a matrix.
+    pub(super) fn from_variables(variables: &[Variable], file: &str, sha256: &str) -> Option<Self> {
+        let [variable] = variables else { return None };
+        if !matches!(variable.value, Value::Array(_)) {
+            return None;
+        }
+        let (folder, name) = file.rsplit_once('/').unwrap_or(("", file));
+        let stem = match name.rsplit_once('.') {
+            Some((stem, _)) => stem,
+            None => name,
+        };
+        let (letter, before) = matrix_letter(stem)?;
+        let group = match (folder, before) {
+            ("", before) => before.to_owned(),
+            (folder, "") => folder.to_owned(),
+            (folder, before) => format!("{folder}/{before}"),
+        };
+        Some(Self {
+            group,
+            file: file.to_owned(),
+            sha256: sha256.to_owned(),
+            variable: Variable {
+                name: letter.to_string(),
+                value: variable.value.clone(),
+            },
+        })
+    }
+}
+
+/// Returns the letter at the end of a file name, and the part before it: "nominal_A" is A of
+/// "nominal".
+pub(super) fn matrix_letter(stem: &str) -> Option<(char, &str)> {
+    let letter = stem.chars().last()?;
+    if !matches!(letter, 'A' | 'B' | 'C' | 'D' | 'E') {
+        return None;
+    }
+    let before = &stem[..stem.len() - 1];
+    if !before.is_empty() && !before.ends_with(['_', '-', '.', ' ']) {
+        return None;
+    }
+    Some((letter, before.trim_end_matches(['_', '-', '.', ' '])))
+}
+
+/// Builds a model from each group; its file is the folder, or the part of the name before the
+/// letters.
+pub(super) fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
+    let mut groups: BTreeMap<String, Vec<LooseMatrix>> = BTreeMap::new();
+    for matrix in loose {
+        groups.entry(matrix.group.clone()).or_default().push(matrix);
+    }
+    let mut found = Found::default();
+    for (group, matrices) in groups {
+        let in_group = models_of_group(&group, &matrices);
+        found.items.extend(in_group.items);
+        found.faults.extend(in_group.faults);
+    }
+    found
+}
+
+fn models_of_group(group: &str, matrices: &[LooseMatrix]) -> Found<FoundModel> {
+    let variables: Vec<Variable> = matrices
+        .iter()
+        .map(|matrix| matrix.variable.clone())
+        .collect();
+    let mut found = Found::default();
+    // The files were within their budgets; their matrices are copied once.
+    match recognise(&variables, true, &ReadingBudget::new(u64::MAX)) {
+        Ok(recognised) => {
+            found.items = recognised.items;
+            for fault in recognised.faults {
+                found.faults.push(format!("{group}: {fault}"));
+            }
+        }
+        Err(fault) => found.faults.push(format!("{group}: {fault}")),
+    }
+    if found.items.is_empty() && found.faults.is_empty() {
+        let names: Vec<&str> = matrices.iter().map(|matrix| matrix.file.as_str()).collect();
+        found
+            .faults
+            .push(format!("{}: a model needs A, B and C", names.join(", ")));
+    }
+    let hashes: Vec<String> = matrices
+        .iter()
+        .map(|matrix| format!("{} {}", matrix.file, matrix.sha256))
+        .collect();
+    for model in &mut found.items {
+        let source = model.draft.source.get_or_insert_with(Provenance::default);
+        source.file = Some(group.to_owned());
+        source.note = Some(format!("SHA-256 of its files: {}", hashes.join(", ")));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::variables::Array;
+
+    fn matrix(file: &str, rows: usize, columns: usize) -> LooseMatrix {
+        let value = Value::Array(Array::matrix(rows, columns, vec![-1.0; rows * columns]));
+        LooseMatrix::from_variables(
+            &[Variable {
+                name: "x".into(),
+                value,
+            }],
+            file,
+            "",
+        )
+        .unwrap()
+    }
+
+    #[test]
+    fn matrices_in_a_folder_or_with_a_common_prefix_are_a_model() {
+        let files = [
+            "c1/A.csv",
+            "c1/B.csv",
+            "c1/C.csv",
+            "c1/nom_A.csv",
+            "c1/nom_B.csv",
+            "c1/nom_C.csv",
+            "c1/lone_A.csv",
+        ];
+        let found = models_of_matrices(files.iter().map(|file| matrix(file, 1, 1)).collect());
+        let names: Vec<&str> = found.items.iter().map(|model| model.file()).collect();
+        assert_eq!(names, ["c1", "c1/nom"]);
+        assert_eq!(found.faults, ["c1/lone_A.csv: a model needs A, B and C"]);
+    }
+
+    #[test]
+    fn a_word_that_ends_in_a_letter_is_no_matrix() {
+        assert_eq!(matrix_letter("nominal_A"), Some(('A', "nominal")));
+        assert_eq!(matrix_letter("B"), Some(('B', "")));
+        assert_eq!(matrix_letter("DATA"), None);
+        assert_eq!(matrix_letter("roll+5"), None);
+    }
+}

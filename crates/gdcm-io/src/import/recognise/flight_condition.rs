@@ -1,0 +1,246 @@
+//! Flight condition and model origin, from the fields beside a model.
+
+use std::collections::BTreeMap;
+
+use gdcm_model::assembly::found_model::Facts;
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::names::name_facts::RowRole;
+use gdcm_model::units::number;
+
+use super::record::Record;
+use super::values::{array_of, scalar_of, texts_of};
+use crate::formats::variables::Value;
+
+const CONDITIONS: &[&str] = &["condition", "condition_id", "fc"];
+const AIRSPEEDS: &[&str] = &["airspeed_kt", "V_kt", "airspeed_knots", "speed_kt", "KTAS"];
+const ALTITUDES: &[&str] = &["altitude_ft", "alt_ft", "h_ft"];
+const MASSES: &[&str] = &["mass_kg", "m_kg"];
+/// Structs that hold a flight condition.
+const CONDITION_STRUCTS: [&[&str]; 4] = [
+    &["trim"],
+    &["flight_condition"],
+    &["flight_state"],
+    &["condition"],
+];
+/// Struct with trim offsets, by coordinate.
+const OFFSETS: &[&str] = &["perturbation", "trim_offset", "trim_offsets"];
+/// Prefix for a single offset: `by_roll_deg`.
+const OFFSET_PREFIX: &str = "by_";
+/// Largest condition number that is still a number for a condition.
+const GREATEST_CONDITION: f64 = 1e9;
+
+/// Position in an array of models; lists beside the array hold an entry for each model.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Page {
+    /// Counted from 0.
+    pub(super) index: usize,
+    pub(super) count: usize,
+}
+
+impl Page {
+    /// Position of a single model.
+    pub(super) const ONLY: Self = Self { index: 0, count: 1 };
+}
+
+/// Returns the flight condition given beside a model and in its enclosing records.
+///
+/// # Errors
+/// A list that is not as long as the array of models, and a number that contradicts an enclosing
+/// record.
+pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String> {
+    let condition = match fact(record, CONDITIONS, page)? {
+        Some(id) if id.fract() == 0.0 && id.abs() < GREATEST_CONDITION => Some(id as i64),
+        _ => None,
+    };
+    Ok(Facts {
+        condition,
+        airspeed_kt: fact(record, AIRSPEEDS, page)?,
+        altitude_ft: fact(record, ALTITUDES, page)?,
+        mass_kg: fact(record, MASSES, page)?,
+        name: name_beside(record, page),
+        ..Facts::default()
+    })
+}
+
+/// Returns a number that describes the flight condition, beside a model or in an enclosing record.
+fn fact(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
+    let mut known: Option<f64> = None;
+    for (level, record) in record.with_outer().enumerate() {
+        let page = if level == 0 { page } else { Page::ONLY };
+        let beside = figure(record, names, page)?;
+        let inside = figure_inside(record, names)?;
+        for value in [beside, inside].into_iter().flatten() {
+            match known {
+                Some(known) if known != value => {
+                    return Err(format!(
+                        "{}: contradictory values {} and {} for the same model; correct one",
+                        names[0],
+                        number(known),
+                        number(value)
+                    ));
+                }
+                _ => known = Some(value),
+            }
+        }
+    }
+    Ok(known)
+}
+
+/// Returns the number in a field, or its entry for the page if the field is a list.
+fn figure(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
+    let Some(field) = record.find(names) else {
+        return Ok(None);
+    };
+    let Some(array) = array_of(field.value) else {
+        return Ok(None);
+    };
+    let value = match array.re.as_slice() {
+        [value] => *value,
+        values if page.count > 1 && values.len() == page.count => values[page.index],
+        [] => return Ok(None),
+        _ if page.count == 1 => return Ok(None),
+        values => {
+            return Err(format!(
+                "{}: {} numbers for {} models; write one for each",
+                field.name,
+                values.len(),
+                page.count
+            ));
+        }
+    };
+    if !value.is_finite() {
+        return Ok(None);
+    }
+    record.mark_used(field.name);
+    Ok(Some(value))
+}
+
+/// Returns a number from a struct that describes the flight condition: `trim.airspeed_kt`,
+/// `condition.id`.
+fn figure_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, String> {
+    for keys in CONDITION_STRUCTS {
+        let Some(field) = record.find(keys) else {
+            continue;
+        };
+        let Value::Struct(records) = field.value else {
+            continue;
+        };
+        let inner = Record::from_struct(records, 0, None, 0);
+        let mut value = figure(&inner, names, Page::ONLY)?;
+        if value.is_none() && names == CONDITIONS && keys != ["trim"] {
+            value = figure(&inner, &["id"], Page::ONLY)?;
+        }
+        if value.is_none() {
+            continue;
+        }
+        if !record.is_used(field.name) {
+            record.mark_used(field.name);
+            for other in inner.fields() {
+                if !is_fact_name(other.name) {
+                    record.note_unused_inside(format!("{}.{}", field.name, other.name));
+                }
+            }
+        }
+        return Ok(value);
+    }
+    Ok(None)
+}
+
+/// Whether [`facts_of`] reads a field with this name.
+fn is_fact_name(name: &str) -> bool {
+    name == "id"
+        || [AIRSPEEDS, ALTITUDES, MASSES, CONDITIONS]
+            .iter()
+            .any(|names| names.contains(&name))
+}
+
+/// Returns the name beside a model. A single name beside several models is ignored.
+fn name_beside(record: &Record<'_>, page: Page) -> Option<String> {
+    if record.is_shared {
+        return None;
+    }
+    let field = record.find(&["name"])?;
+    let texts = texts_of(field.value)?;
+    let name = match texts.as_slice() {
+        [name] if page.count == 1 => name,
+        names if page.count > 1 && names.len() == page.count => &names[page.index],
+        _ => return None,
+    };
+    if name.is_empty() {
+        return None;
+    }
+    record.mark_used(field.name);
+    Some(name.clone())
+}
+
+/// Returns the origin from a model's record and the enclosing records: role, trim offsets,
+/// identification method. Without a role, objects with a MATLAB class `id…` are identified and all
+/// others are simulated.
+pub(super) fn origin_of(record: &Record<'_>) -> Origin {
+    let role = match text_beside(record, "role") {
+        Some(word) => RowRole::from_word(&word.to_lowercase()),
+        None => None,
+    };
+    let is_identified = record.class.is_some_and(|class| class.starts_with("id"));
+    let offsets = offsets_of(record);
+    let perturbation = if offsets.is_empty() {
+        None
+    } else {
+        Some(offsets)
+    };
+    match role {
+        Some(RowRole::Nominal) => Origin::Nominal { perturbation },
+        Some(RowRole::Perturbed) => Origin::Perturbed { perturbation },
+        None if !is_identified => Origin::Perturbed { perturbation },
+        Some(RowRole::Identified) | None => Origin::Identified {
+            method: text_beside(record, "method"),
+            order: None,
+        },
+    }
+}
+
+/// Returns the single text under `key`, from the innermost record with a text.
+fn text_beside(record: &Record<'_>, key: &str) -> Option<String> {
+    for record in record.with_outer() {
+        let Some(field) = record.find(&[key]) else {
+            continue;
+        };
+        if let Some([text]) = texts_of(field.value).as_deref() {
+            record.mark_used(field.name);
+            return Some(text.clone());
+        }
+    }
+    None
+}
+
+/// Returns the trim offsets by coordinate; inner records take precedence over enclosing ones.
+fn offsets_of(record: &Record<'_>) -> BTreeMap<String, f64> {
+    let mut offsets = BTreeMap::new();
+    for record in record.with_outer() {
+        for field in record.fields() {
+            if let Some(coordinate) = field.name.strip_prefix(OFFSET_PREFIX)
+                && let Some(offset) = scalar_of(field.value)
+            {
+                record.mark_used(field.name);
+                offsets.entry(coordinate.to_owned()).or_insert(offset);
+            }
+        }
+        let Some(field) = record.find(OFFSETS) else {
+            continue;
+        };
+        let Value::Struct(records) = field.value else {
+            continue;
+        };
+        record.mark_used(field.name);
+        let inner = Record::from_struct(records, 0, None, 0);
+        for coordinate in inner.fields() {
+            match scalar_of(coordinate.value) {
+                Some(offset) => {
+                    offsets.entry(coordinate.name.to_owned()).or_insert(offset);
+                }
+                None => record.note_unused_inside(format!("{}.{}", field.name, coordinate.name)),
+            }
+        }
+    }
+    offsets
+}

@@ -1,0 +1,315 @@
+//! Models given by measured frequency responses.
+
+use std::f64::consts::TAU;
+
+use gdcm_model::assembly::FoundModel;
+use gdcm_model::dataset::measured_response::Estimate;
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::unchecked_dataset::{ModelDraft, ResponseArray, ResponseDraft};
+use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit};
+
+use super::delays::refuse_delays;
+use super::flight_condition::{Page, facts_of, origin_of};
+use super::labels::{inputs_of, outputs_of};
+use super::record::Record;
+use super::state_space::source_of;
+use super::values::{array_of, first_text_of, list_of};
+use crate::files::model_collection::bare_draft;
+use crate::formats::variables::Array;
+
+/// Names for complex responses; python-control uses `frdata` and, in earlier versions, `fresp`.
+const RESPONSES: &[&str] = &[
+    "ResponseData",
+    "Response",
+    "frdata",
+    "fresp",
+    "H",
+    "G",
+    "resp",
+    "frf",
+];
+const REAL_PARTS: &[&str] = &["re", "real", "Hre"];
+const IMAGINARY_PARTS: &[&str] = &["im", "imag", "Him"];
+/// Names for frequencies in rad/s.
+const RADIANS: &[&str] = &["omega", "omega_rad_s", "w", "freq_rad_s", "frequency_rad_s"];
+/// Names for frequencies in an unspecified unit.
+const FREQUENCIES: &[&str] = &["Frequency", "freq", "frequencies", "f"];
+/// Names for frequencies in Hz.
+const HERTZ: &[&str] = &["f_hz", "freq_hz", "frequency_hz"];
+const UNITS: &[&str] = &["FrequencyUnit", "FreqUnits", "Units", "frequency_unit"];
+const COHERENCES: &[&str] = &[
+    "coherence",
+    "coher",
+    "coh",
+    "gamma2",
+    "gamma_squared",
+    "Cxy",
+];
+/// Names that programs use for both γ and γ².
+const GAMMAS: &[&str] = &["gamma", "γ"];
+
+/// Whether fields are a frequency response: complex numbers, or real and imaginary parts, with
+/// frequencies.
+pub(super) fn is_response(record: &Record<'_>) -> bool {
+    let frequencies = record
+        .find(RADIANS)
+        .or_else(|| record.find(FREQUENCIES))
+        .or_else(|| record.find(HERTZ));
+    let Some(frequencies) = frequencies else {
+        return false;
+    };
+    let has_frequencies = array_of(frequencies.value).is_some_and(|array| array.len() > 1);
+    has_frequencies && (complex_array(record).is_some() || real_and_imaginary(record).is_some())
+}
+
+/// Returns the field with complex numbers and marks it as used.
+fn complex_array<'v>(record: &Record<'v>) -> Option<&'v Array> {
+    let field = record.find(RESPONSES)?;
+    let array = array_of(field.value)?;
+    array.im.as_ref()?;
+    record.mark_used(field.name);
+    Some(array)
+}
+
+/// Returns the fields with real and imaginary parts and marks them as used.
+fn real_and_imaginary<'v>(record: &Record<'v>) -> Option<(&'v Array, &'v Array)> {
+    let re = record.find(REAL_PARTS)?;
+    let im = record.find(IMAGINARY_PARTS)?;
+    let parts = array_of(re.value).zip(array_of(im.value))?;
+    record.mark_used(re.name);
+    record.mark_used(im.name);
+    Some(parts)
+}
+
+/// Response as the file stores it.
+struct StoredResponse<'v> {
+    re: &'v [f64],
+    im: &'v [f64],
+    shape: &'v [usize],
+}
+
+impl<'v> StoredResponse<'v> {
+    fn find(record: &Record<'v>) -> Result<Self, String> {
+        // Looked up in any case: fields with parts are used up even beside complex numbers.
+        let parts = real_and_imaginary(record);
+        if let Some(array) = complex_array(record) {
+            return Ok(Self {
+                re: &array.re,
+                im: array.im.as_deref().unwrap_or_default(),
+                shape: &array.shape,
+            });
+        }
+        match parts {
+            Some((re, im)) if re.shape == im.shape => Ok(Self {
+                re: &re.re,
+                im: &im.re,
+                shape: &re.shape,
+            }),
+            _ => Err("real and imaginary parts are of different sizes".to_owned()),
+        }
+    }
+}
+
+/// Reads the measured response in `record`.
+pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel, String> {
+    refuse_delays(record)?;
+    let frequencies = Frequencies::read(record)?;
+    let stored = StoredResponse::find(record)?;
+    let layout = ResponseLayout::new(stored.shape, frequencies.omega.len())?;
+    let coherence = coherence_of(record, &stored, &layout)?;
+    let response = ResponseDraft {
+        re: layout.ordered("response", stored.re)?,
+        im: layout.ordered("response", stored.im)?,
+        omega: frequencies.omega,
+        coherence,
+        valid_bands: None,
+        estimate: Estimate::default(),
+    };
+    let origin = match origin_of(record) {
+        Origin::Identified { method, order } => Origin::Identified { method, order },
+        Origin::Nominal { .. } | Origin::Perturbed { .. } => Origin::Identified {
+            method: None,
+            order: None,
+        },
+    };
+    let mut notes = Vec::new();
+    if frequencies.is_hertz {
+        notes.push("frequencies in Hz".to_owned());
+    }
+    Ok(FoundModel {
+        draft: ModelDraft {
+            response: Some(response),
+            source: Some(source_of(variable)),
+            ..bare_draft(variable.to_owned(), origin)
+        },
+        inputs: inputs_of(record, layout.inputs)?,
+        outputs: outputs_of(record, layout.outputs)?,
+        facts: facts_of(record, Page::ONLY)?,
+        notes,
+    })
+}
+
+/// Returns the coherence γ², if the record has it.
+///
+/// # Errors
+/// A coherence that is not as large as the response; a field that may be γ or γ².
+fn coherence_of(
+    record: &Record<'_>,
+    stored: &StoredResponse<'_>,
+    layout: &ResponseLayout,
+) -> Result<Option<ResponseArray>, String> {
+    if let Some(array) = record.get(COHERENCES).and_then(array_of)
+        && !array.is_empty()
+    {
+        if array.len() != stored.re.len() {
+            return Err(format!(
+                "coherence: {} numbers for the {} of the response; write one for each output, input and frequency, or leave it out",
+                array.len(),
+                stored.re.len()
+            ));
+        }
+        return Ok(Some(layout.ordered("coherence", &array.re)?));
+    }
+    match record.find(GAMMAS) {
+        Some(field) => Err(format!(
+            "{}: may be γ or γ²; call γ² gamma2 or coherence, and square γ first",
+            field.name
+        )),
+        None => Ok(None),
+    }
+}
+
+/// Response frequencies.
+struct Frequencies {
+    /// In rad/s.
+    omega: Vec<f64>,
+    /// Whether the file gives them in Hz or a multiple.
+    is_hertz: bool,
+}
+
+impl Frequencies {
+    fn read(record: &Record<'_>) -> Result<Self, String> {
+        let unit_text = record
+            .get(UNITS)
+            .and_then(first_text_of)
+            .unwrap_or_default();
+        let unit = PhysicalUnit::of(&unit_text);
+        let multiple_of_hertz = unit.filter(|unit| unit.dimension == Dimension::Frequency);
+        let angular_rate = unit.filter(|unit| unit.name.starts_with("rad/"));
+        // MATLAB and python-control use rad/s by default.
+        let has_default = record.class.is_some() || record.get(&["frdata", "fresp"]).is_some();
+        let (field, is_hertz) = if let Some(field) = record.find(RADIANS) {
+            (field, multiple_of_hertz.is_some())
+        } else if let Some(field) = record.find(FREQUENCIES) {
+            if unit_text.is_empty() && !has_default {
+                return Err(
+                    "frequencies: unit missing, rad/s or Hz; call them omega_rad_s or f_hz, or give \"rad/s\" or \"Hz\" \
+                        beside them as frequency_unit"
+                        .to_owned(),
+                );
+            }
+            (field, multiple_of_hertz.is_some())
+        } else if let Some(field) = record.find(HERTZ) {
+            (field, true)
+        } else {
+            return Err("frequencies are missing".to_owned());
+        };
+        let values = list_of("frequencies", record.take(field))?;
+        let factor = if is_hertz {
+            match multiple_of_hertz {
+                Some(unit) => TAU * unit.size,
+                None => TAU * 1.0,
+            }
+        } else if let Some(unit) = angular_rate {
+            unit.size
+        } else {
+            match unit_text.to_lowercase().as_str() {
+                "" | "rad" | "rads" | "rad/timeunit" => 1.0,
+                other => {
+                    return Err(format!(
+                        "frequencies are in \"{other}\"; expected rad/s or Hz"
+                    ));
+                }
+            }
+        };
+        Ok(Self {
+            omega: values.into_iter().map(|value| value * factor).collect(),
+            is_hertz,
+        })
+    }
+}
+
+/// Order in which a response's numbers are stored.
+struct ResponseLayout {
+    outputs: usize,
+    inputs: usize,
+    /// Frequency count.
+    count: usize,
+    output_stride: usize,
+    input_stride: usize,
+    frequency_stride: usize,
+}
+
+impl ResponseLayout {
+    /// Finds the layout for `count` frequencies along the last index as in MATLAB, or along its
+    /// first as in NumPy. A single response may be a row or a column.
+    fn new(shape: &[usize], count: usize) -> Result<Self, String> {
+        match *shape {
+            [outputs, inputs, last] if last == count => Ok(Self {
+                outputs,
+                inputs,
+                count,
+                output_stride: 1,
+                input_stride: outputs,
+                frequency_stride: outputs * inputs,
+            }),
+            [first, outputs, inputs] if first == count => Ok(Self {
+                outputs,
+                inputs,
+                count,
+                output_stride: count,
+                input_stride: count * outputs,
+                frequency_stride: 1,
+            }),
+            [rows, columns] if rows * columns == count => Ok(Self {
+                outputs: 1,
+                inputs: 1,
+                count,
+                output_stride: 0,
+                input_stride: 0,
+                frequency_stride: 1,
+            }),
+            _ => {
+                let found: Vec<String> = shape.iter().map(usize::to_string).collect();
+                Err(format!(
+                    "the response: expected outputs x inputs x {count} frequencies, found {}",
+                    found.join(" x ")
+                ))
+            }
+        }
+    }
+
+    /// Reorders values to outputs x inputs x frequencies, frequency index fastest; refuses values
+    /// that are not finite.
+    fn ordered(&self, name: &str, values: &[f64]) -> Result<ResponseArray, String> {
+        let mut ordered = Vec::with_capacity(values.len());
+        for output in 0..self.outputs {
+            for input in 0..self.inputs {
+                let start = output * self.output_stride + input * self.input_stride;
+                for k in 0..self.count {
+                    ordered.push(values[start + k * self.frequency_stride]);
+                }
+            }
+        }
+        if let Some(at) = ordered.iter().position(|value| !value.is_finite()) {
+            return Err(format!(
+                "{name}, frequency {}: expected a finite number",
+                at % self.count + 1
+            ));
+        }
+        Ok(ResponseArray {
+            shape: [self.outputs, self.inputs, self.count],
+            values: ordered,
+        })
+    }
+}

@@ -1,0 +1,218 @@
+//! Channel and state names, and channel units, that accompany a model.
+
+use gdcm_model::assembly::ChannelLabel;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::names::signed_name::parse_direction;
+
+use super::record::Record;
+use super::values::{first_text_of, texts_of};
+use crate::formats::variables::{StructArray, Value};
+
+const INPUT_NAMES: &[&str] = &[
+    "InputName",
+    "inputs",
+    "inname",
+    "input_names",
+    "input_labels",
+    "InputLabels",
+    "u_names",
+    "unames",
+    "input",
+];
+const OUTPUT_NAMES: &[&str] = &[
+    "OutputName",
+    "outputs",
+    "outname",
+    "output_names",
+    "output_labels",
+    "OutputLabels",
+    "y_names",
+    "ynames",
+    "output",
+];
+const INPUT_UNITS: &[&str] = &["InputUnit", "input_units", "InputUnits", "u_units"];
+const OUTPUT_UNITS: &[&str] = &["OutputUnit", "output_units", "OutputUnits", "y_units"];
+const STATE_NAMES: &[&str] = &[
+    "StateName",
+    "stname",
+    "states",
+    "state_names",
+    "state_labels",
+    "x_names",
+    "xnames",
+];
+/// Fields with the name in a channel object.
+const LABEL_NAMES: &[&str] = &["name", "label", "id", "channel"];
+const LABEL_UNITS: &[&str] = &["unit", "units"];
+
+/// Returns the labels for `count` inputs.
+pub(super) fn inputs_of(record: &Record<'_>, count: usize) -> Result<Vec<ChannelLabel>, String> {
+    labels(record, ChannelSide::Input, count)
+}
+
+/// Returns the labels for `count` outputs.
+pub(super) fn outputs_of(record: &Record<'_>, count: usize) -> Result<Vec<ChannelLabel>, String> {
+    labels(record, ChannelSide::Output, count)
+}
+
+/// Returns the state names; none unless each of the `order` states has a name.
+pub(super) fn states_of(record: &Record<'_>, order: usize) -> Vec<String> {
+    let names = record
+        .get(STATE_NAMES)
+        .and_then(texts_of)
+        .unwrap_or_default();
+    if names.len() == order && names.iter().all(|name| !name.is_empty()) {
+        names
+    } else {
+        Vec::new()
+    }
+}
+
+/// Returns the labels for `count` channels on one side: those beside the model, or those of an
+/// enclosing record with the same count.
+///
+/// # Errors
+/// A list beside the model with another count, and a list without an order: channels are never
+/// assigned by guess.
+fn labels(
+    record: &Record<'_>,
+    side: ChannelSide,
+    count: usize,
+) -> Result<Vec<ChannelLabel>, String> {
+    let names = list_of_labels(record, side.of(INPUT_NAMES, OUTPUT_NAMES), side, count)?;
+    let units = list_of_labels(record, side.of(INPUT_UNITS, OUTPUT_UNITS), side, count)?;
+    let names = names.unwrap_or_else(|| vec![String::new(); count]);
+    let mut labels: Vec<ChannelLabel> = names.iter().map(|name| label_of(name)).collect();
+    for (label, unit) in labels.iter_mut().zip(units.into_iter().flatten()) {
+        if !unit.is_empty() {
+            label.unit = Some(unit);
+        }
+    }
+    Ok(labels)
+}
+
+/// Returns the names or units under the first existing key, searching the record and then its
+/// enclosing records; missing entries are empty texts.
+fn list_of_labels(
+    record: &Record<'_>,
+    keys: &[&str],
+    side: ChannelSide,
+    count: usize,
+) -> Result<Option<Vec<String>>, String> {
+    for (level, record) in record.with_outer().enumerate() {
+        let Some(field) = record.find(keys) else {
+            continue;
+        };
+        let name = field.name;
+        let Some(mut texts) = label_texts(name, field.value)? else {
+            continue;
+        };
+        // A single text may list the channels: "LON, LAT, PED".
+        if count > 1 && texts.len() == 1 && texts[0].split(',').count() == count {
+            texts = texts[0]
+                .split(',')
+                .map(|text| text.trim().to_owned())
+                .collect();
+        }
+        if texts.iter().all(String::is_empty) {
+            record.mark_used(name);
+        } else if texts.len() == count {
+            record.mark_used(name);
+            return Ok(Some(texts));
+        } else if level == 0 {
+            return Err(format!(
+                "{name}: {} entries for the {count} {side}s of the model; write one for each, in the order of the matrices",
+                texts.len()
+            ));
+        }
+    }
+    Ok(None)
+}
+
+/// Returns the labels in a value as texts: a list with texts, or with objects that have a name and
+/// a unit as in a dataset file; `None` for numbers.
+fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String> {
+    if let Some(texts) = texts_of(value) {
+        return Ok(Some(texts));
+    }
+    let labels = match value {
+        Value::Struct(records) => {
+            let count = records.shape.iter().product::<usize>();
+            (0..count)
+                .map(|index| channel_object_text(records, index))
+                .collect::<Option<Vec<String>>>()
+        }
+        Value::Cell(cell)
+            if cell
+                .values
+                .iter()
+                .all(|value| matches!(value, Value::Array(_))) =>
+        {
+            return Ok(None);
+        }
+        Value::Cell(cell) => {
+            let mut records = Vec::with_capacity(cell.values.len());
+            for value in &cell.values {
+                let Value::Struct(record) = value else {
+                    return Err(format!(
+                        "{field}: expected the names of channels, found {}",
+                        value.words()
+                    ));
+                };
+                records.push(record);
+            }
+            records
+                .into_iter()
+                .map(|record| channel_object_text(record, 0))
+                .collect::<Option<Vec<String>>>()
+        }
+        Value::Array(_) | Value::Text(_) | Value::Object(_) | Value::Opaque { .. } => {
+            return Ok(None);
+        }
+    };
+    match labels {
+        Some(labels) => Ok(Some(labels)),
+        None => Err(format!(
+            "{field}: its channels have no order or no names; write a list of names, or of {{\"name\": …, \"unit\": …}}, in the \
+             order of the matrices"
+        )),
+    }
+}
+
+/// Returns the label of a channel object as text, with its unit in brackets: "P [deg/s]".
+fn channel_object_text(records: &StructArray, index: usize) -> Option<String> {
+    let record = Record::from_struct(records, index, None, 0);
+    let name = record.get(LABEL_NAMES).and_then(first_text_of)?;
+    let unit = record
+        .get(LABEL_UNITS)
+        .and_then(first_text_of)
+        .unwrap_or_default();
+    if unit.is_empty() || label_of(&name).unit.is_some() {
+        Some(name)
+    } else {
+        Some(format!("{name} [{unit}]"))
+    }
+}
+
+/// Parses a label: "P", "P [deg/s]", "P (deg/s)".
+pub(in crate::import) fn label_of(text: &str) -> ChannelLabel {
+    let text = text.trim();
+    for (open, close) in [('[', ']'), ('(', ')')] {
+        if let Some((name, unit)) = text
+            .strip_suffix(close)
+            .and_then(|text| text.split_once(open))
+            && !name.trim().is_empty()
+            && !unit.trim().is_empty()
+            && parse_direction(unit).is_none()
+        {
+            return ChannelLabel {
+                name: Some(name.trim().to_owned()),
+                unit: Some(unit.trim().to_owned()),
+            };
+        }
+    }
+    ChannelLabel {
+        name: Some(text.to_owned()).filter(|name| !name.is_empty()),
+        unit: None,
+    }
+}

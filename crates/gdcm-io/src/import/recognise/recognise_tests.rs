@@ -1,0 +1,590 @@
+//! Tests of recognised models, with values as the readers of formats give them.
+
+use gdcm_model::assembly::ChannelLabel;
+use gdcm_model::dataset::model::Origin;
+
+use super::*;
+use crate::formats::variables::{
+    Array, CellArray, ElementKind, Object, StructArray, TextArray, Value,
+};
+
+fn numbers(rows: usize, columns: usize, values: &[f64]) -> Value {
+    Value::Array(Array::matrix(rows, columns, values.to_vec()))
+}
+
+fn variable(name: &str, value: Value) -> Variable {
+    Variable {
+        name: name.to_owned(),
+        value,
+    }
+}
+
+fn record(fields: Vec<(&str, Value)>) -> StructArray {
+    let fields = fields
+        .into_iter()
+        .map(|(name, value)| (name.to_owned(), vec![value]))
+        .collect();
+    StructArray {
+        shape: vec![1, 1],
+        fields,
+    }
+}
+
+fn model(gain: f64) -> Vec<(&'static str, Value)> {
+    let scalar = |value: f64| numbers(1, 1, &[value]);
+    vec![
+        ("A", scalar(-1.0)),
+        ("B", scalar(gain)),
+        ("C", scalar(1.0)),
+        ("D", scalar(0.0)),
+    ]
+}
+
+fn recognise(variables: &[Variable]) -> Found<FoundModel> {
+    super::recognise(variables, false, &ReadingBudget::new(1 << 20)).unwrap()
+}
+
+fn gains(found: &Found<FoundModel>) -> Vec<(String, f64)> {
+    let gain = |model: &FoundModel| {
+        (
+            model.variable().to_owned(),
+            model.draft.matrices[1].as_ref().unwrap()[(0, 0)],
+        )
+    };
+    found.items.iter().map(gain).collect()
+}
+
+#[test]
+fn models_are_found_in_structs_cells_struct_arrays_and_suffixed_matrices() {
+    let of_two = StructArray {
+        shape: vec![1, 2],
+        fields: [("A", -1.0), ("B", 3.0), ("C", 1.0), ("D", 0.0)]
+            .map(|(name, value)| {
+                (
+                    name.to_owned(),
+                    vec![numbers(1, 1, &[value]), numbers(1, 1, &[value])],
+                )
+            })
+            .into(),
+    };
+    let in_cell = CellArray {
+        shape: vec![1, 1],
+        values: vec![Value::Struct(record(model(2.0)))],
+    };
+    let nested = record(vec![
+        ("sys", Value::Struct(record(model(1.0)))),
+        ("all", Value::Cell(in_cell)),
+    ]);
+    let found = recognise(&[
+        variable("c1", Value::Struct(nested)),
+        variable("more", Value::Struct(of_two)),
+    ]);
+    let expected = [
+        ("c1.sys", 1.0),
+        ("c1.all{1}", 2.0),
+        ("more(1)", 3.0),
+        ("more(2)", 3.0),
+    ];
+    assert_eq!(
+        gains(&found),
+        expected.map(|(name, gain)| (name.to_owned(), gain))
+    );
+    let loose: Vec<Variable> = model(4.0)
+        .into_iter()
+        .map(|(name, value)| variable(name, value))
+        .collect();
+    assert_eq!(gains(&recognise(&loose)), [(String::new(), 4.0)]);
+    let suffixed: Vec<Variable> = model(5.0)
+        .into_iter()
+        .map(|(name, value)| variable(&format!("{name}_nom"), value))
+        .collect();
+    assert_eq!(gains(&recognise(&suffixed)), [("nom".to_owned(), 5.0)]);
+}
+
+#[test]
+fn stacked_matrices_are_models_and_share_single_matrices() {
+    let pages = Array {
+        shape: vec![1, 1, 2],
+        kind: ElementKind::Float,
+        re: vec![7.0, 8.0],
+        im: None,
+    };
+    let a = Array {
+        shape: vec![1, 1, 2],
+        kind: ElementKind::Float,
+        re: vec![-1.0, -2.0],
+        im: None,
+    };
+    let mut fields = model(0.0);
+    (fields[0].1, fields[1].1) = (Value::Array(a), Value::Array(pages));
+    let found = recognise(&[variable("sys", Value::Struct(record(fields)))]);
+    assert_eq!(
+        gains(&found),
+        [
+            ("sys(:,:,1)".to_owned(), 7.0),
+            ("sys(:,:,2)".to_owned(), 8.0)
+        ]
+    );
+}
+
+#[test]
+fn an_object_of_matlab_keeps_its_numbers_inside_and_its_names_outside() {
+    let text = |text: &str| {
+        Value::Text(TextArray {
+            shape: vec![1, 1],
+            texts: vec![text.to_owned()],
+        })
+    };
+    let lower = model(6.0)
+        .into_iter()
+        .map(|(name, value)| (name.to_lowercase(), vec![value]));
+    let ts = ("Ts".to_owned(), vec![numbers(1, 1, &[0.5])]);
+    let data = StructArray {
+        shape: vec![1, 1],
+        fields: lower.chain([ts]).collect(),
+    };
+    let data = Object {
+        class: "ltipack.ssdata".to_owned(),
+        records: data,
+    };
+    let names = CellArray {
+        shape: vec![1, 1],
+        values: vec![text("LAT")],
+    };
+    let fields = vec![
+        ("InputName_", Value::Cell(names)),
+        ("Data_", Value::Object(data)),
+    ];
+    let found = recognise(&[variable(
+        "s",
+        Value::Object(Object {
+            class: "ss".to_owned(),
+            records: record(fields),
+        }),
+    )]);
+    assert_eq!(gains(&found), [("s".to_owned(), 6.0)]);
+    assert_eq!(found.items[0].inputs[0].name.as_deref(), Some("LAT"));
+    assert_eq!(found.items[0].draft.timing.sample_time_s, Some(0.5));
+}
+
+#[test]
+fn a_faulty_model_is_reported_with_its_place() {
+    let of = |change: fn(&mut Vec<(&'static str, Value)>)| {
+        let mut fields = model(1.0);
+        change(&mut fields);
+        recognise(&[variable("sys", Value::Struct(record(fields)))])
+            .faults
+            .join("; ")
+    };
+    assert_eq!(
+        of(|fields| fields[1].1 = numbers(2, 1, &[1.0, 1.0])),
+        "sys: B: expected 1 x 1, found 2 x 1"
+    );
+    let not_finite = of(|fields| fields[0].1 = numbers(1, 1, &[f64::NAN]));
+    assert_eq!(
+        not_finite,
+        "sys: A, row 1, column 1: expected a finite number, found NaN"
+    );
+    assert!(of(|fields| fields.push(("Ts", numbers(1, 1, &[-1.0])))).contains("set Ts"));
+    assert!(of(|fields| fields.push(("InternalDelay", numbers(1, 1, &[0.1])))).contains("absorb"));
+    let opaque = Value::Opaque {
+        class: "ss".to_owned(),
+        why: "write A, B, C, D".to_owned(),
+    };
+    assert_eq!(
+        recognise(&[variable("x", opaque)]).faults,
+        ["x (ss): write A, B, C, D"]
+    );
+}
+
+fn json(text: &str) -> Found<FoundModel> {
+    let found = crate::import::model_files::models_of_bytes(
+        text.as_bytes(),
+        "c1_90kt/m.json",
+        &ReadingBudget::new(1 << 24),
+    )
+    .unwrap();
+    let unused = found.unused.into_values().flatten().collect();
+    Found {
+        items: found.models,
+        faults: found.faults,
+        ignored: found.ignored,
+        unused,
+    }
+}
+
+/// Two inputs and two outputs beside further members.
+fn beside(members: &str) -> Found<FoundModel> {
+    json(&format!(
+        r#"{{"A": [[-1, 0], [0, -2]], "B": [[1, 0], [0, 2]], "C": [[1, 0], [0, 1]], "D": [[0, 0], [0, 0]], {members}}}"#
+    ))
+}
+
+fn delays(found: &Found<FoundModel>) -> [Option<Vec<f64>>; 2] {
+    assert_eq!(found.faults, Vec::<String>::new());
+    let timing = &found.items[0].draft.timing;
+    [
+        timing.input_delays_s.clone(),
+        timing.output_delays_s.clone(),
+    ]
+}
+
+#[test]
+fn delays_are_read_under_every_name_with_known_signals_and_unit() {
+    for member in [
+        r#""InputDelay": [0.03, 0.05]"#,
+        r#""InputDelays": [0.03, 0.05]"#,
+        r#""InputDelay(s)": [0.03, 0.05]"#,
+        r#""input_delay": [0.03, 0.05]"#,
+        r#""input_delays": [0.03, 0.05]"#,
+        r#""input_delay_s": [0.03, 0.05]"#,
+        r#""input_delays_s": [0.03, 0.05]"#,
+        r#""input_delay_ms": [30, 50]"#,
+        r#""input_delays_ms": [30, 50]"#,
+        r#""ioDelay": [[0.03, 0.05], [0.03, 0.05]]"#,
+    ] {
+        let [inputs, outputs] = delays(&beside(member));
+        let inputs = inputs.unwrap_or_else(|| panic!("{member}"));
+        let differs = inputs
+            .iter()
+            .zip([0.03, 0.05])
+            .any(|(found, expected)| (found - expected).abs() > 1e-15);
+        assert!(
+            !differs && outputs.is_none_or(|outputs| outputs == [0.0, 0.0]),
+            "{member}: {inputs:?}"
+        );
+    }
+    let [inputs, outputs] = delays(&beside(
+        r#""TransportDelay": [[0.03, 0.05], [0.04, 0.06]], "InputDelay": 0.01"#,
+    ));
+    let near = |found: Option<Vec<f64>>, expected: [f64; 2]| {
+        found
+            .unwrap()
+            .iter()
+            .zip(expected)
+            .all(|(found, expected)| (found - expected).abs() < 1e-15)
+    };
+    assert!(
+        near(inputs, [0.04, 0.06]) && near(outputs, [0.0, 0.01]),
+        "split, and added to those of the inputs"
+    );
+    let noted = beside(r#""input_delays": [0.03, 0.05]"#)
+        .items
+        .remove(0)
+        .notes;
+    assert!(
+        noted
+            .iter()
+            .any(|note| note.contains("input_delays taken to be in s")),
+        "{noted:?}"
+    );
+    assert_eq!(
+        delays(&beside(r#""tau": [0, 0], "delays": []"#)),
+        [None, None],
+        "zeros ask for nothing"
+    );
+}
+
+#[test]
+fn an_ambiguous_delay_is_refused_with_a_question() {
+    for (member, question) in [
+        (r#""tau": 0.03"#, "tau looks like a delay"),
+        (r#""tau_i": [0.03, 0.05]"#, "tau_i looks like a delay"),
+        (r#""tau_ms": 30"#, "tau_ms looks like a delay"),
+        (r#""Td": 0.03"#, "Td looks like a delay"),
+        (r#""delay_in": [0.03, 0.05]"#, "delay_in looks like a delay"),
+        (r#""delays": {"LON": 0.03}"#, "delays looks like a delay"),
+        (r#""time_delay": 0.03"#, "time_delay looks like a delay"),
+        (
+            r#""input_delay": [30, 50]"#,
+            "50 can be seconds or milliseconds",
+        ),
+        (
+            r#""input_delay": [0.02, 0.04], "Ts": 0.02"#,
+            "seconds or samples",
+        ),
+        (
+            r#""InputDelay": [0.02, 0.05], "Ts": 0.02"#,
+            "not whole numbers",
+        ),
+        (
+            r#""ioDelay": [[0.03, 0.05], [0.03, 0.06]]"#,
+            "are not the sum",
+        ),
+        (
+            r#""TransportDelay": [0.03, 0.05, 0.07]"#,
+            "2 x 2 (outputs x inputs)",
+        ),
+        (
+            r#""input_delays_s": [0.03, 0.05, 0.07]"#,
+            "expected 2 delays",
+        ),
+        (
+            r#""InputDelay": [0.03, 0.05], "input_delays_ms": [30, 40]"#,
+            "a second time",
+        ),
+        (r#""TimeUnit": "milliseconds""#, "chgTimeUnit"),
+    ] {
+        let found = beside(member);
+        assert!(found.items.is_empty(), "{member}: never dropped");
+        assert!(
+            found.faults[0].contains(question),
+            "{member}: {:?}",
+            found.faults
+        );
+    }
+    let outside = json(
+        r#"{"sys": {"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]]}, "input_delays_s": 0.03}"#,
+    );
+    assert!(
+        outside.items.is_empty() && outside.faults[0].contains("delay without a model"),
+        "{:?}",
+        outside.faults
+    );
+    let model = r#""A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]]"#;
+    let own = json(&format!(
+        r#"{{"format": "gdcm-models", "version": 1, "models": [{{"name": "m", {model}, "input_delay_ms": [30]}}]}}"#
+    ));
+    assert_eq!(
+        delays(&own),
+        [Some(vec![0.03]), None],
+        "a file of this program made by hand"
+    );
+}
+
+#[test]
+fn models_in_suffixed_matrices_have_their_own_delays() {
+    let mut variables = Vec::new();
+    for (suffix, delay) in [("_nom", 0.03), ("_pert", 0.05)] {
+        for (name, value) in model(1.0) {
+            variables.push(variable(&format!("{name}{suffix}"), value));
+        }
+        variables.push(variable(
+            &format!("InputDelay{suffix}"),
+            numbers(1, 1, &[delay]),
+        ));
+    }
+    let found = recognise(&variables);
+    assert_eq!(found.faults, Vec::<String>::new());
+    let delays: Vec<Option<Vec<f64>>> = found
+        .items
+        .iter()
+        .map(|model| model.draft.timing.input_delays_s.clone())
+        .collect();
+    assert_eq!(delays, [Some(vec![0.03]), Some(vec![0.05])]);
+    assert_eq!(found.unused, Vec::<String>::new());
+}
+
+#[test]
+fn unused_variables_are_listed_once_for_a_file() {
+    let found = beside(
+        r#""Q": [[1]], "author": "me", "trim": {"airspeed_kt": 90, "theta_deg": 3}, "airspeed_kt": 90"#,
+    );
+    assert_eq!(found.unused, ["Q", "author", "trim.theta_deg"]);
+    assert_eq!(
+        found.items[0].draft.source.as_ref().unwrap().unused,
+        found.unused
+    );
+    let model = r#"{"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]], "torque": 7}"#;
+    let several = json(&format!(
+        r#"{{"models": [{model}, {model}], "more": [1, 2]}}"#
+    ));
+    assert_eq!(several.unused, ["more", "models{:}.torque"]);
+    let listed: Vec<usize> = several
+        .items
+        .iter()
+        .map(|model| model.draft.source.as_ref().unwrap().unused.len())
+        .collect();
+    assert_eq!(listed, [2, 0], "by the first model of the file");
+}
+
+#[test]
+fn channels_are_objects_with_a_name_and_a_unit_too_and_a_wrong_number_of_them_is_refused() {
+    let label = |name: &str, unit: &str| ChannelLabel {
+        name: Some(name.into()),
+        unit: Some(unit.into()),
+    };
+    let members = r#""inputs": [{"name": "delta_ped", "unit": "in"}, {"name": "delta_lat", "unit": "in"}],
+        "outputs": [{"name": "R", "unit": "rad/s"}, {"name": "P", "unit": "rad/s"}]"#;
+    let found = beside(members);
+    assert_eq!(
+        found.items[0].inputs,
+        [label("delta_ped", "in"), label("delta_lat", "in")],
+        "{:?}",
+        found.faults
+    );
+    assert_eq!(
+        found.items[0].outputs,
+        [label("R", "rad/s"), label("P", "rad/s")]
+    );
+    let own = json(&format!(
+        r#"{{"format": "gdcm-models", "version": 1, "models": [{{"name": "m", "A": [[-1]], "B": [[1, 2]], "C": [[1], [2]],
+            "D": [[0, 0], [0, 0]], {members}}}]}}"#
+    ));
+    assert_eq!(
+        own.items[0].inputs,
+        [label("delta_ped", "in"), label("delta_lat", "in")],
+        "{:?}",
+        own.faults
+    );
+    let around = json(&format!(
+        r#"{{"sys": {{"A": [[-1]], "B": [[1, 2]], "C": [[1], [2]], "D": [[0, 0], [0, 0]]}}, {members}}}"#
+    ));
+    assert_eq!(
+        around.items[0].inputs,
+        [label("delta_ped", "in"), label("delta_lat", "in")],
+        "{:?}",
+        around.faults
+    );
+    for wrong in [
+        r#""inputs": ["LON"]"#,
+        r#""inputs": {"LON": "in", "LAT": "in"}"#,
+        r#""inputs": ["LON", 3]"#,
+    ] {
+        let found = beside(wrong);
+        assert!(
+            found.items.is_empty() && found.faults[0].contains("inputs"),
+            "{wrong}: {:?}",
+            found.faults
+        );
+    }
+}
+
+#[test]
+fn the_condition_beside_a_model_is_used_and_contradictions_are_refused() {
+    let found = beside(
+        r#""airspeed_kt": 70, "name": "bank", "perturbation": {"roll_deg": 5}, "mass_kg": 6600"#,
+    );
+    let model = &found.items[0];
+    assert_eq!(
+        (model.facts.airspeed_kt, model.facts.mass_kg),
+        (Some(70.0), Some(6600.0))
+    );
+    assert_eq!(model.facts.name.as_deref(), Some("bank"));
+    let perturbation = [("roll_deg".to_owned(), 5.0)].into();
+    assert_eq!(
+        model.draft.origin,
+        Origin::Perturbed {
+            perturbation: Some(perturbation)
+        }
+    );
+    let model = r#"{"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]]}"#;
+    let around = json(&format!(
+        r#"{{"airspeed_kt": 70, "role": "nominal", "sys": {model}}}"#
+    ));
+    assert_eq!(around.items[0].facts.airspeed_kt, Some(70.0));
+    assert_eq!(
+        around.items[0].draft.origin,
+        Origin::Nominal { perturbation: None }
+    );
+    let differing = json(
+        r#"{"airspeed_kt": 70, "sys": {"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]], "airspeed_kt": 90}}"#,
+    );
+    assert!(
+        differing.faults[0].contains("contradictory values 90 and 70"),
+        "{:?}",
+        differing.faults
+    );
+}
+
+#[test]
+fn a_stack_and_a_struct_array_say_the_airspeed_of_each_model() {
+    let stack = json(
+        r#"{"A": [[[-1]], [[-2]], [[-3]]], "B": [[1]], "C": [[1]], "D": [[0]], "airspeed_kt": [60, 80, 100]}"#,
+    );
+    let airspeeds = |found: &Found<FoundModel>| -> Vec<Option<f64>> {
+        found
+            .items
+            .iter()
+            .map(|model| model.facts.airspeed_kt)
+            .collect()
+    };
+    assert_eq!(
+        airspeeds(&stack),
+        [Some(60.0), Some(80.0), Some(100.0)],
+        "{:?}",
+        stack.faults
+    );
+    let assembly =
+        gdcm_model::assembly::Assembly::new(stack.items, gdcm_model::assembly::Rules::default());
+    let conditions: Vec<Option<i64>> = assembly
+        .parts()
+        .iter()
+        .map(|part| part.row.condition)
+        .collect();
+    assert_eq!(conditions, [Some(1); 3], "the folder says a number");
+    let short =
+        json(r#"{"A": [[[-1]], [[-2]], [[-3]]], "B": [[1]], "C": [[1]], "airspeed_kt": [60, 80]}"#);
+    assert!(
+        short.items.is_empty() && short.faults[0].contains("2 numbers for 3 models"),
+        "{:?}",
+        short.faults
+    );
+}
+
+#[test]
+fn gamma_a_bare_f_and_coherence_of_another_size_are_asked_about_beside_a_response() {
+    let of = |members: &str| {
+        let found = json(&format!(
+            r#"{{"re": [1, 2, 3], "im": [0, 1, 2], {members}}}"#
+        ));
+        (found.items.len(), found.faults.join("; "))
+    };
+    assert_eq!(
+        of(r#""w": [1, 2, 3], "COHER": [1, 0.9, 0.8]"#),
+        (1, String::new())
+    );
+    assert!(
+        of(r#""w": [1, 2, 3], "gamma": [1, 0.9, 0.8]"#)
+            .1
+            .contains("may be γ or γ²")
+    );
+    assert!(
+        of(r#""w": [1, 2, 3], "coherence": [1, 0.9]"#)
+            .1
+            .contains("2 numbers for the 3")
+    );
+    assert!(
+        of(r#""f": [1, 2, 3]"#)
+            .1
+            .contains("unit missing, rad/s or Hz")
+    );
+    assert!(
+        of(r#""f": [1, 2, 3], "frequency_unit": "rps""#)
+            .1
+            .contains("expected rad/s or Hz")
+    );
+    assert_eq!(
+        of(r#""f": [1, 2, 3], "frequency_unit": "Hz""#),
+        (1, String::new())
+    );
+    assert!(
+        of(r#""w": [1, 2, 3], "InputDelay": 0.03"#)
+            .1
+            .contains("has its delays in it")
+    );
+}
+
+#[test]
+fn a_response_of_several_channels_is_put_in_order() {
+    // Two outputs, one input, three frequencies: the first index is fastest.
+    let response = Array {
+        shape: vec![2, 1, 3],
+        kind: ElementKind::Float,
+        re: vec![1.0, 10.0, 2.0, 20.0, 3.0, 30.0],
+        im: Some(vec![0.0; 6]),
+    };
+    let text = Value::Text(TextArray {
+        shape: vec![1, 1],
+        texts: vec!["Hz".to_owned()],
+    });
+    let fields = vec![
+        ("ResponseData", Value::Array(response)),
+        ("Frequency", numbers(1, 3, &[1.0, 2.0, 3.0])),
+        ("FrequencyUnit", text),
+    ];
+    let found = recognise(&[variable("h", Value::Struct(record(fields)))]);
+    let response = found.items[0].draft.response.as_ref().unwrap();
+    assert_eq!(response.re.values, [1.0, 2.0, 3.0, 10.0, 20.0, 30.0]);
+    assert_eq!(response.omega[0], std::f64::consts::TAU);
+}

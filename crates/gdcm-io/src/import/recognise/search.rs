@@ -1,0 +1,254 @@
+//! Search for models or records through structs, objects, cells and arrays.
+
+use std::collections::BTreeSet;
+use std::rc::Rc;
+
+use gdcm_model::dataset::limits::MOST_PIECES;
+
+use super::record::Record;
+use super::{DEEPEST, MOST_FOUND, STEPS};
+use crate::formats::variables::{StructArray, Value, Variable};
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+/// Largest number of variables listed if nothing is found.
+const MOST_LISTED: usize = 20;
+
+/// Models or records found among variables.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Found<T> {
+    /// The models or records; their sources give only the variable.
+    pub(crate) items: Vec<T>,
+    /// Candidates that cannot be used, with place and reason.
+    pub(crate) faults: Vec<String>,
+    /// Descriptions of contents that are not candidates.
+    pub(crate) ignored: Vec<String>,
+    /// Unused variables beside and inside the results.
+    pub(crate) unused: Vec<String>,
+}
+
+impl<T> Default for Found<T> {
+    fn default() -> Self {
+        Self {
+            items: Vec::new(),
+            faults: Vec::new(),
+            ignored: Vec::new(),
+            unused: Vec::new(),
+        }
+    }
+}
+
+impl<T> Found<T> {
+    /// Adds the results in a variable; the variable is empty for the whole file.
+    pub(super) fn add(&mut self, variable: &str, items: Vec<Result<T, String>>) {
+        for item in items {
+            match item {
+                Ok(item) => self.items.push(item),
+                Err(reason) if variable.is_empty() => self.faults.push(reason),
+                Err(reason) => self.faults.push(format!("{variable}: {reason}")),
+            }
+        }
+    }
+
+    fn is_nothing(&self) -> bool {
+        self.items.is_empty() && self.faults.is_empty()
+    }
+}
+
+/// Recognises a record's fields, given the variable name; `None` if they are not of the sought
+/// kind.
+pub(super) type Recognise<'r, T> = &'r dyn Fn(&Record<'_>, &str) -> Option<Vec<Result<T, String>>>;
+
+/// Finds everything that `recognise` accepts among variables: first all variables together, then
+/// each variable, from outside in.
+pub(crate) fn search<T>(
+    variables: &[Variable],
+    budget: &ReadingBudget<'_>,
+    recognise: Recognise<'_, T>,
+) -> Result<Found<T>, VariableFault> {
+    let mut search = Search {
+        found: Found::default(),
+        recognise,
+        budget,
+    };
+    let whole = Rc::new(Record::from_variables(variables));
+    search.try_record(&whole, "")?;
+    let is_whole_file_nothing = search.found.is_nothing();
+    let mut empty = BTreeSet::new();
+    for variable in variables {
+        if !search.descend(&variable.name, &variable.value, DEEPEST, &whole)? {
+            empty.insert(variable.name.as_str());
+        }
+    }
+    let mut found = search.found;
+    found.unused.splice(0..0, unused_among(&whole, &empty));
+    let is_nothing = found.is_nothing();
+    let not_candidates = variables.iter().filter(|variable| {
+        is_nothing || is_whole_file_nothing && matches!(variable.value, Value::Array(_))
+    });
+    for variable in not_candidates.take(MOST_LISTED) {
+        found
+            .ignored
+            .push(format!("{}: {}", variable.name, variable.value.words()));
+    }
+    Ok(found)
+}
+
+/// Returns a record's unused fields that hold no result themselves; `empty` are the fields without
+/// results. Paths into structs are unused in any case.
+fn unused_among(record: &Record<'_>, empty: &BTreeSet<&str>) -> Vec<String> {
+    let mut unused = record.unused();
+    unused.retain(|name| empty.contains(name.as_str()) || name.contains('.'));
+    unused
+}
+
+struct Search<'r, T> {
+    found: Found<T>,
+    recognise: Recognise<'r, T>,
+    budget: &'r ReadingBudget<'r>,
+}
+
+impl<T> Search<'_, T> {
+    /// Adds the results from a record's fields; returns whether the fields are recognised.
+    fn try_record(&mut self, record: &Record<'_>, variable: &str) -> Result<bool, VariableFault> {
+        self.budget
+            .work(STEPS * record.fields().count() as u64, variable)?;
+        let Some(items) = (self.recognise)(record, variable) else {
+            return Ok(false);
+        };
+        // Each result copies its numbers.
+        for field in record.fields() {
+            if let Value::Array(array) = field.value {
+                self.budget.take(array.len() as u64, 16, variable)?;
+            }
+        }
+        self.found.add(variable, items);
+        Ok(true)
+    }
+
+    /// Searches a value and its contents, at most `levels` deep; `outer` is the record with this
+    /// field. Returns whether anything was found.
+    fn descend<'v>(
+        &mut self,
+        name: &str,
+        value: &'v Value,
+        levels: usize,
+        outer: &Rc<Record<'v>>,
+    ) -> Result<bool, VariableFault> {
+        self.budget.work(STEPS, name)?;
+        if levels == 0 || self.found.items.len() >= MOST_FOUND {
+            self.add_fault(format!(
+                "{name}: too many values, or values nested too deeply"
+            ))?;
+            return Ok(true);
+        }
+        match value {
+            Value::Struct(records) => self.descend_records(name, records, None, levels, outer),
+            Value::Object(object) => {
+                self.descend_records(name, &object.records, Some(&object.class), levels, outer)
+            }
+            Value::Cell(cell) => {
+                let mut is_any_found = false;
+                for (index, value) in cell.values.iter().enumerate() {
+                    let name = format!("{name}{{{}}}", index + 1);
+                    is_any_found |= self.descend(&name, value, levels - 1, outer)?;
+                }
+                Ok(is_any_found)
+            }
+            Value::Opaque { class, why } => {
+                self.add_fault(format!("{name} ({class}): {why}"))?;
+                Ok(true)
+            }
+            Value::Array(_) | Value::Text(_) => Ok(false),
+        }
+    }
+
+    /// Searches each element in a struct array or an object array.
+    fn descend_records<'v>(
+        &mut self,
+        name: &str,
+        records: &'v StructArray,
+        class: Option<&'v str>,
+        levels: usize,
+        outer: &Rc<Record<'v>>,
+    ) -> Result<bool, VariableFault> {
+        let mut is_any_found = false;
+        let count = if records.fields.is_empty() {
+            0
+        } else {
+            records.shape.iter().product::<usize>()
+        };
+        for index in 0..count {
+            let name = if count == 1 {
+                name.to_owned()
+            } else {
+                format!("{name}({})", index + 1)
+            };
+            if self.try_pages(&name, records, index, class, outer)? {
+                is_any_found = true;
+                continue;
+            }
+            let inner = Rc::new(Record::from_struct(records, index, None, 0).inside(outer));
+            let mut empty = BTreeSet::new();
+            for field in inner.fields() {
+                let path = format!("{name}.{}", field.name);
+                if !self.descend(&path, field.value, levels - 1, &inner)? {
+                    empty.insert(field.name);
+                }
+            }
+            if empty.len() < inner.fields().count() {
+                is_any_found = true;
+                self.note_unused(&name, &unused_among(&inner, &empty))?;
+            }
+        }
+        Ok(is_any_found)
+    }
+
+    /// Tries element `index` in a struct array itself, or each of its models if it is an array of
+    /// models; returns whether any is recognised.
+    fn try_pages<'v>(
+        &mut self,
+        name: &str,
+        records: &'v StructArray,
+        index: usize,
+        class: Option<&'v str>,
+        outer: &Rc<Record<'v>>,
+    ) -> Result<bool, VariableFault> {
+        let pages = Record::page_count(records, index);
+        let mut is_any_known = false;
+        for page in 0..pages {
+            let name = if pages == 1 {
+                name.to_owned()
+            } else {
+                format!("{name}(:,:,{})", page + 1)
+            };
+            let record = Record::from_struct(records, index, class, page).inside(outer);
+            if self.try_record(&record, &name)? {
+                is_any_known = true;
+                self.note_unused(&name, &record.unused())?;
+            }
+        }
+        Ok(is_any_known)
+    }
+
+    /// Notes a variable's unused fields, as paths.
+    fn note_unused(&mut self, variable: &str, names: &[String]) -> Result<(), VariableFault> {
+        for name in names {
+            let path = if variable.is_empty() {
+                name.clone()
+            } else {
+                format!("{variable}.{name}")
+            };
+            self.budget.take(path.len() as u64 + 64, 1, "")?;
+            if self.found.unused.len() < MOST_PIECES {
+                self.found.unused.push(path);
+            }
+        }
+        Ok(())
+    }
+
+    fn add_fault(&mut self, fault: String) -> Result<(), VariableFault> {
+        self.budget.take(fault.len() as u64 + 128, 1, "")?;
+        self.found.faults.push(fault);
+        Ok(())
+    }
+}

@@ -1,0 +1,124 @@
+//! Models in matrices with common suffixes: `A_nom, B_nom, ...`, `A1, B1, ...`.
+
+use std::collections::{BTreeSet, HashMap};
+
+use gdcm_model::assembly::FoundModel;
+
+use super::STEPS;
+use super::delay_names::is_delay;
+use super::record::Record;
+use super::search::{Found, Recognise};
+use super::state_space::is_state_space;
+use super::values::{Field, matrix_of};
+use crate::formats::variables::{Value, Variable};
+use crate::reading_budget::{ReadingBudget, VariableFault};
+
+const MATRICES: [&str; 5] = ["A", "B", "C", "D", "E"];
+
+/// Models in matrices with suffixes.
+pub(super) struct SuffixedModels {
+    pub(super) found: Found<FoundModel>,
+    /// Variables that these models use.
+    pub(super) used: BTreeSet<String>,
+}
+
+/// Finds the models in matrices with suffixes. Other variables, such as labels, apply to all
+/// models; delays may have a model's suffix.
+pub(super) fn suffixed_models(
+    variables: &[Variable],
+    read: Recognise<'_, FoundModel>,
+    budget: &ReadingBudget<'_>,
+) -> Result<SuffixedModels, VariableFault> {
+    let mut models = SuffixedModels {
+        found: Found::default(),
+        used: BTreeSet::new(),
+    };
+    let by_name = values_by_name(variables);
+    let suffixes: Vec<&str> = variables
+        .iter()
+        .filter_map(|variable| variable.name.strip_prefix('A'))
+        .filter(|suffix| !suffix.is_empty() && by_name.contains_key(format!("B{suffix}").as_str()))
+        .collect();
+    let delays = delays_with_suffix(variables, &suffixes.iter().copied().collect());
+    for suffix in suffixes {
+        budget.work(STEPS, "")?;
+        let mut fields = matrices_with_suffix(&by_name, suffix);
+        if fields.len() < 3 || !is_state_space(&Record::from_fields(fields.iter().copied())) {
+            continue;
+        }
+        budget.work(STEPS * variables.len() as u64, "")?;
+        for variable in variables {
+            if MATRICES.contains(&variable.name.as_str()) {
+                continue;
+            }
+            let mut name = variable.name.as_str();
+            if delays.contains(name) {
+                match name.strip_suffix(suffix) {
+                    Some(stem) if is_delay(stem) => name = stem,
+                    // Belongs to another model.
+                    _ => continue,
+                }
+            }
+            fields.push(Field {
+                name,
+                value: &variable.value,
+            });
+        }
+        let record = Record::from_fields(fields.into_iter()).shared();
+        let name = suffix.trim_start_matches('_');
+        models
+            .found
+            .add(name, read(&record, name).unwrap_or_default());
+        for field in record.fields() {
+            if record.is_used(field.name) {
+                models.used.insert(field.name.to_owned());
+                models.used.insert(format!("{}{suffix}", field.name));
+            }
+        }
+    }
+    Ok(models)
+}
+
+/// Returns the values by name; if a name occurs several times, the first counts.
+fn values_by_name(variables: &[Variable]) -> HashMap<&str, &Value> {
+    let mut by_name = HashMap::with_capacity(variables.len());
+    for variable in variables {
+        by_name
+            .entry(variable.name.as_str())
+            .or_insert(&variable.value);
+    }
+    by_name
+}
+
+/// Returns the matrices with a suffix, named without it.
+fn matrices_with_suffix<'v>(by_name: &HashMap<&str, &'v Value>, suffix: &str) -> Vec<Field<'v>> {
+    let mut fields = Vec::new();
+    for name in MATRICES {
+        if let Some(&value) = by_name.get(format!("{name}{suffix}").as_str())
+            && matrix_of(name, value).is_ok()
+        {
+            fields.push(Field { name, value });
+        }
+    }
+    fields
+}
+
+/// Returns the delay names with a model's suffix: `InputDelay_nom` beside `A_nom`.
+fn delays_with_suffix<'v>(
+    variables: &'v [Variable],
+    suffixes: &BTreeSet<&str>,
+) -> BTreeSet<&'v str> {
+    variables
+        .iter()
+        .map(|variable| variable.name.as_str())
+        .filter(|name| has_delay_stem(name, suffixes))
+        .collect()
+}
+
+/// Whether a name is a delay name followed by a suffix.
+fn has_delay_stem(name: &str, suffixes: &BTreeSet<&str>) -> bool {
+    name.char_indices().any(|(at, _)| {
+        let (stem, end) = name.split_at(at);
+        suffixes.contains(end) && is_delay(stem)
+    })
+}

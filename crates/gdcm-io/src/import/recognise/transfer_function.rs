@@ -1,0 +1,346 @@
+//! Models given by transfer functions: numerators and denominators, or zeros, poles and gains.
+
+use nalgebra::{Complex, DMatrix};
+
+use gdcm_model::assembly::FoundModel;
+
+use super::delays::timing_of;
+use super::flight_condition::Page;
+use super::record::Record;
+use super::state_space::{at_most, build_model};
+use super::values::{array_of, complex_list_of, list_of};
+use crate::formats::variables::Value;
+
+/// Whether fields are transfer functions; marks these fields as used.
+pub(super) fn is_transfer_function(record: &Record<'_>) -> bool {
+    Polynomials::find(record).is_some() || Factors::find(record).is_some()
+}
+
+/// Fields that give transfer functions by polynomials.
+struct Polynomials<'v> {
+    numerators: &'v Value,
+    denominators: &'v Value,
+}
+
+impl<'v> Polynomials<'v> {
+    fn find(record: &Record<'v>) -> Option<Self> {
+        let numerators = record.find(&["num", "Numerator"])?;
+        let denominators = record.find(&["den", "Denominator"])?;
+        Some(Self {
+            numerators: record.take(numerators),
+            denominators: record.take(denominators),
+        })
+    }
+
+    /// Returns the fractions; a single denominator may apply to all.
+    fn fractions(&self) -> Result<FractionTable, String> {
+        let numerators = CellTable::new(self.numerators);
+        let denominators = CellTable::new(self.denominators).cells;
+        let mut fractions = Vec::with_capacity(numerators.cells.len());
+        for (index, numerator) in numerators.cells.iter().enumerate() {
+            let place = format!("response {}", index + 1);
+            let Some(denominator) = denominators.get(index).or(denominators.first()) else {
+                return Err(format!("{place}: no denominator"));
+            };
+            fractions.push(Fraction::new(
+                &list_of("numerator", numerator)?,
+                &list_of("denominator", denominator)?,
+                &place,
+            )?);
+        }
+        Ok(FractionTable {
+            fractions,
+            outputs: numerators.rows,
+            inputs: numerators.columns,
+        })
+    }
+}
+
+/// Fields that give transfer functions by zeros, poles and gains.
+struct Factors<'v> {
+    zeros: &'v Value,
+    poles: &'v Value,
+    gains: &'v Value,
+}
+
+impl<'v> Factors<'v> {
+    fn find(record: &Record<'v>) -> Option<Self> {
+        let zeros = record.find(&["z", "Zeros"])?;
+        let poles = record.find(&["p", "Poles"])?;
+        let gains = record.find(&["k", "Gain"])?;
+        Some(Self {
+            zeros: record.take(zeros),
+            poles: record.take(poles),
+            gains: record.take(gains),
+        })
+    }
+
+    fn fractions(&self) -> Result<FractionTable, String> {
+        let zeros = CellTable::new(self.zeros);
+        let poles = CellTable::new(self.poles).cells;
+        let gains = match array_of(self.gains) {
+            Some(array) => array.re.as_slice(),
+            None => &[],
+        };
+        let mut fractions = Vec::with_capacity(zeros.cells.len());
+        for (index, zeros) in zeros.cells.iter().enumerate() {
+            let place = format!("response {}", index + 1);
+            let Some(poles) = poles.get(index) else {
+                return Err(format!("{place}: no poles"));
+            };
+            let Some(gain) = gains.get(index) else {
+                return Err(format!("{place}: no gain"));
+            };
+            let zeros = complex_list_of("zeros", zeros)?;
+            let poles = complex_list_of("poles", poles)?;
+            at_most(zeros.len().max(poles.len()), "states", &place)?;
+            let numerator: Vec<f64> = polynomial(&zeros).iter().map(|term| term * gain).collect();
+            fractions.push(Fraction::new(&numerator, &polynomial(&poles), &place)?);
+        }
+        Ok(FractionTable {
+            fractions,
+            outputs: zeros.rows,
+            inputs: zeros.columns,
+        })
+    }
+}
+
+/// A rational transfer function, highest power first; the denominator is monic.
+#[derive(Clone, Debug, PartialEq)]
+struct Fraction {
+    numerator: Vec<f64>,
+    denominator: Vec<f64>,
+}
+
+impl Fraction {
+    /// Creates the fraction without leading zeros and with a monic denominator.
+    ///
+    /// # Errors
+    /// A zero denominator, a numerator with a higher degree than the denominator, and too many
+    /// poles.
+    fn new(numerator: &[f64], denominator: &[f64], place: &str) -> Result<Self, String> {
+        at_most(denominator.len().saturating_sub(1), "states", place)?;
+        let numerator = without_leading_zeros(numerator);
+        let denominator = without_leading_zeros(denominator);
+        let Some(&leading) = denominator.first() else {
+            return Err(format!("{place}: the denominator is zero"));
+        };
+        if numerator.len() > denominator.len() {
+            return Err(format!(
+                "{place}: the numerator is of higher degree than the denominator; such a response has no state-space form"
+            ));
+        }
+        Ok(Self {
+            numerator: numerator.iter().map(|term| term / leading).collect(),
+            denominator: denominator.iter().map(|term| term / leading).collect(),
+        })
+    }
+
+    fn order(&self) -> usize {
+        self.denominator.len() - 1
+    }
+
+    /// Returns the numerator, padded with leading zeros to the length of the denominator.
+    fn padded_numerator(&self) -> Vec<f64> {
+        let mut padded = vec![0.0; self.denominator.len() - self.numerator.len()];
+        padded.extend(&self.numerator);
+        padded
+    }
+}
+
+fn without_leading_zeros(polynomial: &[f64]) -> &[f64] {
+    match polynomial.iter().position(|term| *term != 0.0) {
+        Some(first) => &polynomial[first..],
+        None => &[],
+    }
+}
+
+/// Transfer functions, output index fastest.
+struct FractionTable {
+    fractions: Vec<Fraction>,
+    outputs: usize,
+    inputs: usize,
+}
+
+/// Cells, row index fastest; a single value counts as a 1 x 1 cell array.
+struct CellTable<'v> {
+    cells: Vec<&'v Value>,
+    rows: usize,
+    columns: usize,
+}
+
+impl<'v> CellTable<'v> {
+    fn new(value: &'v Value) -> Self {
+        match value {
+            Value::Cell(cell) => Self {
+                cells: cell.values.iter().collect(),
+                rows: cell.shape.first().copied().unwrap_or(0),
+                columns: cell.shape.get(1).copied().unwrap_or(0),
+            },
+            other => Self {
+                cells: vec![other],
+                rows: 1,
+                columns: 1,
+            },
+        }
+    }
+}
+
+/// Returns the state-space model of the transfer functions in `record`: each response in
+/// controllable canonical form, in parallel.
+///
+/// ```text
+/// H(s) = d + (c_1 s^(n-1) + ... + c_n) / (s^n + a_1 s^(n-1) + ... + a_n)
+/// A = [-a_1 ... -a_n; I 0],   B = [1; 0; ...; 0],   C = [c_1 ... c_n],   D = d
+/// ```
+///
+/// With a numerator `b_0 s^n + ... + b_n`, `d = b_0` and `c_k = b_k - b_0 a_k`.
+pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<FoundModel, String> {
+    let FractionTable {
+        fractions,
+        outputs,
+        inputs,
+    } = fractions_of(record)?;
+    let order: usize = fractions.iter().map(Fraction::order).sum();
+    at_most(order, "states", "all responses together")?;
+    at_most(inputs.max(outputs), "channels", "transfer functions")?;
+    let mut a = DMatrix::zeros(order, order);
+    let mut b = DMatrix::zeros(order, inputs);
+    let mut c = DMatrix::zeros(outputs, order);
+    let mut d = DMatrix::zeros(outputs, inputs);
+    // First state of a response.
+    let mut start = 0;
+    for (index, fraction) in fractions.iter().enumerate() {
+        let output = index % outputs;
+        let input = index / outputs;
+        let n = fraction.order();
+        let numerator = fraction.padded_numerator();
+        d[(output, input)] = numerator[0];
+        for state in 0..n {
+            a[(start, start + state)] = -fraction.denominator[state + 1];
+            c[(output, start + state)] =
+                numerator[state + 1] - numerator[0] * fraction.denominator[state + 1];
+        }
+        for state in 1..n {
+            a[(start + state, start + state - 1)] = 1.0;
+        }
+        if n > 0 {
+            b[(start, input)] = 1.0;
+        }
+        start += n;
+    }
+    let timing = timing_of(record, outputs, inputs)?;
+    let mut model = build_model(record, variable, Page::ONLY, [a, b, c, d], timing.timing)?;
+    model.notes.extend(timing.notes);
+    model
+        .notes
+        .push("transfer functions, each realised by itself".to_owned());
+    Ok(model)
+}
+
+fn fractions_of(record: &Record<'_>) -> Result<FractionTable, String> {
+    if let Some(polynomials) = Polynomials::find(record) {
+        return polynomials.fractions();
+    }
+    match Factors::find(record) {
+        Some(factors) => factors.fractions(),
+        None => Err("no transfer function".to_owned()),
+    }
+}
+
+/// Returns the real polynomial with these roots, highest power first; complex roots come in
+/// conjugate pairs.
+fn polynomial(roots: &[Complex<f64>]) -> Vec<f64> {
+    let mut coefficients = vec![Complex::new(1.0, 0.0)];
+    for root in roots {
+        coefficients.push(Complex::new(0.0, 0.0));
+        for index in (1..coefficients.len()).rev() {
+            let before = coefficients[index - 1];
+            coefficients[index] -= root * before;
+        }
+    }
+    coefficients
+        .iter()
+        .map(|coefficient| coefficient.re)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::variables::{Array, Variable};
+    use crate::import::recognise::state_space::state_spaces;
+
+    fn row(name: &str, values: &[f64]) -> Variable {
+        Variable {
+            name: name.into(),
+            value: Value::Array(Array::matrix(1, values.len(), values.to_vec())),
+        }
+    }
+
+    fn response(model: &FoundModel, s: Complex<f64>) -> Complex<f64> {
+        let [a, b, c, d] = model
+            .draft
+            .matrices
+            .clone()
+            .map(|matrix| matrix.unwrap().map(|entry| Complex::new(entry, 0.0)));
+        let n = a.nrows();
+        let inner = (DMatrix::identity(n, n) * s - a).lu().solve(&b).unwrap();
+        (c * inner + d)[(0, 0)]
+    }
+
+    #[test]
+    fn a_fraction_has_the_response_of_its_polynomials() {
+        let variables = [row("num", &[2.0, 3.0, 4.0]), row("den", &[2.0, 5.0, 7.0])];
+        let model = transfer_function(&Record::from_variables(&variables), "g").unwrap();
+        let s = Complex::new(0.3, 1.7);
+        let expected = (s * s * 2.0 + s * 3.0 + 4.0) / (s * s * 2.0 + s * 5.0 + 7.0);
+        // A few rounding errors for numbers of order 1.
+        assert!((response(&model, s) - expected).norm() < 1e-14);
+    }
+
+    #[test]
+    fn zeros_poles_and_a_gain_are_the_same_as_their_polynomials() {
+        let pair = |name: &str, re: f64, im: f64| {
+            let array = Array {
+                im: Some(vec![im, -im]),
+                ..Array::matrix(2, 1, vec![re, re])
+            };
+            Variable {
+                name: name.into(),
+                value: Value::Array(array),
+            }
+        };
+        let variables = [row("z", &[-3.0]), pair("p", -1.0, 2.0), row("k", &[5.0])];
+        let model = transfer_function(&Record::from_variables(&variables), "").unwrap();
+        let s = Complex::new(0.0, 2.5);
+        let expected = (s + 3.0) * 5.0 / (s * s + s * 2.0 + 5.0);
+        assert!((response(&model, s) - expected).norm() < 1e-14);
+    }
+
+    #[test]
+    fn an_improper_fraction_is_refused() {
+        let variables = [row("num", &[1.0, 0.0, 0.0]), row("den", &[1.0, 1.0])];
+        let error = transfer_function(&Record::from_variables(&variables), "").unwrap_err();
+        assert!(error.contains("higher degree"), "{error}");
+    }
+
+    #[test]
+    fn more_states_than_a_dataset_holds_are_refused_before_there_is_a_matrix_of_them() {
+        let long = vec![1.0; 30_000];
+        let roots = [row("z", &[]), row("p", &long), row("k", &[1.0])];
+        for variables in [&[row("num", &[1.0]), row("den", &long)][..], &roots] {
+            let error = transfer_function(&Record::from_variables(variables), "").unwrap_err();
+            assert!(error.contains("states; at most 1000 are read"), "{error}");
+        }
+        let column = Variable {
+            name: "C".into(),
+            value: Value::Array(Array::matrix(30_000, 1, long.clone())),
+        };
+        let variables = [row("A", &[-1.0]), row("B", &long), column];
+        let error = state_spaces(&Record::from_variables(&variables), "", false)
+            .remove(0)
+            .unwrap_err();
+        assert!(error.contains("B: 30000 inputs"), "{error}");
+    }
+}

@@ -1,0 +1,191 @@
+//! Conversion of file values to numbers, matrices and texts.
+
+use nalgebra::{Complex, DMatrix};
+
+use gdcm_model::units::number;
+
+use crate::formats::variables::{Array, Value};
+
+/// A value under a name: a variable in a file, or a field in a struct.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Field<'v> {
+    pub(crate) name: &'v str,
+    pub(crate) value: &'v Value,
+}
+
+/// Returns the numbers in a value. Objects and structs count if they hold a single array: the
+/// parameters in MATLAB's identified models (`Value`), GNU Octave's polynomials (`poly`).
+pub(super) fn array_of(value: &Value) -> Option<&Array> {
+    match value {
+        Value::Array(array) => Some(array),
+        Value::Object(object) => {
+            let values = ["Value", "Value_", "poly"]
+                .iter()
+                .find_map(|name| object.records.field(name))?;
+            array_of(values.first()?)
+        }
+        Value::Struct(records) if records.shape.iter().product::<usize>() == 1 => {
+            array_of(records.field("Value")?.first()?)
+        }
+        Value::Text(_) | Value::Cell(_) | Value::Struct(_) | Value::Opaque { .. } => None,
+    }
+}
+
+/// Converts a value to a real, finite matrix.
+pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, String> {
+    let Some(array) = array_of(value) else {
+        return Err(format!(
+            "{name}: expected a matrix of numbers, found {}",
+            value.words()
+        ));
+    };
+    if array.shape.iter().skip(2).product::<usize>() > 1 {
+        return Err(format!(
+            "{name}: expected a matrix, found {}",
+            value.words()
+        ));
+    }
+    page_of(name, array, 0, false)
+}
+
+/// Shape of an array that holds equally large matrices, called pages.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PagedShape {
+    pub(super) pages: usize,
+    pub(super) rows: usize,
+    pub(super) columns: usize,
+}
+
+impl PagedShape {
+    /// Reads an array's shape; with `pages_first` the first of three indices counts the matrices,
+    /// otherwise the indices after the second.
+    pub(super) fn new(array: &Array, pages_first: bool) -> Self {
+        let shape = &array.shape;
+        if shape.len() == 3 && pages_first {
+            return Self {
+                pages: shape[0],
+                rows: shape[1],
+                columns: shape[2],
+            };
+        }
+        Self {
+            pages: shape.iter().skip(2).product(),
+            rows: shape.first().copied().unwrap_or(0),
+            columns: shape.get(1).copied().unwrap_or(0),
+        }
+    }
+}
+
+/// Extracts matrix number `page`, from 0, from an array that holds several.
+pub(super) fn page_of(
+    name: &str,
+    array: &Array,
+    page: usize,
+    pages_first: bool,
+) -> Result<DMatrix<f64>, String> {
+    let PagedShape {
+        pages,
+        rows,
+        columns,
+    } = PagedShape::new(array, pages_first);
+    if has_imaginary_part(array) {
+        return Err(format!("{name}: expected real numbers, found complex ones"));
+    }
+    let is_interleaved = array.shape.len() == 3 && pages_first;
+    let start = if is_interleaved {
+        page
+    } else {
+        page * rows * columns
+    };
+    let step = if is_interleaved { pages.max(1) } else { 1 };
+    let numbers = array.re.iter().skip(start).step_by(step);
+    let values: Vec<f64> = numbers.take(rows * columns).copied().collect();
+    // If a later index has length 0, the array holds fewer numbers than its first two lengths say.
+    if values.len() != rows * columns {
+        return Err(format!(
+            "{name}: expected a matrix, found an array without numbers"
+        ));
+    }
+    if let Some(at) = values.iter().position(|value| !value.is_finite()) {
+        return Err(format!(
+            "{name}, row {}, column {}: expected a finite number, found {}",
+            at % rows + 1,
+            at / rows + 1,
+            values[at]
+        ));
+    }
+    Ok(DMatrix::from_column_slice(rows, columns, &values))
+}
+
+/// Whether an array is truly complex; an imaginary part that is zero throughout does not count.
+pub(in crate::import) fn has_imaginary_part(array: &Array) -> bool {
+    match &array.im {
+        Some(im) => im.iter().any(|part| *part != 0.0),
+        None => false,
+    }
+}
+
+/// Converts a value to a single finite number; its imaginary part is ignored.
+pub(super) fn scalar_of(value: &Value) -> Option<f64> {
+    let array = array_of(value)?;
+    match array.re.as_slice() {
+        [value] if value.is_finite() => Some(*value),
+        _ => None,
+    }
+}
+
+/// Converts a row or a column to finite numbers; the imaginary part is ignored.
+pub(super) fn list_of(name: &str, value: &Value) -> Result<Vec<f64>, String> {
+    let Some(array) = array_of(value) else {
+        return Err(format!("{name}: expected numbers, found {}", value.words()));
+    };
+    match array.re.iter().position(|value| !value.is_finite()) {
+        Some(at) => Err(format!(
+            "{name}, entry {}: expected a finite number, found {}",
+            at + 1,
+            number(array.re[at])
+        )),
+        None => Ok(array.re.clone()),
+    }
+}
+
+/// Converts a row or a column to finite complex numbers.
+pub(super) fn complex_list_of(name: &str, value: &Value) -> Result<Vec<Complex<f64>>, String> {
+    let re = list_of(name, value)?;
+    let im = match array_of(value) {
+        Some(Array { im: Some(im), .. }) => im.clone(),
+        _ => vec![0.0; re.len()],
+    };
+    if im.iter().any(|part| !part.is_finite()) {
+        return Err(format!("{name}: expected finite numbers"));
+    }
+    let parts = re.into_iter().zip(im);
+    Ok(parts.map(|(re, im)| Complex::new(re, im)).collect())
+}
+
+/// Returns the texts in a value, trimmed: a text array, a cell array with a text in each cell, or
+/// an empty array, in which MATLAB stores an empty list.
+pub(in crate::import) fn texts_of(value: &Value) -> Option<Vec<String>> {
+    match value {
+        Value::Text(text) => Some(
+            text.texts
+                .iter()
+                .map(|text| text.trim().to_owned())
+                .collect(),
+        ),
+        Value::Cell(cell) => {
+            let mut texts = Vec::with_capacity(cell.values.len());
+            for value in &cell.values {
+                texts.push(texts_of(value)?.into_iter().next().unwrap_or_default());
+            }
+            Some(texts)
+        }
+        Value::Array(array) if array.is_empty() => Some(Vec::new()),
+        Value::Array(_) | Value::Struct(_) | Value::Object(_) | Value::Opaque { .. } => None,
+    }
+}
+
+/// Returns the first text in a value.
+pub(in crate::import) fn first_text_of(value: &Value) -> Option<String> {
+    texts_of(value)?.into_iter().next()
+}

@@ -1,0 +1,50 @@
+//! Record entries in a dataset file.
+
+use std::path::{Path, PathBuf};
+
+use gdcm_model::dataset::condition::ConditionRecord;
+
+use crate::files::study_file::relative_folder;
+
+/// Returns the entry for a record in the dataset file `dataset`, with the record's file relative to
+/// the dataset; `requested` are the files and folders that were read.
+pub fn relative_entry(
+    mut entry: ConditionRecord,
+    requested: &[PathBuf],
+    dataset: &Path,
+) -> ConditionRecord {
+    if let Some(place) = place_of_record(&entry.file, requested) {
+        let folder = relative_folder(place.parent().unwrap_or(Path::new(".")), dataset);
+        let name = match place.file_name() {
+            Some(name) => name.to_string_lossy().into_owned(),
+            None => String::new(),
+        };
+        entry.file = if folder.is_empty() || folder == "." {
+            name
+        } else {
+            format!("{folder}/{name}")
+        };
+    }
+    entry
+}
+
+/// Finds the path to a record's file: a requested file with this name, or the file in a requested
+/// folder. For topics joined from several files, which have no file, it is the folder around the
+/// first requested file.
+fn place_of_record(file: &str, requested: &[PathBuf]) -> Option<PathBuf> {
+    for path in requested {
+        let is_file = path
+            .file_name()
+            .is_some_and(|name| name.to_string_lossy() == file);
+        if is_file {
+            return Some(path.clone());
+        }
+        if path.is_dir() {
+            return Some(path.join(file));
+        }
+    }
+    if file.is_empty() {
+        return requested.first()?.parent().map(Path::to_owned);
+    }
+    None
+}

@@ -1,0 +1,167 @@
+//! Data from the identification tools in MATLAB and GNU Octave.
+//!
+//! An `iddata` object has, under these names or with a trailing underscore, `OutputData` and
+//! `InputData` (a matrix, or a cell for each experiment), `Ts` or `SamplingInstants`, and names and
+//! units. Octave's control package calls them `y`, `u`, `tsam`, `outname`, `inname`. A struct with
+//! the same fields is also accepted.
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_sysid::records::RecordColumn;
+
+use super::samples::{first_number_of, named_columns, samples_of};
+use crate::formats::recorded_columns::Columns;
+use crate::formats::variables::Value;
+use crate::import::recognise::record::Record;
+use crate::import::recognise::values::{first_text_of, texts_of};
+
+/// Field names for one side, in MATLAB and in GNU Octave.
+struct SideFields {
+    side: ChannelSide,
+    data: [&'static str; 2],
+    names: [&'static str; 2],
+    units: [&'static str; 2],
+    /// Letter in names for unnamed columns.
+    letter: char,
+}
+
+const INPUT_FIELDS: SideFields = SideFields {
+    side: ChannelSide::Input,
+    data: ["InputData", "u"],
+    names: ["InputName", "inname"],
+    units: ["InputUnit", "inunit"],
+    letter: 'u',
+};
+const OUTPUT_FIELDS: SideFields = SideFields {
+    side: ChannelSide::Output,
+    data: ["OutputData", "y"],
+    names: ["OutputName", "outname"],
+    units: ["OutputUnit", "outunit"],
+    letter: 'y',
+};
+
+/// Whether fields are identification data.
+pub(super) fn is_iddata(record: &Record<'_>) -> bool {
+    let has_both = record.get(&["OutputData"]).is_some() && record.get(&["InputData"]).is_some();
+    record.class == Some("iddata") || has_both
+}
+
+/// Returns a record for each experiment.
+pub(super) fn experiments(record: &Record<'_>, variable: &str) -> Result<Vec<Columns>, String> {
+    if let Some(domain) = record.get(&["Domain"]).and_then(first_text_of)
+        && domain.to_lowercase().starts_with('f')
+    {
+        return Err("frequency-domain data are not a record; save time-domain data".to_owned());
+    }
+    let outputs = record
+        .get(&OUTPUT_FIELDS.data)
+        .ok_or("its output data cannot be read; save t, u and y as matrices")?;
+    let names = record
+        .get(&["ExperimentName", "expname"])
+        .and_then(texts_of)
+        .unwrap_or_default();
+    let parts = parts_of(outputs);
+    let count = parts.len();
+    let mut records = Vec::with_capacity(count);
+    for (index, output) in parts.into_iter().enumerate() {
+        let name = match names.get(index) {
+            _ if count == 1 => variable.to_owned(),
+            Some(name) if !name.is_empty() => format!("{variable}, {name}"),
+            _ => format!("{variable}, experiment {}", index + 1),
+        };
+        records.push(experiment(record, output, index, name)?);
+    }
+    Ok(records)
+}
+
+/// Reads experiment `index`, whose outputs are `output`.
+fn experiment(
+    record: &Record<'_>,
+    output: &Value,
+    index: usize,
+    variable: String,
+) -> Result<Columns, String> {
+    let rows = samples_of(output, None).map(|samples| samples.rows);
+    let mut columns = Vec::new();
+    if let Some(instants) = part_of(record, &["SamplingInstants"], index)
+        && let Some(stamps) = samples_of(instants, rows)
+        && Some(stamps.rows) == rows
+        && stamps.columns.len() == 1
+    {
+        let unit = record.get(&["TimeUnit"]).and_then(first_text_of);
+        for mut column in named_columns("time", stamps.columns) {
+            column.unit.clone_from(&unit);
+            columns.push(column);
+        }
+    }
+    columns.extend(side_columns(record, &INPUT_FIELDS, index, rows));
+    columns.extend(side_columns(record, &OUTPUT_FIELDS, index, rows));
+    if columns
+        .iter()
+        .any(|column| Some(column.values.len()) != rows)
+    {
+        return Err("its inputs and outputs have different numbers of samples".to_owned());
+    }
+    let step = part_of(record, &["Ts", "tsam"], index).and_then(first_number_of);
+    Ok(Columns {
+        sample_time_s: step.filter(|step| *step > 0.0),
+        ..Columns::new(variable, columns)
+    })
+}
+
+/// Returns the columns on one side, for experiment `index`.
+fn side_columns(
+    record: &Record<'_>,
+    fields: &SideFields,
+    index: usize,
+    rows: Option<usize>,
+) -> Vec<RecordColumn> {
+    let names = record
+        .get(&fields.names)
+        .and_then(texts_of)
+        .unwrap_or_default();
+    let units = record
+        .get(&fields.units)
+        .and_then(texts_of)
+        .unwrap_or_default();
+    let Some(samples) =
+        part_of(record, &fields.data, index).and_then(|value| samples_of(value, rows))
+    else {
+        return Vec::new();
+    };
+    let mut columns = Vec::with_capacity(samples.columns.len());
+    for (at, values) in samples.columns.into_iter().enumerate() {
+        let name = match nonempty_text(&names, at) {
+            Some(name) => name,
+            None => format!("{}{}", fields.letter, at + 1),
+        };
+        columns.push(RecordColumn {
+            unit: nonempty_text(&units, at),
+            side: Some(fields.side),
+            ..RecordColumn::new(name, values)
+        });
+    }
+    columns
+}
+
+fn nonempty_text(texts: &[String], at: usize) -> Option<String> {
+    match texts.get(at) {
+        Some(text) if !text.is_empty() => Some(text.clone()),
+        _ => None,
+    }
+}
+
+/// Returns a value for each experiment: its cell, or the only value.
+fn parts_of(value: &Value) -> Vec<&Value> {
+    match value {
+        Value::Cell(cell) => cell.values.iter().collect(),
+        other => vec![other],
+    }
+}
+
+/// Returns the value for experiment `index`; a single value applies to all experiments.
+fn part_of<'v>(record: &Record<'v>, names: &[&str], index: usize) -> Option<&'v Value> {
+    match record.get(names)? {
+        Value::Cell(cell) => cell.values.get(index),
+        other => Some(other),
+    }
+}

@@ -1,0 +1,97 @@
+//! Samples over time in vectors and matrices.
+
+use gdcm_sysid::records::RecordColumn;
+
+use crate::formats::variables::{Array, Value};
+use crate::import::recognise::values::has_imaginary_part;
+
+/// Samples in a field.
+pub(super) struct Samples {
+    /// Sample count.
+    pub(super) rows: usize,
+    /// Values over time, column by column.
+    pub(super) columns: Vec<Vec<f64>>,
+}
+
+/// Returns the real numbers in a value as samples; a vector is a single column. If `rows` is given,
+/// the time runs along the side with this length, otherwise along the longer side.
+pub(super) fn samples_of(value: &Value, rows: Option<usize>) -> Option<Samples> {
+    let array = match value {
+        Value::Array(array) => array,
+        Value::Cell(cell) => return samples_of_cells(&cell.values),
+        Value::Text(_) | Value::Struct(_) | Value::Object(_) | Value::Opaque { .. } => return None,
+    };
+    let [first, second] = array.shape[..] else {
+        return None;
+    };
+    if has_imaginary_part(array) || array.is_empty() {
+        return None;
+    }
+    let is_time_second = match rows {
+        Some(rows) => first != rows && second == rows,
+        None => second > first,
+    };
+    if is_time_second {
+        return Some(Samples {
+            rows: second,
+            columns: (0..first)
+                .map(|column| strided_values(array, column, first))
+                .collect(),
+        });
+    }
+    Some(Samples {
+        rows: first,
+        columns: (0..second)
+            .map(|column| array.re[column * first..(column + 1) * first].to_vec())
+            .collect(),
+    })
+}
+
+fn strided_values(array: &Array, from: usize, step: usize) -> Vec<f64> {
+    array.re.iter().skip(from).step_by(step).copied().collect()
+}
+
+/// Reads single numbers in cells, as JSON lists with "null" among numbers become.
+fn samples_of_cells(cells: &[Value]) -> Option<Samples> {
+    if cells.is_empty() {
+        return None;
+    }
+    let mut values = Vec::with_capacity(cells.len());
+    for cell in cells {
+        match cell {
+            Value::Array(array) if array.len() <= 1 => {
+                values.push(array.re.first().copied().unwrap_or(f64::NAN));
+            }
+            _ => return None,
+        }
+    }
+    Some(Samples {
+        rows: values.len(),
+        columns: vec![values],
+    })
+}
+
+/// Returns the first column in a value, along its longer side.
+pub(super) fn first_column_of(value: &Value) -> Option<Vec<f64>> {
+    samples_of(value, None)?.columns.into_iter().next()
+}
+
+/// Returns the first number in a value.
+pub(super) fn first_number_of(value: &Value) -> Option<f64> {
+    first_column_of(value)?.first().copied()
+}
+
+/// Returns record columns under a name, numbered if there are several: "rates_1", "rates_2".
+pub(super) fn named_columns(name: &str, columns: Vec<Vec<f64>>) -> Vec<RecordColumn> {
+    let is_single = columns.len() == 1;
+    let mut named = Vec::with_capacity(columns.len());
+    for (index, values) in columns.into_iter().enumerate() {
+        let name = if is_single {
+            name.to_owned()
+        } else {
+            format!("{name}_{}", index + 1)
+        };
+        named.push(RecordColumn::new(name, values));
+    }
+    named
+}

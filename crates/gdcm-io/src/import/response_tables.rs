@@ -1,0 +1,121 @@
+//! Frequency responses in tables with columns.
+
+use gdcm_model::assembly::found_model::Facts;
+use gdcm_model::assembly::{ChannelLabel, FoundModel};
+use gdcm_model::dataset::measured_response::Estimate;
+use gdcm_model::dataset::model::{Origin, Provenance};
+use gdcm_model::dataset::unchecked_dataset::{ModelDraft, ResponseArray, ResponseDraft};
+
+use super::recognise::Found;
+use crate::files::model_collection::bare_draft;
+use crate::formats::text::{
+    FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, Unrecognised, UnsaidUnit,
+};
+use crate::reading_budget::VariableFault;
+
+/// Responses in a table.
+pub(super) struct TableModels {
+    pub(super) found: Found<FoundModel>,
+    /// Missing units, without which the table is not recognised.
+    pub(super) unsaid: Vec<UnsaidUnit>,
+}
+
+/// Returns the responses in a table, each as a model with an input and an output. A table without
+/// any is reported as ignored, with the units that would make it a response.
+pub(super) fn models_of_table(table: &TextTable, file: &str) -> Result<TableModels, VariableFault> {
+    let columns = match FrequencyColumns::recognise(table) {
+        Ok(columns) => columns,
+        Err(Unrecognised { fault, unsaid }) => {
+            let words = format!(
+                "{file}: {} columns of numbers; {fault}",
+                table.columns.len()
+            );
+            let found = Found {
+                ignored: vec![words],
+                ..Found::default()
+            };
+            return Ok(TableModels { found, unsaid });
+        }
+    };
+    let values = columns.values(table)?;
+    let has_several = columns.responses.len() > 1;
+    let mut found = Found {
+        unused: columns.unused.clone(),
+        ..Found::default()
+    };
+    for (response, points) in columns.responses.iter().zip(values) {
+        let mut model = response_model(response, points, has_several);
+        model.notes.extend(columns.notes.iter().cloned());
+        model.notes.extend(table.notes.iter().cloned());
+        if response.coherence.is_some() {
+            model.notes.push("coherence taken as γ²".to_owned());
+        }
+        found.items.push(model);
+    }
+    Ok(TableModels {
+        found,
+        unsaid: Vec::new(),
+    })
+}
+
+/// Returns a response as a model, without notes. If the table `has_several` responses, its channels
+/// become the variable name.
+fn response_model(
+    response: &RecognisedResponse,
+    points: ResponsePoints,
+    has_several: bool,
+) -> FoundModel {
+    let count = points.omega.len();
+    let coherence = points.coherence.map(|mut values| {
+        // Points with missing coherence are not trusted.
+        for value in &mut values {
+            if value.is_nan() {
+                *value = 0.0;
+            }
+        }
+        single_response(values, count)
+    });
+    let variable = match (has_several, &response.output, &response.input) {
+        (true, Some(output), Some(input)) => Some(format!("{output}/{input}")),
+        (true, Some(channel), None) | (true, None, Some(channel)) => Some(channel.clone()),
+        _ => None,
+    };
+    let draft = ResponseDraft {
+        omega: points.omega,
+        re: single_response(points.re, count),
+        im: single_response(points.im, count),
+        coherence,
+        valid_bands: None,
+        estimate: Estimate::default(),
+    };
+    let origin = Origin::Identified {
+        method: None,
+        order: None,
+    };
+    FoundModel {
+        draft: ModelDraft {
+            response: Some(draft),
+            source: Some(Provenance {
+                variable: variable.clone(),
+                ..Provenance::default()
+            }),
+            ..bare_draft(variable.unwrap_or_default(), origin)
+        },
+        inputs: vec![unitless_label(response.input.clone())],
+        outputs: vec![unitless_label(response.output.clone())],
+        facts: Facts::default(),
+        notes: Vec::new(),
+    }
+}
+
+/// Returns a response's values at `count` frequencies as an array, outputs x inputs x frequencies.
+fn single_response(values: Vec<f64>, count: usize) -> ResponseArray {
+    ResponseArray {
+        shape: [1, 1, count],
+        values,
+    }
+}
+
+fn unitless_label(name: Option<String>) -> ChannelLabel {
+    ChannelLabel { name, unit: None }
+}

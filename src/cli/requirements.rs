@@ -20,7 +20,7 @@ use gdcm_words::Table;
 use gdcm_words::time_histories::{history_cost_table, output_weights_text, share_table};
 
 use super::failure::Failure;
-use super::histories::read_histories;
+use super::histories::{read_histories, simulated_histories};
 use super::progress::TerminalProgress;
 use super::result_arguments::RequirementsArguments;
 use super::study_options::{CommandStudy, ErrorBars, StudyAnalysis, analyze_study};
@@ -51,7 +51,7 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
         &KnownPoles::default(),
         &TerminalProgress::new("reading bandwidths"),
     )?;
-    let histories = time_histories(&analysis, &records)?;
+    let histories = simulated_histories(&analysis, &records)?;
     let results = RequirementResults {
         requirements: &requirements,
         time_histories: &histories,
@@ -59,7 +59,8 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
         sha256: &loaded.sha256,
     };
     write_requirements(results, out, outputs)?;
-    tell_cautions(&requirements, &histories);
+    report_cautions(&requirements);
+    report_missing(&requirements, &histories);
     let files = format!(
         "{} in {}",
         REQUIREMENT_FILES.join(", "),

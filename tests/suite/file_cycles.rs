@@ -9,13 +9,13 @@ use super::structure::{code_of, sources};
 /// Files of each package that still import one another in a circle. The numbers may only fall: whoever breaks a cycle lowers
 /// them.
 const FILES_IN_CYCLES: &[(&str, usize)] = &[
-    ("crates/gdcm-model", 12),
-    ("crates/gdcm-method", 10),
-    ("crates/gdcm-sysid", 7),
-    ("crates/gdcm-study", 25),
-    ("crates/gdcm-plot", 6),
-    ("crates/gdcm-io", 8),
-    (".", 36),
+    ("crates/gdcm-model", 0),
+    ("crates/gdcm-method", 0),
+    ("crates/gdcm-sysid", 0),
+    ("crates/gdcm-study", 0),
+    ("crates/gdcm-plot", 0),
+    ("crates/gdcm-io", 0),
+    (".", 0),
 ];
 
 /// A module by its path below the root of its crate.

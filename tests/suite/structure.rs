@@ -120,6 +120,8 @@ const FILE_MODULES: &[&str] = &[
     "export_fault",
     "location",
     "file_error",
+    "json_lists",
+    "json_errors",
     "json_text",
     "source",
     "output_set",
@@ -240,11 +242,20 @@ fn is_test_file(path: &Path) -> bool {
         .is_some_and(|name| name.to_string_lossy().ends_with("tests"))
 }
 
+/// The text before the first test module that is written out in it.
+fn without_tests(text: &str) -> &str {
+    const START: &str = "#[cfg(test)]\nmod ";
+    for (at, _) in text.match_indices(START) {
+        let declaration = text[at + START.len()..].lines().next();
+        if declaration.is_some_and(|line| line.ends_with('{')) {
+            return &text[..at];
+        }
+    }
+    text
+}
+
 pub(super) fn code_of(text: &str) -> String {
-    let before_tests = text
-        .split("#[cfg(test)]\nmod tests {")
-        .next()
-        .unwrap_or_default();
+    let before_tests = without_tests(text);
     let lines = before_tests
         .lines()
         .filter(|line| !line.trim_start().starts_with("//"));
@@ -465,12 +476,7 @@ fn public_functions_and_types_of_the_library_crates_are_documented() {
         let text = fs::read_to_string(&path).unwrap();
         let mut is_documented = false;
         let mut is_in_attribute = false;
-        for line in text
-            .split("#[cfg(test)]\nmod tests {")
-            .next()
-            .unwrap_or_default()
-            .lines()
-        {
+        for line in without_tests(&text).lines() {
             let code = line.trim_start();
             if code.starts_with("///") || code.starts_with("#[doc") {
                 is_documented = true;

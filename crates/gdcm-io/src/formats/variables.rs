@@ -57,6 +57,7 @@ pub struct Variable {
     pub value: Value,
 }
 
+/// Content of a variable, by kind.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// Numbers; sparse arrays are expanded with zeros.

@@ -31,6 +31,7 @@ const CELLS_BEFORE_VALUES: usize = 2;
 /// Exact integers of cells that hold unsigned 64-bit integers, by cell index from 0.
 pub type LongWords = HashMap<usize, Vec<u64>>;
 
+/// Property storage of the objects in a MAT file.
 #[derive(Clone, Debug)]
 pub struct Subsystem {
     directory: Directory,

@@ -80,7 +80,11 @@ fn every_format_is_written_once_and_over_nothing_unasked() {
 
 #[test]
 fn every_export_stands_in_the_documentation() {
-    let text = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/reference/exports.md")).unwrap();
+    let text = fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/docs/reference/exports.md"
+    ))
+    .unwrap();
     for ExportFormat { name, .. } in EXPORTERS {
         assert!(text.contains(&format!("\n| `{name}` |")), "{name}");
     }

@@ -1,6 +1,8 @@
 //! Context for drawing a page of the Records view.
 
-use egui::Ui;
+use std::sync::Arc;
+
+use egui::{Id, Ui};
 
 use gdcm_sysid::identification::Identification;
 
@@ -18,16 +20,29 @@ pub struct Page<'a> {
     pub palette: &'a Palette,
 }
 
-impl Page<'_> {
+impl<'a> Page<'a> {
     /// Returns the identification; shows a message if there is none.
-    pub fn identification_ui(&self, ui: &mut Ui) -> Option<&Identification> {
+    pub fn identification_ui(self, ui: &mut Ui) -> Option<&'a Identification> {
         let found = self.records.identification();
         if found.is_none() {
             ui.label(
                 self.palette
-                    .dim("Nothing was identified yet: choose Identify above."),
+                    .dim("No identification yet: choose Identify above"),
             );
         }
         found.map(AsRef::as_ref)
+    }
+
+    /// Returns the identification unless records or settings changed after it.
+    pub(super) fn current_identification(self) -> Option<&'a Arc<Identification>> {
+        if self.records.changed {
+            return None;
+        }
+        self.records.identification()
+    }
+
+    /// Returns the id of the time axis that the charts of the displayed record share.
+    pub(super) fn time_axis() -> Id {
+        Id::unique("flight record")
     }
 }

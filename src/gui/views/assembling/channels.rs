@@ -1,4 +1,4 @@
-//! Channels of the dataset: names and units.
+//! Dataset channels: names and units.
 
 use egui::{Button, Grid, Role, Ui};
 
@@ -11,12 +11,8 @@ use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::controls::{button_ui, entry_ui, named};
 use crate::gui::widgets::palette::Palette;
 
-const SIDES: [(&str, ChannelSide); 2] = [
-    ("input", ChannelSide::Input),
-    ("output", ChannelSide::Output),
-];
+const SIDES: [ChannelSide; 2] = [ChannelSide::Input, ChannelSide::Output];
 
-/// A text field of a channel.
 #[derive(Clone, Copy)]
 enum ChannelField {
     Name,
@@ -73,7 +69,7 @@ impl ChannelField {
     }
 }
 
-/// Shows names and units of every channel, and buttons that add and remove channels.
+/// Shows a row with names and units for every channel, and buttons that add and remove channels.
 pub(super) fn channel_table_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -88,10 +84,10 @@ pub(super) fn channel_table_ui(
                 ui.label(palette.small(heading));
             }
             ui.end_row();
-            for (word, side) in SIDES {
+            for side in SIDES {
                 for (index, channel) in channels(assembly, side).iter().enumerate() {
-                    channel_fields_ui(ui, assembly, word, side, index, commands);
-                    let name = format!("Remove {word} {}", channel.name);
+                    channel_fields_ui(ui, assembly, side, index, commands);
+                    let name = format!("Remove {side} {}", channel.name);
                     let remove = named(ui.small_button("×"), Role::Button, &name);
                     if remove.on_hover_text(&name).clicked() {
                         commands.push(assembly.rules_change(|rules| {
@@ -103,12 +99,12 @@ pub(super) fn channel_table_ui(
             }
         });
     ui.horizontal(|ui| {
-        for (word, side) in SIDES {
-            let name = format!("{word} {}", channels(assembly, side).len() + 1);
+        for side in SIDES {
+            let name = format!("{side} {}", channels(assembly, side).len() + 1);
             let add = assembly.rules_change(|rules| {
                 rules.channels_mut(side).push(ChannelRule::named(name));
             });
-            let button = Button::new(format!("Add {word}")).small();
+            let button = Button::new(format!("Add {side}")).small();
             button_ui(ui, button, "", add, commands);
         }
     });
@@ -125,14 +121,13 @@ fn channels(assembly: &AssemblyState, side: ChannelSide) -> &[ChannelRule] {
 fn channel_fields_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
-    word: &str,
     side: ChannelSide,
     index: usize,
     commands: &mut Vec<Command>,
 ) {
     let channel = &channels(assembly, side)[index];
     for field in ChannelField::ALL {
-        let name = format!("{} of {word} {}", field.name(), index + 1);
+        let name = format!("{} of {side} {}", field.name(), index + 1);
         let value = field.value(channel);
         if let Some(text) = entry_ui(ui, &name, value, field.hint(), field.width()) {
             let text = text.trim().to_owned();

@@ -1,4 +1,4 @@
-//! Headings of the columns of a table, and the units that neither headings nor numbers determine.
+//! A table's column headings, and the units that neither headings nor numbers determine.
 
 use egui::{Grid, RichText, Role, Ui};
 
@@ -8,11 +8,10 @@ use crate::gui::widgets::controls::{entry_ui, named};
 use crate::gui::widgets::palette::Palette;
 
 const HEADING_WIDTH: f32 = 180.0;
-/// Maximum number of displayed columns; further ones are only counted.
+/// Maximum column count; further columns are only counted.
 const MOST_COLUMNS: usize = 60;
 
-/// Shows a field for the heading of each column; a changed heading causes the file to be read
-/// again.
+/// Shows a field for each column heading; after a change the file is read again.
 pub(super) fn column_headings_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -47,7 +46,7 @@ pub(super) fn column_headings_ui(
     }
 }
 
-/// Shows buttons for the possible units of a column with an unknown unit.
+/// Shows buttons with the possible units if a column's unit is unknown.
 fn possible_units_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,

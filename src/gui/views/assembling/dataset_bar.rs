@@ -1,4 +1,4 @@
-//! Bar below the table: name and band of the dataset, files of rules and dataset.
+//! Bar below the table: dataset name and band, rules file, dataset file.
 
 use egui::{Button, RichText, Ui};
 

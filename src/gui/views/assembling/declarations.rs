@@ -1,4 +1,4 @@
-//! Signs, units, factors and conversions of channels that hold for several files.
+//! Channel signs, units, factors and conversions that apply to several files.
 //!
 //! Declarations for a single model are shown with the model, those for a folder pattern only in the
 //! rules file.
@@ -40,7 +40,7 @@ impl SignScope {
         }
     }
 
-    /// Key of the role in the rules; `None` for all files.
+    /// Returns the role's key in the rules; `None` for all files.
     fn role(self) -> Option<&'static str> {
         match self {
             Self::AllFiles => None,
@@ -127,7 +127,7 @@ pub(super) fn units_and_factors_ui(
         });
 }
 
-/// Returns the declarations of the rules for `scope`.
+/// Returns the units and factors declared for `scope`.
 fn declarations(rules: &Rules, scope: &FileScope) -> ChannelDeclarations {
     let declared = rules
         .declarations
@@ -189,9 +189,9 @@ fn refusal(name: &str, why: &str) -> Command {
 #[derive(PartialEq)]
 struct Conversion {
     channel: String,
-    /// Unit of the files.
+    /// Unit in the files.
     from: String,
-    /// Unit of the dataset; empty for declared conversions.
+    /// Dataset unit; empty for declared conversions.
     to: String,
 }
 
@@ -254,7 +254,7 @@ fn conversions(assembly: &AssemblyState) -> Vec<Conversion> {
     conversions
 }
 
-/// Returns the command that sets the factor of a conversion, or removes it.
+/// Returns the command that sets a conversion's factor, or removes the conversion.
 fn conversion_change(
     assembly: &AssemblyState,
     conversion: &Conversion,

@@ -1,4 +1,4 @@
-//! Details of one model: role, settings, the columns of its file, and notes.
+//! Details about the displayed model: role, settings, file columns, and notes.
 
 use egui::{Grid, RichText, Ui};
 
@@ -12,7 +12,7 @@ use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::choices::{check_ui, choice_ui};
 use crate::gui::widgets::palette::Palette;
 
-/// Draws the settings and notes of the displayed model.
+/// Draws the displayed model's settings and notes.
 pub(super) fn details_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -50,7 +50,7 @@ pub(super) fn details_ui(
     notes_ui(ui, part, palette);
 }
 
-/// Selects the role of the model in its condition.
+/// Selects the model's role in its condition.
 fn role_ui(ui: &mut Ui, assembly: &AssemblyState, part: &Part, commands: &mut Vec<Command>) {
     ui.label("role");
     let mut role = part.row.role;

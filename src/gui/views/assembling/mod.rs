@@ -1,5 +1,5 @@
-//! Importing models from several files: sources above, a table with a line per model and the list
-//! of problems on the left, the selected model and the channels on the right.
+//! Importing models from several files: sources above, a table with a row per model and the problem
+//! list on the left, the selected model and the channels on the right.
 
 mod channels;
 mod column_headings;

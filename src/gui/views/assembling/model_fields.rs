@@ -1,4 +1,4 @@
-//! Text fields of one model: condition, flight state, channels, sample time, trim.
+//! Text fields for the displayed model: condition, flight state, channels, sample time, trim.
 
 use egui::{Role, Ui};
 
@@ -18,7 +18,7 @@ use crate::gui::widgets::controls::{entry_ui, named, typed_number};
 
 const FIELD_WIDTH: f32 = 200.0;
 
-/// How a field's text changes the rule of a model; an empty text removes the setting.
+/// How a field's text changes a model's rule; an empty text removes the setting.
 enum Effect {
     Text(fn(&mut RowRule) -> &mut Option<String>),
     Number(fn(&mut RowRule) -> &mut Option<f64>),
@@ -55,7 +55,7 @@ impl Field {
     }
 }
 
-/// Draws the fields of the displayed model, one to a row of the grid.
+/// Draws a grid row for each field.
 pub(super) fn model_fields_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -108,7 +108,7 @@ pub(super) fn fill_down_ui(ui: &mut Ui, name: &str) -> bool {
         .clicked()
 }
 
-/// Returns the fields of the condition and its flight state.
+/// Returns the fields for condition and flight state.
 fn condition_fields(part: &Part) -> Vec<Field> {
     let row = &part.row;
     vec![
@@ -157,7 +157,7 @@ fn condition_fields(part: &Part) -> Vec<Field> {
     ]
 }
 
-/// Returns the fields of the channels: names, signs, units, factors.
+/// Returns the channel fields: names, signs, units, factors.
 fn channel_fields(part: &Part, rule: Option<&RowRule>) -> Vec<Field> {
     let [input_labels, output_labels] = &part.labels;
     let inputs = channel_names(input_labels, rule.and_then(|rule| rule.inputs.as_ref()));
@@ -209,7 +209,7 @@ fn sample_time_field(part: &Part) -> Field {
     )
 }
 
-/// Returns the method of an identified model, or the offset of a physics model from trim.
+/// Returns the method for an identified model, the offset from trim for a physics model.
 fn origin_field(part: &Part) -> Field {
     let row = &part.row;
     if row.role == Some(RowRole::Identified) {
@@ -264,7 +264,7 @@ fn set_signs(rule: &mut RowRule, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Sets the units of channels and removes their factors: a channel has either.
+/// Sets units and removes factors for the same channels: a channel has either.
 fn set_units(rule: &mut RowRule, text: &str) -> Result<(), String> {
     let units = typed_units(text)?;
     if let Some(factors) = &mut rule.factors {
@@ -274,7 +274,7 @@ fn set_units(rule: &mut RowRule, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Sets the factors of channels and removes their units: a channel has either.
+/// Sets factors and removes units for the same channels: a channel has either.
 fn set_factors(rule: &mut RowRule, text: &str) -> Result<(), String> {
     let factors = typed_factors(text)?;
     if let Some(units) = &mut rule.units {

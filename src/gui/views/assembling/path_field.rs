@@ -1,4 +1,4 @@
-//! Text field for the path of a file or a folder.
+//! Text field for a file or folder path.
 
 use egui::Ui;
 

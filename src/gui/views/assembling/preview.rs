@@ -1,4 +1,4 @@
-//! Response of the displayed model as a Bode plot.
+//! The displayed model's response as a Bode plot.
 
 use std::sync::Arc;
 
@@ -19,12 +19,12 @@ use crate::gui::state::assembling::{AssemblyState, Preview};
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::Palette;
 
-/// Points of a model's curve.
+/// Points on a model's curve.
 const POINTS: usize = 300;
 /// Factor by which the curve extends beyond the comparison band on either side.
 const BEYOND: f64 = 3.0;
 
-/// Shows the response of the displayed model, and a choice of responses.
+/// Shows a response, and a choice among all responses.
 pub(super) fn preview_ui(
     ui: &mut Ui,
     assembly: &mut AssemblyState,
@@ -90,7 +90,7 @@ fn update(preview: &mut Preview, found: &FoundModel, place: usize, band: (f64, f
     }
 }
 
-/// Returns the pair of a response, counted by outputs, then inputs.
+/// Returns the pair at `place`: `output * inputs + input`.
 fn pair(found: &FoundModel, place: usize) -> Pair {
     let inputs = found.inputs.len().max(1);
     Pair::new(place / inputs, place % inputs)
@@ -106,7 +106,7 @@ fn response_name(found: &FoundModel, place: usize) -> String {
     )
 }
 
-/// Returns the name of a channel, or its side and number.
+/// Returns a channel's name, or its side and number.
 fn channel_name(labels: &[ChannelLabel], index: usize, side: &str) -> String {
     if let Some(label) = labels.get(index)
         && let Some(name) = &label.name
@@ -116,7 +116,6 @@ fn channel_name(labels: &[ChannelLabel], index: usize, side: &str) -> String {
     format!("{side} {}", index + 1)
 }
 
-/// Frequency response of a pair.
 struct PairResponse {
     /// Frequencies \[rad/s\].
     omega: Vec<f64>,
@@ -144,7 +143,7 @@ fn curve(found: &FoundModel, place: usize, band: (f64, f64)) -> Option<BodeCurve
     })
 }
 
-/// Returns a response of the file: values are stored pair after pair.
+/// Returns a response from the file: values are stored pair after pair.
 fn measured_response(found: &FoundModel, place: usize) -> Option<PairResponse> {
     let response = found.response()?;
     let count = response.omega.len();
@@ -158,7 +157,7 @@ fn measured_response(found: &FoundModel, place: usize) -> Option<PairResponse> {
     })
 }
 
-/// Computes the response of a state-space model over the widened band.
+/// Computes a state-space model's response over the widened band.
 fn model_response(found: &FoundModel, pair: Pair, band: (f64, f64)) -> Option<PairResponse> {
     let [a, b, c, d] = found.draft.matrices.clone();
     let model = StateSpace::new(a?, b?, c?, d?)

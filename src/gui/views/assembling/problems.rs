@@ -1,4 +1,4 @@
-//! Incomplete items of an import, cautions, and files that were not used.
+//! Incomplete items, cautions, and unused files.
 
 use egui::{Label, RichText, ScrollArea, Sense, Ui};
 
@@ -8,10 +8,9 @@ use crate::gui::commands::command::Command;
 use crate::gui::state::assembling::AssemblyState;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Maximum number of listed lines; further ones are only counted.
+/// Maximum line count; further lines are only counted.
 const MOST_LINES: usize = 200;
-/// Maximum number of tables without models whose columns are shown here; the others follow once
-/// these are read.
+/// Maximum count for tables without models; further tables follow once these are read.
 const MOST_TABLES: usize = 5;
 
 /// Shows a line for each incomplete item; a click displays its model.
@@ -90,7 +89,7 @@ fn line_ui(ui: &mut Ui, text: RichText, part: Option<usize>, commands: &mut Vec<
     }
 }
 
-/// Shows the headings of tables without models, such as those with columns of unknown content.
+/// Shows the column headings for tables that could not be read as models.
 fn unread_tables_ui(
     ui: &mut Ui,
     state: &AssemblyState,
@@ -107,8 +106,7 @@ fn unread_tables_ui(
     }
 }
 
-/// Returns lines about files that could not be read, files without models, and unused parts of
-/// files.
+/// Returns lines about unreadable files, files without models, and unused content.
 fn unused_content(state: &AssemblyState, palette: &Palette) -> Vec<RichText> {
     let mut lines = Vec::new();
     for fault in &state.faults {

@@ -1,4 +1,4 @@
-//! Commands that change the rules of an import.
+//! Commands that change an import's rules.
 
 use gdcm_model::assembly::part::Part;
 use gdcm_model::assembly::{RowRule, Rules};
@@ -15,7 +15,7 @@ impl AssemblyState {
         AssemblingCommand::Change(Box::new(rules)).into()
     }
 
-    /// Returns the command that changes the rule of one model.
+    /// Returns the command that changes a model's rule.
     pub(super) fn rule_change(&self, part: usize, change: impl FnOnce(&mut RowRule)) -> Command {
         self.rules_change(|rules| {
             if let Some(part) = self.assembly().parts().get(part) {
@@ -24,8 +24,7 @@ impl AssemblyState {
         })
     }
 
-    /// Returns the command that changes the heading of a table's column; the other columns keep
-    /// their headings.
+    /// Returns the command that changes a column heading; the other columns keep theirs.
     pub(super) fn heading_change(&self, file: &str, column: usize, heading: &str) -> Command {
         self.rules_change(|rules| {
             let Some(present) = self.tables.get(file) else {
@@ -41,8 +40,8 @@ impl AssemblyState {
         })
     }
 
-    /// Returns the command that adds a unit to the heading of a column, in a table and in all
-    /// tables with the same headings.
+    /// Returns the command that adds a unit to a column heading, in a table and in all tables with
+    /// the same headings.
     pub(super) fn unit_change(&self, file: &str, column: usize, unit: &str) -> Command {
         self.rules_change(|rules| {
             for file in self.tables_alike(file) {
@@ -75,7 +74,7 @@ impl AssemblyState {
     }
 }
 
-/// Returns the path of a model's folder; empty at the top.
+/// Returns a model's folder; empty at the top.
 fn folder(part: &Part) -> &str {
     match part.found.file().rsplit_once('/') {
         Some((folder, _)) => folder,

@@ -1,4 +1,4 @@
-//! Bar above the table: folders and files of models, undo and cancel, progress of reading.
+//! Bar above the table: model folders and files, undo and cancel, reading progress.
 
 use egui::{Button, RichText, Ui};
 
@@ -49,7 +49,7 @@ fn add_ui(ui: &mut Ui, assembly: &mut AssemblyState, commands: &mut Vec<Command>
     }
 }
 
-/// Shows the progress of reading, or the count of included models.
+/// Shows the reading progress, or how many models are included.
 fn reading_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,

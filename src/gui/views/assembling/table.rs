@@ -1,4 +1,4 @@
-//! The table of models.
+//! Model table.
 
 use egui::{Align, Button, Color32, Layout, Rect, Role, ScrollArea, Sense, Ui, vec2};
 
@@ -13,7 +13,7 @@ use crate::gui::widgets::controls::{
 };
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};
 
-/// Index of the column that marks incomplete models.
+/// Index for the column that marks incomplete models.
 const FILE: usize = COLUMNS.len() - 1;
 
 /// Draws the table; only visible rows are laid out.
@@ -79,11 +79,11 @@ fn incomplete_parts(assembly: &AssemblyState) -> Vec<usize> {
 struct Table<'a> {
     assembly: &'a AssemblyState,
     parts: &'a [Part],
-    /// Indices of the parts from the first row on.
+    /// Part indices by row.
     order: Vec<usize>,
-    /// Indices of parts with a problem.
+    /// Part indices with a problem.
     incomplete: Vec<usize>,
-    /// Width of a row \[pt\].
+    /// Row width \[pt\].
     width: f32,
     palette: &'a Palette,
 }
@@ -118,8 +118,8 @@ impl Table<'_> {
         response.asks(AssemblingCommand::Select(index), commands);
     }
 
-    /// Paints the texts of a row; elided texts keep the part that distinguishes them from the rows
-    /// above and below.
+    /// Paints a row's texts; elided texts keep the part that distinguishes them from the rows above
+    /// and below.
     fn paint_cells(&self, ui: &Ui, rect: Rect, row: usize, part: &Part) {
         let is_incomplete = self.incomplete.contains(&self.order[row]);
         let neighbours = [
@@ -144,8 +144,8 @@ impl Table<'_> {
         }
     }
 
-    /// Returns the colour of a cell: warning for unknown values and marked files, quiet for models
-    /// left out.
+    /// Returns a cell's colour: warning for unknown values and marked files, quiet for models left
+    /// out.
     fn cell_color(&self, text: &str, part: &Part, is_marked: bool) -> Color32 {
         if text == "?" {
             self.palette.warning

@@ -1,4 +1,4 @@
-//! Typed texts of an import's rules: names, signs, units and factors by channel.
+//! Typed rules: names, signs, units and factors by channel.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Excitation of the inputs: their autospectra in every record.
+//! Input excitation: autospectra of every record.
 
 use std::sync::Arc;
 
@@ -23,14 +23,14 @@ const SMOOTHED: usize = 5;
 /// Autospectrum of each input: frequency \[rad/s\] and level \[dB of the squared unit per Hz\].
 type Autospectra = Vec<Arc<[[f64; 2]]>>;
 
-/// Autospectra of a record in the list.
+/// Autospectra from a record.
 struct RecordSpectra {
     is_chosen: bool,
     inputs: Arc<Autospectra>,
 }
 
 impl RecordSpectra {
-    /// Returns the line of an input; the chosen record stands out.
+    /// Returns an input's line: bright and thick for the chosen record.
     fn line(&self, input: usize, palette: &Palette) -> Option<ChartLine> {
         let points = Arc::clone(self.inputs.get(input)?);
         Some(if self.is_chosen {
@@ -54,60 +54,66 @@ impl RecordSpectra {
 /// Shows a chart for each input with its spectrum in every record, the chosen record on top.
 pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
     let band = shown_band(page);
-    let spectra = record_spectra(ui, page, band);
-    let inputs = page.state.dataset().inputs();
+    let charts = InputCharts {
+        page,
+        spectra: record_spectra(ui, page, band),
+        band,
+    };
     ScrollArea::vertical()
         .id_salt("inputs")
         .auto_shrink(false)
-        .show(ui, |ui| {
-            let count = inputs.len();
-            let columns = if count > 1 { 2 } else { 1 };
-            let rows = count.div_ceil(columns);
-            let height = ((ui.available_height() - 6.0) / rows.max(1) as f32).max(LEAST_HEIGHT);
-            let width = ui.available_width() / columns as f32;
-            let size = vec2(width * columns as f32, height * rows as f32);
-            let (area, _) = ui.allocate_exact_size(size, Sense::hover());
-            for input in 0..count {
-                let column = (input % columns) as f32;
-                let row = (input / columns) as f32;
-                let corner = area.min + vec2(column * width, row * height);
-                let place = Rect::from_min_size(corner, vec2(width, height));
-                input_ui(ui, place, page, input, &spectra, band);
-            }
-        });
+        .show(ui, |ui| charts.show(ui));
 }
 
-/// Draws the chart of an input.
-fn input_ui(
-    ui: &mut Ui,
-    place: Rect,
-    page: Page<'_>,
-    input: usize,
-    spectra: &[RecordSpectra],
+/// Charts with an autospectrum for each record, in up to two columns.
+struct InputCharts<'a> {
+    page: Page<'a>,
+    spectra: Vec<RecordSpectra>,
+    /// Marked in every chart.
     band: Band,
-) {
-    let Page { state, palette, .. } = page;
-    let channel = &state.dataset().inputs()[input];
-    let unit = state.display.curves.unit;
-    let title = format!("{}: autospectrum of each record", channel.name);
-    let label = format!("dB of ({})²/Hz", channel.unit);
-    let across = unit.axis_label();
-    let mut chart = Chart::new(&title, ChartAxis::Frequency(unit), &across, &label);
-    chart.spans.push(ChartSpan {
-        ends: [band.min(), band.max()],
-        color: palette.accent.gamma_multiply(0.12),
-    });
-    for is_chosen in [false, true] {
-        for record in spectra {
-            if record.is_chosen == is_chosen {
-                chart.lines.extend(record.line(input, palette));
-            }
+}
+
+impl InputCharts<'_> {
+    fn show(&self, ui: &mut Ui) {
+        let count = self.page.state.dataset().inputs().len();
+        let columns = if count > 1 { 2 } else { 1 };
+        let rows = count.div_ceil(columns);
+        let height = ((ui.available_height() - 6.0) / rows.max(1) as f32).max(LEAST_HEIGHT);
+        let width = ui.available_width() / columns as f32;
+        let size = vec2(width * columns as f32, height * rows as f32);
+        let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+        for input in 0..count {
+            let column = (input % columns) as f32;
+            let row = (input / columns) as f32;
+            let corner = area.min + vec2(column * width, row * height);
+            self.input_ui(ui, Rect::from_min_size(corner, vec2(width, height)), input);
         }
     }
-    chart_ui(ui, place, &chart, palette);
+
+    fn input_ui(&self, ui: &mut Ui, place: Rect, input: usize) {
+        let Page { state, palette, .. } = self.page;
+        let channel = &state.dataset().inputs()[input];
+        let unit = state.display.curves.unit;
+        let title = format!("{}: autospectrum of each record", channel.name);
+        let label = format!("dB of ({})²/Hz", channel.unit);
+        let across = unit.axis_label();
+        let mut chart = Chart::new(&title, ChartAxis::Frequency(unit), &across, &label);
+        chart.spans.push(ChartSpan {
+            ends: [self.band.min(), self.band.max()],
+            color: palette.accent.gamma_multiply(0.12),
+        });
+        for is_chosen in [false, true] {
+            for record in &self.spectra {
+                if record.is_chosen == is_chosen {
+                    chart.lines.extend(record.line(input, palette));
+                }
+            }
+        }
+        chart_ui(ui, place, &chart, palette);
+    }
 }
 
-/// Returns the band of the identification, or the study's.
+/// Returns the identification's own band, or the study's.
 fn shown_band(page: Page<'_>) -> Band {
     let study_band = page.state.study.settings.band;
     match page.records.band {
@@ -116,7 +122,7 @@ fn shown_band(page: Page<'_>) -> Band {
     }
 }
 
-/// Returns the autospectra of every record whose columns are assigned.
+/// Computes the autospectra for every record with assigned columns.
 fn record_spectra(ui: &Ui, page: Page<'_>, band: Band) -> Vec<RecordSpectra> {
     let records = page.records;
     let mut spectra = Vec::new();
@@ -141,7 +147,7 @@ fn record_spectra(ui: &Ui, page: Page<'_>, band: Band) -> Vec<RecordSpectra> {
 /// `2 dt² / T |Σ u exp(-j ω t)|²`, averaged over [`SMOOTHED`] lines.
 ///
 /// One-sided: the integral over frequency \[Hz\] is the variance (Bendat and Piersol, Random Data,
-/// 5.2.2). `highest` \[rad/s\] is the upper end of the band; the spectrum extends to twice that.
+/// 5.2.2). The spectrum extends to twice the band end `highest` \[rad/s\].
 fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {
     let Some(sample_time_s) = middle_step(&flight.time_s) else {
         return Vec::new();
@@ -173,7 +179,7 @@ fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {
     all
 }
 
-/// Returns the positive time step in the middle of the record \[s\].
+/// Returns the middle entry among the positive time steps \[s\].
 fn middle_step(time_s: &[f64]) -> Option<f64> {
     let steps: Vec<f64> = time_s
         .windows(2)
@@ -187,8 +193,7 @@ fn zero_if_missing(value: f64) -> f64 {
     if value.is_finite() { value } else { 0.0 }
 }
 
-/// Averages lines of frequency \[rad/s\] and power: geometric mean of the frequencies, level \[dB\]
-/// of the mean power.
+/// Averages spectral lines: geometric mean frequency \[rad/s\] and mean power as a level \[dB\].
 fn smoothed_level(lines: &[[f64; 2]]) -> [f64; 2] {
     let count = lines.len() as f64;
     let mut log_omega = 0.0;
@@ -211,7 +216,7 @@ mod tests {
 
     #[test]
     fn the_integral_of_an_autospectrum_is_the_variance() {
-        // 500 lines below half the sampling frequency: groups of five without remainder.
+        // 500 lines below half the sampling frequency: 100 complete groups.
         let samples = 1001;
         let input: Vec<f64> = (0..samples)
             .map(|n| (0.7 * (n * n) as f64).sin() + 3.0)
@@ -230,7 +235,7 @@ mod tests {
             .map(|[_, db]| 10f64.powf(0.1 * db) * step_hz)
             .sum();
         let variance = input.iter().map(|u| (u - mean).powi(2)).sum::<f64>() / samples as f64;
-        // Parseval's theorem, up to the rounding of a thousand terms.
+        // Parseval's theorem, up to rounding in a thousand terms.
         assert!(
             (integral / variance - 1.0).abs() < 1e-9,
             "{integral} {variance}"

@@ -1,4 +1,4 @@
-//! Assignment of a record's columns to channels: column, factor, time skew.
+//! Channel assignment in a record: column, factor, time skew.
 
 use egui::{Grid, ScrollArea, Ui};
 
@@ -17,7 +17,7 @@ use crate::gui::widgets::choices::list_ui;
 use crate::gui::widgets::controls::number_entry_ui;
 
 const FIELD_WIDTH: f32 = 90.0;
-/// Width of the values that apply to the displayed record only \[pt\].
+/// Width for values that apply to the displayed record only \[pt\].
 const RECORD_FIELD_WIDTH: f32 = 60.0;
 
 const HEADINGS: [(&str, &str); 6] = [
@@ -77,7 +77,7 @@ pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
         });
 }
 
-/// Shows the column of the time and its factor to seconds.
+/// Shows the time column and its factor to seconds.
 fn time_row_ui(ui: &mut Ui, record: usize, row: &LaidOutRecord, commands: &mut Vec<Command>) {
     ui.label("time [s]");
     let (chosen, seconds) = match row.layout.time {
@@ -135,9 +135,9 @@ fn channel_rows_ui(ui: &mut Ui, page: Page<'_>, row: &LaidOutRecord, commands: &
     }
 }
 
-/// A channel of the displayed record.
+/// A channel in the displayed record.
 struct ChannelRow<'a> {
-    /// Index of the record.
+    /// Record index.
     record: usize,
     row: &'a LaidOutRecord,
     signal: Signal,
@@ -169,7 +169,7 @@ impl ChannelRow<'_> {
     }
 
     /// Shows the factor to the dataset's unit; if the unit in the file is unknown, the possible
-    /// units, none of them selected.
+    /// units without a selection.
     fn factor_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let name = &self.signal.name;
         let open_units = match self.column_use {
@@ -257,7 +257,7 @@ impl ChannelRow<'_> {
     }
 }
 
-/// Selects a column of a record; returns a changed selection.
+/// Selects a column; returns a changed selection.
 fn column_ui(ui: &mut Ui, name: &str, row: &LaidOutRecord, chosen: Option<usize>) -> Option<usize> {
     let columns = (0..row.table.columns.len())
         .map(|column| (column, chosen == Some(column), column_text(row, column)));
@@ -268,7 +268,7 @@ fn column_ui(ui: &mut Ui, name: &str, row: &LaidOutRecord, chosen: Option<usize>
     list_ui(ui, name, (150.0, &text), columns)
 }
 
-/// Returns the name of a column with its unit, if the file has one.
+/// Returns a column's name with the unit from the file; "?" if there is no such column.
 fn column_text(row: &LaidOutRecord, index: usize) -> String {
     let Some(column) = row.table.columns.get(index) else {
         return "?".to_owned();

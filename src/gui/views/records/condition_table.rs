@@ -1,4 +1,4 @@
-//! Table of the conditions with records and their identifications.
+//! Table with a row for each condition that has records.
 
 use egui::Ui;
 
@@ -59,9 +59,9 @@ pub(super) fn conditions_with_records(
         .filter(|(_, records)| records.used_rows().next().is_some())
 }
 
-/// Returns a row for each condition with records: model order, χ²/dof of the fit and of the
-/// held-out records, counts of models and cautions, and computing time. Before an identification
-/// the cells are empty or give the reason.
+/// Lists for each condition with records: model order, χ²/dof for fitted and held-out records,
+/// model and caution counts, and computing time. Before an identification the cells are empty or
+/// give the reason.
 pub fn condition_table(state: &State) -> Table {
     let columns = [
         "condition",

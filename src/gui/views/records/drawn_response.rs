@@ -1,4 +1,4 @@
-//! Curves of an identified response: measured points, models and their confidence bands.
+//! Curves for an identified response: measured points, models and their confidence bands.
 
 use nalgebra::Complex;
 
@@ -11,12 +11,12 @@ use gdcm_sysid::diagnostics::model_doubts::NARROW_WINDOW;
 use gdcm_sysid::identification::{Identification, IdentificationCaution, TRUSTED_COHERENCE};
 use gdcm_sysid::spectra::response_estimate::EstimatePoint;
 
-/// Points of a model's curve.
+/// Points on a model's curve.
 const POINTS: usize = 200;
 /// Factor by which curves extend beyond the band.
 const BEYOND: f64 = 1.5;
 
-/// The upper or lower half of a Bode plot.
+/// Upper or lower half in a Bode plot.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum BodePart {
     Magnitude,
@@ -24,7 +24,7 @@ pub(super) enum BodePart {
 }
 
 impl BodePart {
-    /// Returns the maximum half-length of drawn bars and bands \[dB, deg\]: large uncertainties
+    /// Returns the largest half-length drawn for bars and bands \[dB, deg\]: large uncertainties
     /// would hide the rest.
     fn most_half(self) -> f64 {
         match self {
@@ -40,7 +40,7 @@ impl BodePart {
         }
     }
 
-    /// Returns half of the 95 % interval \[dB, deg\].
+    /// Returns half the 95 % interval \[dB, deg\].
     pub(super) fn half_interval(self, sd: StandardDeviation) -> f64 {
         TWO_SIDED_95
             * match self {
@@ -49,13 +49,13 @@ impl BodePart {
             }
     }
 
-    /// Returns half of the 95 % interval \[dB, deg\], limited to the drawn length.
+    /// Returns half the 95 % interval \[dB, deg\], limited to the drawn length.
     pub(super) fn drawn_half_interval(self, sd: StandardDeviation) -> f64 {
         self.half_interval(sd).min(self.most_half())
     }
 }
 
-/// A point of a response, with unwrapped phase.
+/// A response value with unwrapped phase.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CurvePoint {
     /// Frequency \[rad/s\].
@@ -71,7 +71,7 @@ impl CurvePoint {
     }
 }
 
-/// Standard deviations of magnitude and phase.
+/// Standard deviations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StandardDeviation {
     db: f64,
@@ -87,22 +87,22 @@ pub(super) struct MeasuredPoint {
     pub(super) is_trusted: bool,
 }
 
-/// Whether and how a response was measured.
+/// Where and how responses were measured.
 #[derive(Clone, Copy)]
 pub(super) struct MeasuredBand {
-    /// Band of the identification \[rad/s\].
+    /// Identification band \[rad/s\].
     pub(super) band: [f64; 2],
     /// Whether recorded references served as instruments (M14.15).
     pub(super) by_reference: bool,
 }
 
-/// The curves of a pair.
+/// Curves for a pair.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnResponse {
     pub(super) measured: Vec<MeasuredPoint>,
-    /// Refined model, at the frequencies of its confidence band.
+    /// Refined model, at its confidence band's frequencies.
     pub(super) recommended: Vec<CurvePoint>,
-    /// Standard deviations of the recommended curve.
+    /// At each point on the recommended curve.
     pub(super) recommended_sds: Vec<StandardDeviation>,
     pub(super) unrefined: Vec<CurvePoint>,
     /// Intervals in which the recommended model deviates from the measured points \[rad/s\]
@@ -113,7 +113,7 @@ pub(super) struct DrawnResponse {
 }
 
 impl DrawnResponse {
-    /// Returns the curve of the first model, drawn while it is refined.
+    /// Returns the first model's curve, drawn while it is refined.
     pub(super) fn first_model(model: &StateSpace, band: [f64; 2], pair: Pair) -> Self {
         Self {
             unrefined: model_curve(model, band, pair, None),
@@ -121,7 +121,7 @@ impl DrawnResponse {
         }
     }
 
-    /// Returns the curves of a finished identification.
+    /// Returns the curves after an identification, with phases on a common branch.
     pub(super) fn new(found: &Identification, measured_band: MeasuredBand, pair: Pair) -> Self {
         let points = &found.measured.points;
         let measured = measured_points(points, pair);
@@ -167,8 +167,8 @@ impl DrawnResponse {
     }
 }
 
-/// Returns the measured points of a pair. A point is trusted if its partial coherence reaches the
-/// limit and its window is narrow.
+/// Returns a pair's measured points. A point is trusted if its partial coherence reaches
+/// [`TRUSTED_COHERENCE`] and its window is narrow.
 fn measured_points(points: &[EstimatePoint], pair: Pair) -> Vec<MeasuredPoint> {
     let at = (pair.output, pair.input);
     let omega = points.iter().map(|point| point.omega).collect();
@@ -211,7 +211,7 @@ fn deviating(found: &Identification, pair: Pair) -> Vec<[f64; 2]> {
     intervals
 }
 
-/// Returns the intervals \[rad/s\] in which the coherence of an input with the reference is too low
+/// Returns the intervals \[rad/s\] in which the coherence between input and reference is too low
 /// for a response.
 fn unexcited(points: &[EstimatePoint], pair: Pair) -> Vec<[f64; 2]> {
     let at = (pair.output, pair.input);
@@ -229,7 +229,7 @@ fn unexcited(points: &[EstimatePoint], pair: Pair) -> Vec<[f64; 2]> {
     intervals
 }
 
-/// Returns the response of a model over the band and slightly beyond.
+/// Computes a model's response over the band and slightly beyond.
 fn model_curve(
     model: &StateSpace,
     band: [f64; 2],
@@ -240,7 +240,7 @@ fn model_curve(
     curve(model, &omega, pair, reference)
 }
 
-/// Returns the finite values of a model's response at frequencies \[rad/s\].
+/// Computes a model's response at frequencies \[rad/s\]; omits values that are not finite.
 fn curve(
     model: &StateSpace,
     frequencies: &[f64],
@@ -259,7 +259,7 @@ fn curve(
     shape(omega, &values, reference)
 }
 
-/// Returns magnitude and unwrapped phase, on the branch nearest to `reference`, a point of another
+/// Returns magnitude and unwrapped phase, on the branch nearest to `reference`, a point on another
 /// curve.
 fn shape(
     omega: Vec<f64>,
@@ -285,8 +285,8 @@ fn shape(
     curve
 }
 
-/// Returns the multiple of 360° that brings a phase closest to `reference`, at the frequency
-/// nearest to that point.
+/// Returns the shift by whole turns that brings the phase closest to `reference` \[deg\], at the
+/// frequency nearest to that point.
 fn branch_shift_deg(omega: &[f64], phase_deg: &[f64], reference: CurvePoint) -> f64 {
     let nearest = (0..omega.len()).min_by(|a, b| {
         let distance_a = (omega[*a] / reference.omega).ln().abs();

@@ -1,4 +1,4 @@
-//! Commands in the header of the Records view.
+//! Commands in the view's header.
 
 use egui::{Button, Ui};
 

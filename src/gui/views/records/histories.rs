@@ -1,4 +1,4 @@
-//! Every channel of a record over time, with the models' responses to the same inputs.
+//! A record's channels over time, with the models' responses to the same inputs.
 
 use std::sync::Arc;
 
@@ -96,12 +96,12 @@ fn preparation_ui(ui: &mut Ui, page: Page<'_>) {
     }
 }
 
-/// Charts of a record, inputs before outputs, in two columns.
+/// A record's charts, inputs before outputs, in two columns.
 struct ChannelCharts<'a> {
     page: Page<'a>,
     flight: &'a Arc<FlightRecord>,
     models: &'a [Simulated<'a>],
-    /// Marked stretches of time \[s\], the same in every chart.
+    /// Marked time spans \[s\], the same in every chart.
     spans: &'a [ChartSpan],
 }
 
@@ -125,8 +125,8 @@ impl ChannelCharts<'_> {
         }
     }
 
-    /// Draws the chart of a channel, counted over inputs and outputs; the lowest in a column has
-    /// the label of the time axis.
+    /// Draws a channel's chart; `index` counts inputs, then outputs. The lowest chart in a column
+    /// labels the time axis.
     fn channel_ui(&self, ui: &mut Ui, place: Rect, index: usize, is_lowest: bool) {
         let Page { state, palette, .. } = self.page;
         let dataset = state.dataset();
@@ -179,7 +179,7 @@ impl ChannelCharts<'_> {
             .collect()
     }
 
-    /// Returns the marks of cautions about a channel in the displayed record or in all records.
+    /// Returns short marks for cautions about a channel in the displayed record or in all records.
     fn caution_marks(&self, channel: &str) -> Vec<(String, Color32)> {
         let Page {
             records, palette, ..
@@ -195,8 +195,7 @@ impl ChannelCharts<'_> {
     }
 }
 
-/// Returns the samples of a channel as unbroken lines of time \[s\] and value, with gaps where
-/// samples are missing.
+/// Returns a channel's time \[s\] and value as lines, broken where samples are missing.
 fn recorded_points(flight: &FlightRecord, index: usize) -> Vec<Arc<[[f64; 2]]>> {
     let inputs = flight.inputs.ncols();
     let mut points = Vec::with_capacity(flight.time_s.len());
@@ -215,7 +214,7 @@ fn recorded_points(flight: &FlightRecord, index: usize) -> Vec<Arc<[[f64; 2]]>> 
         .collect()
 }
 
-/// Turns a part of the record, typed or dragged in the charts, into a record.
+/// Makes a separate record from a typed or dragged part.
 fn part_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
@@ -267,8 +266,7 @@ fn typed_part(text: &str, span_s: Option<[f64; 2]>) -> Option<[f64; 2]> {
     }
 }
 
-/// Shows the time span of the displayed record on its clock, and from the start of the whole
-/// record.
+/// Shows the displayed record's time span on its clock, and from the start before it was divided.
 fn span_ui(ui: &mut Ui, page: Page<'_>) {
     let Page {
         records, palette, ..
@@ -291,7 +289,7 @@ fn span_ui(ui: &mut Ui, page: Page<'_>) {
     ui.add(Label::new(palette.small(words)).truncate());
 }
 
-/// Lists the modes of the logging system in a line.
+/// Lists the logging system's modes in a line.
 fn modes_ui(ui: &mut Ui, modes: &[ModeSpan], palette: &Palette) {
     if modes.is_empty() {
         return;
@@ -306,7 +304,7 @@ fn modes_ui(ui: &mut Ui, modes: &[ModeSpan], palette: &Palette) {
         .on_hover_text(words);
 }
 
-/// Returns the modes of the logging system, shaded lightly and darkly in turn.
+/// Returns the logging system's modes, shaded lightly and darkly in turn.
 fn mode_spans(modes: &[ModeSpan], palette: &Palette) -> Vec<ChartSpan> {
     let mut spans = Vec::new();
     for (index, mode) in modes.iter().enumerate() {
@@ -319,7 +317,7 @@ fn mode_spans(modes: &[ModeSpan], palette: &Palette) -> Vec<ChartSpan> {
     spans
 }
 
-/// Returns the other records made from parts of the displayed record's file.
+/// Returns the parts in the same file that are other records.
 fn part_spans(page: Page<'_>) -> Vec<ChartSpan> {
     let Page {
         records, palette, ..

@@ -1,4 +1,4 @@
-//! Flight records of the displayed condition and the models identified from them: records and
+//! Flight records for the displayed condition and the models identified from them: records and
 //! search settings on the left, a page about them on the right.
 
 mod autospectra;
@@ -49,10 +49,10 @@ pub use condition_table::condition_table;
 pub use header::records_header_ui;
 pub use simulation::simulation_jobs;
 
-/// Width of the list \[pt\].
+/// Initial width on the left \[pt\].
 const LIST_WIDTH: f32 = 340.0;
 
-/// Draws the records of the displayed condition and their results.
+/// Draws the records and their results.
 pub fn records_view_ui(
     ui: &mut Ui,
     state: &mut State,

@@ -1,4 +1,4 @@
-//! Menu of the identified models that can replace those of a condition.
+//! Menu with the identified models that can replace a condition's present ones.
 
 use egui::Ui;
 

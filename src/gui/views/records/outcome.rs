@@ -1,4 +1,4 @@
-//! Progress and outcome of an identification, with a button beside each caution that has a remedy.
+//! Progress, summary and cautions after an identification, with a button for each known remedy.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::gui::commands::command::Command;
 use crate::gui::widgets::controls::Asks;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Shows the progress of the identification, or its outcome.
+/// Shows the progress while an identification runs, then its outcome.
 pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
@@ -80,7 +80,7 @@ fn progress_ui(ui: &mut Ui, page: Page<'_>, job: &IdentifyJob) {
     }
 }
 
-/// Shows order, costs and bundle size of the recommended model.
+/// Shows order, costs and settings behind the recommended model.
 fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
     let order = found.refined.order().unwrap_or_default();
     ui.label(RichText::new(format!("CT-PBSID, refined: order {order}")).strong());

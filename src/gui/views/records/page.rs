@@ -1,4 +1,4 @@
-//! Context for drawing a page of the Records view.
+//! Context for drawing a page.
 
 use std::sync::Arc;
 
@@ -10,13 +10,11 @@ use crate::gui::state::records::ConditionRecords;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 
-/// Context for drawing a page: the records of the displayed condition.
+/// Context for drawing a page.
 #[derive(Clone, Copy)]
 pub struct Page<'a> {
     pub state: &'a State,
-    /// Records of the displayed condition.
     pub records: &'a ConditionRecords,
-    /// Colours of the theme.
     pub palette: &'a Palette,
 }
 
@@ -41,7 +39,7 @@ impl<'a> Page<'a> {
         self.records.identification()
     }
 
-    /// Returns the id of the time axis that the charts of the displayed record share.
+    /// Returns the id under which a record's charts share their time axis.
     pub(super) fn time_axis() -> Id {
         Id::unique("flight record")
     }

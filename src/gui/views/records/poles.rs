@@ -11,8 +11,8 @@ use crate::gui::plot::chart::{Chart, ChartAxis, ChartMarks};
 use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::widgets::palette::Palette;
 
-/// Shows moduli of the poles over frequency, one row for each order; crosses mark poles that agree
-/// with those of the order two below.
+/// Shows pole moduli over frequency, a row for each order; crosses mark poles that agree with a
+/// pole at the order two below.
 pub(super) fn stabilisation_ui(ui: &mut Ui, page: Page<'_>) {
     let Page {
         state,

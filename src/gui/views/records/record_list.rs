@@ -1,4 +1,4 @@
-//! The list of a condition's records: use, fit and problems of each.
+//! Record list: use, fit and problems.
 
 use egui::{Align, Checkbox, Color32, Grid, Label, Layout, RichText, Role, Sense, Ui, vec2};
 
@@ -12,14 +12,14 @@ use crate::gui::widgets::choices::list_ui;
 use crate::gui::widgets::controls::{Asks, elided_among, named, named_switch};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
-/// Width of all columns except the names \[pt\].
+/// Width for all columns except the names \[pt\].
 const OTHER_COLUMNS: f32 = 124.0;
-/// Minimum width of the names \[pt\].
+/// Minimum width for the names \[pt\].
 const LEAST_NAME: f32 = 60.0;
-/// Explanation of the cost of a fit.
+/// Tooltip on fit costs.
 pub(super) const CHI_SQUARED: &str =
     "Cost per degree of freedom of the recommended model; 1 if only noise remains (M14, section 6)";
-/// Cost per degree of freedom above which the fit of a record is bad (M14, section 6).
+/// χ²/dof above which a record's fit is bad (M14, section 6).
 pub(super) const BAD: f64 = 1.5;
 
 const HEADINGS: [(&str, &str); 4] = [
@@ -32,7 +32,7 @@ const HEADINGS: [(&str, &str); 4] = [
     ("χ²/dof", CHI_SQUARED),
 ];
 
-/// Shows a line for each record: whether it is used or held out, and the fit of the model.
+/// Shows a line for each record: whether it is used or held out, and the model's fit.
 pub(super) fn record_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         records, palette, ..
@@ -150,7 +150,7 @@ fn name_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut
     response.asks(RecordsCommand::Choose(index), commands);
 }
 
-/// Shows the cost of a record's fit and a sign if cautions concern it.
+/// Shows a record's fit cost, and a sign if cautions concern it.
 fn fit_ui(ui: &mut Ui, page: Page<'_>, index: usize) {
     let Page {
         records, palette, ..
@@ -174,7 +174,7 @@ fn fit_ui(ui: &mut Ui, page: Page<'_>, index: usize) {
     }
 }
 
-/// Returns the cost per degree of freedom of a record with the recommended model.
+/// Returns χ²/dof for a record and the recommended model.
 fn fit_cost(page: Page<'_>, index: usize) -> Option<f64> {
     let found = page.current_identification()?;
     let fit = found
@@ -184,7 +184,7 @@ fn fit_cost(page: Page<'_>, index: usize) -> Option<f64> {
     Some(fit.cost)
 }
 
-/// Formats a cost per degree of freedom, in the warning colour if the fit is bad.
+/// Formats χ²/dof, in the warning colour if the fit is bad.
 pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
     let color = if cost <= BAD {
         palette.text
@@ -194,7 +194,7 @@ pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
     RichText::new(format!("{cost:.2}")).color(color)
 }
 
-/// Selects the manoeuvre of a record, and removes a part.
+/// Selects a record's manoeuvre, and removes a part.
 fn kind_ui(
     ui: &mut Ui,
     index: usize,
@@ -216,7 +216,7 @@ fn kind_ui(
     });
 }
 
-/// Describes problems; missing columns and unknown units of several channels share a sentence each.
+/// Describes problems; several missing columns share a sentence, as do several unknown units.
 fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
     let mut missing = ChannelProblems::default();
     let mut without_unit = ChannelProblems::default();
@@ -246,11 +246,11 @@ fn problem_texts(problems: &[LayoutProblem]) -> Vec<String> {
     texts
 }
 
-/// Problems of one kind.
+/// Problems that share a sentence.
 #[derive(Default)]
 struct ChannelProblems<'a> {
     channels: Vec<&'a str>,
-    /// Message of the first problem.
+    /// First problem's message.
     first: Option<String>,
 }
 
@@ -262,7 +262,7 @@ impl<'a> ChannelProblems<'a> {
         }
     }
 
-    /// Returns the problem's own message, or `shared` with the names of several channels.
+    /// Returns the problem's own message, or `shared` with several channel names.
     fn text(self, shared: impl FnOnce(String) -> String) -> Option<String> {
         if self.channels.len() > 1 {
             Some(shared(self.channels.join(", ")))

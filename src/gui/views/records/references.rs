@@ -11,7 +11,7 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::records::ConditionRecords;
 use crate::gui::widgets::controls::named;
 
-/// Name of the setting; cautions refer to it.
+/// Setting to which cautions refer.
 pub(super) const REFERENCES: &str = "references";
 
 /// A column that may hold a reference.
@@ -21,7 +21,7 @@ pub(super) struct PossibleReference {
     pub(super) is_suggested: bool,
 }
 
-/// Selects the columns of recorded references, suggested ones first.
+/// Selects the columns with recorded references.
 pub(super) fn references_ui(
     ui: &mut Ui,
     page: Page<'_>,
@@ -98,7 +98,7 @@ fn reference_ui(
     }
 }
 
-/// Returns the columns of the first used record that may hold references, suggested ones first.
+/// Returns the first used record's columns that may hold references, suggested ones first.
 pub(super) fn possible_references(
     ui: &Ui,
     records: &ConditionRecords,

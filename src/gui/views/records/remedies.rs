@@ -1,4 +1,4 @@
-//! Buttons that remedy the cause of a caution about an identification.
+//! Buttons that remedy the cause behind a caution.
 
 use egui::Ui;
 
@@ -18,10 +18,10 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::commands::selection::SelectionCommand;
 use crate::gui::state::records::{ConditionRecords, RecordsPage};
 
-/// Periods of the lowest frequency in the longest record: slightly more than five, so that rounding
-/// does not repeat the caution.
+/// Lowest-frequency periods in the longest record: slightly more than five, so that rounding does
+/// not repeat the caution.
 const PERIODS: f64 = 5.001;
-/// Maximum number of references with a button each.
+/// Maximum button count for references.
 const MOST_REFERENCES: usize = 3;
 
 /// A button that remedies a caution.
@@ -58,7 +58,7 @@ pub(super) fn band_remedy(error: &IdentificationError, band: [f64; 2]) -> Option
     }
 }
 
-/// Returns the remedies of a caution; none if only another flight helps.
+/// Returns the remedies for a caution; none if only another flight helps.
 pub(super) fn caution_remedies(
     ui: &Ui,
     records: &ConditionRecords,
@@ -114,7 +114,7 @@ pub(super) fn caution_remedies(
     }
 }
 
-/// Returns the remedies of a caution about the records themselves.
+/// Returns the remedies for a caution about the records themselves.
 fn record_caution_remedies(records: &ConditionRecords, caution: &RecordCaution) -> Vec<Remedy> {
     match caution {
         RecordCaution::SampleHold { signal, hold_s, .. } => hold_remedies(signal, *hold_s),
@@ -152,7 +152,7 @@ fn hold_remedies(signal: &Signal, hold_s: f64) -> Vec<Remedy> {
     remedies
 }
 
-/// Repairs contradicting records where their fault is known, then leaves each of them out.
+/// Offers to repair each contradicting record with a known fault, then to leave each out.
 fn contradiction_remedies(
     records: &ConditionRecords,
     contradicting: &[ContradictingRecord],
@@ -167,7 +167,7 @@ fn contradiction_remedies(
     remedies
 }
 
-/// Repairs the fault of a record, in addition to earlier remedies.
+/// Repairs a record's fault, in addition to earlier remedies.
 fn repair(records: &ConditionRecords, contradicting: &ContradictingRecord) -> Option<Remedy> {
     let row = records.row_of_record(contradicting.record)?;
     let fault = contradicting.fault.as_ref()?;
@@ -242,7 +242,7 @@ fn use_band(band: [f64; 2]) -> Remedy {
     )
 }
 
-/// Raises the lower end of the band so that the longest record has five periods of it; the
+/// Raises the band's lower end until it has [`PERIODS`] in the longest record, in which the
 /// frequency `once` \[rad/s\] has a single period.
 fn raise_lowest_frequency(records: &ConditionRecords, once: f64) -> Option<Remedy> {
     let (job, _) = records.found.as_ref()?;
@@ -294,7 +294,7 @@ fn choose_order() -> Remedy {
     Remedy::new("Say an order…", RecordsCommand::ShowAdvanced(ORDERS))
 }
 
-/// Proposes the references suggested by column names, and the list of all columns.
+/// Proposes the references suggested by column names, and a list with all columns.
 fn reference_remedies(ui: &Ui, records: &ConditionRecords) -> Vec<Remedy> {
     let possible = possible_references(ui, records);
     let mut remedies = Vec::new();

@@ -14,9 +14,9 @@ use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::widgets::controls::{named, painted_text, text_width};
 use crate::gui::widgets::palette::{Palette, small};
 
-/// Band \[rad/s\] of models without a job.
+/// Band \[rad/s\] for models without a job.
 const UNKNOWN_BAND: [f64; 2] = [0.1, 10.0];
-/// Half height of the mark about the curve where it deviates from the measured points.
+/// Half height marked about the curve where it deviates from the measured points.
 const MARK_DB: f64 = 2.0;
 const MARK_DEG: f64 = 15.0;
 
@@ -54,8 +54,8 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
     chart_ui(ui, place, &phase, palette);
 }
 
-/// Returns the curves of the pair in focus: those of the first model while it is refined, otherwise
-/// those of the identification, if there is one.
+/// Returns the curves for the pair in focus: while a model is refined, its first version; otherwise
+/// the finished identification, if any.
 fn drawn_response(ui: &Ui, page: Page<'_>) -> Option<Arc<DrawnResponse>> {
     let Page { state, records, .. } = page;
     let pair = state.display.selection.pair;
@@ -112,7 +112,7 @@ fn caution_marks(page: Page<'_>) -> Vec<&'static str> {
     marks
 }
 
-/// Returns the frequency intervals of cautions about all responses.
+/// Returns the frequency intervals to which cautions about all responses refer.
 fn caution_spans(page: Page<'_>) -> Vec<ChartSpan> {
     let Page {
         records, palette, ..
@@ -135,8 +135,8 @@ fn caution_spans(page: Page<'_>) -> Vec<ChartSpan> {
     spans
 }
 
-/// Returns the intervals \[rad/s\] of a caution: the lower end of the band for short records, the
-/// ends of `band` that no input excites.
+/// Returns the intervals \[rad/s\] to which a caution refers: the band's lower end for short
+/// records, the ends of `band` that no input excites.
 fn doubtful_intervals(note: &CautionNote, band: [f64; 2]) -> Vec<[f64; 2]> {
     match (note.code, note.band_rad_s) {
         ("short", Some(ends)) => vec![ends],
@@ -145,7 +145,7 @@ fn doubtful_intervals(note: &CautionNote, band: [f64; 2]) -> Vec<[f64; 2]> {
     }
 }
 
-/// Adds the curves, bands and points of a response to a chart.
+/// Adds a response's curves, bands and points to a chart.
 fn add_response(chart: &mut Chart<'_>, drawn: &DrawnResponse, part: BodePart, palette: &Palette) {
     chart.group = Some(Id::unique("identified response"));
     chart.bands.push(confidence_band(drawn, part, palette));
@@ -178,7 +178,7 @@ fn add_response(chart: &mut Chart<'_>, drawn: &DrawnResponse, part: BodePart, pa
     }
 }
 
-/// Returns the 95 % band of the recommended curve.
+/// Returns the 95 % band about the recommended curve.
 fn confidence_band(drawn: &DrawnResponse, part: BodePart, palette: &Palette) -> ChartBand {
     let mut points = Vec::new();
     for (point, sd) in drawn.recommended.iter().zip(&drawn.recommended_sds) {
@@ -247,10 +247,9 @@ fn measured_marks(
     }
 }
 
-/// Length of a sample in the legend \[pt\].
+/// Sample length in the legend \[pt\].
 const SAMPLE: f32 = 18.0;
 
-/// An entry of the legend.
 struct LegendEntry {
     sample: Sample,
     text: &'static str,
@@ -315,7 +314,7 @@ impl LegendEntry {
     }
 }
 
-/// Sample in front of a legend label.
+/// Sample before a legend label.
 #[derive(Clone, Copy)]
 enum Sample {
     Line,

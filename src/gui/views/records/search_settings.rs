@@ -1,4 +1,4 @@
-//! Settings of the identification: band, references, model orders, past windows, Laguerre poles.
+//! Identification settings: band, references, model orders, past windows, Laguerre poles.
 
 use egui::{CollapsingHeader, Grid, Id, Ui};
 
@@ -16,10 +16,10 @@ use crate::gui::widgets::controls::entry_ui;
 use crate::gui::widgets::palette::Palette;
 
 const FIELD_WIDTH: f32 = 150.0;
-/// Name of the model orders; cautions refer to it.
+/// Setting to which cautions refer.
 pub(super) const ORDERS: &str = "orders";
 
-/// A list of values to search.
+/// A list setting; the identification tries every entry.
 #[derive(Clone, Copy)]
 enum SearchList {
     Orders,
@@ -151,7 +151,7 @@ fn field_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, palette: &Palette)
     text
 }
 
-/// Returns the accessible name of a setting's field.
+/// Returns a field's accessible name.
 fn field_name(name: &str) -> String {
     format!("Identification: {name}")
 }

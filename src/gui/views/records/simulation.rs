@@ -1,4 +1,4 @@
-//! Comparison of models with a record in the time domain: model selection, responses and fit.
+//! Comparison between models and a record in the time domain: selection, responses and fit.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 /// A model compared with the displayed record.
 pub(super) struct Simulated<'a> {
     pub(super) model: TimeModel,
-    /// Colour of its lines.
+    /// Line colour.
     pub(super) color: Color32,
     /// Its response, or the reason why there is none; `None` during the computation.
     pub(super) result: Option<&'a Result<Arc<Validation>, String>>,
@@ -38,14 +38,14 @@ impl Simulated<'_> {
         }
     }
 
-    /// Formats the fit of an output \[%\]; `None` if unknown.
+    /// Formats an output's fit \[%\]; `None` if unknown.
     pub(super) fn fit_words(&self, output: usize) -> Option<String> {
         let fits = &self.validation()?.fit_percent;
         let fit = fits.get(output).copied().flatten()?;
         Some(format!("{fit:.1} %"))
     }
 
-    /// Returns Theil's coefficient of an output; `None` if unknown.
+    /// Returns Theil's coefficient for an output; `None` if unknown.
     fn theil(&self, output: usize) -> Option<f64> {
         self.validation()?.theil.get(output).copied().flatten()
     }
@@ -61,7 +61,7 @@ impl Simulated<'_> {
         ui.add(Label::new(RichText::new(words).size(SMALL_SIZE).color(color)).wrap());
     }
 
-    /// Returns the lines of an output, one per window, each from its own initial state.
+    /// Returns an output's lines, one per window, each from its own initial state.
     pub(super) fn lines(&self, ui: &Ui, output: usize) -> Vec<ChartLine> {
         let Some(Ok(validation)) = self.result else {
             return Vec::new();
@@ -83,7 +83,7 @@ impl Simulated<'_> {
     }
 }
 
-/// Returns time \[s\] and value of a simulated output, a line for each window.
+/// Returns time \[s\] and simulated output, a line for each window.
 fn simulated_points(validation: &Validation, output: usize) -> Vec<Arc<[[f64; 2]]>> {
     let mut lines = Vec::new();
     for window in &validation.windows {
@@ -129,7 +129,7 @@ fn model_jobs(state: &State) -> Vec<ModelJob> {
     jobs
 }
 
-/// Returns the jobs of the models selected for the displayed record.
+/// Returns the jobs that simulate the models selected for the displayed record.
 pub fn simulation_jobs(state: &State) -> Vec<SimulationJob> {
     model_jobs(state)
         .into_iter()
@@ -210,7 +210,7 @@ pub(super) fn time_models_ui(
 /// Theil's coefficient below which a model is good (M14, section 6).
 const GOOD_THEIL: f64 = 0.25;
 
-/// Shows tables of the fit: by record, by output, and in time.
+/// Shows fit tables: by record, by output, and in time.
 pub(super) fn fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     ScrollArea::vertical()
         .id_salt("fit")
@@ -224,7 +224,7 @@ pub(super) fn fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         });
 }
 
-/// Shows the cost per degree of freedom of each record and of each output.
+/// Shows χ²/dof by record and by output.
 fn frequency_fit_ui(ui: &mut Ui, page: Page<'_>, found: &Identification) {
     let Page { state, palette, .. } = page;
     let heading = "In frequency: χ² per degree of freedom; 1 if only noise remains";
@@ -257,7 +257,7 @@ fn frequency_fit_ui(ui: &mut Ui, page: Page<'_>, found: &Identification) {
         });
 }
 
-/// Shows the fit and Theil's coefficient of each selected model for the displayed record.
+/// Shows fit and Theil's coefficient for the displayed record, by output and selected model.
 fn time_fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,

@@ -1,4 +1,4 @@
-//! Files of records, their missing units, and the commands for all conditions.
+//! Record files, their missing units, and the commands for all conditions.
 
 use egui::{Button, Label, Ui};
 
@@ -36,7 +36,7 @@ pub(super) fn source_ui(
     }
 }
 
-/// Shows the button and the path field that add files of records.
+/// Shows the button and the path field that add record files.
 fn add_ui(ui: &mut Ui, path: &mut String, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let hint = "CSV, text, .mat, .npz, .zip: files of flight records";
@@ -50,7 +50,7 @@ fn add_ui(ui: &mut Ui, path: &mut String, commands: &mut Vec<Command>) {
     });
 }
 
-/// Asks once for all missing units in the records of all conditions.
+/// Asks once for all missing units, over all conditions.
 fn open_units_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(open) = state.records.open_units() else {
         return;
@@ -94,7 +94,7 @@ fn open_units_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
     });
 }
 
-/// Shows the commands for the records of all conditions, if several conditions have records.
+/// Shows the commands for all conditions, if several have records.
 fn all_conditions_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let count = conditions_with_records(state).count();
     if count < 2 || !state.records.running.is_empty() {
@@ -118,7 +118,7 @@ fn all_conditions_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
-/// Offers to make a dataset from records that lack channels of the open dataset.
+/// Offers to make a dataset from records that lack the open dataset's channels.
 fn other_channels_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let has_missing = page
         .records

@@ -1,4 +1,4 @@
-//! Typed lists of numbers: frequency bands, model orders, window lengths.
+//! Typed number lists: frequency bands, model orders, window lengths.
 
 use gdcm_model::units::number;
 

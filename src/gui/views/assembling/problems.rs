@@ -10,7 +10,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Maximum line count; further lines are only counted.
 const MOST_LINES: usize = 200;
-/// Maximum count for tables without models; further tables follow once these are read.
+/// Maximum count for displayed tables without models; further tables follow once these are read.
 const MOST_TABLES: usize = 5;
 
 /// Shows a line for each incomplete item; a click displays its model.

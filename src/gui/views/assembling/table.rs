@@ -1,4 +1,4 @@
-//! Model table.
+//! Model table: a row per model, sortable by every column.
 
 use egui::{Align, Button, Color32, Layout, Rect, Role, ScrollArea, Sense, Ui, vec2};
 
@@ -13,7 +13,7 @@ use crate::gui::widgets::controls::{
 };
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, small};
 
-/// Index for the column that marks incomplete models.
+/// Column in which incomplete models are marked.
 const FILE: usize = COLUMNS.len() - 1;
 
 /// Draws the table; only visible rows are laid out.

@@ -23,7 +23,6 @@ const SMOOTHED: usize = 5;
 /// Autospectrum of each input: frequency \[rad/s\] and level \[dB of the squared unit per Hz\].
 type Autospectra = Vec<Arc<[[f64; 2]]>>;
 
-/// Autospectra from a record.
 struct RecordSpectra {
     is_chosen: bool,
     inputs: Arc<Autospectra>,
@@ -179,7 +178,8 @@ fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {
     all
 }
 
-/// Returns the middle entry among the positive time steps \[s\].
+/// Returns the middle entry among the positive time steps \[s\]: the sample time if the clock is
+/// nearly even.
 fn middle_step(time_s: &[f64]) -> Option<f64> {
     let steps: Vec<f64> = time_s
         .windows(2)

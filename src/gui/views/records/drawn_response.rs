@@ -55,7 +55,7 @@ impl BodePart {
     }
 }
 
-/// A response value with unwrapped phase.
+/// A response value; the phase is unwrapped.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CurvePoint {
     /// Frequency \[rad/s\].
@@ -71,14 +71,12 @@ impl CurvePoint {
     }
 }
 
-/// Standard deviations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StandardDeviation {
     db: f64,
     deg: f64,
 }
 
-/// A measured point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MeasuredPoint {
     pub(super) point: CurvePoint,
@@ -96,7 +94,6 @@ pub(super) struct MeasuredBand {
     pub(super) by_reference: bool,
 }
 
-/// Curves for a pair.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnResponse {
     pub(super) measured: Vec<MeasuredPoint>,

@@ -317,7 +317,7 @@ fn mode_spans(modes: &[ModeSpan], palette: &Palette) -> Vec<ChartSpan> {
     spans
 }
 
-/// Returns the parts in the same file that are other records.
+/// Returns the time spans that other records take from the same file.
 fn part_spans(page: Page<'_>) -> Vec<ChartSpan> {
     let Page {
         records, palette, ..

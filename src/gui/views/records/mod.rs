@@ -49,7 +49,7 @@ pub use condition_table::condition_table;
 pub use header::records_header_ui;
 pub use simulation::simulation_jobs;
 
-/// Initial width on the left \[pt\].
+/// Initial width for the record list \[pt\].
 const LIST_WIDTH: f32 = 340.0;
 
 /// Draws the records and their results.

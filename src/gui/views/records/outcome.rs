@@ -117,7 +117,6 @@ fn limit_color(value: f64, limit: f64, palette: &Palette) -> Color32 {
     }
 }
 
-/// Shows a caution and its remedies.
 fn caution_ui(
     ui: &mut Ui,
     words: &str,

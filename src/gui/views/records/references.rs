@@ -11,7 +11,7 @@ use crate::gui::commands::records::RecordsCommand;
 use crate::gui::state::records::ConditionRecords;
 use crate::gui::widgets::controls::named;
 
-/// Setting to which cautions refer.
+/// Name under which cautions refer to this setting.
 pub(super) const REFERENCES: &str = "references";
 
 /// A column that may hold a reference.

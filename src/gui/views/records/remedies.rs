@@ -24,7 +24,7 @@ const PERIODS: f64 = 5.001;
 /// Maximum button count for references.
 const MOST_REFERENCES: usize = 3;
 
-/// A button that remedies a caution.
+/// A button that removes the cause behind a caution.
 pub(super) struct Remedy {
     pub(super) label: String,
     pub(super) command: Command,
@@ -39,7 +39,6 @@ impl Remedy {
     }
 }
 
-/// Proposes the study's band.
 pub(super) fn study_band_remedy() -> Remedy {
     Remedy::new("Use the study's band", RecordsCommand::SetBand(None))
 }
@@ -242,8 +241,8 @@ fn use_band(band: [f64; 2]) -> Remedy {
     )
 }
 
-/// Raises the band's lower end until it has [`PERIODS`] in the longest record, in which the
-/// frequency `once` \[rad/s\] has a single period.
+/// Raises the band's lower end until the longest record contains [`PERIODS`] periods; the frequency
+/// `once` \[rad/s\] has a single period in it.
 fn raise_lowest_frequency(records: &ConditionRecords, once: f64) -> Option<Remedy> {
     let (job, _) = records.found.as_ref()?;
     let [_, highest] = job.request.options.band;
@@ -291,7 +290,7 @@ fn show_inputs() -> Remedy {
 }
 
 fn choose_order() -> Remedy {
-    Remedy::new("Say an order…", RecordsCommand::ShowAdvanced(ORDERS))
+    Remedy::new("Set an order…", RecordsCommand::ShowAdvanced(ORDERS))
 }
 
 /// Proposes the references suggested by column names, and a list with all columns.
@@ -311,7 +310,7 @@ fn reference_remedies(ui: &Ui, records: &ConditionRecords) -> Vec<Remedy> {
     }
     if !possible.is_empty() {
         remedies.push(Remedy::new(
-            "Say a reference…",
+            "Choose a reference…",
             RecordsCommand::ShowAdvanced(REFERENCES),
         ));
     }

@@ -16,7 +16,7 @@ use crate::gui::widgets::controls::entry_ui;
 use crate::gui::widgets::palette::Palette;
 
 const FIELD_WIDTH: f32 = 150.0;
-/// Setting to which cautions refer.
+/// Name under which cautions refer to the model orders.
 pub(super) const ORDERS: &str = "orders";
 
 /// A list setting; the identification tries every entry.

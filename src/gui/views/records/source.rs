@@ -85,7 +85,7 @@ fn open_units_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
         );
         button_ui(
             ui,
-            Button::new("Say others…"),
+            Button::new("Choose others…"),
             "Opens the columns of the first such record; a unit set there applies to all records \
              with the same columns",
             RecordsCommand::ShowUnclear,

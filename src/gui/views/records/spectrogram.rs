@@ -16,7 +16,7 @@ use crate::gui::plot::chart_view::chart_ui;
 use crate::gui::widgets::choices::choice_ui;
 use crate::gui::widgets::palette::Palette;
 
-/// Height \[pt\].
+/// Chart height \[pt\].
 const SPECTROGRAM_HEIGHT: f32 = 150.0;
 
 /// A spectrogram with its picture on the graphics card.

@@ -758,8 +758,8 @@ fn units_that_no_file_says_are_asked_once_for_the_records_of_all_conditions() {
     assert_eq!([5, 8, 10].map(|id| factor(&window, id, 0)), [1.0; 3]);
     step(&mut window, UNDO);
     assert_eq!(open(&window), Some((3, 3)));
-    // In another unit: a declaration about the columns of a record applies to all added records.
-    click(&mut window, "Say others…");
+    // In another unit: what is said of the columns of one record is said of all that were added.
+    click(&mut window, "Choose others…");
     assert_eq!(
         (state(&window).condition().id(), state(&window).records.page),
         (ConditionId(5), RecordsPage::Columns)
@@ -1121,7 +1121,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     click(&mut window, "By way of x0");
     assert_eq!(state(&window).records.conditions[&of].references, ["x0"]);
     // The list of columns takes it back, and takes it again.
-    click(&mut window, "Say a reference…");
+    click(&mut window, "Choose a reference…");
     window.run_steps(10);
     for expected in [&[][..], &["x0".to_owned()][..]] {
         click(&mut window, "Identification: references");

@@ -1,5 +1,6 @@
-//! Commands that change the rules of an import.
+//! Commands that change an import's rules.
 
+use gdcm_model::assembly::part::Part;
 use gdcm_model::assembly::{RowRule, Rules};
 
 use crate::gui::commands::assembling::AssemblingCommand;
@@ -8,72 +9,75 @@ use crate::gui::state::assembling::AssemblyState;
 
 impl AssemblyState {
     /// Returns the command that changes the rules with `change`.
-    pub fn changed(&self, change: impl FnOnce(&mut Rules)) -> Command {
+    pub(super) fn rules_change(&self, change: impl FnOnce(&mut Rules)) -> Command {
         let mut rules = self.assembly().rules().clone();
         change(&mut rules);
         AssemblingCommand::Change(Box::new(rules)).into()
     }
 
-    /// Returns the command that changes the rule of one model.
-    pub fn said_of(&self, part: usize, say: impl FnOnce(&mut RowRule)) -> Command {
-        self.changed(|rules| {
+    /// Returns the command that changes a model's rule.
+    pub(super) fn rule_change(&self, part: usize, change: impl FnOnce(&mut RowRule)) -> Command {
+        self.rules_change(|rules| {
             if let Some(part) = self.assembly().parts().get(part) {
-                say(rules.rows.entry(part.found.key()).or_default());
+                change(rules.rows.entry(part.found.key()).or_default());
             }
         })
     }
 
-    /// Returns the command that changes the heading of a table's column; the file's own headings
-    /// apply where none are given.
-    pub fn with_heading(&self, file: &str, column: usize, heading: &str) -> Command {
-        self.changed(|rules| {
-            let Some(headings) = self.tables.get(file) else {
+    /// Returns the command that changes a column heading; the other columns keep theirs.
+    pub(super) fn heading_change(&self, file: &str, column: usize, heading: &str) -> Command {
+        self.rules_change(|rules| {
+            let Some(present) = self.tables.get(file) else {
                 return;
             };
-            let said = rules
+            let headings = rules
                 .headings
                 .entry(file.to_owned())
-                .or_insert_with(|| headings.clone());
-            if let Some(place) = said.get_mut(column) {
+                .or_insert_with(|| present.clone());
+            if let Some(place) = headings.get_mut(column) {
                 heading.trim().clone_into(place);
             }
         })
     }
 
-    /// Returns the command that sets the unit of a column in a table, and in all tables with the
-    /// same headings.
-    pub fn with_unit(&self, file: &str, column: usize, unit: &str) -> Command {
-        self.changed(|rules| {
+    /// Returns the command that adds a unit to a column heading, in a table and in all tables with
+    /// the same headings.
+    pub(super) fn unit_change(&self, file: &str, column: usize, unit: &str) -> Command {
+        self.rules_change(|rules| {
             for file in self.tables_alike(file) {
-                let said = rules
+                let headings = rules
                     .headings
                     .entry(file.clone())
                     .or_insert_with(|| self.tables[file].clone());
-                if let Some(heading) = said.get_mut(column) {
+                if let Some(heading) = headings.get_mut(column) {
                     *heading = format!("{heading} [{unit}]");
                 }
             }
         })
     }
 
-    /// Returns the command that copies a setting to every model below `part`, in table order, in
-    /// the same folder.
-    pub fn filled_down(&self, part: usize, say: impl Fn(&mut RowRule)) -> Command {
+    /// Returns the command that applies `change` to a model and to every model below it, in table
+    /// order, in the same folder.
+    pub(super) fn fill_down_change(&self, part: usize, change: impl Fn(&mut RowRule)) -> Command {
         let parts = self.assembly().parts();
-        let folder = |part: usize| {
-            parts.get(part).map(|part| {
-                part.found
-                    .file()
-                    .rsplit_once('/')
-                    .map_or("", |(folder, _)| folder)
-            })
-        };
         let order = self.order();
-        let below = order.iter().skip_while(|index| **index != part);
-        self.changed(|rules| {
-            for index in below.filter(|index| folder(**index) == folder(part)) {
-                say(rules.rows.entry(parts[*index].found.key()).or_default());
+        self.rules_change(|rules| {
+            let Some(first) = order.iter().position(|index| *index == part) else {
+                return;
+            };
+            for &index in &order[first..] {
+                if folder(&parts[index]) == folder(&parts[part]) {
+                    change(rules.rows.entry(parts[index].found.key()).or_default());
+                }
             }
         })
+    }
+}
+
+/// Returns a model's folder; empty at the top.
+fn folder(part: &Part) -> &str {
+    match part.found.file().rsplit_once('/') {
+        Some((folder, _)) => folder,
+        None => "",
     }
 }

@@ -1,4 +1,4 @@
-//! Values of the Records view cached between frames.
+//! Values cached between frames.
 
 use std::any::Any;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use egui::{Id, Ui};
 
-/// Source data of a cached value: kept alive with the value, so that its address cannot be reused.
+/// Source data: kept alive with the cached value, so that its address cannot be reused.
 pub type Source = Arc<dyn Any + Send + Sync>;
 
 struct Kept<T> {
@@ -15,7 +15,7 @@ struct Kept<T> {
     value: Arc<T>,
 }
 
-/// Returns the cached result of `compute` for these sources (compared by address) and `key`;
+/// Returns the result from `compute`, cached for these sources (compared by address) and `key`;
 /// recomputes it when either changes.
 pub fn kept<T: Send + Sync + 'static>(
     ui: &Ui,
@@ -28,15 +28,11 @@ pub fn kept<T: Send + Sync + 'static>(
     key.hash(&mut hasher);
     let place = Id::unique(("records page", name));
     let key = hasher.finish();
-    let are_same = |known: &[Source]| {
-        known.len() == sources.len()
-            && known
-                .iter()
-                .zip(sources)
-                .all(|(known, source)| Arc::ptr_eq(known, source))
-    };
     let known = ui.data(|data| data.get_temp::<Arc<Kept<T>>>(place));
-    if let Some(known) = known.filter(|known| known.key == key && are_same(&known.sources)) {
+    if let Some(known) = known
+        && known.key == key
+        && are_same(&known.sources, sources)
+    {
         return Arc::clone(&known.value);
     }
     let value = Arc::new(compute());
@@ -49,12 +45,21 @@ pub fn kept<T: Send + Sync + 'static>(
     value
 }
 
+/// Compares sources by address.
+fn are_same(known: &[Source], sources: &[Source]) -> bool {
+    known.len() == sources.len()
+        && known
+            .iter()
+            .zip(sources)
+            .all(|(known, source)| Arc::ptr_eq(known, source))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn it_is_computed_once_for_its_sources_and_key() {
+    fn a_value_is_computed_once_for_its_sources_and_key() {
         let mut computed = 0;
         egui::__run_test_ui(|ui| {
             computed = 0;

@@ -1,6 +1,8 @@
-//! Context for drawing a page of the Records view.
+//! Context for drawing a page.
 
-use egui::Ui;
+use std::sync::Arc;
+
+use egui::{Id, Ui};
 
 use gdcm_sysid::identification::Identification;
 
@@ -8,26 +10,37 @@ use crate::gui::state::records::ConditionRecords;
 use crate::gui::state::window_state::State;
 use crate::gui::widgets::palette::Palette;
 
-/// Context for drawing a page: the records of the displayed condition.
+/// Context for drawing a page.
 #[derive(Clone, Copy)]
 pub struct Page<'a> {
     pub state: &'a State,
-    /// Records of the displayed condition.
     pub records: &'a ConditionRecords,
-    /// Colours of the theme.
     pub palette: &'a Palette,
 }
 
-impl Page<'_> {
+impl<'a> Page<'a> {
     /// Returns the identification; shows a message if there is none.
-    pub fn identification_ui(&self, ui: &mut Ui) -> Option<&Identification> {
+    pub fn identification_ui(self, ui: &mut Ui) -> Option<&'a Identification> {
         let found = self.records.identification();
         if found.is_none() {
             ui.label(
                 self.palette
-                    .dim("Nothing was identified yet: choose Identify above."),
+                    .dim("No identification yet: choose Identify above"),
             );
         }
         found.map(AsRef::as_ref)
+    }
+
+    /// Returns the identification unless records or settings changed after it.
+    pub(super) fn current_identification(self) -> Option<&'a Arc<Identification>> {
+        if self.records.changed {
+            return None;
+        }
+        self.records.identification()
+    }
+
+    /// Returns the id under which a record's charts share their time axis.
+    pub(super) fn time_axis() -> Id {
+        Id::unique("flight record")
     }
 }

@@ -1,4 +1,4 @@
-//! Comparison of models with a record in the time domain: model selection, responses and fit.
+//! Comparison between models and a record in the time domain: selection, responses and fit.
 
 use std::sync::Arc;
 
@@ -8,6 +8,7 @@ use gdcm_method::correction::Pade;
 use gdcm_model::dataset::{BundleKind, StateSpace};
 use gdcm_model::simulation::Validation;
 use gdcm_study::jobs::identification_jobs::SimulationJob;
+use gdcm_sysid::identification::Identification;
 
 use super::frame_cache::kept;
 use super::page::Page;
@@ -22,7 +23,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 /// A model compared with the displayed record.
 pub(super) struct Simulated<'a> {
     pub(super) model: TimeModel,
-    /// Colour of its lines.
+    /// Line colour.
     pub(super) color: Color32,
     /// Its response, or the reason why there is none; `None` during the computation.
     pub(super) result: Option<&'a Result<Arc<Validation>, String>>,
@@ -30,19 +31,23 @@ pub(super) struct Simulated<'a> {
 
 impl Simulated<'_> {
     /// Returns the response once it is computed.
-    pub(super) fn validation(&self) -> Option<&Validation> {
-        Some(self.result?.as_ref().ok()?.as_ref())
+    fn validation(&self) -> Option<&Validation> {
+        match self.result {
+            Some(Ok(validation)) => Some(validation),
+            _ => None,
+        }
     }
 
-    /// Describes the fit of an output; `None` if unknown.
+    /// Formats an output's fit \[%\]; `None` if unknown.
     pub(super) fn fit_words(&self, output: usize) -> Option<String> {
-        let fit = self
-            .validation()?
-            .fit_percent
-            .get(output)
-            .copied()
-            .flatten()?;
+        let fits = &self.validation()?.fit_percent;
+        let fit = fits.get(output).copied().flatten()?;
         Some(format!("{fit:.1} %"))
+    }
+
+    /// Returns Theil's coefficient for an output; `None` if unknown.
+    fn theil(&self, output: usize) -> Option<f64> {
+        self.validation()?.theil.get(output).copied().flatten()
     }
 
     /// Shows why there is no response, or that it is being computed.
@@ -56,110 +61,124 @@ impl Simulated<'_> {
         ui.add(Label::new(RichText::new(words).size(SMALL_SIZE).color(color)).wrap());
     }
 
-    /// Returns the lines of an output, one per window, each from its own initial state.
+    /// Returns an output's lines, one per window, each from its own initial state.
     pub(super) fn lines(&self, ui: &Ui, output: usize) -> Vec<ChartLine> {
         let Some(Ok(validation)) = self.result else {
             return Vec::new();
         };
         let name = format!("{} {output}", self.model.name());
-        let points = kept(ui, &name, &[Arc::clone(validation) as _], (), || {
+        let source = Arc::clone(validation) as _;
+        let lines = kept(ui, &name, &[source], (), || {
             simulated_points(validation, output)
         });
-        let dashed = self.model == TimeModel::Physics;
-        let line = |points: &Arc<[[f64; 2]]>| ChartLine {
-            points: Arc::clone(points),
-            color: self.color,
-            width: 1.3,
-            dashed,
-        };
-        points.iter().map(line).collect()
+        lines
+            .iter()
+            .map(|points| ChartLine {
+                points: Arc::clone(points),
+                color: self.color,
+                width: 1.3,
+                dashed: self.model == TimeModel::Physics,
+            })
+            .collect()
     }
 }
 
+/// Returns time \[s\] and simulated output, a line for each window.
 fn simulated_points(validation: &Validation, output: usize) -> Vec<Arc<[[f64; 2]]>> {
-    let windows = validation.windows.iter().map(|window| {
-        let at = |sample: usize| window.start_s + sample as f64 * window.sample_time_s;
-        let values = window.simulated.column(output);
-        values
-            .iter()
-            .enumerate()
-            .map(|(sample, value)| [at(sample), *value])
-            .collect()
-    });
-    windows.collect()
+    let mut lines = Vec::new();
+    for window in &validation.windows {
+        let mut points = Vec::new();
+        for (sample, value) in window.simulated.column(output).iter().enumerate() {
+            let time_s = window.start_s + sample as f64 * window.sample_time_s;
+            points.push([time_s, *value]);
+        }
+        lines.push(points.into());
+    }
+    lines
 }
 
-/// Returns the models selected for the displayed record, with the jobs that compute their
-/// responses.
-fn jobs(state: &State) -> Vec<(TimeModel, SimulationJob)> {
+/// A model selected for the displayed record, with the job that computes its response.
+struct ModelJob {
+    model: TimeModel,
+    job: SimulationJob,
+}
+
+/// Returns the selected models that are available in continuous time.
+fn model_jobs(state: &State) -> Vec<ModelJob> {
     let Some(records) = state.records.conditions.get(&state.condition().id()) else {
         return Vec::new();
     };
-    let Some(record) = records
-        .rows
-        .get(records.chosen)
-        .and_then(|row| row.flight.as_ref())
-    else {
+    let Some(row) = records.rows.get(records.chosen) else {
+        return Vec::new();
+    };
+    let Some(flight) = &row.flight else {
         return Vec::new();
     };
     let preparation = records.preparation();
-    let of = |model: &TimeModel| {
-        let record = Arc::clone(record);
-        let preparation = preparation.clone();
-        Some((
-            *model,
-            SimulationJob {
-                record: record.into(),
-                preparation,
-                model: state_space(state, records, *model)?,
-            },
-        ))
-    };
-    state.records.time_models.iter().filter_map(of).collect()
+    let mut jobs = Vec::new();
+    for &model in &state.records.time_models {
+        if let Some(space) = state_space(state, records, model) {
+            let job = SimulationJob {
+                record: Arc::clone(flight).into(),
+                preparation: preparation.clone(),
+                model: space,
+            };
+            jobs.push(ModelJob { model, job });
+        }
+    }
+    jobs
 }
 
-/// Returns the jobs of the models selected for the displayed record.
+/// Returns the jobs that simulate the models selected for the displayed record.
 pub fn simulation_jobs(state: &State) -> Vec<SimulationJob> {
-    jobs(state).into_iter().map(|(_, job)| job).collect()
+    model_jobs(state)
+        .into_iter()
+        .map(|model_job| model_job.job)
+        .collect()
 }
 
 /// Returns the models selected for the displayed record.
 pub(super) fn simulated<'a>(state: &'a State, palette: &Palette) -> Vec<Simulated<'a>> {
-    let of = |(model, job): (TimeModel, SimulationJob)| {
+    let mut models = Vec::new();
+    for ModelJob { model, job } in model_jobs(state) {
         let known = state
             .results
             .simulations
             .iter()
             .find(|(known, _)| *known == job);
-        Simulated {
+        models.push(Simulated {
             model,
             color: model.color(palette),
             result: known.map(|(_, result)| result),
-        }
-    };
-    jobs(state).into_iter().map(of).collect()
+        });
+    }
+    models
 }
 
-/// Returns a model's state space; `None` if the model is unavailable or not continuous-time.
+/// Returns a model's state space; `None` if the model is unavailable or not in plain continuous
+/// time.
 fn state_space(state: &State, records: &ConditionRecords, model: TimeModel) -> Option<StateSpace> {
-    let plain = |of: &StateSpace| of.timing().is_plain().then(|| of.clone());
     if model == TimeModel::Identified {
         return records.identification()?.refined.state_space().cloned();
     }
-    let shown = state.shown()?;
-    let name = shown.representative_name(BundleKind::Physics);
+    let analysis = state.shown()?;
+    let name = analysis.representative_name(BundleKind::Physics);
     let physics = state
         .condition()
         .model(BundleKind::Physics, name)?
         .state_space()?;
-    match model {
-        TimeModel::Corrected => plain(
-            &shown
-                .corrected_model(physics, &shown.correction, Pade::default())
-                .ok()?
-                .model,
-        ),
-        TimeModel::Identified | TimeModel::Physics => plain(physics),
+    let space = if model == TimeModel::Corrected {
+        analysis
+            .corrected_model(physics, &analysis.correction, Pade::default())
+            .ok()?
+            .model
+    } else {
+        physics.clone()
+    };
+    if space.timing().is_plain() {
+        Some(space)
+    } else {
+        None
     }
 }
 
@@ -172,13 +191,18 @@ pub(super) fn time_models_ui(
 ) {
     ui.label(palette.small("response to the same inputs, and fit, of:"));
     for model in TimeModel::ALL {
-        let mut shown = state.records.time_models.contains(&model);
+        let mut is_drawn = state.records.time_models.contains(&model);
         let text = RichText::new(format!("{} model", model.name()))
             .size(SMALL_SIZE)
             .color(model.color(palette));
-        let hint = "In windows of 10 s, or shorter where the model is unstable, each from an initial state and offsets of its own";
-        if ui.checkbox(&mut shown, text).on_hover_text(hint).changed() {
-            commands.push(RecordsCommand::ShowTimeModel(model, shown).into());
+        let hint = "In windows of 10 s, shorter for an unstable model, each with its own initial \
+                    state and offsets";
+        if ui
+            .checkbox(&mut is_drawn, text)
+            .on_hover_text(hint)
+            .changed()
+        {
+            commands.push(RecordsCommand::ShowTimeModel(model, is_drawn).into());
         }
     }
 }
@@ -186,65 +210,64 @@ pub(super) fn time_models_ui(
 /// Theil's coefficient below which a model is good (M14, section 6).
 const GOOD_THEIL: f64 = 0.25;
 
-/// Shows tables of the fit: by record, by output, and in time.
+/// Shows fit tables: by record, by output, and in time.
 pub(super) fn fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
-    let Page { state, palette, .. } = page;
     ScrollArea::vertical()
         .id_salt("fit")
         .auto_shrink(false)
         .show(ui, |ui| {
             if let Some(found) = page.identification_ui(ui) {
-                ui.label(
-                    RichText::new(
-                        "In frequency: χ² per degree of freedom; 1 is what noise explains",
-                    )
-                    .strong(),
-                );
-                Grid::new("fit of records")
-                    .num_columns(3)
-                    .striped(true)
-                    .show(ui, |ui| {
-                        for fit in &found.record_fits {
-                            let name = found
-                                .record_uses
-                                .get(fit.record)
-                                .map_or("", |of| of.record.as_str());
-                            ui.label(name);
-                            ui.label(cost_text(fit.cost, palette));
-                            ui.label(if fit.held_out { "held out" } else { "" });
-                            ui.end_row();
-                        }
-                    });
-                ui.add_space(6.0);
-                Grid::new("fit of outputs")
-                    .num_columns(2)
-                    .striped(true)
-                    .show(ui, |ui| {
-                        for (output, cost) in
-                            state.dataset().outputs().iter().zip(&found.output_costs)
-                        {
-                            ui.label(&output.name);
-                            ui.label(cost_text(*cost, palette));
-                            ui.end_row();
-                        }
-                    });
+                frequency_fit_ui(ui, page, found);
             }
             ui.add_space(10.0);
-            time_ui(ui, page, commands);
+            time_fit_ui(ui, page, commands);
         });
 }
 
-/// Shows the fit and Theil's coefficient of each selected model for the displayed record.
-fn time_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+/// Shows χ²/dof by record and by output.
+fn frequency_fit_ui(ui: &mut Ui, page: Page<'_>, found: &Identification) {
+    let Page { state, palette, .. } = page;
+    let heading = "In frequency: χ² per degree of freedom; 1 if only noise remains";
+    ui.label(RichText::new(heading).strong());
+    Grid::new("fit of records")
+        .num_columns(3)
+        .striped(true)
+        .show(ui, |ui| {
+            for fit in &found.record_fits {
+                ui.label(match found.record_uses.get(fit.record) {
+                    Some(record_use) => record_use.record.as_str(),
+                    None => "",
+                });
+                ui.label(cost_text(fit.cost, palette));
+                ui.label(if fit.held_out { "held out" } else { "" });
+                ui.end_row();
+            }
+        });
+    ui.add_space(6.0);
+    Grid::new("fit of outputs")
+        .num_columns(2)
+        .striped(true)
+        .show(ui, |ui| {
+            let outputs = state.dataset().outputs();
+            for (output, cost) in outputs.iter().zip(&found.output_costs) {
+                ui.label(&output.name);
+                ui.label(cost_text(*cost, palette));
+                ui.end_row();
+            }
+        });
+}
+
+/// Shows fit and Theil's coefficient for the displayed record, by output and selected model.
+fn time_fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
         records,
         palette,
     } = page;
-    let name = records
-        .rows
-        .get(records.chosen)
-        .map_or("", |row| row.table.name.as_str());
+    let name = match records.rows.get(records.chosen) {
+        Some(row) => row.table.name.as_str(),
+        None => "",
+    };
     ui.label(RichText::new(format!("In time: {name}, fit in % and Theil's coefficient")).strong());
     time_models_ui(ui, state, palette, commands);
     let models = simulated(state, palette);
@@ -261,21 +284,8 @@ fn time_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
             for (index, output) in state.dataset().outputs().iter().enumerate() {
                 ui.label(&output.name);
                 for model in &models {
-                    let theil = model
-                        .validation()
-                        .and_then(|of| of.theil.get(index).copied().flatten());
                     ui.label(model.fit_words(index).unwrap_or_else(|| "–".to_owned()));
-                    let color = theil.map_or(palette.dim_text, |of| {
-                        if of < GOOD_THEIL {
-                            palette.text
-                        } else {
-                            palette.warning
-                        }
-                    });
-                    ui.label(
-                        RichText::new(theil.map_or("–".to_owned(), |of| format!("{of:.3}")))
-                            .color(color),
-                    );
+                    ui.label(theil_text(model.theil(index), palette));
                 }
                 ui.end_row();
             }
@@ -283,7 +293,20 @@ fn time_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     for model in &models {
         model.absence_ui(ui, state, palette);
     }
-    let text =
-        "A fit in time hardly tells models apart: rank them by the cost of what was held out.";
-    ui.label(palette.small(text));
+    ui.label(palette.small(
+        "The fit in time hardly separates models: rank them by the cost of held-out records",
+    ));
+}
+
+/// Formats Theil's coefficient, in the warning colour unless the model is good.
+fn theil_text(theil: Option<f64>, palette: &Palette) -> RichText {
+    let Some(theil) = theil else {
+        return RichText::new("–").color(palette.dim_text);
+    };
+    let color = if theil < GOOD_THEIL {
+        palette.text
+    } else {
+        palette.warning
+    };
+    RichText::new(format!("{theil:.3}")).color(color)
 }

@@ -18,7 +18,6 @@ use gdcm_sysid::identification::identify::identify;
 use gdcm_sysid::identification::{
     Identification, IdentificationCaution, IdentificationError, Options, Preparation,
 };
-
 use gdcm_sysid::spectra::preparation_settings::PreparationError;
 
 use super::common::{Threads, known, list, matrix, response, space};

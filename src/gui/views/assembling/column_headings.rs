@@ -1,0 +1,81 @@
+//! A table's column headings, and the units that neither headings nor numbers determine.
+
+use egui::{Grid, RichText, Role, Ui};
+
+use crate::gui::commands::command::Command;
+use crate::gui::state::assembling::AssemblyState;
+use crate::gui::widgets::controls::{entry_ui, named};
+use crate::gui::widgets::palette::Palette;
+
+const HEADING_WIDTH: f32 = 180.0;
+/// Maximum column count; further columns are only counted.
+const MOST_COLUMNS: usize = 60;
+
+/// Shows a field for each column heading; after a change the file is read again.
+pub(super) fn column_headings_ui(
+    ui: &mut Ui,
+    assembly: &AssemblyState,
+    file: &str,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let Some(headings) = assembly.tables.get(file) else {
+        return;
+    };
+    ui.label(RichText::new(format!("Columns of {file}")).strong());
+    let hint = "Content and unit: omega [rad/s], f [Hz], mag P/LAT [dB], phase [deg], re, im, \
+                coherence";
+    ui.label(palette.small(hint));
+    Grid::new(("columns", file))
+        .num_columns(3)
+        .spacing([6.0, 3.0])
+        .show(ui, |ui| {
+            for (column, heading) in headings.iter().enumerate().take(MOST_COLUMNS) {
+                ui.label(format!("column {}", column + 1));
+                let name = format!("Heading of column {} of {file}", column + 1);
+                if let Some(typed) = entry_ui(ui, &name, heading, "not used", HEADING_WIDTH) {
+                    commands.push(assembly.heading_change(file, column, &typed));
+                }
+                possible_units_ui(ui, assembly, file, column, commands);
+                ui.end_row();
+            }
+        });
+    if headings.len() > MOST_COLUMNS {
+        let more = headings.len() - MOST_COLUMNS;
+        ui.label(palette.small(format!("and {more} more, which the rules file can name")));
+    }
+}
+
+/// Shows buttons with the possible units if a column's unit is unknown.
+fn possible_units_ui(
+    ui: &mut Ui,
+    assembly: &AssemblyState,
+    file: &str,
+    column: usize,
+    commands: &mut Vec<Command>,
+) {
+    let Some(open) = assembly.unsaid.get(file) else {
+        return;
+    };
+    let Some(open) = open.iter().find(|open| open.column == column) else {
+        return;
+    };
+    let files = assembly.tables_alike(file).len();
+    ui.horizontal(|ui| {
+        for unit in &open.units {
+            let name = format!("Column {} of {file} is in {unit}", column + 1);
+            let hint = if files == 1 {
+                format!("The numbers are in {unit}")
+            } else {
+                format!(
+                    "The numbers are in {unit}, here and in the {} other tables with these headings",
+                    files - 1
+                )
+            };
+            let button = named(ui.small_button(*unit), Role::Button, name);
+            if button.on_hover_text(hint).clicked() {
+                commands.push(assembly.unit_change(file, column, unit));
+            }
+        }
+    });
+}

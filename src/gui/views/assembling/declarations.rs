@@ -1,0 +1,273 @@
+//! Channel signs, units, factors and conversions that apply to several files.
+//!
+//! Declarations for a single model are shown with the model, those for a folder pattern only in the
+//! rules file.
+
+use std::collections::BTreeMap;
+
+use egui::{Grid, RichText, Ui};
+
+use gdcm_model::assembly::declarations::{ChannelDeclarations, Signs};
+use gdcm_model::assembly::problem::ProblemKind;
+use gdcm_model::assembly::{FileScope, Rules, UnitRule};
+use gdcm_model::units::number;
+
+use super::typed_rules::{number_text, typed_factors, typed_signs, typed_units, unit_text};
+use crate::gui::commands::command::Command;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::state::assembling::AssemblyState;
+use crate::gui::widgets::controls::{entry_ui, number_entry_ui};
+use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
+
+const FIELD_WIDTH: f32 = 160.0;
+
+/// Files for which signs are declared.
+#[derive(Clone, Copy)]
+enum SignScope {
+    AllFiles,
+    PhysicsModels,
+    IdentifiedModels,
+}
+
+impl SignScope {
+    const ALL: [Self; 3] = [Self::AllFiles, Self::PhysicsModels, Self::IdentifiedModels];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::AllFiles => "Signs in all files",
+            Self::PhysicsModels => "Signs of physics models",
+            Self::IdentifiedModels => "Signs of identified models",
+        }
+    }
+
+    /// Returns the role's key in the rules; `None` for all files.
+    fn role(self) -> Option<&'static str> {
+        match self {
+            Self::AllFiles => None,
+            Self::PhysicsModels => Some("physics"),
+            Self::IdentifiedModels => Some("identified"),
+        }
+    }
+
+    fn signs(self, rules: &Rules) -> Signs {
+        match self.role() {
+            None => rules.signs.clone(),
+            Some(role) => rules.role_signs.get(role).cloned().unwrap_or_default(),
+        }
+    }
+
+    fn set(self, rules: &mut Rules, signs: Signs) {
+        match self.role() {
+            None => rules.signs = signs,
+            Some(role) => {
+                rules.role_signs.insert(role.to_owned(), signs);
+            }
+        }
+    }
+}
+
+/// Shows the signs declared for a role or for all files.
+pub(super) fn signs_ui(
+    ui: &mut Ui,
+    assembly: &AssemblyState,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let rules = assembly.assembly().rules();
+    Grid::new("signs of channels")
+        .num_columns(2)
+        .spacing([6.0, 3.0])
+        .show(ui, |ui| {
+            for scope in SignScope::ALL {
+                let name = scope.name();
+                let value = number_text(&scope.signs(rules));
+                if let Some(text) = declaration_ui(ui, name, &value, "NZ -1", palette) {
+                    commands.push(match typed_signs(&text) {
+                        Ok(signs) => assembly.rules_change(|rules| scope.set(rules, signs)),
+                        Err(why) => refusal(name, &why),
+                    });
+                }
+            }
+        });
+}
+
+/// Shows the units and factors declared for a role; a channel has either.
+pub(super) fn units_and_factors_ui(
+    ui: &mut Ui,
+    assembly: &AssemblyState,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    Grid::new("units and factors of channels")
+        .num_columns(2)
+        .spacing([6.0, 3.0])
+        .show(ui, |ui| {
+            for (scope, models) in [
+                (FileScope::Physics, "physics models"),
+                (FileScope::Identified, "identified models"),
+            ] {
+                let declared = declarations(assembly.assembly().rules(), &scope);
+                let name = format!("Units of {models}");
+                let value = unit_text(&declared.units);
+                if let Some(text) = declaration_ui(ui, &name, &value, "LON in", palette) {
+                    commands.push(match typed_units(&text) {
+                        Ok(units) => units_change(assembly, &scope, units),
+                        Err(why) => refusal(&name, &why),
+                    });
+                }
+                let name = format!("Factors of {models}");
+                let value = number_text(&declared.factors);
+                if let Some(text) = declaration_ui(ui, &name, &value, "LON 8", palette) {
+                    commands.push(match typed_factors(&text) {
+                        Ok(factors) => factors_change(assembly, &scope, factors),
+                        Err(why) => refusal(&name, &why),
+                    });
+                }
+            }
+        });
+}
+
+/// Returns the units and factors declared for `scope`.
+fn declarations(rules: &Rules, scope: &FileScope) -> ChannelDeclarations {
+    let declared = rules
+        .declarations
+        .iter()
+        .find(|declared| declared.of == *scope);
+    match declared {
+        Some(declared) => declared.channels.clone(),
+        None => ChannelDeclarations::default(),
+    }
+}
+
+fn units_change(
+    assembly: &AssemblyState,
+    scope: &FileScope,
+    units: BTreeMap<String, String>,
+) -> Command {
+    assembly.rules_change(|rules| {
+        let declared = rules.declarations_mut(scope.clone());
+        declared
+            .factors
+            .retain(|channel, _| !units.contains_key(channel));
+        declared.units = units;
+    })
+}
+
+fn factors_change(
+    assembly: &AssemblyState,
+    scope: &FileScope,
+    factors: BTreeMap<String, f64>,
+) -> Command {
+    assembly.rules_change(|rules| {
+        let declared = rules.declarations_mut(scope.clone());
+        declared
+            .units
+            .retain(|channel, _| !factors.contains_key(channel));
+        declared.factors = factors;
+    })
+}
+
+/// Draws a row with a label and a field; returns a typed text.
+fn declaration_ui(
+    ui: &mut Ui,
+    name: &str,
+    value: &str,
+    hint: &str,
+    palette: &Palette,
+) -> Option<String> {
+    ui.label(palette.small(name.to_lowercase()));
+    let text = entry_ui(ui, name, value, hint, FIELD_WIDTH);
+    ui.end_row();
+    text
+}
+
+fn refusal(name: &str, why: &str) -> Command {
+    Command::Form(FormCommand::Refuse(format!("{name}: {why}")))
+}
+
+/// A conversion between units that units alone do not determine.
+#[derive(PartialEq)]
+struct Conversion {
+    channel: String,
+    /// Unit in the files.
+    from: String,
+    /// Dataset unit; empty for declared conversions.
+    to: String,
+}
+
+impl Conversion {
+    fn is_set_by(&self, rule: &UnitRule) -> bool {
+        rule.channel == self.channel && rule.from == self.from
+    }
+}
+
+/// Shows a factor for each declared, then each required conversion.
+pub(super) fn conversions_ui(
+    ui: &mut Ui,
+    assembly: &AssemblyState,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let rules = assembly.assembly().rules();
+    for conversion in conversions(assembly) {
+        let rule = rules.units.iter().find(|rule| conversion.is_set_by(rule));
+        let value = match rule {
+            Some(rule) => number(rule.factor),
+            None => String::new(),
+        };
+        let Conversion { channel, from, to } = &conversion;
+        ui.horizontal(|ui| {
+            let label = format!("{channel}: 1 {from} =");
+            ui.label(RichText::new(label).size(SMALL_SIZE).color(palette.text));
+            let name = format!("Factor of {channel} from {from}");
+            if let Some(factor) = number_entry_ui(ui, &name, &value, "factor", 60.0, commands) {
+                commands.push(conversion_change(assembly, &conversion, factor));
+            }
+            ui.label(palette.small(to));
+        });
+    }
+}
+
+fn conversions(assembly: &AssemblyState) -> Vec<Conversion> {
+    let mut required = Vec::new();
+    for problem in assembly.assembly().problems() {
+        if let ProblemKind::Conversion { channel, from, to } = &problem.kind {
+            let conversion = Conversion {
+                channel: channel.clone(),
+                from: from.clone(),
+                to: to.clone(),
+            };
+            if !required.contains(&conversion) {
+                required.push(conversion);
+            }
+        }
+    }
+    let mut conversions = Vec::new();
+    for rule in &assembly.assembly().rules().units {
+        conversions.push(Conversion {
+            channel: rule.channel.clone(),
+            from: rule.from.clone(),
+            to: String::new(),
+        });
+    }
+    conversions.extend(required);
+    conversions
+}
+
+/// Returns the command that sets a conversion's factor, or removes the conversion.
+fn conversion_change(
+    assembly: &AssemblyState,
+    conversion: &Conversion,
+    factor: Option<f64>,
+) -> Command {
+    assembly.rules_change(|rules| {
+        rules.units.retain(|rule| !conversion.is_set_by(rule));
+        if let Some(factor) = factor {
+            rules.units.push(UnitRule {
+                channel: conversion.channel.clone(),
+                from: conversion.from.clone(),
+                factor,
+            });
+        }
+    })
+}

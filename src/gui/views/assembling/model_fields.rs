@@ -1,0 +1,344 @@
+//! Text fields for the displayed model: condition, flight state, channels, sample time, trim.
+
+use egui::{Role, Ui};
+
+use gdcm_model::assembly::part::Part;
+use gdcm_model::assembly::{ChannelLabel, RowRule};
+use gdcm_model::names::RowRole;
+use gdcm_model::units::number;
+
+use super::typed_rules::{
+    number_text, typed_factors, typed_names, typed_signs, typed_text, typed_trim, typed_units,
+    unit_text,
+};
+use crate::gui::commands::command::Command;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::state::assembling::AssemblyState;
+use crate::gui::widgets::controls::{entry_ui, named, typed_number};
+
+const FIELD_WIDTH: f32 = 200.0;
+
+/// How a field's text changes a model's rule; an empty text removes the setting.
+enum Effect {
+    Text(fn(&mut RowRule) -> &mut Option<String>),
+    Number(fn(&mut RowRule) -> &mut Option<f64>),
+    Names(fn(&mut RowRule) -> &mut Option<Vec<String>>),
+    Parsed(fn(&mut RowRule, &str) -> Result<(), String>),
+}
+
+/// A field: its name, its current text, and its effect on the rule.
+struct Field {
+    name: &'static str,
+    value: String,
+    hint: &'static str,
+    effect: Effect,
+}
+
+impl Field {
+    fn new(name: &'static str, value: Option<String>, hint: &'static str, effect: Effect) -> Self {
+        Self {
+            name,
+            value: value.unwrap_or_default(),
+            hint,
+            effect,
+        }
+    }
+
+    fn apply(&self, text: &str, rule: &mut RowRule) -> Result<(), String> {
+        match self.effect {
+            Effect::Text(place) => *place(rule) = typed_text(text),
+            Effect::Number(place) => *place(rule) = typed_number(text)?,
+            Effect::Names(place) => *place(rule) = typed_names(text),
+            Effect::Parsed(set) => set(rule, text)?,
+        }
+        Ok(())
+    }
+}
+
+/// Draws a grid row for each field.
+pub(super) fn model_fields_ui(
+    ui: &mut Ui,
+    assembly: &AssemblyState,
+    part: &Part,
+    commands: &mut Vec<Command>,
+) {
+    let rules = assembly.assembly().rules();
+    let rule = rules.rows.get(&part.found.key());
+    let mut fields = condition_fields(part);
+    fields.extend(channel_fields(part, rule));
+    fields.push(sample_time_field(part));
+    fields.push(origin_field(part));
+    for field in fields {
+        field_ui(ui, assembly, &field, rule, commands);
+    }
+}
+
+fn field_ui(
+    ui: &mut Ui,
+    assembly: &AssemblyState,
+    field: &Field,
+    rule: Option<&RowRule>,
+    commands: &mut Vec<Command>,
+) {
+    ui.label(field.name);
+    let name = format!("Model {}", field.name);
+    if let Some(text) = entry_ui(ui, &name, &field.value, field.hint, FIELD_WIDTH) {
+        let mut changed = rule.cloned().unwrap_or_default();
+        commands.push(match field.apply(&text, &mut changed) {
+            Ok(()) => assembly.rule_change(assembly.selected, |rule| *rule = changed),
+            Err(why) => Command::Form(FormCommand::Refuse(format!("{}: {why}", field.name))),
+        });
+    }
+    if fill_down_ui(ui, field.name) {
+        commands.push(assembly.fill_down_change(assembly.selected, |rule| {
+            // The displayed text was accepted before.
+            field.apply(&field.value, rule).unwrap_or_default();
+        }));
+    }
+    ui.end_row();
+}
+
+/// Draws a button that copies the setting to the models below in the same folder; returns whether
+/// it was clicked.
+pub(super) fn fill_down_ui(ui: &mut Ui, name: &str) -> bool {
+    let name = format!("Fill down {name}");
+    let hint = format!("{name}: copies it to every model below in the same folder");
+    named(ui.small_button("↓"), Role::Button, name)
+        .on_hover_text(hint)
+        .clicked()
+}
+
+/// Returns the fields for condition and flight state.
+fn condition_fields(part: &Part) -> Vec<Field> {
+    let row = &part.row;
+    vec![
+        Field::new(
+            "condition",
+            row.condition.map(|condition| condition.to_string()),
+            "a number",
+            Effect::Parsed(set_condition),
+        ),
+        Field::new(
+            "name",
+            Some(row.name.clone()),
+            "in its bundle",
+            Effect::Text(|rule| &mut rule.name),
+        ),
+        Field::new(
+            "airspeed",
+            row.airspeed_kt.map(number),
+            "kt",
+            Effect::Number(|rule| &mut rule.airspeed_kt),
+        ),
+        Field::new(
+            "altitude",
+            row.altitude.clone(),
+            "low, high",
+            Effect::Text(|rule| &mut rule.altitude),
+        ),
+        Field::new(
+            "altitude [ft]",
+            row.altitude_ft.map(number),
+            "ft",
+            Effect::Number(|rule| &mut rule.altitude_ft),
+        ),
+        Field::new(
+            "weight",
+            row.weight.clone(),
+            "low, high",
+            Effect::Text(|rule| &mut rule.weight),
+        ),
+        Field::new(
+            "mass [kg]",
+            row.mass_kg.map(number),
+            "kg",
+            Effect::Number(|rule| &mut rule.mass_kg),
+        ),
+    ]
+}
+
+/// Returns the channel fields: names, signs, units, factors.
+fn channel_fields(part: &Part, rule: Option<&RowRule>) -> Vec<Field> {
+    let [input_labels, output_labels] = &part.labels;
+    let inputs = channel_names(input_labels, rule.and_then(|rule| rule.inputs.as_ref()));
+    let outputs = channel_names(output_labels, rule.and_then(|rule| rule.outputs.as_ref()));
+    let signs = rule.and_then(|rule| rule.signs.as_ref());
+    let units = rule.and_then(|rule| rule.units.as_ref());
+    let factors = rule.and_then(|rule| rule.factors.as_ref());
+    vec![
+        Field::new(
+            "inputs",
+            Some(inputs),
+            "in the file's order: LON, LAT",
+            Effect::Names(|rule| &mut rule.inputs),
+        ),
+        Field::new(
+            "outputs",
+            Some(outputs),
+            "in the file's order: P, Q",
+            Effect::Names(|rule| &mut rule.outputs),
+        ),
+        Field::new(
+            "signs",
+            signs.map(number_text),
+            "channels with the opposite sign: NZ -1",
+            Effect::Parsed(set_signs),
+        ),
+        Field::new(
+            "units",
+            units.map(unit_text),
+            "overrides the file: LON in",
+            Effect::Parsed(set_units),
+        ),
+        Field::new(
+            "factors",
+            factors.map(number_text),
+            "to the dataset's unit: LON 8",
+            Effect::Parsed(set_factors),
+        ),
+    ]
+}
+
+fn sample_time_field(part: &Part) -> Field {
+    let sample_time_s = part.sample_time_s.or(part.found.draft.timing.sample_time_s);
+    Field::new(
+        "sample time",
+        sample_time_s.map(number),
+        "s; 0 continuous",
+        Effect::Number(|rule| &mut rule.sample_time_s),
+    )
+}
+
+/// Returns the method for an identified model, the offset from trim for a physics model.
+fn origin_field(part: &Part) -> Field {
+    let row = &part.row;
+    if row.role == Some(RowRole::Identified) {
+        Field::new(
+            "method",
+            row.method.clone(),
+            "CT-PBSID",
+            Effect::Text(|rule| &mut rule.method),
+        )
+    } else {
+        Field::new(
+            "trim",
+            Some(number_text(&row.perturbation)),
+            "roll_deg 5, airspeed_kt -10",
+            Effect::Parsed(set_trim),
+        )
+    }
+}
+
+/// Returns the channels in the file's order, with names from the rule or the file; "?" for unnamed
+/// ones.
+fn channel_names(labels: &[ChannelLabel], rule_names: Option<&Vec<String>>) -> String {
+    if let Some(names) = rule_names {
+        return names.join(", ");
+    }
+    labels
+        .iter()
+        .map(|label| label.name.as_deref().unwrap_or("?"))
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+fn set_condition(rule: &mut RowRule, text: &str) -> Result<(), String> {
+    let text = text.trim();
+    rule.condition = if text.is_empty() {
+        None
+    } else {
+        let wrong = |_| format!("expected a whole number, found \"{text}\"");
+        Some(text.parse().map_err(wrong)?)
+    };
+    Ok(())
+}
+
+fn set_trim(rule: &mut RowRule, text: &str) -> Result<(), String> {
+    rule.perturbation = Some(typed_trim(text)?);
+    Ok(())
+}
+
+fn set_signs(rule: &mut RowRule, text: &str) -> Result<(), String> {
+    let signs = typed_signs(text)?;
+    rule.signs = if signs.is_empty() { None } else { Some(signs) };
+    Ok(())
+}
+
+/// Sets units and removes factors for the same channels: a channel has either.
+fn set_units(rule: &mut RowRule, text: &str) -> Result<(), String> {
+    let units = typed_units(text)?;
+    if let Some(factors) = &mut rule.factors {
+        factors.retain(|channel, _| !units.contains_key(channel));
+    }
+    rule.units = if units.is_empty() { None } else { Some(units) };
+    Ok(())
+}
+
+/// Sets factors and removes units for the same channels: a channel has either.
+fn set_factors(rule: &mut RowRule, text: &str) -> Result<(), String> {
+    let factors = typed_factors(text)?;
+    if let Some(units) = &mut rule.units {
+        units.retain(|channel, _| !factors.contains_key(channel));
+    }
+    rule.factors = if factors.is_empty() {
+        None
+    } else {
+        Some(factors)
+    };
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trim_is_parsed_and_written_in_the_same_form() {
+        let mut rule = RowRule::default();
+        set_trim(&mut rule, "roll_deg 5, airspeed_kt -10").unwrap();
+        assert_eq!(
+            number_text(&rule.perturbation.clone().unwrap()),
+            "airspeed_kt -10, roll_deg 5"
+        );
+        let error = set_trim(&mut rule, "roll").unwrap_err();
+        assert!(error.contains("roll_deg 5"), "{error}");
+    }
+
+    #[test]
+    fn a_sign_is_1_or_minus_1() {
+        let mut rule = RowRule::default();
+        set_signs(&mut rule, "NZ -1").unwrap();
+        assert_eq!(rule.signs.as_ref().unwrap()["NZ"], -1.0);
+        let error = set_signs(&mut rule, "NZ -2").unwrap_err();
+        assert!(error.contains("1 or -1"), "{error}");
+    }
+
+    #[test]
+    fn a_channel_has_a_unit_or_a_factor() {
+        let mut rule = RowRule::default();
+        set_units(&mut rule, "LON in, roll rate rad/s").unwrap();
+        assert_eq!(
+            rule.units.as_ref().map(unit_text).as_deref(),
+            Some("LON in, roll rate rad/s")
+        );
+        set_factors(&mut rule, "LON 8").unwrap();
+        assert_eq!(
+            rule.units.as_ref().map(unit_text).as_deref(),
+            Some("roll rate rad/s")
+        );
+        assert_eq!(
+            rule.factors.as_ref().map(number_text).as_deref(),
+            Some("LON 8")
+        );
+        assert!(set_units(&mut rule, "in").is_err());
+        assert!(set_factors(&mut rule, "LON 0").is_err());
+    }
+
+    #[test]
+    fn a_condition_is_a_whole_number() {
+        let mut rule = RowRule::default();
+        set_condition(&mut rule, "3").unwrap();
+        assert_eq!(rule.condition, Some(3));
+        assert!(set_condition(&mut rule, "three").is_err());
+    }
+}

@@ -1,0 +1,174 @@
+//! The displayed model's response as a Bode plot.
+
+use std::sync::Arc;
+
+use egui::Ui;
+use nalgebra::Complex;
+
+use gdcm_model::assembly::{ChannelLabel, FoundModel};
+use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dynamics, ModelId, Pair, StateSpace};
+use gdcm_model::response::frequency_response::ResponseShape;
+use gdcm_model::response::{FrequencyGrid, PreparedModel};
+use gdcm_plot::figure::axis::FrequencyUnit;
+
+use crate::gui::commands::assembling::AssemblingCommand;
+use crate::gui::commands::command::Command;
+use crate::gui::plot::quantity::BodeQuantity;
+use crate::gui::plot::{BodeCurve, BodeScene, CurveId, Role, bode_ui};
+use crate::gui::state::assembling::{AssemblyState, Preview};
+use crate::gui::widgets::choices::choice_ui;
+use crate::gui::widgets::palette::Palette;
+
+/// Points on a model's curve.
+const POINTS: usize = 300;
+/// Factor by which the curve extends beyond the comparison band on either side.
+const BEYOND: f64 = 3.0;
+
+/// Shows a response, and a choice among all responses.
+pub(super) fn preview_ui(
+    ui: &mut Ui,
+    assembly: &mut AssemblyState,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    // A panel without content would shrink.
+    ui.set_min_size(ui.available_size());
+    let band = assembly.assembly().rules().band;
+    let Some(part) = assembly.assembly().parts().get(assembly.selected) else {
+        return;
+    };
+    let found = part.found.clone();
+    let count = (found.inputs.len() * found.outputs.len()).max(1);
+    let place = assembly.preview.response.min(count - 1);
+    let names: Vec<String> = (0..count)
+        .map(|place| response_name(&found, place))
+        .collect();
+    response_choice_ui(ui, &names, place, commands);
+    update(&mut assembly.preview, &found, place, band);
+    let Some((_, _, curves)) = &assembly.preview.drawn else {
+        return;
+    };
+    let scene = BodeScene {
+        quantity: BodeQuantity::RESPONSE_OF_FOUND_MODEL,
+        unit: FrequencyUnit::default(),
+        message: Some("This response cannot be computed"),
+        ..BodeScene::new(&names[place], curves, band)
+    };
+    bode_ui(ui, &scene, &mut assembly.preview.view, palette);
+}
+
+fn response_choice_ui(ui: &mut Ui, names: &[String], place: usize, commands: &mut Vec<Command>) {
+    let choices: Vec<(usize, &str, &str)> = names
+        .iter()
+        .enumerate()
+        .map(|(place, name)| (place, name.as_str(), "Response shown"))
+        .collect();
+    let mut chosen = place;
+    choice_ui(ui, "Response of the preview", &mut chosen, &choices);
+    if chosen != place {
+        commands.push(AssemblingCommand::ShowResponse(chosen).into());
+    }
+}
+
+/// Computes the curve if another model or response is displayed.
+fn update(preview: &mut Preview, found: &FoundModel, place: usize, band: (f64, f64)) {
+    let key = found.key();
+    let mut is_same_model = false;
+    if let Some((drawn_key, drawn_place, _)) = &preview.drawn {
+        is_same_model = *drawn_key == key;
+        if is_same_model && *drawn_place == place {
+            return;
+        }
+    }
+    let curves = curve(found, place, band).into_iter().collect();
+    preview.drawn = Some((key, place, curves));
+    // A measured response may have other frequencies than the previous model.
+    if is_same_model {
+        preview.view.request_refit();
+    } else {
+        preview.view.request_fit();
+    }
+}
+
+/// Returns the pair at `place`: `output * inputs + input`.
+fn pair(found: &FoundModel, place: usize) -> Pair {
+    let inputs = found.inputs.len().max(1);
+    Pair::new(place / inputs, place % inputs)
+}
+
+/// Returns "LON → Q", with the file's own names.
+fn response_name(found: &FoundModel, place: usize) -> String {
+    let pair = pair(found, place);
+    format!(
+        "{} → {}",
+        channel_name(&found.inputs, pair.input, "input"),
+        channel_name(&found.outputs, pair.output, "output")
+    )
+}
+
+/// Returns a channel's name, or its side and number.
+fn channel_name(labels: &[ChannelLabel], index: usize, side: &str) -> String {
+    if let Some(label) = labels.get(index)
+        && let Some(name) = &label.name
+    {
+        return name.clone();
+    }
+    format!("{side} {}", index + 1)
+}
+
+struct PairResponse {
+    /// Frequencies \[rad/s\].
+    omega: Vec<f64>,
+    values: Vec<Complex<f64>>,
+}
+
+fn curve(found: &FoundModel, place: usize, band: (f64, f64)) -> Option<BodeCurve> {
+    let PairResponse { omega, values } = match found.response() {
+        Some(_) => measured_response(found, place)?,
+        None => model_response(found, pair(found, place), band)?,
+    };
+    let shape = ResponseShape::new(&values);
+    let model = ModelId::new(ConditionId(0), BundleKind::Physics, found.key());
+    Some(BodeCurve {
+        id: CurveId::Model(model),
+        label: found.key(),
+        detail: found.words(),
+        role: Role::Representative,
+        rejected: false,
+        highlighted: false,
+        hidden: false,
+        omega: Arc::from(omega),
+        magnitude_db: shape.magnitude_db,
+        phase_deg: shape.phase_deg,
+    })
+}
+
+/// Returns a response from the file: values are stored pair after pair.
+fn measured_response(found: &FoundModel, place: usize) -> Option<PairResponse> {
+    let response = found.response()?;
+    let count = response.omega.len();
+    let range = place * count..(place + 1) * count;
+    let re = response.re.values.get(range.clone())?;
+    let im = response.im.values.get(range)?;
+    let values = re.iter().zip(im).map(|(re, im)| Complex::new(*re, *im));
+    Some(PairResponse {
+        omega: response.omega.clone(),
+        values: values.collect(),
+    })
+}
+
+/// Computes a state-space model's response over the widened band.
+fn model_response(found: &FoundModel, pair: Pair, band: (f64, f64)) -> Option<PairResponse> {
+    let [a, b, c, d] = found.draft.matrices.clone();
+    let model = StateSpace::new(a?, b?, c?, d?)
+        .ok()?
+        .timed(found.draft.timing.clone())
+        .ok()?;
+    let wide = Band::new(band.0 / BEYOND, band.1 * BEYOND).ok()?;
+    let grid = FrequencyGrid::logarithmic(wide, POINTS);
+    let response = PreparedModel::of(&Dynamics::StateSpace(model)).response(&grid);
+    Some(PairResponse {
+        omega: grid.omega().to_vec(),
+        values: response.curve(pair).to_vec(),
+    })
+}

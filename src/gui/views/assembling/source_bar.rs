@@ -1,0 +1,78 @@
+//! Bar above the table: model folders and files, undo and cancel, reading progress.
+
+use egui::{Button, RichText, Ui};
+
+use super::path_field::path_ui;
+use crate::gui::commands::assembling::AssemblingCommand;
+use crate::gui::commands::command::Command;
+use crate::gui::state::assembling::AssemblyState;
+use crate::gui::widgets::controls::button_ui;
+use crate::gui::widgets::palette::Palette;
+
+pub(super) fn source_bar_ui(
+    ui: &mut Ui,
+    assembly: &mut AssemblyState,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label(RichText::new("Import models").strong());
+        add_ui(ui, assembly, commands);
+        let (can_undo, can_redo) = assembly.steps();
+        let cancel = "Back to the open dataset; discards this import";
+        for (text, is_enabled, hint, command) in [
+            ("Choose folder…", true, "", AssemblingCommand::AskFolder),
+            ("Undo change", can_undo, "", AssemblingCommand::Undo),
+            ("Redo change", can_redo, "", AssemblingCommand::Redo),
+            ("Cancel import", true, cancel, AssemblingCommand::Close),
+        ] {
+            ui.add_enabled_ui(is_enabled, |ui| {
+                button_ui(ui, Button::new(text), hint, command, commands)
+            });
+        }
+        reading_ui(ui, assembly, palette, commands);
+    });
+}
+
+/// Shows the path field and the button that adds its folder or file.
+fn add_ui(ui: &mut Ui, assembly: &mut AssemblyState, commands: &mut Vec<Command>) {
+    let is_entered = path_ui(
+        ui,
+        "Folder or file of models",
+        &mut assembly.source_path,
+        "path of a folder or a file; or drop them here",
+    );
+    let path = assembly.source_path.trim();
+    let add = ui.add_enabled(!path.is_empty(), Button::new("Add"));
+    if (add.clicked() || is_entered) && !path.is_empty() {
+        commands.push(AssemblingCommand::Add(vec![path.into()]).into());
+    }
+}
+
+/// Shows the reading progress, or how many models are included.
+fn reading_ui(
+    ui: &mut Ui,
+    assembly: &AssemblyState,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let Some(reading) = &assembly.reading else {
+        let parts = assembly.assembly().parts();
+        let included = parts.iter().filter(|part| !part.row.left_out).count();
+        ui.label(palette.small(format!("{included} of {} models included", parts.len())));
+        return;
+    };
+    ui.spinner();
+    let megabytes = reading.taken >> 20;
+    let values = if megabytes == 0 {
+        String::new()
+    } else {
+        format!(", {megabytes} MiB of values")
+    };
+    ui.label(palette.small(format!(
+        "reading {} of {}: {}{values}",
+        reading.number, reading.of, reading.name
+    )));
+    let stop = Button::new("Stop reading");
+    button_ui(ui, stop, "", AssemblingCommand::StopReading, commands);
+}

@@ -1,0 +1,297 @@
+//! Curves for an identified response: measured points, models and their confidence bands.
+
+use nalgebra::Complex;
+
+use gdcm_model::dataset::{Pair, StateSpace};
+use gdcm_model::response::evaluate;
+use gdcm_model::response::frequency_response::{ResponseShape, log_spaced};
+use gdcm_model::units::neper_to_db;
+use gdcm_sysid::diagnostics::bands::TWO_SIDED_95;
+use gdcm_sysid::diagnostics::model_doubts::NARROW_WINDOW;
+use gdcm_sysid::identification::{Identification, IdentificationCaution, TRUSTED_COHERENCE};
+use gdcm_sysid::spectra::response_estimate::EstimatePoint;
+
+/// Points on a model's curve.
+const POINTS: usize = 200;
+/// Factor by which curves extend beyond the band.
+const BEYOND: f64 = 1.5;
+
+/// Upper or lower half in a Bode plot.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum BodePart {
+    Magnitude,
+    Phase,
+}
+
+impl BodePart {
+    /// Returns the largest half-length drawn for bars and bands \[dB, deg\]: large uncertainties
+    /// would hide the rest.
+    fn most_half(self) -> f64 {
+        match self {
+            Self::Magnitude => 20.0,
+            Self::Phase => 180.0,
+        }
+    }
+
+    fn value(self, point: CurvePoint) -> f64 {
+        match self {
+            Self::Magnitude => point.magnitude_db,
+            Self::Phase => point.phase_deg,
+        }
+    }
+
+    /// Returns half the 95 % interval \[dB, deg\].
+    pub(super) fn half_interval(self, sd: StandardDeviation) -> f64 {
+        TWO_SIDED_95
+            * match self {
+                Self::Magnitude => sd.db,
+                Self::Phase => sd.deg,
+            }
+    }
+
+    /// Returns half the 95 % interval \[dB, deg\], limited to the drawn length.
+    pub(super) fn drawn_half_interval(self, sd: StandardDeviation) -> f64 {
+        self.half_interval(sd).min(self.most_half())
+    }
+}
+
+/// A response value; the phase is unwrapped.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CurvePoint {
+    /// Frequency \[rad/s\].
+    pub(super) omega: f64,
+    magnitude_db: f64,
+    phase_deg: f64,
+}
+
+impl CurvePoint {
+    /// Returns frequency \[rad/s\] and value \[dB, deg\].
+    pub(super) fn place(self, part: BodePart) -> [f64; 2] {
+        [self.omega, part.value(self)]
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StandardDeviation {
+    db: f64,
+    deg: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MeasuredPoint {
+    pub(super) point: CurvePoint,
+    pub(super) sd: StandardDeviation,
+    /// Whether partial coherence and frequency resolution suffice.
+    pub(super) is_trusted: bool,
+}
+
+/// Where and how responses were measured.
+#[derive(Clone, Copy)]
+pub(super) struct MeasuredBand {
+    /// Identification band \[rad/s\].
+    pub(super) band: [f64; 2],
+    /// Whether recorded references served as instruments (M14.15).
+    pub(super) by_reference: bool,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(super) struct DrawnResponse {
+    pub(super) measured: Vec<MeasuredPoint>,
+    /// Refined model, at its confidence band's frequencies.
+    pub(super) recommended: Vec<CurvePoint>,
+    /// At each point on the recommended curve.
+    pub(super) recommended_sds: Vec<StandardDeviation>,
+    pub(super) unrefined: Vec<CurvePoint>,
+    /// Intervals in which the recommended model deviates from the measured points \[rad/s\]
+    /// (M14.17).
+    pub(super) deviating: Vec<[f64; 2]>,
+    /// Intervals in which the reference did not excite the input \[rad/s\] (M14.15).
+    pub(super) unexcited: Vec<[f64; 2]>,
+}
+
+impl DrawnResponse {
+    /// Returns the first model's curve, drawn while it is refined.
+    pub(super) fn first_model(model: &StateSpace, band: [f64; 2], pair: Pair) -> Self {
+        Self {
+            unrefined: model_curve(model, band, pair, None),
+            ..Self::default()
+        }
+    }
+
+    /// Returns the curves after an identification, with phases on a common branch.
+    pub(super) fn new(found: &Identification, measured_band: MeasuredBand, pair: Pair) -> Self {
+        let points = &found.measured.points;
+        let measured = measured_points(points, pair);
+        let reference = measured
+            .iter()
+            .find(|measured| measured.is_trusted)
+            .map(|measured| measured.point);
+        let mut drawn = Self {
+            measured,
+            deviating: deviating(found, pair),
+            ..Self::default()
+        };
+        if measured_band.by_reference {
+            drawn.unexcited = unexcited(points, pair);
+        }
+        let mut band_omega: &[f64] = &[];
+        if let Some(bands) = &found.refined.bands {
+            band_omega = bands.omega();
+            for (db, deg) in bands.sd_db()[pair].iter().zip(&bands.sd_deg()[pair]) {
+                drawn
+                    .recommended_sds
+                    .push(StandardDeviation { db: *db, deg: *deg });
+            }
+        }
+        if let Some(model) = found.refined.state_space() {
+            drawn.recommended = curve(model, band_omega, pair, reference);
+        }
+        if let Some(model) = found.unrefined.state_space() {
+            drawn.unrefined = model_curve(model, measured_band.band, pair, reference);
+        }
+        drawn
+    }
+
+    /// Returns whether an error bar or a band is longer than its drawn limit.
+    pub(super) fn has_cut_intervals(&self) -> bool {
+        let measured = self.measured.iter().map(|measured| measured.sd);
+        let mut sds = measured.chain(self.recommended_sds.iter().copied());
+        sds.any(|sd| {
+            [BodePart::Magnitude, BodePart::Phase]
+                .iter()
+                .any(|part| part.drawn_half_interval(sd) < part.half_interval(sd))
+        })
+    }
+}
+
+/// Returns a pair's measured points. A point is trusted if its partial coherence reaches
+/// [`TRUSTED_COHERENCE`] and its window is narrow.
+fn measured_points(points: &[EstimatePoint], pair: Pair) -> Vec<MeasuredPoint> {
+    let at = (pair.output, pair.input);
+    let omega = points.iter().map(|point| point.omega).collect();
+    let values: Vec<Complex<f64>> = points.iter().map(|point| point.response[at]).collect();
+    let mut measured = Vec::with_capacity(points.len());
+    for (point, estimate) in shape(omega, &values, None).into_iter().zip(points) {
+        let mut sd = estimate.sd(at);
+        if !sd.is_finite() {
+            sd = 0.0;
+        }
+        let is_narrow = estimate.half_width <= NARROW_WINDOW * estimate.omega;
+        measured.push(MeasuredPoint {
+            point,
+            sd: StandardDeviation {
+                db: neper_to_db(sd),
+                deg: sd.to_degrees(),
+            },
+            is_trusted: estimate.partial_coherence[at] >= TRUSTED_COHERENCE && is_narrow,
+        });
+    }
+    measured
+}
+
+/// Returns the intervals \[rad/s\] in which cautions report a deviation from the measured points.
+fn deviating(found: &Identification, pair: Pair) -> Vec<[f64; 2]> {
+    let mut intervals = Vec::new();
+    for caution in &found.cautions {
+        if let IdentificationCaution::LeavesPoints {
+            output,
+            input,
+            band,
+            ..
+        } = caution
+            && output.index == pair.output
+            && input.index == pair.input
+        {
+            intervals.push(*band);
+        }
+    }
+    intervals
+}
+
+/// Returns the intervals \[rad/s\] in which the coherence between input and reference is too low
+/// for a response.
+fn unexcited(points: &[EstimatePoint], pair: Pair) -> Vec<[f64; 2]> {
+    let at = (pair.output, pair.input);
+    let mut intervals: Vec<[f64; 2]> = Vec::new();
+    let mut was_low = false;
+    for point in points {
+        let is_low = point.partial_coherence[at] < TRUSTED_COHERENCE;
+        match intervals.last_mut() {
+            Some(interval) if is_low && was_low => interval[1] = point.omega,
+            _ if is_low => intervals.push([point.omega, point.omega]),
+            _ => {}
+        }
+        was_low = is_low;
+    }
+    intervals
+}
+
+/// Computes a model's response over the band and slightly beyond.
+fn model_curve(
+    model: &StateSpace,
+    band: [f64; 2],
+    pair: Pair,
+    reference: Option<CurvePoint>,
+) -> Vec<CurvePoint> {
+    let omega = log_spaced(band[0] / BEYOND, band[1] * BEYOND, POINTS);
+    curve(model, &omega, pair, reference)
+}
+
+/// Computes a model's response at frequencies \[rad/s\]; omits values that are not finite.
+fn curve(
+    model: &StateSpace,
+    frequencies: &[f64],
+    pair: Pair,
+    reference: Option<CurvePoint>,
+) -> Vec<CurvePoint> {
+    let response = evaluate(model, frequencies);
+    let mut omega = Vec::new();
+    let mut values = Vec::new();
+    for (&frequency, &value) in frequencies.iter().zip(response.curve(pair)) {
+        if value.is_finite() {
+            omega.push(frequency);
+            values.push(value);
+        }
+    }
+    shape(omega, &values, reference)
+}
+
+/// Returns magnitude and unwrapped phase, on the branch nearest to `reference`, a point on another
+/// curve.
+fn shape(
+    omega: Vec<f64>,
+    values: &[Complex<f64>],
+    reference: Option<CurvePoint>,
+) -> Vec<CurvePoint> {
+    let ResponseShape {
+        magnitude_db,
+        phase_deg,
+    } = ResponseShape::new(values);
+    let shift_deg = match reference {
+        Some(reference) => branch_shift_deg(&omega, &phase_deg, reference),
+        None => 0.0,
+    };
+    let mut curve = Vec::with_capacity(omega.len());
+    for (index, omega) in omega.into_iter().enumerate() {
+        curve.push(CurvePoint {
+            omega,
+            magnitude_db: magnitude_db[index],
+            phase_deg: phase_deg[index] + shift_deg,
+        });
+    }
+    curve
+}
+
+/// Returns the shift by whole turns that brings the phase closest to `reference` \[deg\], at the
+/// frequency nearest to that point.
+fn branch_shift_deg(omega: &[f64], phase_deg: &[f64], reference: CurvePoint) -> f64 {
+    let nearest = (0..omega.len()).min_by(|a, b| {
+        let distance_a = (omega[*a] / reference.omega).ln().abs();
+        let distance_b = (omega[*b] / reference.omega).ln().abs();
+        distance_a.total_cmp(&distance_b)
+    });
+    match nearest {
+        Some(nearest) => 360.0 * ((reference.phase_deg - phase_deg[nearest]) / 360.0).round(),
+        None => 0.0,
+    }
+}

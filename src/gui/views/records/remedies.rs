@@ -1,0 +1,318 @@
+//! Buttons that remedy the cause behind a caution.
+
+use egui::Ui;
+
+use gdcm_model::dataset::Pair;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::condition::ChannelRemedy;
+use gdcm_model::simulation::Signal;
+use gdcm_model::units::s_to_ms;
+use gdcm_sysid::diagnostics::record_fault::{ContradictingRecord, RecordFault};
+use gdcm_sysid::identification::{Hold, IdentificationCaution, IdentificationError};
+use gdcm_sysid::spectra::record_cautions::RecordCaution;
+
+use super::references::{REFERENCES, possible_references};
+use super::search_settings::ORDERS;
+use crate::gui::commands::command::Command;
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::commands::selection::SelectionCommand;
+use crate::gui::state::records::{ConditionRecords, RecordsPage};
+
+/// Lowest-frequency periods in the longest record: slightly more than five, so that rounding does
+/// not repeat the caution.
+const PERIODS: f64 = 5.001;
+/// Maximum button count for references.
+const MOST_REFERENCES: usize = 3;
+
+/// A button that removes the cause behind a caution.
+pub(super) struct Remedy {
+    pub(super) label: String,
+    pub(super) command: Command,
+}
+
+impl Remedy {
+    fn new(label: impl Into<String>, command: impl Into<Command>) -> Self {
+        Self {
+            label: label.into(),
+            command: command.into(),
+        }
+    }
+}
+
+pub(super) fn study_band_remedy() -> Remedy {
+    Remedy::new("Use the study's band", RecordsCommand::SetBand(None))
+}
+
+/// Proposes another band if a failed identification needs one; `band` \[rad/s\] is the present one.
+pub(super) fn band_remedy(error: &IdentificationError, band: [f64; 2]) -> Option<Remedy> {
+    let [lowest, highest] = band;
+    match error {
+        IdentificationError::TooShort { enough, .. } if *enough < highest => {
+            Some(use_band([*enough, highest]))
+        }
+        IdentificationError::SampledTooSlowly { limit, .. } if *limit > lowest => {
+            Some(use_band([lowest, *limit]))
+        }
+        _ => None,
+    }
+}
+
+/// Returns the remedies for a caution; none if only another flight helps.
+pub(super) fn caution_remedies(
+    ui: &Ui,
+    records: &ConditionRecords,
+    caution: &IdentificationCaution,
+) -> Vec<Remedy> {
+    match caution {
+        IdentificationCaution::Records(caution) => record_caution_remedies(records, caution),
+        IdentificationCaution::UnlikeRecord { name, .. }
+        | IdentificationCaution::Inadequate { record: name, .. } => {
+            leave_out(records, name).into_iter().collect()
+        }
+        IdentificationCaution::Contradiction {
+            records: contradicting,
+            ..
+        } => contradiction_remedies(records, contradicting),
+        IdentificationCaution::Short {
+            lowest, periods, ..
+        } => raise_lowest_frequency(records, lowest / periods)
+            .into_iter()
+            .collect(),
+        IdentificationCaution::BandNotShown { shown: band, .. }
+        | IdentificationCaution::OrderLimit { narrower: band, .. } => vec![use_band(*band)],
+        IdentificationCaution::NotSwept { .. } | IdentificationCaution::MovedTogether { .. } => {
+            vec![show_inputs()]
+        }
+        IdentificationCaution::Feedback { .. } => reference_remedies(ui, records),
+        IdentificationCaution::LeavesPoints { output, input, .. } => {
+            let pair = Pair {
+                output: output.index,
+                input: input.index,
+            };
+            let show_pair = SelectionCommand::FocusPair(pair);
+            vec![
+                Remedy::new(format!("Show {output}/{input}"), show_pair),
+                choose_order(),
+            ]
+        }
+        IdentificationCaution::HeldOut {
+            records: held_out, ..
+        } => {
+            let mut remedies = Vec::new();
+            for name in held_out {
+                remedies.extend(fit_held_out(records, name));
+                remedies.extend(leave_out(records, name));
+            }
+            remedies
+        }
+        IdentificationCaution::Unstable { .. } => vec![
+            Remedy::new("Show its poles", RecordsCommand::Show(RecordsPage::Poles)),
+            choose_order(),
+        ],
+        _ => Vec::new(),
+    }
+}
+
+/// Returns the remedies for a caution about the records themselves.
+fn record_caution_remedies(records: &ConditionRecords, caution: &RecordCaution) -> Vec<Remedy> {
+    match caution {
+        RecordCaution::SampleHold { signal, hold_s, .. } => hold_remedies(signal, *hold_s),
+        RecordCaution::AtLimit { record, .. } | RecordCaution::Stuck { record, .. } => {
+            leave_out(records, record).into_iter().collect()
+        }
+        RecordCaution::MovedTogether { .. } => vec![show_inputs()],
+        RecordCaution::UnlikelyUnit { .. } | RecordCaution::Copy { .. } => vec![Remedy::new(
+            "Set its column and factor…",
+            RecordsCommand::Show(RecordsPage::Columns),
+        )],
+        _ => Vec::new(),
+    }
+}
+
+/// Returns the possible reasons why a signal keeps its value for `hold_s` \[s\]; only an input can
+/// be a held command.
+fn hold_remedies(signal: &Signal, hold_s: f64) -> Vec<Remedy> {
+    let name = &signal.name;
+    let mut remedies = Vec::new();
+    if signal.role == ChannelSide::Input {
+        remedies.push(Remedy::new(
+            format!("{name} is a held command"),
+            RecordsCommand::SetHold(signal.clone(), Hold::Command { hold_s }),
+        ));
+    }
+    remedies.push(Remedy::new(
+        format!("{name} is a slow sensor"),
+        RecordsCommand::SetHold(signal.clone(), Hold::FreshSamples),
+    ));
+    remedies.push(Remedy::new(
+        format!("{name} is right as it is"),
+        RecordsCommand::SetHold(signal.clone(), Hold::Acts),
+    ));
+    remedies
+}
+
+/// Offers to repair each contradicting record with a known fault, then to leave each out.
+fn contradiction_remedies(
+    records: &ConditionRecords,
+    contradicting: &[ContradictingRecord],
+) -> Vec<Remedy> {
+    let mut remedies = Vec::new();
+    for record in contradicting {
+        remedies.extend(repair(records, record));
+    }
+    for record in contradicting {
+        remedies.extend(leave_out(records, &record.name));
+    }
+    remedies
+}
+
+/// Repairs a record's fault, in addition to earlier remedies.
+fn repair(records: &ConditionRecords, contradicting: &ContradictingRecord) -> Option<Remedy> {
+    let row = records.row_of_record(contradicting.record)?;
+    let fault = contradicting.fault.as_ref()?;
+    let mut outputs = Vec::new();
+    for (index, channel) in records.outputs.iter().enumerate() {
+        outputs.push(Signal {
+            role: ChannelSide::Output,
+            index,
+            name: channel.name.clone(),
+        });
+    }
+    let mut layout = records.rows[row].layout.clone();
+    let mut remedies: Vec<(Signal, ChannelRemedy)> = Vec::new();
+    for (signal, remedy) in fault.remedies(&outputs) {
+        if let Some(column_use) = layout.channel_mut(signal.role, signal.index) {
+            remedies.push((signal, column_use.remedy.then(remedy)));
+        }
+    }
+    let label = repair_label(fault, &contradicting.name);
+    Some(Remedy::new(
+        label,
+        RecordsCommand::SetRemedies(row, remedies),
+    ))
+}
+
+fn repair_label(fault: &RecordFault, record: &str) -> String {
+    match fault {
+        RecordFault::OutputsLate(delay_s) => format!(
+            "Remove {:.0} ms from the outputs of {record}",
+            s_to_ms(*delay_s)
+        ),
+        RecordFault::Late(signal, delay_s) => {
+            format!(
+                "Remove {:.0} ms from {signal} of {record}",
+                s_to_ms(*delay_s)
+            )
+        }
+        RecordFault::Gain(signal, factor) if *factor < 0.0 => {
+            format!("Turn {signal} of {record}")
+        }
+        RecordFault::Gain(signal, factor) => {
+            format!("Multiply {signal} of {record} by {factor:.2}")
+        }
+    }
+}
+
+/// Removes a delay \[s\] from a channel in all records, in addition to the delay already removed
+/// when it was found.
+pub(super) fn remove_common_delay(
+    records: &ConditionRecords,
+    signal: &Signal,
+    delay_s: f64,
+) -> Remedy {
+    let known_s = match &records.found {
+        Some((job, _)) => match job.request.options.preparation.channel(signal) {
+            Some(channel) => channel.delay_s,
+            None => 0.0,
+        },
+        None => 0.0,
+    };
+    let delay_s = known_s + delay_s;
+    Remedy::new(
+        format!("Remove {:.0} ms from {}", s_to_ms(delay_s), signal.name),
+        RecordsCommand::SetDelay(signal.clone(), delay_s),
+    )
+}
+
+fn use_band(band: [f64; 2]) -> Remedy {
+    Remedy::new(
+        format!("Identify from {:.2} to {:.1} rad/s", band[0], band[1]),
+        RecordsCommand::SetBand(Some(band)),
+    )
+}
+
+/// Raises the band's lower end until the longest record contains [`PERIODS`] periods; the frequency
+/// `once` \[rad/s\] has a single period in it.
+fn raise_lowest_frequency(records: &ConditionRecords, once: f64) -> Option<Remedy> {
+    let (job, _) = records.found.as_ref()?;
+    let [_, highest] = job.request.options.band;
+    if PERIODS * once < highest {
+        Some(use_band([PERIODS * once, highest]))
+    } else {
+        None
+    }
+}
+
+/// Leaves a record out if another record remains for the fit.
+fn leave_out(records: &ConditionRecords, name: &str) -> Option<Remedy> {
+    let index = used_row(records, name)?;
+    let another_is_fitted = records
+        .used_rows()
+        .any(|(other, row)| other != index && !row.guess.held_out);
+    if another_is_fitted {
+        Some(Remedy::new(
+            format!("Leave {name} out"),
+            RecordsCommand::SetUsed(index, false),
+        ))
+    } else {
+        None
+    }
+}
+
+/// Includes a held-out record in the fit.
+fn fit_held_out(records: &ConditionRecords, name: &str) -> Option<Remedy> {
+    let index = used_row(records, name)?;
+    Some(Remedy::new(
+        format!("Fit {name} too"),
+        RecordsCommand::SetHeldOut(index, false),
+    ))
+}
+
+fn used_row(records: &ConditionRecords, name: &str) -> Option<usize> {
+    let (index, _) = records
+        .used_rows()
+        .find(|(_, row)| row.table.name == name)?;
+    Some(index)
+}
+
+fn show_inputs() -> Remedy {
+    Remedy::new("Show the inputs", RecordsCommand::Show(RecordsPage::Inputs))
+}
+
+fn choose_order() -> Remedy {
+    Remedy::new("Set an order…", RecordsCommand::ShowAdvanced(ORDERS))
+}
+
+/// Proposes the references suggested by column names, and a list with all columns.
+fn reference_remedies(ui: &Ui, records: &ConditionRecords) -> Vec<Remedy> {
+    let possible = possible_references(ui, records);
+    let mut remedies = Vec::new();
+    for reference in possible
+        .iter()
+        .filter(|reference| reference.is_suggested)
+        .take(MOST_REFERENCES)
+    {
+        let column = &reference.column;
+        remedies.push(Remedy::new(
+            format!("By way of {column}"),
+            RecordsCommand::SetReferences(vec![column.clone()]),
+        ));
+    }
+    if !possible.is_empty() {
+        remedies.push(Remedy::new(
+            "Choose a reference…",
+            RecordsCommand::ShowAdvanced(REFERENCES),
+        ));
+    }
+    remedies
+}

@@ -1,0 +1,157 @@
+//! Identification settings: band, references, model orders, past windows, Laguerre poles.
+
+use egui::{CollapsingHeader, Grid, Id, Ui};
+
+use gdcm_model::units::{number, six_digits};
+use gdcm_sysid::identification::SearchSpace;
+use gdcm_sysid::identification_error::{HIGHEST_ORDER, LONGEST_PAST};
+
+use super::page::Page;
+use super::references::{REFERENCES, references_ui};
+use super::typed_lists::{list_text, numbers, typed_band, whole_numbers};
+use crate::gui::commands::command::Command;
+use crate::gui::commands::form::FormCommand;
+use crate::gui::commands::records::RecordsCommand;
+use crate::gui::widgets::controls::entry_ui;
+use crate::gui::widgets::palette::Palette;
+
+const FIELD_WIDTH: f32 = 150.0;
+/// Name under which cautions refer to the model orders.
+pub(super) const ORDERS: &str = "orders";
+
+/// A list setting; the identification tries every entry.
+#[derive(Clone, Copy)]
+enum SearchList {
+    Orders,
+    PastWindows,
+    LaguerrePoles,
+}
+
+impl SearchList {
+    const ALL: [Self; 3] = [Self::Orders, Self::PastWindows, Self::LaguerrePoles];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Orders => ORDERS,
+            Self::PastWindows => "past windows",
+            Self::LaguerrePoles => "Laguerre poles",
+        }
+    }
+
+    /// Describes the values searched if none are given.
+    fn default_values(self) -> &'static str {
+        match self {
+            Self::Orders => "from the records: 1 to 24",
+            Self::PastWindows => "from the records: 8 to 24",
+            Self::LaguerrePoles => "0.375, 0.54, 0.75 of the band's end",
+        }
+    }
+
+    fn text(self, search: &SearchSpace) -> String {
+        match self {
+            Self::Orders => list_text(&search.orders),
+            Self::PastWindows => list_text(&search.pasts),
+            Self::LaguerrePoles => list_text(&search.poles),
+        }
+    }
+
+    fn set(self, search: &mut SearchSpace, list: Vec<f64>) -> Result<(), String> {
+        match self {
+            Self::Orders => search.orders = whole_numbers(&list, HIGHEST_ORDER)?,
+            Self::PastWindows => search.pasts = whole_numbers(&list, LONGEST_PAST)?,
+            Self::LaguerrePoles => {
+                if let Some(pole) = list.iter().find(|pole| **pole <= 0.0) {
+                    return Err(format!("a pole is positive, found {}", number(*pole)));
+                }
+                search.poles = list;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Shows the settings under a heading; an empty field leaves the choice to the identification.
+///
+/// Opens the heading and focuses the field named `focused`, once.
+pub(super) fn search_settings_ui(
+    ui: &mut Ui,
+    page: Page<'_>,
+    focused: &mut Option<&'static str>,
+    commands: &mut Vec<Command>,
+) {
+    let palette = page.palette;
+    let forced_open = if focused.is_some() { Some(true) } else { None };
+    CollapsingHeader::new(palette.small("Advanced"))
+        .id_salt("advanced identification")
+        .open(forced_open)
+        .show(ui, |ui| {
+            Grid::new("advanced identification")
+                .num_columns(2)
+                .spacing([6.0, 3.0])
+                .show(ui, |ui| {
+                    band_ui(ui, page, commands);
+                    let is_focused = *focused == Some(REFERENCES);
+                    references_ui(ui, page, FIELD_WIDTH, is_focused, commands);
+                    for list in SearchList::ALL {
+                        search_list_ui(ui, &page.records.search, list, palette, commands);
+                    }
+                });
+            if let Some(name) = focused.take() {
+                ui.scroll_to_cursor(None);
+                if name != REFERENCES {
+                    let entry = Id::unique(("entry", field_name(name)));
+                    ui.memory_mut(|memory| memory.request_focus(entry.with("field")));
+                }
+            }
+        });
+}
+
+fn band_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+    let study_band = page.state.study.settings.band;
+    let hint = format!(
+        "{} {} (the study's)",
+        six_digits(study_band.min()),
+        six_digits(study_band.max())
+    );
+    let value = match page.records.band {
+        Some([low, high]) => format!("{} {}", number(low), number(high)),
+        None => String::new(),
+    };
+    if let Some(text) = field_ui(ui, "band [rad/s]", &value, &hint, page.palette) {
+        commands.push(match numbers(&text).and_then(|list| typed_band(&list)) {
+            Ok(band) => RecordsCommand::SetBand(band).into(),
+            Err(why) => Command::Form(FormCommand::Refuse(why)),
+        });
+    }
+}
+
+fn search_list_ui(
+    ui: &mut Ui,
+    search: &SearchSpace,
+    list: SearchList,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let name = list.name();
+    let value = list.text(search);
+    if let Some(text) = field_ui(ui, name, &value, list.default_values(), palette) {
+        let mut wanted = search.clone();
+        let result = numbers(&text).and_then(|values| list.set(&mut wanted, values));
+        commands.push(match result {
+            Ok(()) => RecordsCommand::SetSearch(wanted).into(),
+            Err(why) => Command::Form(FormCommand::Refuse(format!("{name}: {why}"))),
+        });
+    }
+}
+
+fn field_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, palette: &Palette) -> Option<String> {
+    ui.label(palette.small(name));
+    let text = entry_ui(ui, &field_name(name), value, hint, FIELD_WIDTH);
+    ui.end_row();
+    text
+}
+
+/// Returns a field's accessible name.
+fn field_name(name: &str) -> String {
+    format!("Identification: {name}")
+}

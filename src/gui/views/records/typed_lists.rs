@@ -1,0 +1,74 @@
+//! Typed number lists: frequency bands, model orders, window lengths.
+
+use gdcm_model::units::number;
+
+use crate::gui::widgets::controls::typed_number;
+
+/// Parses numbers separated by blanks; a comma or semicolon after a number is ignored.
+pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
+    let mut list = Vec::new();
+    for part in text.split_whitespace() {
+        if let Some(value) = typed_number(part.trim_end_matches([',', ';']))? {
+            list.push(value);
+        }
+    }
+    Ok(list)
+}
+
+/// Returns a band \[rad/s\]; `None` for an empty list.
+pub(super) fn typed_band(list: &[f64]) -> Result<Option<[f64; 2]>, String> {
+    match *list {
+        [] => Ok(None),
+        [low, high] if 0.0 < low && low < high => Ok(Some([low, high])),
+        _ => Err(
+            "the band: expected two frequencies in rad/s, the lower first, as in \"0.5 12\""
+                .to_owned(),
+        ),
+    }
+}
+
+/// Returns whole numbers from 1 to `highest`.
+pub(super) fn whole_numbers(list: &[f64], highest: usize) -> Result<Vec<usize>, String> {
+    let mut whole = Vec::new();
+    for &value in list {
+        if value.fract() != 0.0 || !(1.0..=highest as f64).contains(&value) {
+            return Err(format!(
+                "expected whole numbers from 1 to {highest}, found {}",
+                number(value)
+            ));
+        }
+        whole.push(value as usize);
+    }
+    Ok(whole)
+}
+
+/// Writes a list with blanks between its entries.
+pub(super) fn list_text<T: ToString>(list: &[T]) -> String {
+    list.iter()
+        .map(ToString::to_string)
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_sysid::identification_error::HIGHEST_ORDER;
+
+    use super::*;
+
+    #[test]
+    fn lists_are_parsed_and_wrong_entries_refused() {
+        assert_eq!(numbers("2, 4 6.5;").unwrap(), [2.0, 4.0, 6.5]);
+        assert!(numbers("2 x").unwrap_err().contains("expected a number"));
+        assert_eq!(typed_band(&[]), Ok(None));
+        assert_eq!(typed_band(&[0.5, 12.0]), Ok(Some([0.5, 12.0])));
+        assert!(
+            typed_band(&[12.0, 0.5])
+                .unwrap_err()
+                .contains("the lower first")
+        );
+        assert_eq!(whole_numbers(&[2.0, 4.0], HIGHEST_ORDER), Ok(vec![2, 4]));
+        assert!(whole_numbers(&[0.0], HIGHEST_ORDER).is_err());
+        assert!(whole_numbers(&[2.5], HIGHEST_ORDER).is_err());
+    }
+}

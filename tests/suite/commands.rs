@@ -935,13 +935,8 @@ fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_h
         .assert_code("different-dataset", &["a.gdcm-study.json", "--strict"])
         .assert_reported("condition 7 is flown at 61 kt");
     fs::rename(&dataset, desk.path("moved.json")).unwrap();
-    desk.gdcm(&["check", "a.gdcm-study.json"]).assert_failed(
-        2,
-        &[
-            "small.json: there is no such file",
-            "with --dataset and its path",
-        ],
-    );
+    desk.gdcm(&["check", "a.gdcm-study.json"])
+        .assert_failed(2, &["small.json: there is no such file", "--dataset"]);
     assert_eq!(
         desk.gdcm(&["check", "a.gdcm-study.json", "--dataset", "moved.json"])
             .status,

@@ -153,7 +153,6 @@ const ACROSS: ViewContent = ViewContent {
     tools_width: 330.0,
     needs: |state| vec![Need::Across(across_job(state))],
     figure_pairs: focused_pair,
-    ..ViewContent::PLAIN
 };
 
 const POLES: ViewContent = ViewContent {

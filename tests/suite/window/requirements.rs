@@ -600,7 +600,7 @@ fn a_condition_without_rates_and_records_says_so_in_words() {
     });
     let said = texts(&window);
     assert!(
-        said.contains("No on-axis response is of an angle or its rate"),
+        said.contains("No on-axis response is an angle or its rate"),
         "{said}"
     );
     assert!(

@@ -296,27 +296,22 @@ impl ChannelMatcher<'_> {
 #[derive(Clone, Copy)]
 enum Likeness {
     /// The channel's name, letter by letter.
-    SameName,
+    Name,
     /// An alias from the rules, letter by letter.
-    SameAlias,
+    Alias,
     /// The name or an alias from the rules, but for sign marks.
     SameButForSign,
     /// The same channel in the alias table.
-    SameChannel,
+    Channel,
 }
 
 impl Likeness {
-    const CLOSEST_FIRST: [Self; 4] = [
-        Self::SameName,
-        Self::SameAlias,
-        Self::SameButForSign,
-        Self::SameChannel,
-    ];
+    const CLOSEST_FIRST: [Self; 4] = [Self::Name, Self::Alias, Self::SameButForSign, Self::Channel];
 
     fn holds(self, name: &str, rule: &ChannelRule) -> bool {
         match self {
-            Self::SameName => name == rule.name,
-            Self::SameAlias => rule.aliases.iter().any(|alias| alias == name),
+            Self::Name => name == rule.name,
+            Self::Alias => rule.aliases.iter().any(|alias| alias == name),
             Self::SameButForSign => {
                 let unsigned = unsigned_name(name);
                 unsigned == unsigned_name(&rule.name)
@@ -325,7 +320,7 @@ impl Likeness {
                         .iter()
                         .any(|alias| unsigned_name(alias) == unsigned)
             }
-            Self::SameChannel => {
+            Self::Channel => {
                 let unsigned = unsigned_name(name);
                 same_channel(&unsigned, &unsigned_name(&rule.name))
                     || rule

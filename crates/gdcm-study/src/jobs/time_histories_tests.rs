@@ -173,9 +173,11 @@ fn what_is_not_compared_is_said() {
     let short = flown(analysis, RequirementRole::Identified, 50);
     let found = histories(analysis, short, &table);
     assert!(found.records.is_empty());
-    assert!(words(&found).iter().any(
-        |why| why.starts_with("record \"sweep\": ") && why.contains("2.0 s are the least")
-    ));
+    assert!(
+        words(&found)
+            .iter()
+            .any(|why| why.starts_with("record \"sweep\": ") && why.contains("less than 2.0 s"))
+    );
     let others = found
         .missing
         .iter()

@@ -14,7 +14,7 @@ use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_study::results::caution::{BundleModel, Caution, GainOutOfRange, Undefined};
 use gdcm_study::stages::model_cautions::cautions_of_models;
 use gdcm_study::{ConditionAnalysis, Execution};
-use gdcm_words::caution::caution_text;
+use gdcm_words::caution::{caution_text, failure_text};
 
 use super::*;
 use crate::made_up::two_lags;
@@ -336,7 +336,10 @@ fn a_gain_beyond_what_is_computed_with_is_called_that() {
         &two_lags([[1e74, 0.0], [0.0, 1e74]], [[1.0, 0.0], [0.0, 1.0]]),
         &[],
     );
-    let failure = alone.conditions[&ONLY].as_ref().unwrap_err().to_string();
+    let failure = failure_text(
+        alone.conditions[&ONLY].as_ref().unwrap_err(),
+        &alone.study.dataset,
+    );
     assert!(
         failure.contains("about 1e-74 in I0 → O0, 1e-74 in I1 → O1"),
         "{failure}"
@@ -550,11 +553,12 @@ fn a_pole_on_the_grid_is_named() {
     // An undamped pair at the first frequency of the band.
     value["conditions"][0]["physics_models"][0]["A"] = json!([[0.0, 0.5], [-0.5, 0.0]]);
     let analysis = only(&value, &[]);
-    let failure = analysis.conditions[&ONLY].as_ref().unwrap_err();
+    let failure = failure_text(
+        analysis.conditions[&ONLY].as_ref().unwrap_err(),
+        &analysis.study.dataset,
+    );
     assert!(
-        failure
-            .to_string()
-            .contains("a pole lies on a frequency of the grid"),
+        failure.contains("a pole lies on a frequency of the grid"),
         "{failure}"
     );
 }

@@ -313,8 +313,7 @@ fn a_study_whose_dataset_is_gone_says_which() {
         "{message}"
     );
     assert!(
-        message.contains("small.json: there is no such file")
-            && message.contains("with --dataset and its path"),
+        message.contains("small.json: there is no such file") && message.contains("--dataset"),
         "{message}"
     );
 }

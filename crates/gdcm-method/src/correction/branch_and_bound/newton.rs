@@ -53,9 +53,9 @@ impl<'a> Newton<'a> {
             if self.effort.is_stopped() || enough(scales, &self.reached) {
                 return;
             }
-            for scale in 0..scales.len() {
-                self.model.low[scale] = bounds.lower[scale] - scales[scale];
-                self.model.high[scale] = bounds.upper[scale] - scales[scale];
+            for (index, scale) in scales.iter().enumerate() {
+                self.model.low[index] = bounds.lower[index] - scale;
+                self.model.high[index] = bounds.upper[index] - scale;
             }
             let Some(step) = self.minimise_model(function, scales) else {
                 return;
@@ -132,14 +132,14 @@ impl<'a> Newton<'a> {
     /// Writes the point at a fraction of the step, exactly on the bounds that the full step
     /// reaches.
     fn place(&mut self, fraction: f64, bounds: ScaleBox<'_>, scales: &[f64]) {
-        for scale in 0..scales.len() {
-            let step = self.model.step[scale];
-            self.next[scale] = if fraction == 1.0 && step == self.model.low[scale] {
-                bounds.lower[scale]
-            } else if fraction == 1.0 && step == self.model.high[scale] {
-                bounds.upper[scale]
+        for (index, scale) in scales.iter().enumerate() {
+            let step = self.model.step[index];
+            self.next[index] = if fraction == 1.0 && step == self.model.low[index] {
+                bounds.lower[index]
+            } else if fraction == 1.0 && step == self.model.high[index] {
+                bounds.upper[index]
             } else {
-                (scales[scale] + fraction * step).clamp(bounds.lower[scale], bounds.upper[scale])
+                (scale + fraction * step).clamp(bounds.lower[index], bounds.upper[index])
             };
         }
     }

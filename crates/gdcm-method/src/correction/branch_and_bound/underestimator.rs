@@ -233,11 +233,11 @@ impl Differentiable for Underestimator<'_> {
 /// box), less the rounding in the value, in every slope and in their sum.
 pub(super) fn tangent_bound(scales: &[f64], at: &Expansion, bounds: ScaleBox<'_>) -> f64 {
     let mut bound = at.value.value - at.value.error;
-    for scale in 0..scales.len() {
-        let slope = at.gradient[scale];
-        let error = at.gradient_error[scale];
-        let down = (slope + error).max(0.0) * (scales[scale] - bounds.lower[scale]).max(0.0);
-        let up = (error - slope).max(0.0) * (bounds.upper[scale] - scales[scale]).max(0.0);
+    for (index, scale) in scales.iter().enumerate() {
+        let slope = at.gradient[index];
+        let error = at.gradient_error[index];
+        let down = (slope + error).max(0.0) * (scale - bounds.lower[index]).max(0.0);
+        let up = (error - slope).max(0.0) * (bounds.upper[index] - scale).max(0.0);
         bound -= down.max(up);
     }
     // Each of the n + 1 differences rounds a figure between the value and the bound; each product

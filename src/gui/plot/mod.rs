@@ -1,7 +1,7 @@
 //! Plots: each takes a scene and its state from the last frame, and returns the engineer's actions.
 //!
-//! Every panel with axes is drawn by [`painter`]. A scene ([`bode_scene`], [`figure_scene`],
-//! [`chart`], [`overview`]) describes its content; the parts below serve all of them:
+//! Every panel with axes is drawn by `painter`. A scene (`bode_scene`, `figure_scene`,
+//! `chart`, `overview`) describes its content; the parts below serve all of them:
 //!
 //! ```text
 //! painter           frame, axes, grid and gestures; each scene adds its layers

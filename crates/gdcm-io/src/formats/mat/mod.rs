@@ -1,7 +1,7 @@
 //! MATLAB files (".mat") at level 4 and levels 5 to 7, including those from GNU Octave and SciPy.
 //!
 //! Source: "MAT-File Format", The MathWorks. Files at version 7.3 are HDF5 files and are read
-//! elsewhere; their objects are laid out as in [`Subsystem`].
+//! elsewhere; their objects are laid out as in `Subsystem`.
 
 mod array_header;
 mod characters;

@@ -42,7 +42,7 @@ pub fn write(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
 ///
 /// # Errors
 ///
-/// As for [`write`].
+/// As for [`write()`].
 pub fn write_packed(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
     let mut bytes = file_header();
     for variable in variables {

@@ -30,7 +30,7 @@ pub struct ModelPlace {
 pub struct Location {
     pub condition: Option<ConditionPlace>,
     pub model: Option<ModelPlace>,
-    /// The entry; empty for the whole.
+    /// Entry, such as a matrix; empty for the whole dataset, condition or model.
     pub entry: String,
 }
 

@@ -6,11 +6,11 @@ use nalgebra::DMatrix;
 
 use super::flight_record::Segment;
 
-/// Half length of the filter in periods of the cut-off frequency.
+/// Half length of the filter, in periods of the cut-off frequency.
 const PERIODS: f64 = 4.0;
 /// Share of the Nyquist frequency above which a cut-off needs no filter.
 const NEAR_NYQUIST: f64 = 0.8;
-/// Largest half length in samples; exceeded only for an absurd cut-off.
+/// Maximum half length in samples; only an unreasonably low cut-off exceeds it.
 const LONGEST: f64 = 1e5;
 
 /// A symmetric finite impulse response: a Hamming-windowed sinc with unit sum.

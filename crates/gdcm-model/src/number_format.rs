@@ -1,8 +1,8 @@
 //! Numbers as text: the only place where digits, signs and exponents are chosen.
 //!
-//! Text for messages and tables of a terminal has a hyphen as minus sign ([`number`], [`telling`]);
-//! text of figures, windows and sentences has a true minus sign ([`decimals`], [`compact`],
-//! [`signed`], [`five_digits`]).
+//! Text for messages and for tables in a terminal has a hyphen as minus sign ([`number`],
+//! [`telling`]); text in plots, windows and sentences has a true minus sign ([`decimals`],
+//! [`compact`], [`signed`], [`five_digits`]).
 
 /// The minus sign, as wide as a plus.
 const MINUS: char = '\u{2212}';

@@ -33,7 +33,7 @@ impl AssemblyCaution {
     }
 }
 
-/// A problem in words.
+/// A description of a problem, with the model to which it belongs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ProblemLine {
     /// Index of the first model with the problem; `None` for a problem of the whole dataset.

@@ -21,7 +21,7 @@ pub struct ChannelUse {
     pub words: Option<String>,
 }
 
-/// The channels on a side of a model, in the dataset's order.
+/// The matched inputs or outputs of a model, in the dataset's order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChannelMatch {
     /// An entry per dataset channel; `None` where the model lacks the channel.
@@ -33,7 +33,7 @@ pub struct ChannelMatch {
     pub by_position: bool,
 }
 
-/// Everything needed to match the channels on a side of a model.
+/// Everything needed to match the inputs or the outputs of a model.
 #[derive(Clone, Copy)]
 pub(super) struct ChannelMatcher<'a> {
     pub side: ChannelSide,
@@ -359,7 +359,7 @@ mod tests {
     use super::*;
     use crate::assembly::declarations::{ChannelDeclarations, UnitRule};
 
-    /// Matches the channels of one side under rules without other declarations.
+    /// Matches the channels of one side without declarations.
     fn matched(
         side: ChannelSide,
         labels: &[ChannelLabel],

@@ -68,7 +68,7 @@ impl FileScope {
         }
     }
 
-    /// Returns whether the scope includes a model with a role.
+    /// Returns whether the scope includes a model; `role` is `None` where the model has none.
     pub fn holds(&self, found: &FoundModel, role: Option<RowRole>) -> bool {
         match self {
             Self::All => true,

@@ -252,8 +252,8 @@ impl ProblemKind {
         }
     }
 
-    /// Returns the open question about a channel; `None` where no command-line option answers the
-    /// problem.
+    /// Returns the question about a channel that a command-line option answers; `None` for other
+    /// problems.
     pub(super) fn question(&self) -> Option<Question> {
         let (channel, option, value) = match self {
             Self::Sign { channel, .. } => (channel, "--sign", "-1"),
@@ -285,8 +285,8 @@ pub struct Problem {
     /// Model index; `None` for a problem of the whole dataset.
     pub part: Option<usize>,
     pub kind: ProblemKind,
-    /// Scope of an answer: all models, those of a role, or a file; `None` where no command-line option
-    /// answers the problem.
+    /// Scope of an answer: all models, those of a role, or a file; `None` where no command-line
+    /// option answers the problem.
     pub scope: Option<FileScope>,
 }
 

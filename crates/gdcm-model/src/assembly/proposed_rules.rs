@@ -12,7 +12,7 @@ use crate::names::{ChannelRule, KnownChannels, SignedName};
 use crate::units::physical_unit::conversion_factor;
 
 /// Proposes rules: the models' channels with names and units, the standard patterns, and the
-/// standard on-axis responses among these channels. The rest stays open.
+/// standard on-axis responses among these channels. Other rules remain unset.
 pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
     let models: Vec<LabelledModel<'_>> = models.iter().map(LabelledModel::new).collect();
     let inputs = proposed_channels(&models, ChannelSide::Input);

@@ -399,7 +399,7 @@ impl RecordKind {
         Self::Other,
     ];
 
-    /// Returns its keyword in files and tables.
+    /// Returns the keyword of the manoeuvre in files and tables.
     pub fn word(self) -> &'static str {
         match self {
             Self::Sweep => "sweep",
@@ -433,9 +433,10 @@ pub struct ConditionRecord {
     pub used: bool,
     /// Sample time \[s\], once known.
     pub sample_time_s: Option<f64>,
-    /// Pieces in use: first and last time \[s\] on the record's clock; empty for the whole record.
+    /// Pieces in use: first and last time \[s\] on the record's time axis; empty for the whole
+    /// record.
     pub used_s: Vec<[f64; 2]>,
-    /// First and last time \[s\] within the file's samples, on the file's clock; `None` for the
+    /// First and last time \[s\] within the file's samples, on the file's time axis; `None` for the
     /// whole file.
     pub part_s: Option<[f64; 2]>,
     /// Corrections specific to this record, by channel.

@@ -300,7 +300,7 @@ impl Checker {
         }
     }
 
-    /// Returns the state names; drops them with a warning where their count is not the order.
+    /// Returns the state names; drops them with a warning where their count differs from the order.
     fn state_names(
         &mut self,
         place: Location,

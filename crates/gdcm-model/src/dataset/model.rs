@@ -134,7 +134,7 @@ impl Model {
             .unwrap_or_else(|| format!("state {}", state + 1))
     }
 
-    /// Returns its matrices; `None` where its response is measured.
+    /// Returns the matrices; `None` for a measured response.
     pub fn state_space(&self) -> Option<&StateSpace> {
         match &self.dynamics {
             Dynamics::StateSpace(model) => Some(model),
@@ -256,7 +256,7 @@ impl ModelBands {
     }
 }
 
-/// SHA-256 over all numbers that determine a model response: equal hashes mean equal responses.
+/// SHA-256 over all values that determine a model response: equal hashes mean equal responses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ContentHash([u8; 32]);
 
@@ -278,7 +278,7 @@ impl ContentHash {
     }
 }
 
-/// Adds a count and then the numbers to a hash.
+/// Adds the count of values, then the values, to a hash.
 pub(super) fn add_numbers(hash: &mut Sha256, numbers: &[f64]) {
     hash.update((numbers.len() as u64).to_le_bytes());
     let bytes: Vec<u8> = numbers

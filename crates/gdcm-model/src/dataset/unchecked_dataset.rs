@@ -64,7 +64,7 @@ pub struct ModelDraft {
 }
 
 impl ResponseArray {
-    /// Converts a table with equally many numbers for every response.
+    /// Converts a table with equally many values per response.
     fn from_table<V: AsRef<[f64]>>(table: &PairTable<V>) -> Self {
         let mut length = 0;
         let mut values = Vec::new();

@@ -197,9 +197,9 @@ impl Sides {
 
 /// A channel named by a run of words.
 struct NamedChannel<'t> {
-    /// Indices of its words.
+    /// Indices of the words.
     words: Range<usize>,
-    /// Its name as spelt in the text.
+    /// The name as spelt in the text.
     text: &'t str,
     sides: Sides,
 }

@@ -159,7 +159,7 @@ pub fn between(known: &[f64], values: &[f64], omega: f64) -> Option<f64> {
 /// from its predecessor.
 struct Place {
     after: usize,
-    /// From 0 to 1; 1 at a known frequency.
+    /// From 0 to 1; 1 where the frequency equals that at `after`.
     fraction: f64,
 }
 

@@ -511,7 +511,7 @@ mod tests {
         );
         let form = form(&model.unwrap());
         let next: Vec<&[f64]> = form.next_rows.chunks_exact(4).collect();
-        // A handful of roundings; there are two next rows.
+        // Rounding errors of a few operations; there are two next rows.
         assert!(
             next.len() == 2 && (next[0][0] - 1.0).abs() < 1e-15 && (next[1][1] - 1.0).abs() < 1e-15
         );

@@ -76,7 +76,7 @@ mod tests {
                 .sqrt()
                 .recip()
                 / 0.5;
-            // A handful of roundings.
+            // Rounding errors of a few operations.
             assert!((tau * order as f64 / PIVOT_THRESHOLD - 1.0).abs() < 1e-14);
         }
     }

@@ -31,8 +31,8 @@ pub struct LowPass {
 impl LowPass {
     /// Creates the filter with cut-off `omega` \[rad/s\] for a sample time \[s\].
     ///
-    /// `None` where `omega dt > 0.8 pi`, since there is nothing to remove, where either is not
-    /// positive, and where `M` would exceed 100 000.
+    /// `None` where `omega dt > 0.8 pi` (nothing to remove), where either argument is not positive,
+    /// and where `M` would exceed 100 000.
     #[must_use]
     pub fn new(omega: f64, sample_time_s: f64) -> Option<Self> {
         let step = omega * sample_time_s;

@@ -76,9 +76,9 @@ impl ValidationSettings {
 /// A window of a record, measured and simulated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ValidationWindow {
-    /// Index of its record, counted from 0.
+    /// Record index, counted from 0.
     pub record: usize,
-    /// Time of its first sample \[s\], on the record's clock.
+    /// Time of the first sample \[s\], on the record's time axis.
     pub start_s: f64,
     /// Sample time \[s\].
     pub sample_time_s: f64,
@@ -132,7 +132,7 @@ pub enum ValidationError {
 /// ```text
 /// window: 3 / max Re lambda, at most the longest; each segment in equal windows, no sample left out
 /// y^ = C Phi^n x0 + offset + response to (u - mean u), inputs linear between samples
-/// x0, offset: least squares over the outputs, each over its std
+/// x0, offset: least squares over all outputs, each divided by its standard deviation
 /// fit = 100 (1 - rms(y - y^) / std(y)),   Theil = rms(y - y^) / (rms(y) + rms(y^))
 /// ```
 ///

@@ -57,7 +57,7 @@ const fn unit(dimension: Dimension, size: f64, spellings: &'static [&'static str
     }
 }
 
-/// All known units. `rps` is missing: it means radians to some and revolutions to others.
+/// All supported units. `rps` is missing: it may mean radians or revolutions per second.
 const UNITS: &[UnitRow] = {
     use Dimension::*;
     &[

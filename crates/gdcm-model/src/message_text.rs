@@ -37,25 +37,25 @@ pub fn quoted(text: &str) -> String {
     format!("\"{}\"", shortened(&sanitized(text)))
 }
 
-/// Shortens a message and each of its words to a readable length, by the middle.
+/// Shortens a message, and each of its words, by replacing the middle with an ellipsis.
 pub fn shortened_message(text: &str) -> String {
-    /// Longer than any message of the program with sixty column names.
+    /// Maximum length in characters: above any message of the program with sixty column names.
     const LONGEST: usize = 2000;
     const KEPT: usize = 900;
     let words: Vec<String> = text.split(' ').map(shortened_name).collect();
     without_middle(&words.join(" "), LONGEST, KEPT)
 }
 
-/// Shortens a name in a message by its middle where it is longer than most file paths.
+/// Shortens a name in a message by replacing the middle with an ellipsis.
 pub fn shortened_name(text: &str) -> String {
-    /// Longer than most file paths.
+    /// Maximum length in characters: above that of most file paths.
     const LONGEST: usize = 400;
     const KEPT: usize = 40;
     without_middle(text, LONGEST, KEPT)
 }
 
-/// Replaces the middle of a text above `longest` characters by an ellipsis; `kept` characters remain
-/// at each end.
+/// Replaces the middle of a text of more than `longest` characters with an ellipsis; `kept`
+/// characters remain at each end.
 fn without_middle(text: &str, longest: usize, kept: usize) -> String {
     let letters = text.chars().count();
     if letters <= longest {

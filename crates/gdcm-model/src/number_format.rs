@@ -1,8 +1,8 @@
 //! Numbers as text: the only place where digits, signs and exponents are chosen.
 //!
-//! Text for messages and tables of a terminal has a hyphen as minus sign ([`number`], [`telling`]);
-//! text of figures, windows and sentences has a true minus sign ([`decimals`], [`compact`],
-//! [`signed`], [`five_digits`]).
+//! Text for messages and for tables in a terminal has a hyphen as minus sign ([`number`],
+//! [`telling`]); text in plots, windows and sentences has a true minus sign ([`decimals`],
+//! [`compact`], [`signed`], [`five_digits`]).
 
 /// The minus sign, as wide as a plus.
 const MINUS: char = '\u{2212}';
@@ -10,7 +10,7 @@ const MINUS: char = '\u{2212}';
 /// Formats a number for a message: the shortest text that parses to the same number, with an
 /// exponent where the digits before or after the point would hide it (1e300, 2.5e-12).
 pub fn number(value: f64) -> String {
-    /// Longest text without an exponent, where the exponent form would be shorter.
+    /// Maximum length of a text without exponent, if the exponent form is shorter.
     const LONGEST: usize = 10;
     let plain = value.to_string();
     let exponent = format!("{value:e}");
@@ -36,10 +36,10 @@ pub fn without_sign_of_zero(text: &str) -> &str {
     if is_zero { digits } else { text }
 }
 
-/// Formats a nonzero value with the given decimals, or with more, so that at least two digits
-/// remain where it would round to zero.
+/// Formats a value with the given decimals; a nonzero value below one unit of the last decimal gets
+/// two significant digits instead.
 pub fn telling(value: f64, decimals: usize) -> String {
-    /// Beyond this number of decimals an exponent is shorter.
+    /// Maximum number of decimals; beyond it an exponent is shorter.
     const MOST: i32 = 6;
     if value == 0.0 || !value.is_finite() || value.abs() >= 10_f64.powi(-(decimals as i32)) {
         return format!("{value:.decimals$}");
@@ -54,7 +54,7 @@ pub fn telling(value: f64, decimals: usize) -> String {
 
 /// Formats two values with the given decimals, or with as many more as needed to distinguish them.
 pub fn told_apart(a: f64, b: f64, decimals: usize) -> (String, String) {
-    /// All decimals of a number of order one.
+    /// Maximum number of decimals: all that a value near 1 has.
     const MOST: usize = 15;
     let texts = |decimals: usize| (format!("{a:.decimals$}"), format!("{b:.decimals$}"));
     let enough = (decimals..=MOST).find(|&decimals| texts(decimals).0 != texts(decimals).1);

@@ -60,9 +60,9 @@ impl<'a> Portion<'a> {
         self.report(1.0)
     }
 
-    /// Reports that `done` (0 to 1) of the part is complete; never goes backwards.
+    /// Reports that `done` (0 to 1) of the part is complete; the reported share never decreases.
     fn report(&self, done: f64) -> Result<(), Cancelled> {
-        // A panic while the lock was held leaves a valid number.
+        // A panic of another holder of the lock leaves a valid value.
         let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
         let rise = (done.min(1.0) * self.share - *reported).max(0.0);
         *reported += rise;
@@ -86,15 +86,15 @@ impl Progress for Portion<'_> {
 #[error("the analysis was stopped")]
 pub struct Cancelled;
 
-/// Reports progress of a computation split into shares that may end in any order; never goes
-/// backwards.
+/// Reports progress of a computation split into shares that may end in any order; the reported
+/// total never decreases.
 pub struct Shares<'a> {
     progress: &'a dyn Progress,
     done: Mutex<f64>,
 }
 
 impl<'a> Shares<'a> {
-    /// Starts at zero.
+    /// Creates the shares, none of them complete.
     pub fn new(progress: &'a dyn Progress) -> Self {
         Self {
             progress,
@@ -117,14 +117,14 @@ impl<'a> Shares<'a> {
         self.report(|done| done + share, name)
     }
 
-    /// Reports the step `name`, and the total share that `done` computes from the last.
+    /// Reports the step `name`; `done` computes the new total share (0 to 1) from the previous.
     fn report(&self, done: impl Fn(f64) -> f64, name: &str) -> Result<(), Cancelled> {
         /// Resolution of the reported progress.
         const PARTS: f64 = 1000.0;
         if self.progress.cancelled() {
             return Err(Cancelled);
         }
-        // A panic while the lock was held leaves a valid number.
+        // A panic of another holder of the lock leaves a valid value.
         let mut total = self.done.lock().unwrap_or_else(PoisonError::into_inner);
         *total = total.max(done(*total).min(1.0));
         self.progress.step(name);

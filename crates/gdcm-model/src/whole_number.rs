@@ -62,7 +62,7 @@ impl<T: WholeNumber> Visitor<'_> for Whole<T> {
     }
 
     fn visit_f64<E: Error>(self, number: f64) -> Result<T, E> {
-        /// 2^53: up to here every whole number has its own floating-point value.
+        /// 2^53: up to this magnitude every whole number has an exact floating-point value.
         const LARGEST: f64 = 9_007_199_254_740_992.0;
         if number.fract() == 0.0 && number.abs() <= LARGEST {
             self.visit_i64(number as i64)

@@ -33,7 +33,7 @@ impl AssemblyCaution {
     }
 }
 
-/// A problem in words.
+/// A description of a problem, with the model to which it belongs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ProblemLine {
     /// Index of the first model with the problem; `None` for a problem of the whole dataset.
@@ -191,7 +191,7 @@ impl Assembly {
 
     /// Describes a caution.
     pub fn caution_words(&self, caution: &AssemblyCaution) -> String {
-        /// Most files listed by name.
+        /// Maximum number of files listed by name.
         const MOST_FILES: usize = 3;
         let mut files: Vec<String> = Vec::new();
         for part in caution.parts.iter().take(MOST_FILES) {
@@ -224,8 +224,8 @@ struct SharedProblem<'p> {
     others: usize,
 }
 
-/// Finds all problems in the dataset's channels, in each model and in each condition. Where there
-/// are none, the dataset itself is checked.
+/// Finds all problems in the dataset's channels, in each model and in each condition. If there are
+/// none, checks the dataset itself.
 fn find_problems(parts: &[Part], rules: &Rules) -> Vec<Problem> {
     let mut problems = channel_problems(rules);
     let in_use = parts_in_use(parts);

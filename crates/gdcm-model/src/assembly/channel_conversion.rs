@@ -20,8 +20,8 @@ enum Scaling {
     Unchanged,
 }
 
-/// Converts a model to the dataset's channels: `H'_oi = f_o H_oi / f_i` with the factors f. Numbers
-/// without a conversion stay bitwise the same; missing channels have zero response.
+/// Converts a model to the dataset's channels: `H'_oi = f_o H_oi / f_i` with the factors f. Values
+/// that need no conversion keep their bits; missing channels have zero response.
 pub(super) fn convert_model(model: &ModelDraft, uses: ChannelUses<'_>) -> ModelDraft {
     let [a, b, c, d] = &model.matrices;
     let b = b.as_ref().map(|b| pick_inputs(b, uses.inputs));
@@ -49,7 +49,7 @@ pub(super) fn convert_model(model: &ModelDraft, uses: ChannelUses<'_>) -> ModelD
 
 fn convert_response(response: &ResponseDraft, uses: ChannelUses<'_>) -> ResponseDraft {
     let is_complete = uses.inputs.iter().chain(uses.outputs).all(Option::is_some);
-    // An unmeasured response has zeros for values; its empty valid band excludes them.
+    // The values of an unmeasured response are zero; its empty valid band excludes them.
     let valid_bands = if is_complete {
         response.valid_bands.clone()
     } else {

@@ -21,19 +21,19 @@ pub struct ChannelUse {
     pub words: Option<String>,
 }
 
-/// The channels on a side of a model, in the dataset's order.
+/// The matched inputs or outputs of a model, in the dataset's order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChannelMatch {
     /// An entry per dataset channel; `None` where the model lacks the channel.
     pub uses: Vec<Option<ChannelUse>>,
     pub problems: Vec<ProblemKind>,
-    /// Assumptions made where the file is silent.
+    /// Assumptions about facts that the file does not give.
     pub notes: Vec<String>,
     /// Whether the file has no channel names, so that the channels were matched by position.
     pub by_position: bool,
 }
 
-/// Everything needed to match the channels on a side of a model.
+/// Everything needed to match the inputs or the outputs of a model.
 #[derive(Clone, Copy)]
 pub(super) struct ChannelMatcher<'a> {
     pub side: ChannelSide,
@@ -42,7 +42,7 @@ pub(super) struct ChannelMatcher<'a> {
     /// The dataset's channels.
     pub rules: &'a [ChannelRule],
     pub declared: &'a DeclaredChannels<'a>,
-    /// Whether some channels may be missing, as in a measured response; not all may.
+    /// Whether channels may be missing, as in a measured response; at least one must be found.
     pub partial: bool,
 }
 
@@ -126,7 +126,7 @@ impl ChannelMatcher<'_> {
         }
     }
 
-    /// Returns the file channels with the closest likeness to a dataset channel.
+    /// Returns the file channels whose names agree best with a dataset channel.
     fn candidates(&self, rule: &ChannelRule) -> Vec<usize> {
         for likeness in Likeness::CLOSEST_FIRST {
             let mut candidates = Vec::new();
@@ -215,7 +215,7 @@ impl ChannelMatcher<'_> {
     }
 
     /// Returns the channel with its declared sign, or with the sign that its name implies; reports
-    /// a sign that neither gives.
+    /// a problem where neither determines the sign.
     fn signed(
         &self,
         used: ChannelUse,
@@ -276,7 +276,7 @@ impl ChannelMatcher<'_> {
         }
     }
 
-    /// Returns the problem of a measured response without any dataset channel on a side.
+    /// Returns the problem of a measured response that has no dataset channel on this side.
     fn unmatched(&self) -> ProblemKind {
         let found: Vec<&str> = self
             .labels
@@ -292,16 +292,16 @@ impl ChannelMatcher<'_> {
     }
 }
 
-/// How a file name can agree with the name of a dataset channel or with one of its aliases.
+/// Agreement between a name in a file and the name or an alias of a dataset channel.
 #[derive(Clone, Copy)]
 enum Likeness {
-    /// The channel's name, letter by letter.
+    /// The channel's name, exactly.
     Name,
-    /// An alias from the rules, letter by letter.
+    /// An alias from the rules, exactly.
     Alias,
-    /// The name or an alias from the rules, but for sign marks.
+    /// The name or an alias from the rules, apart from sign marks.
     SameButForSign,
-    /// The same channel in the alias table.
+    /// Another name of the same channel, according to the alias table.
     Channel,
 }
 
@@ -337,7 +337,7 @@ fn unsigned_name(name: &str) -> String {
     SignedName::parse(name).name
 }
 
-/// Returns the alias from the rules that a file name agrees with, or the channel's own name.
+/// Returns the alias from the rules that agrees with a name in a file, or else the channel's name.
 fn matched_name<'r>(name: &str, rule: &'r ChannelRule) -> &'r str {
     if name == rule.name {
         return &rule.name;
@@ -359,7 +359,7 @@ mod tests {
     use super::*;
     use crate::assembly::declarations::{ChannelDeclarations, UnitRule};
 
-    /// Matches the channels of one side under rules without other declarations.
+    /// Matches the channels of one side without declarations.
     fn matched(
         side: ChannelSide,
         labels: &[ChannelLabel],

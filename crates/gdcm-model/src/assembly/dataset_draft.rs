@@ -1,4 +1,4 @@
-//! The unchecked dataset: models with known roles, in the dataset's channels and units.
+//! The unchecked dataset: models with a condition and a role, in the dataset's channels and units.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -102,8 +102,8 @@ fn condition_name(state: &FlightState) -> String {
 
 /// Returns the distinct flight records listed by the models' files.
 ///
-/// Where files list the same record, the first entry with pieces in use wins. A different record
-/// with a name already in use gets a number.
+/// Where files list the same record, the first entry with pieces in use is kept. A different record
+/// whose name is already in use gets a number: "name (2)".
 fn flight_records(parts: &[&Part]) -> Vec<ConditionRecord> {
     let mut records: Vec<ConditionRecord> = Vec::new();
     let mut known: Vec<&ConditionRecord> = Vec::new();
@@ -187,8 +187,8 @@ fn identified_models(parts: &[&Part], rules: &Rules) -> Vec<ModelDraft> {
     models
 }
 
-/// Returns the origin of an identified model. Only a measured response keeps an order: a model with
-/// matrices has its order in them.
+/// Returns the origin of an identified model. Only a measured response keeps a stated order: the
+/// order of a model with matrices is its state count.
 fn identified_origin(part: &Part) -> Origin {
     let order = match &part.found.draft.origin {
         Origin::Identified { order, .. } if part.found.response().is_some() => *order,

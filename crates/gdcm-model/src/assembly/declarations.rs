@@ -8,7 +8,7 @@ use super::file_scope::FileScope;
 use super::found_model::FoundModel;
 use crate::names::RowRole;
 
-/// A conversion that the units leave open, such as inches of stick travel to percent.
+/// A factor between units that have no fixed ratio, such as inches of stick travel and percent.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct UnitRule {
     pub channel: String,
@@ -35,8 +35,8 @@ pub struct ChannelDeclarations {
 }
 
 impl ChannelDeclarations {
-    /// Takes over all declarations in `other`. A unit replaces the factor declared for the same
-    /// channel, and a factor the unit.
+    /// Applies all declarations in `other`. A unit replaces an earlier factor of the same channel,
+    /// and a factor an earlier unit.
     pub fn override_by(&mut self, other: &Self) {
         for (channel, unit) in &other.units {
             self.factors.remove(channel);
@@ -74,8 +74,8 @@ pub struct ScopedDeclarations {
     pub channels: ChannelDeclarations,
 }
 
-/// Returns the declarations that apply to a model: wide scopes first, and for equal scopes in the
-/// declared order, so that later entries override earlier ones.
+/// Returns the declarations that apply to a model, in ascending precedence: wide scopes first,
+/// equally wide scopes in the declared order. Later entries override earlier ones.
 pub(super) fn applicable_declarations<'d>(
     declarations: &'d [ScopedDeclarations],
     found: &FoundModel,
@@ -92,7 +92,7 @@ pub(super) fn applicable_declarations<'d>(
 /// All units, factors and signs declared for the channels of a single model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredChannels<'r> {
-    /// Conversions that the units leave open.
+    /// Factors between units that have no fixed ratio.
     pub conversions: &'r [UnitRule],
     pub channels: ChannelDeclarations,
 }
@@ -107,7 +107,7 @@ impl DeclaredChannels<'_> {
         }
     }
 
-    /// Returns the declared factor for a conversion that the units leave open.
+    /// Returns the declared factor between units that have no fixed ratio.
     pub(super) fn conversion(&self, channel: &str, from: &str) -> Option<f64> {
         self.conversions
             .iter()

@@ -50,7 +50,7 @@ impl fmt::Display for FileScope {
 }
 
 impl FileScope {
-    /// Returns the scope that holds all models in a role.
+    /// Returns the scope that includes all models with a role.
     pub fn of_role(role: RowRole) -> Self {
         match role {
             RowRole::Nominal | RowRole::Perturbed => Self::Physics,
@@ -68,7 +68,7 @@ impl FileScope {
         }
     }
 
-    /// Returns whether the scope holds a model with a role.
+    /// Returns whether the scope includes a model; `role` is `None` where the model has none.
     pub fn holds(&self, found: &FoundModel, role: Option<RowRole>) -> bool {
         match self {
             Self::All => true,

@@ -45,8 +45,8 @@ pub struct Facts {
 /// A model as read from a file, with channels in the file's order and units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundModel {
-    /// Numbers, timing, states and provenance. The name is that of the variable; the origin is not
-    /// final.
+    /// Matrices or response, timing, states and source. The name is that of the variable; the
+    /// origin may still change.
     pub draft: ModelDraft,
     pub inputs: Vec<ChannelLabel>,
     pub outputs: Vec<ChannelLabel>,
@@ -82,8 +82,8 @@ impl FoundModel {
         }
     }
 
-    /// Returns the channel names. A single measured response without names in the file takes them
-    /// from the variable, or else from the file name, as far as these name known channels.
+    /// Returns the channel names. For a single measured response without names in the file, they
+    /// come from the variable, or else from the file name, where these contain known channel names.
     pub fn labels_with_name(&self, known: KnownChannels<'_>) -> NamedLabels {
         let mut named = NamedLabels {
             labels: [self.inputs.clone(), self.outputs.clone()],
@@ -150,7 +150,7 @@ impl FoundModel {
 pub struct NamedLabels {
     /// Inputs and outputs.
     pub labels: [Vec<ChannelLabel>; 2],
-    /// The name that should give the channels and is ambiguous.
+    /// File or variable name that leaves missing channel names ambiguous.
     pub ambiguous: Option<AmbiguousName>,
 }
 

@@ -49,8 +49,8 @@ fn join_response(joined: &mut ResponseDraft, response: &ResponseDraft) {
     joined.valid_bands = Some(bands);
 }
 
-/// Copies the coherence over a range of values; a part without coherence has coherence 1 where
-/// others have values.
+/// Copies the coherence over a range of values. If only some parts have coherence, it is 1 for the
+/// others.
 fn join_coherence(joined: &mut ResponseDraft, response: &ResponseDraft, range: Range<usize>) {
     if joined.coherence.is_none() && response.coherence.is_none() {
         return;

@@ -48,7 +48,7 @@ impl Part {
             labels: &input_labels,
             rules: &rules.inputs,
             declared: &declared,
-            // A measured response may be a part of a model.
+            // A measured response may have only some of the dataset's channels.
             partial: found.response().is_some(),
         };
         let output_matcher = ChannelMatcher {
@@ -123,7 +123,7 @@ fn name_count_problem(
     })
 }
 
-/// Returns the sample time in the rules for a model given by matrices without a sample time.
+/// Returns the sample time in the rules if the model has matrices but no sample time.
 fn missing_sample_time(found: &FoundModel, rule: Option<&RowRule>, rules: &Rules) -> Option<f64> {
     if found.draft.timing.sample_time_s.is_some() || found.response().is_some() {
         return None;

@@ -21,7 +21,7 @@ pub enum ProblemKind {
     /// Dataset channel without a unit.
     #[error("{0}: choose a unit")]
     NoUnit(String),
-    /// Dataset channel whose unit some files do not give.
+    /// Dataset channel whose unit neither the file nor the rules give.
     #[error("{0}: choose its unit in files without units")]
     UnitOfFile(String),
     #[error(
@@ -40,13 +40,13 @@ pub enum ProblemKind {
         /// File channels, separated by commas.
         found: String,
     },
-    /// Channel whose name in the file leaves the sign open.
+    /// Channel whose name in the file does not determine its sign.
     #[error(
         "{channel} is called {found} in the file, which can be positive the other way: enter its sign, 1 or -1 (\"signs\" in the rules)"
     )]
     Sign {
         channel: String,
-        /// Its name in the file.
+        /// Name of the channel in the file.
         found: String,
     },
     /// Model that looks discrete-time but has no sample time.
@@ -55,9 +55,9 @@ pub enum ProblemKind {
          enter it in s, or 0 for a continuous-time model (--sample-time)"
     )]
     NoSampleTime {
-        /// Poles near 1.
+        /// Number of poles near 1.
         near: usize,
-        /// All poles.
+        /// Total number of poles.
         poles: usize,
     },
     /// Part of the name that looks like a trim offset and matches no pattern.
@@ -75,9 +75,9 @@ pub enum ProblemKind {
     #[error("the model has {found} {side}s without names, the dataset has {expected}; name them")]
     Unnamed {
         side: ChannelSide,
-        /// Count in the dataset.
+        /// Channel count of the dataset.
         expected: usize,
-        /// Count in the model.
+        /// Channel count of the model.
         found: usize,
     },
     /// Measured response without any dataset channel on a side.
@@ -113,15 +113,15 @@ pub enum ProblemKind {
         name: String,
         first: String,
     },
-    /// Declared channel names that do not match the model's channel count.
+    /// Declared channel names whose count differs from the model's channel count.
     #[error(
         "{said} names are given for {found} {side}s of the model; give one for each, in the file's order"
     )]
     Names {
         side: ChannelSide,
-        /// Names given.
+        /// Number of names.
         said: usize,
-        /// Channels in the model.
+        /// Channel count of the model.
         found: usize,
     },
     #[error("choose its condition")]
@@ -153,7 +153,7 @@ pub enum ProblemKind {
     #[error("condition {condition} has {found} nominal models; it needs exactly one")]
     Nominal {
         condition: i64,
-        /// Nominal models.
+        /// Number of nominal models.
         found: usize,
     },
     #[error("duplicate name \"{name}\" among the {bundle} models of condition {condition}")]
@@ -252,8 +252,8 @@ impl ProblemKind {
         }
     }
 
-    /// Returns the open question about a channel; `None` where no command-line option answers the
-    /// problem.
+    /// Returns the question about a channel that a command-line option answers; `None` for other
+    /// problems.
     pub(super) fn question(&self) -> Option<Question> {
         let (channel, option, value) = match self {
             Self::Sign { channel, .. } => (channel, "--sign", "-1"),
@@ -273,7 +273,7 @@ impl ProblemKind {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Question {
     pub channel: String,
-    /// "--sign".
+    /// Name of the option: "--sign".
     option: &'static str,
     /// Example or placeholder for the answer.
     value: &'static str,
@@ -285,8 +285,8 @@ pub struct Problem {
     /// Model index; `None` for a problem of the whole dataset.
     pub part: Option<usize>,
     pub kind: ProblemKind,
-    /// Scope with exactly the models that raise the same question about a channel; `None` where no
-    /// option answers it.
+    /// Scope of an answer: all models, those of a role, or a file; `None` where no command-line
+    /// option answers the problem.
     pub scope: Option<FileScope>,
 }
 

@@ -100,13 +100,13 @@ fn row_problems(part: &Part) -> Vec<ProblemKind> {
 
 /// Reports a missing sample time for a model whose poles look discrete-time.
 ///
-/// All lie inside the unit circle, or as little outside as an unstable helicopter mode would, and
-/// at least half (two or more) lie near 1. In continuous time, poles near 1
-/// would grow within a second.
+/// All poles lie inside the unit circle, or as little outside as those of an unstable helicopter
+/// mode, and at least half of them (two or more) lie near 1. As continuous-time poles, those near 1
+/// would be modes that diverge within about a second.
 fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
     /// Real part above which a pole counts as near 1.
     const NEAR: f64 = 0.5;
-    /// Largest magnitude of a pole slightly outside the unit circle.
+    /// Maximum magnitude of a pole; above 1 to admit unstable modes.
     const OUTSIDE: f64 = 1.05;
     let a = part.found.draft.matrices[0].as_ref()?;
     if !a.is_square() || a.iter().any(|entry| !entry.is_finite()) {
@@ -130,7 +130,7 @@ fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
     }
 }
 
-/// Finds problems in a condition, given its models, at least one.
+/// Finds problems in a condition from its models, of which there is at least one.
 pub(super) fn condition_problems(
     condition: i64,
     parts: &[IndexedPart<'_>],
@@ -162,7 +162,7 @@ pub(super) fn condition_problems(
 /// A field of a flight condition.
 struct ConditionField {
     name: &'static str,
-    /// Formats its value in a row; `None` where the row has none.
+    /// Formats the field of a row; `None` where the row has no value.
     text: fn(&Row) -> Option<String>,
 }
 

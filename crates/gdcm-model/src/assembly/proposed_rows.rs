@@ -12,9 +12,9 @@ use crate::names::RowRole;
 use crate::names::name_facts::NameFacts;
 use crate::names::name_pattern::{read_name, unread_offsets};
 
-/// Largest difference between an airspeed and its rounding in a name \[kt\].
+/// Maximum difference between an airspeed and its rounded value in a name \[kt\].
 const AIRSPEED_TOLERANCE_KT: f64 = 1.0;
-/// Largest relative difference between other values and their rounding in a name.
+/// Maximum relative difference between other values and their rounded values in a name.
 const RELATIVE_TOLERANCE: f64 = 0.01;
 
 /// Proposes a row for each model.
@@ -122,8 +122,9 @@ fn trim_offsets(origin: &Origin) -> BTreeMap<String, f64> {
     }
 }
 
-/// Compares the values in a file with those in the names of file and folders, which are rounded. A
-/// file with models at several airspeeds has no name for any of them.
+/// Compares the values in a file with those in the names of file and folders, which are rounded. If
+/// a file holds models at several airspeeds, only trim offsets are compared, since the other values
+/// in the names cannot apply to all its models.
 fn name_contradictions(
     model: &FoundModel,
     models: &[FoundModel],
@@ -170,7 +171,7 @@ struct Comparison {
     field: String,
     of_file: Option<f64>,
     of_name: Option<f64>,
-    /// Largest difference that rounding explains.
+    /// Maximum difference attributed to rounding.
     tolerance: f64,
 }
 
@@ -209,9 +210,8 @@ fn has_several_airspeeds(models: &[FoundModel], file: &str) -> bool {
     airspeeds.any(|airspeed| Some(airspeed) != first)
 }
 
-/// Returns the name of a model that neither the rules nor its file name give: "measured" for a part
-/// of a measured model, the name in the file, the variable in a file with several models, or else
-/// the file name.
+/// Returns the default name of a model: "measured" for a part of a measured model, the name in the
+/// file, the variable in a file with several models, or else the file name.
 fn default_name(model: &FoundModel, models: &[FoundModel], rules: &Rules, path: &str) -> String {
     let is_part =
         model.inputs.len() * model.outputs.len() < rules.inputs.len() * rules.outputs.len();
@@ -236,8 +236,8 @@ fn default_name(model: &FoundModel, models: &[FoundModel], rules: &Rules, path: 
     }
 }
 
-/// Numbers the conditions: a condition per airspeed where a file holds models at several airspeeds,
-/// otherwise a condition per folder, in alphabetical order.
+/// Numbers the conditions: one per flight point if any file holds models at several airspeeds,
+/// otherwise one per folder in alphabetical order.
 fn number_conditions(models: &[FoundModel], rows: &mut [Row]) {
     let files: BTreeSet<&str> = models.iter().map(FoundModel::file).collect();
     let by_airspeed = files

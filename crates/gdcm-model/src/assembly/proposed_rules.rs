@@ -12,7 +12,7 @@ use crate::names::{ChannelRule, KnownChannels, SignedName};
 use crate::units::physical_unit::conversion_factor;
 
 /// Proposes rules: the models' channels with names and units, the standard patterns, and the
-/// standard on-axis responses among these channels. The rest stays open.
+/// standard on-axis responses among these channels. Other rules remain unset.
 pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
     let models: Vec<LabelledModel<'_>> = models.iter().map(LabelledModel::new).collect();
     let inputs = proposed_channels(&models, ChannelSide::Input);
@@ -83,7 +83,7 @@ impl<'m> LabelledModel<'m> {
 
 /// Proposes the dataset channels on a side.
 ///
-/// 1. Take the model with the most named channels first; names in files before names of files.
+/// 1. Start with the model with the most named channels; prefer names in files to file names.
 /// 2. Take its channels. If it is a measured response, which may have a single channel, add the
 ///    channels of other measured responses; models with matrices have all channels.
 /// 3. Give each channel the unit that most files use.
@@ -161,8 +161,8 @@ impl<'m> UnitCounts<'m> {
         });
     }
 
-    /// Returns the unit in most files, the first for equal counts; empty where no file gives a
-    /// unit.
+    /// Returns the unit that most files use, the first of equally frequent units; empty where no
+    /// file gives a unit.
     fn most_used(&self) -> String {
         let most = self.units.iter().map(|unit| unit.files.len()).max();
         for unit in &self.units {

@@ -24,13 +24,13 @@ pub struct Row {
     pub method: Option<String>,
     /// Trim offsets by coordinate ("roll_deg").
     pub perturbation: BTreeMap<String, f64>,
-    /// Parts of its name that look like a trim offset but match no pattern.
+    /// Parts of the model name that look like a trim offset but match no pattern.
     pub unread: Vec<String>,
     /// Values in the file that contradict the names of file and folders.
     pub contradictions: Vec<NameContradiction>,
 }
 
-/// A number in a file that contradicts the names of file and folders.
+/// A value in a file that contradicts the names of file and folders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NameContradiction {
     /// The quantity, by its name in the rules: "airspeed_kt".

@@ -1,5 +1,5 @@
-//! The engineer's rules for the files in a folder: all that assembly depends on apart from the
-//! files.
+//! The engineer's rules for the files in a folder: together with the files they determine the
+//! dataset.
 
 use std::collections::BTreeMap;
 
@@ -33,7 +33,7 @@ pub struct Rules {
     pub band: (f64, f64),
     /// Patterns for the names of folders, files and variables; earlier patterns take precedence.
     pub patterns: Vec<NamePattern>,
-    /// Conversions that the units leave open.
+    /// Factors between units that have no fixed ratio.
     pub units: Vec<UnitRule>,
     /// Signs in all files; they override sign marks in names.
     pub signs: Signs,

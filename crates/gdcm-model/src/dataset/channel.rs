@@ -77,7 +77,7 @@ impl<T> PairTable<T> {
         self.inputs
     }
 
-    /// Returns the place of an entry.
+    /// Returns the index of an entry in the row-major list.
     fn place(&self, pair: Pair) -> usize {
         let outputs = self.outputs;
         let inputs = self.inputs;
@@ -162,9 +162,9 @@ impl<T> IndexMut<Pair> for PairTable<T> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ChannelSide {
-    /// A stick, a pedal.
+    /// A control position, such as stick or pedal.
     Input,
-    /// A rate, an acceleration.
+    /// A measured motion, such as a rate or an acceleration.
     Output,
 }
 

@@ -54,8 +54,8 @@ pub struct Condition {
     bundles: [Vec<Model>; 2],
     nominal: usize,
     records: Vec<ConditionRecord>,
-    /// Indices of physics and identified models, sorted by name: a list of a thousand models looks
-    /// up each by name.
+    /// Indices of physics and identified models, sorted by name: the binary search keeps look-ups
+    /// fast among thousands of models.
     by_name: [Vec<usize>; 2],
 }
 
@@ -65,7 +65,7 @@ pub enum ConditionError {
     /// A value that is not finite, or a negative airspeed or mass.
     #[error("{field}: expected a finite number{bound}, found {}", number(*value))]
     FlightState {
-        /// The quantity with its unit.
+        /// Quantity and unit.
         field: &'static str,
         /// " not below zero" where required.
         bound: &'static str,
@@ -87,7 +87,7 @@ pub enum ConditionError {
     #[error("the physics bundle: expected exactly one nominal model, found {found}{names}")]
     Nominal {
         found: usize,
-        /// Their names in parentheses, where there are several.
+        /// Names of the nominal models in parentheses, where there are several.
         names: String,
     },
     #[error("records: duplicate name \"{name}\" (records {first} and {second}); names must differ")]
@@ -158,8 +158,8 @@ impl Condition {
     /// Returns the same condition with another identified bundle and additional flight records.
     ///
     /// A record replaces the record with the same name, or else with the same samples in the same
-    /// file; otherwise it is appended. A record whose parts are added is no longer used, since
-    /// evidence counts once.
+    /// file; otherwise it is appended. If parts of a record are added, the whole record is marked
+    /// unused, so that no sample counts twice.
     ///
     /// # Errors
     /// The errors of [`Condition::new`] and [`Condition::with_records`].
@@ -399,7 +399,7 @@ impl RecordKind {
         Self::Other,
     ];
 
-    /// Returns its keyword in files and tables.
+    /// Returns the keyword of the manoeuvre in files and tables.
     pub fn word(self) -> &'static str {
         match self {
             Self::Sweep => "sweep",
@@ -427,28 +427,29 @@ pub struct ConditionRecord {
     /// SHA-256 of the file, in hexadecimal.
     pub sha256: Option<String>,
     pub kind: RecordKind,
-    /// Whether it is withheld from identification, for validation.
+    /// Whether the record is reserved for validation and not used for identification.
     pub held_out: bool,
-    /// Whether it is used for anything.
+    /// Whether the record is used at all, for identification or validation.
     pub used: bool,
     /// Sample time \[s\], once known.
     pub sample_time_s: Option<f64>,
-    /// Pieces in use: first and last time \[s\] on the record's clock; empty for the whole record.
+    /// Pieces in use: first and last time \[s\] on the record's time axis; empty for the whole
+    /// record.
     pub used_s: Vec<[f64; 2]>,
-    /// First and last time \[s\] within the file's samples, on the file's clock; `None` for the
+    /// First and last time \[s\] within the file's samples, on the file's time axis; `None` for the
     /// whole file.
     pub part_s: Option<[f64; 2]>,
     /// Corrections specific to this record, by channel.
     pub remedies: BTreeMap<String, ChannelRemedy>,
 }
 
-/// Correction for a channel in a record that contradicts the others (M14.16).
+/// Correction of a channel in a record that is inconsistent with the other records (M14.16).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ChannelRemedy {
     /// Extra logging delay relative to other records \[s\], to be removed.
     pub delay_s: f64,
-    /// Factor on its samples, in addition to the unit conversion.
+    /// Factor on the channel's samples, in addition to the unit conversion.
     pub factor: f64,
 }
 
@@ -476,8 +477,8 @@ impl Default for ChannelRemedy {
 }
 
 impl ConditionRecord {
-    /// Returns whether both refer to the same record of the same file. Folders are ignored: paths
-    /// may be relative to different places.
+    /// Returns whether both entries refer to the same record of the same file. Folders are ignored:
+    /// paths may be relative to different places.
     fn is_of_same_source(&self, other: &ConditionRecord) -> bool {
         let contents_differ = match (&self.sha256, &other.sha256) {
             (Some(a), Some(b)) => a != b,
@@ -491,12 +492,12 @@ impl ConditionRecord {
         self.file.rsplit('/').next().unwrap_or_default()
     }
 
-    /// Returns whether both refer to the same samples, under any name.
+    /// Returns whether both entries refer to the same samples, under any name.
     fn is_same_as(&self, other: &ConditionRecord) -> bool {
         self.part_s == other.part_s && self.is_of_same_source(other)
     }
 
-    /// Returns whether this is a part of the full record `whole`.
+    /// Returns whether this entry is a part of the full record `whole`.
     fn is_part_of(&self, whole: &ConditionRecord) -> bool {
         self.part_s.is_some() && whole.part_s.is_none() && self.is_of_same_source(whole)
     }

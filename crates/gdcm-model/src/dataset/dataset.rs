@@ -152,7 +152,7 @@ impl Dataset {
         self.conditions.iter().map(|condition| condition.id())
     }
 
-    /// Returns the conditions without identified models, which are the reference, in file order.
+    /// Returns the conditions without identified models as a reference, in file order.
     pub fn without_reference(&self) -> Vec<ConditionId> {
         self.conditions
             .iter()
@@ -168,7 +168,7 @@ impl Dataset {
             .find(|condition| condition.id() == id)
     }
 
-    /// Returns the same dataset with a condition replaced by its id.
+    /// Returns the same dataset with `condition` in place of the condition of the same id.
     ///
     /// # Errors
     /// [`DatasetError::ModelShape`].
@@ -233,8 +233,8 @@ impl Dataset {
         })
     }
 
-    /// Returns the pairs that enter the objective of a model: the on-axis pairs, or all pairs where
-    /// there are none (M5, M7).
+    /// Returns the pairs that enter the objective of a model: the on-axis pairs, or all pairs if
+    /// none is on-axis (M5, M7).
     pub fn measuring_pairs(&self) -> PairTable<bool> {
         if self.header.on_axis.marked().next().is_some() {
             self.header.on_axis.clone()
@@ -310,9 +310,9 @@ fn check_conditions(
     Ok(())
 }
 
-/// Smallest lower end of a band \[rad/s\]: a period of 17 hours.
+/// Minimum lower end of a band \[rad/s\]: a period of 17 hours.
 pub const LEAST_OMEGA: f64 = 1e-4;
-/// Largest upper end of a band \[rad/s\]: 16 kHz.
+/// Maximum upper end of a band \[rad/s\]: 16 kHz.
 pub const GREATEST_OMEGA: f64 = 1e5;
 
 /// A frequency band \[rad/s\], `LEAST_OMEGA <= min < max <= GREATEST_OMEGA`.

@@ -17,7 +17,7 @@ use super::unchecked_dataset::{
     ResponseDraft, Warning,
 };
 
-/// Most faults collected: a file of the wrong kind has one in every model.
+/// Maximum number of collected faults; a file of the wrong kind has a fault in every model.
 const MOST_FAULTS: usize = 1000;
 
 impl DatasetDraft {
@@ -185,7 +185,7 @@ impl Checker {
         }
     }
 
-    /// Checks a list against its limit.
+    /// Checks a count against its limit.
     fn check_count(&mut self, place: Location, found: usize, most: usize) -> bool {
         if found > most {
             self.faults
@@ -300,7 +300,7 @@ impl Checker {
         }
     }
 
-    /// Returns the state names; drops them with a warning where their count is not the order.
+    /// Returns the state names; drops them with a warning where their count differs from the order.
     fn state_names(
         &mut self,
         place: Location,
@@ -338,7 +338,7 @@ impl Checker {
         let mut b = required_matrix(place, 'B', b)?;
         let mut c = required_matrix(place, 'C', c)?;
         let d = required_matrix(place, 'D', d)?;
-        // Checked first, so that the other matrices are not blamed for its shape.
+        // D is checked first, so that its wrong shape is not reported as a fault of B or C.
         if d.shape() != (p, m) {
             let fault = DraftFault::Shape {
                 expected: format!("{p} x {m} (outputs x inputs)"),
@@ -346,7 +346,7 @@ impl Checker {
             };
             return Err(DraftError::new(place.at("matrix D"), fault));
         }
-        // Without states, an empty list does not give the length of its rows.
+        // Without states, the file's empty list for B does not give the column count.
         if a.nrows() == 0 && b.nrows() == 0 {
             b = DMatrix::zeros(0, m);
         }

@@ -5,7 +5,7 @@ use std::fmt;
 use super::channel::BundleKind;
 use crate::message_text::quoted;
 
-/// A condition while its dataset is read.
+/// The place of a condition in a dataset that is being read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConditionPlace {
     /// Position, counted from 1.
@@ -14,7 +14,7 @@ pub struct ConditionPlace {
     pub id: Option<i64>,
 }
 
-/// A model while its dataset is read.
+/// The place of a model in a dataset that is being read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ModelPlace {
     pub bundle: BundleKind,
@@ -30,7 +30,7 @@ pub struct ModelPlace {
 pub struct Location {
     pub condition: Option<ConditionPlace>,
     pub model: Option<ModelPlace>,
-    /// The entry; empty for the whole.
+    /// Entry, such as a matrix; empty for the whole dataset, condition or model.
     pub entry: String,
 }
 

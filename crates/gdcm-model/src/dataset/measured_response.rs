@@ -71,7 +71,7 @@ pub enum MeasuredResponseError {
     Estimate {
         /// `averages` or `window_s`.
         key: &'static str,
-        /// Smallest and largest permitted value.
+        /// Minimum and maximum permitted value.
         range: [f64; 2],
         value: f64,
     },
@@ -155,7 +155,7 @@ impl MeasuredResponse {
     /// Returns the same response with other estimation settings.
     ///
     /// # Errors
-    /// [`MeasuredResponseError::Estimate`] for a number outside its limits.
+    /// [`MeasuredResponseError::Estimate`] for a setting outside its limits.
     pub fn with_estimate(mut self, estimate: Estimate) -> Result<Self, MeasuredResponseError> {
         for (key, value, range) in [
             ("averages", estimate.averages, AVERAGES),

@@ -23,32 +23,32 @@ pub use state_space::StateSpace;
 /// Upper limits on all inputs: they bound the memory and time that a faulty or hostile file can
 /// take.
 pub mod limits {
-    /// Bytes of text in a file, before or after decompression: 128 MiB, some 500 conditions of the
-    /// example's size.
+    /// Maximum text in a file \[bytes\], before or after decompression: 128 MiB, some 500
+    /// conditions of the example's size.
     pub const LARGEST_TEXT: u64 = 128 << 20;
-    /// Inputs, and outputs: the largest count with which gains and delays are tested. Tables of
-    /// pairs grow with the product, the search for the best gains grows faster.
+    /// Maximum number of inputs, and of outputs: the largest tested with gains and delays. Tables
+    /// of pairs grow with the product, the search for the best gains grows faster.
     pub const MOST_CHANNELS: usize = 32;
-    /// On-axis, constrained or ignored responses.
+    /// Maximum number of on-axis, constrained or ignored responses.
     pub const MOST_PAIRS: usize = MOST_CHANNELS * MOST_CHANNELS;
-    /// Conditions: the comparison of ids takes quadratic time.
+    /// Maximum number of conditions: the comparison of ids takes quadratic time.
     pub const MOST_CONDITIONS: usize = 5000;
-    /// Models in a bundle: the comparison of names takes quadratic time.
+    /// Maximum number of models in a bundle: the comparison of names takes quadratic time.
     pub const MOST_MODELS: usize = 5000;
-    /// Records in a condition: the comparison of names takes quadratic time.
+    /// Maximum number of records in a condition: the comparison of names takes quadratic time.
     pub const MOST_RECORDS: usize = 1000;
-    /// Pieces in a record, and source records listed by a model.
+    /// Maximum number of pieces in a record, and of source records listed by a model.
     pub const MOST_PIECES: usize = 1000;
-    /// Models in all conditions together.
+    /// Maximum number of models in all conditions together.
     pub const MOST_MODELS_IN_ALL: usize = 50_000;
-    /// States in a model: the cost of a response is cubic in their count.
+    /// Maximum number of states in a model: the cost of a response is cubic in the state count.
     pub const MOST_STATES: usize = 1000;
-    /// Frequencies in a measured response.
+    /// Maximum number of frequencies in a measured response.
     pub const MOST_FREQUENCIES: usize = 100_000;
-    /// Coordinates in a perturbation.
+    /// Maximum number of coordinates in a perturbation.
     pub const MOST_COORDINATES: usize = 50;
-    /// Smallest and largest count of independent averages in a measured response.
+    /// Minimum and maximum number of independent averages in a measured response.
     pub const AVERAGES: [f64; 2] = [1e-6, 1e6];
-    /// Shortest and longest window in a measured response \[s\].
+    /// Minimum and maximum window length in a measured response \[s\].
     pub const WINDOW_S: [f64; 2] = [1e-6, 1e6];
 }

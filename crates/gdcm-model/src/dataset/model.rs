@@ -134,7 +134,7 @@ impl Model {
             .unwrap_or_else(|| format!("state {}", state + 1))
     }
 
-    /// Returns its matrices; `None` where its response is measured.
+    /// Returns the matrices; `None` for a measured response.
     pub fn state_space(&self) -> Option<&StateSpace> {
         match &self.dynamics {
             Dynamics::StateSpace(model) => Some(model),
@@ -158,7 +158,7 @@ impl Model {
     }
 
     /// Returns a fingerprint that distinguishes models with the same name: 16 hexadecimal digits
-    /// from a hash over numbers, bands, role and trim.
+    /// from a hash over dynamics, bands, role and trim.
     pub fn fingerprint(&self) -> String {
         let mut hash = Sha256::new();
         hash.update(ContentHash::new(&self.dynamics).bytes());
@@ -205,8 +205,8 @@ impl ModelBands {
     /// \[rad/s\], both p x m tables with `N` values per response.
     ///
     /// # Errors
-    /// Frequencies that do not rise, tables of the wrong length, or numbers that are negative or
-    /// not finite.
+    /// Frequencies that do not rise, tables of the wrong length, or standard deviations that are
+    /// negative or not finite.
     pub fn new(
         omega: Vec<f64>,
         sd_db: PairTable<Vec<f64>>,
@@ -244,7 +244,7 @@ impl ModelBands {
         &self.sd_deg
     }
 
-    /// Adds every number to a hash.
+    /// Adds frequencies and standard deviations to a hash.
     pub(super) fn add_to(&self, hash: &mut Sha256) {
         hash.update(b"bands");
         add_numbers(hash, &self.omega);
@@ -256,7 +256,7 @@ impl ModelBands {
     }
 }
 
-/// SHA-256 over all numbers that determine a model response: equal hashes mean equal responses.
+/// SHA-256 over all values that determine a model response: equal hashes mean equal responses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ContentHash([u8; 32]);
 
@@ -278,7 +278,7 @@ impl ContentHash {
     }
 }
 
-/// Adds a count and then the numbers to a hash.
+/// Adds the count of values, then the values, to a hash.
 pub(super) fn add_numbers(hash: &mut Sha256, numbers: &[f64]) {
     hash.update((numbers.len() as u64).to_le_bytes());
     let bytes: Vec<u8> = numbers

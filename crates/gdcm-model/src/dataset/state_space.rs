@@ -22,7 +22,7 @@ pub struct StateSpace {
 /// Error for matrices that do not form a state-space model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StateSpaceError {
-    /// Shape that does not fit the other matrices.
+    /// Matrix whose shape contradicts the shapes of the others.
     #[error("matrix {matrix}: expected {} x {}, found {} x {}", expected.0, expected.1, found.0, found.1)]
     Shape {
         /// `A`, `B`, `C` or `D`.
@@ -152,7 +152,7 @@ fn check_finite(name: char, matrix: &DMatrix<f64>) -> Result<(), StateSpaceError
     })
 }
 
-/// Largest channel delay \[s\].
+/// Maximum channel delay \[s\].
 pub const GREATEST_CHANNEL_DELAY_S: f64 = 60.0;
 
 /// Sample time and channel delays of a model, which its matrices do not contain (M2a).

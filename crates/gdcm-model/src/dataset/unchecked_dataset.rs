@@ -11,8 +11,7 @@ use super::measured_response::{Estimate, MeasuredResponse, MeasuredResponseError
 use super::model::{Dynamics, Model, Origin, Provenance};
 use super::state_space::{StateSpaceError, Timing};
 
-/// A number per response and frequency, `[output][input][frequency]`, the last index running
-/// fastest.
+/// A value per response and frequency, `[output][input][frequency]`; the last index runs fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseArray {
     /// Output, input and frequency count.
@@ -65,7 +64,7 @@ pub struct ModelDraft {
 }
 
 impl ResponseArray {
-    /// Converts a table with equally many numbers for every response.
+    /// Converts a table with equally many values per response.
     fn from_table<V: AsRef<[f64]>>(table: &PairTable<V>) -> Self {
         let mut length = 0;
         let mut values = Vec::new();
@@ -152,7 +151,7 @@ pub struct DatasetDraft {
     pub outputs: Vec<Channel>,
     /// On-axis responses: output, input.
     pub on_axis: Vec<(String, String)>,
-    /// Lower and upper end for the default band \[rad/s\].
+    /// Lower and upper end of the default band \[rad/s\].
     pub band: (f64, f64),
     pub conditions: Vec<ConditionDraft>,
 }
@@ -162,7 +161,7 @@ pub struct DatasetDraft {
 pub enum DraftFault {
     #[error("expected at most {most} entries, found {found}")]
     TooMany { most: usize, found: usize },
-    /// Table whose shape does not fit the channels or the states.
+    /// Table or matrix whose shape contradicts the number of channels or states.
     #[error("expected {expected}, found {found}")]
     Shape { expected: String, found: String },
     #[error("the dataset has no {kind} \"{name}\"; a pair is written [output, input]")]

@@ -20,7 +20,7 @@ impl RowRole {
     /// All roles.
     pub const ALL: [Self; 3] = [Self::Nominal, Self::Perturbed, Self::Identified];
 
-    /// Returns its keyword in files and tables.
+    /// Returns the keyword of the role in files and tables.
     pub fn word(self) -> &'static str {
         match self {
             Self::Nominal => "nominal",

@@ -8,9 +8,9 @@ use regex::{Regex, RegexBuilder};
 use super::name_facts::{NameFacts, RowRole};
 use crate::message_text::{quoted, sanitized, shortened};
 
-/// Longest pattern \[bytes\].
+/// Maximum length of a pattern \[bytes\].
 const LONGEST_PATTERN: usize = 1000;
-/// Largest memory of a compiled pattern \[bytes\].
+/// Maximum memory of a compiled pattern \[bytes\].
 const MOST_MEMORY: usize = 1 << 20;
 
 /// Group names, apart from trim offsets.
@@ -239,7 +239,7 @@ static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(|| {
             .to_owned(),
         r"(?:^|[/_ #.-])(?<perturbed>perturbed|pert)\d*(?:[/_ .#(-]|$)".to_owned(),
     ];
-    // A test counts the patterns: none fails to compile.
+    // A test counts the compiled patterns and thereby ensures that none is dropped.
     texts
         .iter()
         .filter_map(|text| NamePattern::new(text).ok())

@@ -10,9 +10,9 @@ use super::signed_name::SignedName;
 use crate::dataset::channel::ChannelSide;
 use crate::units::physical_unit::{Dimension, PhysicalUnit};
 
-/// Most words combined into a channel name.
+/// Maximum number of words in a channel name.
 const LONGEST_NAME: usize = 4;
-/// Most words considered in a text.
+/// Maximum number of words considered in a text.
 const MOST_WORDS: usize = 64;
 
 /// Words in file names that do not belong to a channel. Numbers and units are ignored too.
@@ -197,9 +197,9 @@ impl Sides {
 
 /// A channel named by a run of words.
 struct NamedChannel<'t> {
-    /// Indices of its words.
+    /// Indices of the words.
     words: Range<usize>,
-    /// Its name as spelt in the text.
+    /// The name as spelt in the text.
     text: &'t str,
     sides: Sides,
 }
@@ -216,8 +216,8 @@ impl ResponseName {
     /// 1. Split the text into words.
     /// 2. From the left, take the longest run of words that names a known channel.
     /// 3. Reject a word that may change a channel beside it.
-    /// 4. Two names that fit both sides are "output input", or "input to output".
-    /// 5. Otherwise each side takes the name that fits it alone, or else the name that fits both.
+    /// 4. Read two names that may each be input or output as "output input", or "input to output".
+    /// 5. Otherwise each side takes the name that fits it only, or else the name that fits both.
     ///
     /// # Errors
     /// The text names several outputs or inputs, or a word may change the channel beside it.
@@ -285,8 +285,8 @@ fn reject_modifiers(
     Ok(())
 }
 
-/// Returns the channel on a side, or `None` where the text names none. Names that fit this side
-/// only come before names that fit both.
+/// Returns the channel on a side, or `None` where the text names none. A name that fits only this
+/// side takes precedence over names that fit both.
 fn only_channel(
     side: ChannelSide,
     named: &[NamedChannel<'_>],

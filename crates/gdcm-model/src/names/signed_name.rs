@@ -121,12 +121,12 @@ pub fn parse_direction(mark: &str) -> Option<f64> {
 }
 
 /// Returns the factor, 1 or -1, from a file channel `label` to a dataset channel `channel`; `None`
-/// where the names leave it open.
+/// where the names do not determine it.
 ///
-/// 1. The same text has the same sign.
-/// 2. Where a direction is marked, the other must be known too; a load factor is positive up.
-/// 3. Without directions a leading minus is the sign. A z acceleration and a load factor without a
-///    minus may differ in sign, so the factor is open.
+/// 1. Equal names have the same sign.
+/// 2. If one name marks a direction, that of the other must be known; a load factor is positive up.
+/// 3. Without marked directions, a leading minus reverses the sign. If neither name has a minus, a
+///    z acceleration and a load factor may differ in sign, and the factor is undetermined.
 pub fn sign_between(label: &str, channel: &str) -> Option<f64> {
     if label.trim() == channel.trim() {
         return Some(1.0);

@@ -14,7 +14,7 @@ pub(super) struct ComplexLanes<S: Simd> {
 }
 
 impl<S: Simd> ComplexLanes<S> {
-    /// Returns the same real number in every lane.
+    /// Returns the same real value in every lane.
     #[inline(always)]
     pub(super) fn real(simd: S, value: f64) -> Self {
         Self {
@@ -52,7 +52,7 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// Returns the number in a lane.
+    /// Returns the value in a lane.
     #[inline(always)]
     pub(super) fn lane(&self, lane: usize) -> Complex<f64> {
         let re: &[f64] = bytemuck::cast_slice(std::slice::from_ref(&self.re));

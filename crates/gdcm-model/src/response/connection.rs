@@ -4,12 +4,11 @@ use nalgebra::DMatrix;
 
 use crate::dataset::{Pair, PairTable, StateSpace};
 
-/// Returns whether each response is more than a structural zero: whether a chain of nonzero entries
-/// leads from the input through `B`, any number of times through `A`, and `C` (or directly through
-/// `D`) to the output.
+/// Returns for each response whether a chain of nonzero entries leads from the input through `B`,
+/// any number of times through `A`, and `C` (or directly through `D`) to the output.
 ///
-/// A structural zero has zero response at every frequency. Its computed values would be rounding
-/// errors, for which ratios are meaningless (M6).
+/// Without such a chain the response is a structural zero, zero at every frequency: computed values
+/// would be rounding errors, for which ratios are meaningless (M6).
 pub fn connected(model: &StateSpace) -> PairTable<bool> {
     let reached: Vec<Vec<bool>> = (0..model.inputs())
         .map(|input| reached_states(model, input))

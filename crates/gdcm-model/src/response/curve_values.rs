@@ -27,7 +27,7 @@ pub fn wrap(angle: f64) -> f64 {
 
 /// Adds multiples of 2 pi to each angle \[rad\] except the first, so that no step exceeds pi.
 ///
-/// Sums whole turns instead of steps: each angle is rounded once, however many precede it.
+/// Adds up whole turns, not steps: each angle is rounded once, however many precede it.
 pub fn unwrap(angles: &mut [f64]) {
     let Some(&first) = angles.first() else {
         return;
@@ -52,7 +52,7 @@ pub fn unwrap(angles: &mut [f64]) {
 pub fn centred_unwrap(angles: &mut [f64], scratch: &mut Vec<f64>) {
     unwrap(angles);
     if angles.iter().all(|angle| *angle > -PI && *angle <= PI) {
-        // Their median lies there too; its computation costs more than everything else.
+        // The median lies in the same interval; computing it would cost more than all other steps.
         return;
     }
     scratch.clear();
@@ -134,8 +134,8 @@ pub fn coherence_at(response: &MeasuredResponse, omega: &[f64]) -> Option<PairTa
     }))
 }
 
-/// Interpolates values known at rising frequencies `known` at each `omega` \[rad/s\]: linear on log
-/// omega, constant beyond the ends; NaN for no values.
+/// Interpolates `values` at rising frequencies `known` to each `omega` \[rad/s\]: linear on log
+/// omega, constant beyond the ends; NaN if there are no values.
 pub fn interpolate_values(known: &[f64], values: &[f64], omega: &[f64]) -> Vec<f64> {
     let (Some(&lowest), Some(&highest)) = (known.first(), known.last()) else {
         return vec![f64::NAN; omega.len()];
@@ -149,17 +149,17 @@ pub fn interpolate_values(known: &[f64], values: &[f64], omega: &[f64]) -> Vec<f
         .collect()
 }
 
-/// Interpolates values known at rising frequencies `known` \[rad/s\] at `omega`: linear on log
-/// omega; `None` outside the range.
+/// Interpolates `values` at rising frequencies `known` \[rad/s\] to `omega`: linear on log omega;
+/// `None` outside the range.
 pub fn between(known: &[f64], values: &[f64], omega: f64) -> Option<f64> {
     Place::find(known, omega).map(|place| place.value(values))
 }
 
-/// Position between two known frequencies: at index `after`, or `fraction` of the way to it from
-/// its predecessor.
+/// Position of a frequency between two others: at index `after`, or `fraction` of the way to it
+/// from its predecessor.
 struct Place {
     after: usize,
-    /// From 0 to 1; 1 at a known frequency.
+    /// From 0 to 1; 1 where the frequency equals that at `after`.
     fraction: f64,
 }
 

@@ -21,7 +21,7 @@ use super::s_plane::SPlane;
 use super::schur_form::SchurForm;
 use crate::dataset::{Dynamics, StateSpace};
 
-/// Pole movement per unit change in the balanced A, above which eigenvectors are meaningless. A
+/// Maximum pole movement per unit change in the balanced A for which eigenvectors are meaningful. A
 /// double pole with a single eigenvector has 1e8 in floating point, a simple pole less than 1e3.
 const NEAR_DEFECTIVE: f64 = 1e6;
 
@@ -40,13 +40,14 @@ pub struct Mode {
     /// State participation (index, share) in descending order, sum 1; or the reason why there is
     /// none.
     pub participation: Result<Vec<(usize, f64)>, NearDefective>,
-    /// Residue per output over all inputs: its magnitude is the row norm in the residue matrix, its
-    /// phase is relative to the other outputs. `None` for a near-defective pole.
+    /// Residue per output over all inputs: its magnitude is the norm of the output's row in the
+    /// residue matrix, its phase is relative to the other outputs. `None` for a near-defective
+    /// pole.
     pub residues: Option<Vec<Complex<f64>>>,
 }
 
-/// Error for a pole whose eigenvectors, and thus the state participation, are rounding errors: it
-/// coincides or shares an eigenvector with another, as for two identical sensors.
+/// Error for a pole whose eigenvectors, and thus the state participation, are rounding errors: the
+/// pole coincides or shares an eigenvector with another, as for two identical sensors.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "the pole cannot be distinguished from a neighbour: a relative change of A by 1e-16 moves it {movement:.0e} times as far, so \
@@ -91,8 +92,8 @@ impl Mode {
         }
     }
 
-    /// Returns whether the mode oscillates: a complex pole. In discrete time this includes a sign
-    /// that alternates from sample to sample, which is a single pole.
+    /// Returns whether the mode oscillates: a complex pole. In discrete time this includes a single
+    /// real pole `z < 0`, whose response alternates in sign from sample to sample.
     pub fn oscillates(&self) -> bool {
         self.pole.im != 0.0
     }
@@ -185,7 +186,7 @@ impl Eigenvectors {
         let x = form.right(index);
         let y = form.left(index);
         let movement = x.norm() * y.norm();
-        // Also true for NaN, where they overflow.
+        // Also true for NaN, which results where the eigenvectors overflow.
         if !movement.le(&NEAR_DEFECTIVE) {
             return Err(NearDefective { movement });
         }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! 1  balance A; scale A and B to order 1; Householder reflections make A Hessenberg and B's first column b e_1; transpose
-//!    and reverse the states. What is left, the same for every frequency s = j omega / alpha, is
+//!    and reverse the states. Each frequency s = j omega / alpha then uses the same matrices:
 //!        [ G - s I  K  ]      G: zero below its first subdiagonal h_k, real
 //!        [ L        D' ]      H' = D' - L (G - s I)^-1 K
 //! 2  u <- first row of [G - s I, K], the active row; w <- each row of [L D'] but the first
@@ -10,7 +10,7 @@
 //! 4     if |u_k| > tau |h_k| in any of eight neighbouring frequencies, then in those with |u_k| > |h_k| interchange:
 //!          w <- w - (w_k / u_k) u;   u <- h_k r - (h_k / u_k) u
 //! 5     else: w <- w - w_k r;   u <- u - u_k r
-//! 6  the last column: w <- w - (w_n / u_n) u, and the first row of [L D'] in the same way; what is left is H'
+//! 6  the last column: w <- w - (w_n / u_n) u, and the first row of [L D'] likewise; D' is now H'
 //! ```
 //!
 //! Each frequency occupies a lane of a vector register. Hessenberg form: Laub, IEEE Trans.
@@ -69,7 +69,7 @@ pub(super) struct Elimination<'a> {
 /// Count of frequencies that share their pivots, whatever the vector length.
 const GROUP: usize = 8;
 
-/// Largest `|s| / alpha`, since it is squared.
+/// Maximum `|s| / alpha`: its square must not overflow.
 const LARGEST: f64 = 1e150;
 
 impl WithSimd for Elimination<'_> {
@@ -108,8 +108,8 @@ struct GroupShifts {
 }
 
 impl GroupShifts {
-    /// Scales the frequencies of a group; a short group repeats its last frequency. NaN where the
-    /// square would overflow, which must not look like a number.
+    /// Scales the frequencies of a group; a short group repeats its last frequency. A frequency
+    /// whose square would overflow becomes NaN, so that its response cannot pass for a valid value.
     #[inline(always)]
     fn new(group: &[Complex<f64>], frequency_scale: f64) -> Self {
         let mut shifts = Self {
@@ -159,8 +159,8 @@ fn eliminate_group<S: Simd>(
     }
 }
 
-/// Appends the values for a group to the curves; a NaN frequency is its own value, since without
-/// states it would be lost.
+/// Appends the values of a group to the curves. A NaN frequency gives NaN, even for a model without
+/// states, whose response would be finite.
 #[inline(always)]
 fn append_group<S: Simd>(
     form: &HessenbergForm,
@@ -506,7 +506,7 @@ mod tests {
         values
     }
 
-    /// Entries from a sine: irregular, and the same everywhere.
+    /// Entries from a sine: irregular, but reproducible.
     fn matrix(rows: usize, columns: usize, seed: f64) -> DMatrix<f64> {
         DMatrix::from_fn(rows, columns, |row, column| {
             (seed + 7.3 * row as f64 + 2.9 * (column * column) as f64).sin()
@@ -521,8 +521,8 @@ mod tests {
         StateSpace::new(a, b, c, d).unwrap()
     }
 
-    /// From far below the poles, where the real rows stay, to far above, where the active ones do;
-    /// lanes differ in between.
+    /// Frequencies from far below the poles, where the real rows are the pivots, to far above,
+    /// where the active rows are; the lanes of a vector differ in between.
     fn wide(count: usize) -> Vec<f64> {
         (0..count)
             .map(|k| 1e-3 * 1e6_f64.powf(k as f64 / count as f64))
@@ -619,7 +619,7 @@ mod tests {
 
     #[test]
     fn frequencies_of_a_group_may_need_different_pivots() {
-        // At 1e-4 the real row must stay, at 1e4 the complex one: neighbours in one group.
+        // In the same group, the real row must be the pivot at 1e-4, and the complex row at 1e4.
         let model = model(14, 6, 4);
         let omega: Vec<f64> = (0..29)
             .map(|k| if k % 2 == 0 { 1e-4 } else { 1e4 } * (1.0 + f64::from(k)))

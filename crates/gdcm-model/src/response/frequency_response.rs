@@ -46,7 +46,7 @@ impl FrequencyResponse {
     }
 
     /// Returns the responses that are zero wherever they are finite, with at least one finite
-    /// value: such a response does not exist, even where other values are missing.
+    /// value. Such a response counts as zero, even if its other values are undefined.
     pub fn zero_where_finite(&self) -> Vec<Pair> {
         let mut found = Vec::new();
         for (pair, curve) in self.curves.iter() {
@@ -286,9 +286,9 @@ impl PolarResponse {
         }
     }
 
-    /// Returns the responses that are numerically zero: their peak over the band \[dB\] lies 120 dB
-    /// (1e-6) below the largest of their output and below the largest of their input (M6a).
-    /// Numerical differentiation leaves such values for exact zeros.
+    /// Returns the responses that are numerically zero (M6a): their peak over the band lies more
+    /// than 120 dB (factor 1e-6) below the largest peak for the same output, and below the largest
+    /// peak for the same input. Numerical differentiation yields such values for exact zeros.
     pub fn numerically_nothing(&self) -> PairTable<bool> {
         const LEAST_DB: f64 = -120.0;
         let peaks = self.curves.map(|_, curve| match curve {

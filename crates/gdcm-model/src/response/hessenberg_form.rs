@@ -9,7 +9,7 @@ use pulp::{Arch, Simd, WithSimd};
 use super::subdiagonal::Subdiagonal;
 use crate::dataset::{Pair, StateSpace};
 
-/// Smallest `alpha`, 2^-450 rad/s: at any frequency in use, all poles of a slower model are
+/// Minimum `alpha`, 2^-450 rad/s: at any frequency in use, all poles of a slower model are
 /// effectively zero.
 const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 
@@ -42,8 +42,8 @@ pub(super) struct HessenbergForm {
     pub outputs: usize,
     /// Whether this is the dual: L then has a row per output, K a column per input.
     pub dual: bool,
-    /// Index of the input in the first row of L: it has the largest column in B, and swaps places
-    /// with the first input.
+    /// Index of the input in the first row of L: the input with the largest column in B, which
+    /// swaps places with the first input.
     first_input: usize,
     /// `1 / alpha`.
     pub frequency_scale: f64,
@@ -60,8 +60,8 @@ pub(super) struct HessenbergForm {
 }
 
 impl HessenbergForm {
-    /// Computes the reduced form of a model with `a` replacing its A: the same bits on every
-    /// instruction set, which affects only the time.
+    /// Computes the reduced form of a model with `a` replacing its A. `arch` affects only the
+    /// computing time; the bits are the same on every instruction set.
     pub fn new(arch: Arch, a: DMatrix<f64>, model: &StateSpace) -> Self {
         let mut system = ScaledSystem::new(a, model);
         let first_input = system.swap_largest_input_first();
@@ -386,16 +386,17 @@ fn subtract_multiple(from: &mut [f64], factor: f64, row: &[f64]) {
 }
 
 /// Balances row k and column k of `a`, for each state k, to norms that differ by less than a factor
-/// two. The diagonal similarity has powers of two and rounds nothing: `a <- S^-1 a S`,
-/// `b <- S^-1 b`, `c <- c S`.
+/// two. The diagonal similarity consists of powers of two, so that nothing is rounded:
+/// `a <- S^-1 a S`, `b <- S^-1 b`, `c <- c S`.
 ///
 /// Balancing of Parlett and Reinsch with 2-norms (James, Langou & Lowery, arXiv:1401.5766,
-/// algorithm 3). For entries far beyond any real machine's, the sweep count is limited (each sweep
-/// leaves a similar model), and so is the scale, so that B and C do not overflow.
+/// algorithm 3). The sweep count is limited (each sweep leaves a similar model), and so is the
+/// scale, so that B and C do not overflow; both limits matter only for entries far beyond those of
+/// any aircraft.
 pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatrix<f64>) {
-    /// Most sweeps; a helicopter model takes three to six.
+    /// Maximum number of sweeps; a helicopter model takes three to six.
     const MOST_SWEEPS: usize = 100;
-    /// Largest scale: 30 decades in either direction.
+    /// Maximum scale: 30 decades in either direction.
     const LARGEST_SCALE: f64 = (1_u128 << 100) as f64;
     let mut scales = vec![1.0; a.nrows()];
     for _ in 0..MOST_SWEEPS {
@@ -510,7 +511,7 @@ mod tests {
         );
         let form = form(&model.unwrap());
         let next: Vec<&[f64]> = form.next_rows.chunks_exact(4).collect();
-        // A handful of roundings; there are two next rows.
+        // Rounding errors of a few operations; there are two next rows.
         assert!(
             next.len() == 2 && (next[0][0] - 1.0).abs() < 1e-15 && (next[1][1] - 1.0).abs() < 1e-15
         );
@@ -522,8 +523,7 @@ mod tests {
 
     const STATES: usize = 11;
 
-    /// The rows for two inputs and three outputs; entries from a sine: irregular, and the same
-    /// everywhere.
+    /// The rows for two inputs and three outputs; entries from a sine: irregular, but reproducible.
     fn rows() -> DMatrix<f64> {
         DMatrix::from_fn(STATES + 2, STATES + 3, |column, row| {
             if row < STATES || column < STATES {

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::dataset::StateSpace;
 
-/// Largest entry accepted in computations. Products of three matrices in any state units (up to
+/// Maximum entry accepted in computations. Products of three matrices in any state units (up to
 /// 2^100) then stay far below the largest double, and no entry of a helicopter model comes close.
 pub const LARGEST_ENTRY: f64 = 1e75;
 

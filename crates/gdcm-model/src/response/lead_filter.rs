@@ -20,7 +20,7 @@ pub enum LeadOrder {
 }
 
 impl LeadOrder {
-    /// Returns the order as a number.
+    /// Returns the order, 1 or 2.
     pub fn number(self) -> usize {
         match self {
             LeadOrder::First => 1,
@@ -236,7 +236,7 @@ mod tests {
             let order = if second { LeadOrder::Second } else { LeadOrder::First };
             let filter = LeadFilter::new(order, lead_s, lag_s);
             let value = Complex::from_polar(10f64.powf(filter.magnitude_db(omega) / 20.0), filter.phase(omega));
-            // A handful of roundings.
+            // Rounding errors of a few operations.
             prop_assert!((value / filter.at(omega) - 1.0).norm() < 1e-13);
             prop_assert!((0.0..std::f64::consts::PI).contains(&filter.phase(omega)));
             // Cancellation in the difference of two times of up to 0.8 s.

@@ -7,11 +7,11 @@ use nalgebra::Complex;
 pub struct PoleEstimate {
     /// The pole \[rad/s\].
     pub pole: Complex<f64>,
-    /// Standard deviation of its real part \[rad/s\].
+    /// Standard deviation of the real part \[rad/s\].
     pub sd_re: f64,
-    /// Standard deviation of its imaginary part \[rad/s\].
+    /// Standard deviation of the imaginary part \[rad/s\].
     pub sd_im: f64,
-    /// Whether the records determine it: not below the band, and with a standard deviation of at
-    /// most half its modulus.
+    /// Whether the records determine the pole: it does not lie below the band, and its standard
+    /// deviation is at most half its modulus.
     pub determined: bool,
 }

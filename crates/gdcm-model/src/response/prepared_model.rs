@@ -84,8 +84,9 @@ impl PreparedModel {
     /// | discrete time | `C (zI - A)^-1 B + D`, `z = e^(j omega T)`; NaN from `pi / T` on |
     /// | measured | interpolated; NaN outside the measured frequencies |
     ///
-    /// Delayed channels multiply it by `e^(-j omega (tau_o + tau_i))`. A response that its input
-    /// cannot reach is exactly zero; all responses of a model with a [`LargeEntry`] are NaN.
+    /// Delayed channels multiply it by `e^(-j omega (tau_o + tau_i))`. The response of an output
+    /// that the input cannot reach is exactly zero; all responses of a model with a [`LargeEntry`]
+    /// are NaN.
     pub fn response(&self, grid: &FrequencyGrid) -> FrequencyResponse {
         self.at(grid.omega())
     }

@@ -11,7 +11,7 @@ pub(super) struct SPlane {
     sample_time_s: Option<f64>,
 }
 
-/// `|z|` below which a mode vanishes within one sample: it counts as `z = 0`, which has no `s`.
+/// `|z|` below which a mode vanishes within one sample and counts as `z = 0`, which has no `s`.
 const GONE: f64 = 1e-6;
 
 impl SPlane {

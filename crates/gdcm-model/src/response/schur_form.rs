@@ -18,7 +18,7 @@ pub struct SchurForm {
     pub q: DMatrix<Complex<f64>>,
     /// Triangular, with the eigenvalues on its diagonal.
     pub t: DMatrix<Complex<f64>>,
-    /// Smallest difference between eigenvalues above rounding.
+    /// Minimum difference of eigenvalues used as divisor: their rounding error.
     least: f64,
 }
 
@@ -88,7 +88,7 @@ impl SchurForm {
         })
     }
 
-    /// Returns the difference between two eigenvalues; the rounding error where they are equal.
+    /// Returns the difference between two eigenvalues; at least their rounding error.
     fn difference(&self, at: usize, from: usize) -> Complex<f64> {
         let difference = self.t[(at, at)] - self.t[(from, from)];
         if difference.norm() < self.least {
@@ -98,8 +98,8 @@ impl SchurForm {
         }
     }
 
-    /// Exchanges neighbours until the eigenvalues selected by `first` come first; returns their
-    /// count.
+    /// Exchanges neighbouring eigenvalues until those selected by `first` come first; returns the
+    /// count of selected eigenvalues.
     pub fn order_by(&mut self, first: impl Fn(Complex<f64>) -> bool) -> usize {
         let mut placed = 0;
         for at in 0..self.t.nrows() {
@@ -222,7 +222,7 @@ impl Block {
 /// on a reflection of the matrix, which has the same eigenvalues.
 fn quasi_triangular(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
     const TRIES: i32 = 3;
-    /// Iterations per eigenvalue; three or four are typical.
+    /// Maximum number of iterations per eigenvalue; three or four are typical.
     const ITERATIONS_PER_EIGENVALUE: usize = 60;
     let size = a.nrows();
     let most = ITERATIONS_PER_EIGENVALUE * (size + 1);

@@ -1,16 +1,16 @@
 //! Subdiagonal entries in a Hessenberg matrix, with the constants for elimination.
 
-/// Limit below which a subdiagonal entry splits the model in two; the largest entry is near 1, and a
-/// double has 16 digits.
+/// Magnitude below which a subdiagonal entry counts as zero, which splits the model in two. The
+/// largest entry is near 1 and a double has 16 digits, so that the error is far below rounding.
 const NEGLIGIBLE: f64 = 1e-70;
 
-/// Pivot threshold tau times the order n. Active and next row are interchanged where the active
-/// entry is more than tau times as large.
+/// The pivot threshold tau times the order n. Active and next row are interchanged where the active
+/// entry is more than tau times as large as the next row's entry.
 ///
-/// With tau = 1 elimination is partial pivoting. Real rows cost a half to a third as much as complex
-/// rows, and reduce the accuracy by at most `n tau`: times the unit roundoff 1.1e-16 this is 3e-11,
-/// for any order. The models in `benches/responses.rs` have errors up to 7e-13, relative to their
-/// largest value.
+/// With tau = 1 elimination is partial pivoting. Real rows cost a half to a third as much as
+/// complex rows, and increase the rounding error by a factor of at most `n tau`: times the unit
+/// roundoff 1.1e-16 this is 3e-11, for any order. The models in `benches/responses.rs` have errors
+/// up to 7e-13, relative to their largest value.
 const PIVOT_THRESHOLD: f64 = (1_u32 << 18) as f64;
 
 /// The subdiagonal entry `h` in a column of G, with the constants for its elimination.
@@ -76,7 +76,7 @@ mod tests {
                 .sqrt()
                 .recip()
                 / 0.5;
-            // A handful of roundings.
+            // Rounding errors of a few operations.
             assert!((tau * order as f64 / PIVOT_THRESHOLD - 1.0).abs() < 1e-14);
         }
     }

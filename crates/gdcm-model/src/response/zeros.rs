@@ -3,8 +3,8 @@
 //! ```text
 //! 1  keep the states on a chain of nonzero entries from the input to the output; balance A
 //! 2  keep the controllable and observable states (staircase): no pole is left that a zero would cancel
-//! 3  A Hessenberg, b = beta e_1. While d is negligible, the input drives the first state only, which is at rest in a zero:
-//!    it becomes the input,
+//! 3  A Hessenberg, b = beta e_1. While d is negligible, the input acts on the first state only,
+//!    and can set it freely: this state becomes the input,
 //!       A <- A_22, b <- A_21, c <- c_2, d <- c_1       (a zero at infinity each time)
 //! 4  zeros are where [A - sI  b; c  d] loses rank: the eigenvalues of A - b c / d
 //! 5  Newton: z <- z - H(z) / H'(z) on the model of step 2, while |H| falls
@@ -13,7 +13,7 @@
 //! Emami-Naeini & Van Dooren, "Computation of zeros of linear multivariable systems", Automatica
 //! 18(4), 1982, for the single-input, single-output case.
 //!
-//! Reduction of a model to its controllable or observable part by orthogonal reflections.
+//! Includes the reduction of a model to its controllable or observable part by reflections.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -109,7 +109,7 @@ pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<Transmission
     Ok(TransmissionZeros { finite, infinite })
 }
 
-/// A response without zeros at infinity, and the count of zeros removed.
+/// A response without zeros at infinity, and the number of zeros that were removed.
 struct ReducedResponse {
     model: SingleResponse,
     infinite: usize,
@@ -117,8 +117,8 @@ struct ReducedResponse {
 
 /// Removes the zeros at infinity from a Hessenberg model (step 3); `None` where nothing is left.
 ///
-/// A feed-through counts as zero where it would put a zero 1e10 times as far out as `|A|`, or where
-/// it is at the rounding level of c.
+/// A feed-through counts as zero where it would put a zero farther out than 1e10 times `|A|`, or,
+/// once a zero has been removed, where it is below 1e-12 times `|c|`, the rounding error.
 fn without_infinite_zeros(mut model: SingleResponse) -> Option<ReducedResponse> {
     const FARTHEST: f64 = 1e10;
     const ROUNDING: f64 = 1e-12;
@@ -139,7 +139,7 @@ fn without_infinite_zeros(mut model: SingleResponse) -> Option<ReducedResponse> 
             return None;
         }
         let rest = states - 1;
-        // b has only its first entry: it becomes a factor of the response, which moves no zero.
+        // Only the first entry of b is nonzero: a factor of the response, which moves no zero.
         model = SingleResponse {
             a: model.a.view((1, 1), (rest, rest)).into_owned(),
             b: model.a.view((1, 0), (rest, 1)).column(0).into_owned(),
@@ -181,7 +181,7 @@ fn output(model: &SingleResponse, states: &DVector<Complex<f64>>) -> Complex<f64
 /// Moves a zero to the nearby minimum of the response, if there is one (step 5).
 fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
     const MOST_STEPS: usize = 4;
-    /// Relative distance by which rounding may have moved a zero.
+    /// Maximum relative distance by which rounding may have moved a zero.
     const CLOSE: f64 = 1e-3;
     let mut best = zero;
     let Some(mut last) = response_and_slope(model, zero) else {
@@ -192,7 +192,7 @@ fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
         if zero.im == 0.0 {
             next.im = 0.0;
         }
-        // Also true for NaN, where the slope is zero.
+        // Also true for NaN, which results where the slope is zero.
         if !(next - zero).norm().le(&(CLOSE * zero.norm())) || next.im < 0.0 {
             break;
         }
@@ -216,7 +216,7 @@ pub(super) struct SingleResponse {
     pub(super) d: f64,
 }
 
-/// Share of |A| below which a coupling is a rounding error of the reflections.
+/// Share of |A| below which a coupling counts as a rounding error of the reflections.
 const NEGLIGIBLE: f64 = 1e-12;
 
 impl SingleResponse {

@@ -24,7 +24,7 @@ pub struct FlightRecord {
 pub struct Segment {
     /// Record index, counted from 0.
     pub record: usize,
-    /// First sample \[s\], on the record's clock.
+    /// Time of the first sample \[s\], on the record's time axis.
     pub start_s: f64,
     /// Sample time \[s\].
     pub sample_time_s: f64,

@@ -6,11 +6,11 @@ use nalgebra::DMatrix;
 
 use super::flight_record::Segment;
 
-/// Half length of the filter in periods of the cut-off frequency.
+/// Half length of the filter, in periods of the cut-off frequency.
 const PERIODS: f64 = 4.0;
 /// Share of the Nyquist frequency above which a cut-off needs no filter.
 const NEAR_NYQUIST: f64 = 0.8;
-/// Largest half length in samples; exceeded only for an absurd cut-off.
+/// Maximum half length in samples; only an unreasonably low cut-off exceeds it.
 const LONGEST: f64 = 1e5;
 
 /// A symmetric finite impulse response: a Hamming-windowed sinc with unit sum.
@@ -31,8 +31,8 @@ pub struct LowPass {
 impl LowPass {
     /// Creates the filter with cut-off `omega` \[rad/s\] for a sample time \[s\].
     ///
-    /// `None` where `omega dt > 0.8 pi`, since there is nothing to remove, where either is not
-    /// positive, and where `M` would exceed 100 000.
+    /// `None` where `omega dt > 0.8 pi` (nothing to remove), where either argument is not positive,
+    /// and where `M` would exceed 100 000.
     #[must_use]
     pub fn new(omega: f64, sample_time_s: f64) -> Option<Self> {
         let step = omega * sample_time_s;

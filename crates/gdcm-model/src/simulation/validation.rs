@@ -11,24 +11,23 @@ use crate::response::eigenvalues::poles;
 
 /// Window length for an unstable model, in time constants of its fastest diverging mode (M14, 6).
 const TIME_CONSTANTS: f64 = 3.0;
-/// Smallest ratio between samples of all outputs and unknowns (initial state and offsets) in a
-/// window.
+/// Minimum ratio of output samples to unknowns (initial state and offsets) in a window.
 const OVER_UNKNOWNS: usize = 3;
-/// Share of the largest effect below which an initial state is not estimated.
+/// Singular value, relative to the largest, below which a combination of unknowns is not estimated.
 const RANK_TOLERANCE: f64 = 1e-9;
 
 /// Settings for validation in the time domain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValidationSettings {
-    /// The longest window \[s\].
+    /// Maximum window length \[s\].
     pub longest_window_s: f64,
     /// Low-pass cut-off for inputs and outputs \[rad/s\]; `None` compares raw signals.
     pub low_pass: Option<f64>,
 }
 
 impl ValidationSettings {
-    /// Returns settings with 10 s windows and signals low-pass filtered at twice the highest line
-    /// in use, `highest` \[rad/s\] (M14, 6).
+    /// Returns settings with 10 s windows and signals low-pass filtered at twice `highest`
+    /// \[rad/s\], the highest spectral line in use (M14, 6).
     #[must_use]
     pub fn filtered(highest: f64) -> Self {
         Self {
@@ -46,9 +45,9 @@ impl ValidationSettings {
         }
     }
 
-    /// Returns the same settings with windows common to all models: the shortest that any of them
-    /// needs. A model with too few samples in its own windows is not compared, and does not shorten
-    /// the windows for the others.
+    /// Returns the same settings with windows common to all models: the shortest window that any of
+    /// them needs. A model with too few samples in windows of its own is not compared, and does not
+    /// shorten the windows of the others.
     #[must_use]
     pub fn common_to<'m>(
         self,
@@ -77,9 +76,9 @@ impl ValidationSettings {
 /// A window of a record, measured and simulated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ValidationWindow {
-    /// Index of its record, counted from 0.
+    /// Record index, counted from 0.
     pub record: usize,
-    /// Time of its first sample \[s\], on the record's clock.
+    /// Time of the first sample \[s\], on the record's time axis.
     pub start_s: f64,
     /// Sample time \[s\].
     pub sample_time_s: f64,
@@ -110,14 +109,14 @@ pub enum ValidationError {
     /// Inputs or outputs differ from those of a segment; index of its record, counted from 0.
     #[error("record {} has other channels than the model", .0 + 1)]
     ChannelsDiffer(usize),
-    /// Response over a single sample that is not finite.
+    /// Model that cannot be discretised, or whose poles cannot be computed.
     #[error(
         "the model cannot be simulated: its matrices do not fit each other or hold values that are not finite"
     )]
     NotSimulated,
     #[error("windows must last longer than 0 s")]
     NoWindow,
-    /// Too few samples to estimate an initial state and to compare; longest window \[s\].
+    /// Too few samples to estimate an initial state; window length \[s\].
     #[error(
         "too short to compare in time: windows of {0:.2} s, the record or {TIME_CONSTANTS} time constants of the \
          model's fastest diverging mode, hold too few samples for its initial state"
@@ -133,7 +132,7 @@ pub enum ValidationError {
 /// ```text
 /// window: 3 / max Re lambda, at most the longest; each segment in equal windows, no sample left out
 /// y^ = C Phi^n x0 + offset + response to (u - mean u), inputs linear between samples
-/// x0, offset: least squares over the outputs, each over its std
+/// x0, offset: least squares over all outputs, each divided by its standard deviation
 /// fit = 100 (1 - rms(y - y^) / std(y)),   Theil = rms(y - y^) / (rms(y) + rms(y^))
 /// ```
 ///
@@ -199,7 +198,7 @@ fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
 /// initial state.
 fn window_count(model: &StateSpace, segment: &Segment, window_s: f64) -> Option<usize> {
     let (samples, outputs) = segment.outputs.shape();
-    // A millionth of a window counts as rounding.
+    // An excess of up to a millionth of a window counts as rounding.
     let count = (samples as f64 * segment.sample_time_s / window_s - 1e-6)
         .ceil()
         .clamp(1.0, samples.max(1) as f64) as usize;
@@ -245,7 +244,8 @@ fn windows(
     Ok(windows)
 }
 
-/// Returns the first sample of window `k`, in 128 bits because the product may be large.
+/// Returns the index of the first sample in window `k`, in 128 bits because the product may be
+/// large.
 fn window_start(k: usize, count: usize, samples: usize) -> usize {
     (samples as u128 * k as u128 / count as u128) as usize
 }
@@ -287,8 +287,8 @@ fn best_simulation(
     }
 }
 
-/// Returns the least-squares solution `x` of `[a | b]` for `a x = b`, of minimum norm for columns
-/// scaled to unit length; `None` where it is not finite.
+/// Returns the least-squares solution `x` of `a x = b`, given as `[a | b]`; of minimum norm for
+/// columns scaled to unit length. `None` where it is not finite.
 fn solve(rows: DMatrix<f64>) -> Option<DVector<f64>> {
     let unknowns = rows.ncols() - 1;
     if !rows.norm().is_finite() {

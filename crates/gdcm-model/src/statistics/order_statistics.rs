@@ -17,10 +17,10 @@ pub fn median(values: &mut [f64]) -> f64 {
 }
 
 /// Returns the weighted median: the smallest value at which the cumulative weight reaches half the
-/// total, or the mean with the next value where it is exactly half (M4a). Equals [`median`] for
-/// equal weights.
+/// total, or, where it is exactly half, the mean of this value and the next (M4a). Equals
+/// [`median`] for equal weights.
 ///
-/// NaN for no values. Values must be finite, weights positive, and both equally many.
+/// NaN for no values. Values must be finite, weights positive, and their counts equal.
 pub fn weighted_median(values: &[f64], weights: &[f64]) -> f64 {
     /// Relative rounding error allowed in sums of thousands of weights.
     const ROUNDING: f64 = 1e-12;

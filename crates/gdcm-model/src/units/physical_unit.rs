@@ -57,7 +57,7 @@ const fn unit(dimension: Dimension, size: f64, spellings: &'static [&'static str
     }
 }
 
-/// All known units. `rps` is missing: it means radians to some and revolutions to others.
+/// All supported units. `rps` is missing: it may mean radians or revolutions per second.
 const UNITS: &[UnitRow] = {
     use Dimension::*;
     &[
@@ -121,8 +121,8 @@ impl PhysicalUnit {
     /// Parses a unit in any common spelling: "deg/s", "°/sec", "dps", "ft/s^2", "g", "% of stick",
     /// "msec".
     pub fn of(text: &str) -> Option<Self> {
-        // Most units have a spelling from the table. This runs for many units on each column of
-        // each record, so that folding is worth avoiding.
+        // Most units have a spelling from the table. Many units are parsed for each column of each
+        // record, so that avoiding the folding saves time.
         let row = find_unit(text).or_else(|| find_unit(&folded_unit(text)))?;
         Some(Self {
             dimension: row.dimension,
@@ -136,7 +136,7 @@ fn find_unit(spelling: &str) -> Option<&'static UnitRow> {
     UNITS.iter().find(|row| row.spellings.contains(&spelling))
 }
 
-/// Words that say of which whole a fraction is.
+/// Words that name the quantity to which a fraction refers.
 const WHOLES: [&str; 4] = ["of stick", "of travel", "of full travel", "stick"];
 
 /// Alternative spellings and their replacements, applied in this order.

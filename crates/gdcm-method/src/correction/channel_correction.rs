@@ -83,7 +83,7 @@ impl ChannelCorrection {
         self.channels(|channel| self.delay_s(channel))
     }
 
-    /// Computes a value for each channel, the inputs first.
+    /// Computes a value for each channel of this correction, the inputs first.
     pub fn channels<T>(&self, value: impl FnMut(Channel) -> T) -> Channels<T> {
         Channels::from_fn(self.input_gains.len(), self.output_gains.len(), value)
     }

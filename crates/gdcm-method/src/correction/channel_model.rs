@@ -1,4 +1,4 @@
-//! State-space models for a channel's delay or lead filter.
+//! State-space models of a channel's delay or lead filter.
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
@@ -17,8 +17,8 @@ pub struct ChannelModel {
 }
 
 impl ChannelModel {
-    /// Creates `z^-count`, exactly: a chain with `count` states, each the previous state a sample
-    /// later. With `count = 0` it is `y = u`.
+    /// Creates `z^-count`, exactly: a chain with `count` states, each equal to the previous state
+    /// one sample earlier. With `count = 0` it is `y = u`.
     pub fn samples(count: usize) -> Self {
         Self {
             a: DMatrix::from_fn(count, count, |row, column| f64::from(row == column + 1)),
@@ -73,7 +73,7 @@ impl ChannelModel {
         })
     }
 
-    /// State count.
+    /// Returns the number of states.
     pub fn order(&self) -> usize {
         self.b.len()
     }

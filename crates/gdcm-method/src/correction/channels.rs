@@ -24,7 +24,7 @@ impl Channel {
         [Self::Output(pair.output), Self::Input(pair.input)]
     }
 
-    /// Whether the response uses the channel.
+    /// Whether the channel is the response's input or output.
     pub fn is_of(self, pair: Pair) -> bool {
         Self::of(pair).contains(&self)
     }
@@ -75,7 +75,7 @@ pub fn pair_names(pairs: &[Pair], inputs: &[String], outputs: &[String]) -> Stri
     }
 }
 
-/// A value for each channel.
+/// Values of all channels, by input and by output.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Channels<T> {
     /// Input values, m.

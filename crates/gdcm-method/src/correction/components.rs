@@ -1,5 +1,5 @@
-//! Channels tied together by constrained products, and the feasible targets for constrained entries
-//! (M8 and M9, stage 1).
+//! Channels connected by constrained products, and the feasible targets of constrained entries (M8
+//! and M9, stage 1).
 
 use gdcm_model::dataset::Pair;
 
@@ -10,7 +10,7 @@ use super::channels::Channel;
 use super::interval::Interval;
 use super::problem::Problem;
 
-/// Constraints on the channels: sums of coordinates for the constrained entries, in a box.
+/// Constraints on the channels: prescribed coordinate sums of the constrained entries, and a box.
 ///
 /// The channels are *nodes* here, the inputs first: an input's value is its coordinate, an output's
 /// is minus its coordinate, so that a constrained entry prescribes the difference between two
@@ -28,7 +28,7 @@ pub(crate) struct Constraints {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ConstrainedSum {
     pub(crate) pair: Pair,
-    /// Prescribed sum over the two channels' coordinates.
+    /// Prescribed sum of the two channels' coordinates.
     pub(crate) sum: f64,
 }
 
@@ -62,12 +62,12 @@ impl Constraints {
         Self { entries, ..*self }
     }
 
-    /// Node count.
+    /// Returns the number of nodes: inputs and outputs.
     pub(crate) fn nodes(&self) -> usize {
         self.inputs + self.outputs
     }
 
-    /// Returns the nodes for an entry's input and output.
+    /// Returns the nodes of an entry's input and output.
     pub(crate) fn nodes_of(&self, pair: Pair) -> PairNodes {
         PairNodes {
             input: pair.input,
@@ -106,7 +106,7 @@ pub(crate) struct Placement {
 impl Placement {
     /// Returns the position across a constrained entry, at the distance `by`.
     fn across(self, by: f64) -> Self {
-        // A logarithm, or a time in another unit, is rounded once.
+        // The conversion of `by` to a logarithm or another time unit has rounded once.
         let mut offset = Rounded {
             value: by,
             error: f64::EPSILON * by.abs(),
@@ -138,20 +138,20 @@ pub(crate) struct ChannelCoordinates {
 /// a component by itself.
 #[derive(Clone, Debug)]
 pub(crate) struct Components {
-    /// The inputs, then the outputs.
+    /// Positions of the inputs, then of the outputs.
     nodes: Vec<Placement>,
     inputs: usize,
-    /// Least scale that keeps the channels inside the box, for each component.
+    /// Minimum scale of each component that keeps its channels inside the box.
     pub(crate) lower: Vec<f64>,
-    /// Greatest scale that keeps the channels inside the box, for each component.
+    /// Maximum scale of each component that keeps its channels inside the box.
     pub(crate) upper: Vec<f64>,
-    /// Infeasibility of each component: the worst disagreement in a loop, or the width that the box
-    /// lacks.
+    /// Infeasibility of each component: the largest inconsistency among constraints that form a
+    /// loop, or the amount by which the bounds are too narrow.
     strain: Vec<f64>,
 }
 
-/// Strain below which a component counts as feasible: well below 1e-8 (M8), so that the error in
-/// its product stays below 1e-9.
+/// Infeasibility below which a component counts as feasible: well below the 1e-8 of M8, so that the
+/// relative error in a product of gains stays below 1e-9.
 pub(crate) const STRAIN: f64 = 1e-9;
 
 impl Components {
@@ -183,7 +183,7 @@ impl Components {
         components
     }
 
-    /// Component count.
+    /// Returns the number of components.
     pub(crate) fn count(&self) -> usize {
         self.lower.len()
     }
@@ -194,7 +194,8 @@ impl Components {
         Nodes { inputs, outputs }
     }
 
-    /// Returns the sum of two channels in the same component, which is the same at every scale.
+    /// Returns the coordinate sum of two channels in the same component; the scale does not change
+    /// it.
     pub(crate) fn sum(&self, pair: Pair) -> f64 {
         self.nodes[pair.input].offset.value - self.nodes[self.inputs + pair.output].offset.value
     }
@@ -264,7 +265,7 @@ impl Components {
         }
     }
 
-    /// Raises every component's strain to the worst disagreement in its loops.
+    /// Raises the infeasibility of every component to the largest inconsistency in its loops.
     fn strain_loops(&mut self, constraints: &Constraints) {
         for entry in &constraints.entries {
             let miss = (self.sum(entry.pair) - entry.sum).abs();
@@ -336,7 +337,7 @@ pub(crate) fn reach<E>(
     })
 }
 
-/// Builds the least squares problem for stage 1 over the infeasible components: a scale for each
+/// Builds the least squares problem of stage 1 over the infeasible components: a scale for each
 /// node, and the ground.
 fn nearest_sums(constraints: &Constraints, asked: &Components) -> Objective {
     let mut lower = Vec::new();

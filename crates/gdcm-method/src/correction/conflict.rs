@@ -6,15 +6,15 @@ use super::channels::Channel;
 use super::problem::Bounds;
 use super::quantity::Quantity;
 
-/// A minimal infeasible set of constrained entries and bounds: without any single member the rest
-/// is feasible.
+/// A minimal infeasible set of constrained entries and bounds: if any single member is released,
+/// the others are feasible.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conflict {
     /// Constrained quantity: gains, or delays or signed delays in seconds.
     pub quantity: Quantity,
     /// The constrained entries: releasing any single entry resolves the conflict.
     pub entries: Vec<Pair>,
-    /// The present bounds.
+    /// Bounds of the problem.
     pub bounds: Bounds,
     pub kind: ConflictKind,
 }
@@ -29,7 +29,7 @@ pub enum ConflictKind {
         channels: (Channel, Channel),
         /// Product of gains or sum of delays prescribed by the entries.
         asked: f64,
-        /// Least sufficient upper bound.
+        /// Minimum sufficient upper bound.
         upper: f64,
     },
     /// The entries prescribe a net value for two channels below the minimum that the lower bound
@@ -38,7 +38,7 @@ pub enum ConflictKind {
         channels: (Channel, Channel),
         /// Product of gains or (negative) sum of delays prescribed by the entries.
         asked: f64,
-        /// Greatest sufficient lower bound; `None` for delays.
+        /// Maximum sufficient lower bound; `None` for delays.
         lower: Option<f64>,
     },
     /// The entries prescribe a ratio between two gains, or a difference between two delays, above
@@ -46,13 +46,13 @@ pub enum ConflictKind {
     TooFarApart {
         /// The channel with the greater value.
         greater: Channel,
-        /// The channel with the lesser value.
+        /// The channel with the smaller value.
         lesser: Channel,
         /// Ratio or difference prescribed by the entries.
         asked: f64,
-        /// Least sufficient upper bound with the present lower bound.
+        /// Minimum sufficient upper bound if the lower bound stays.
         upper: f64,
-        /// Greatest sufficient lower bound with the present upper bound; `None` for delays.
+        /// Maximum sufficient lower bound if the upper bound stays; `None` for delays.
         lower: Option<f64>,
     },
     /// The entries form a loop with contradictory targets: no bound helps.

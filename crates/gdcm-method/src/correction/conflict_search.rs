@@ -11,7 +11,7 @@ use super::conflict::{Conflict, ConflictKind};
 use super::problem::Problem;
 use super::rounding::three_digits;
 
-/// A missed entry with the smallest conflict that explains it.
+/// An entry that stage 1 missed, with the smallest conflict that explains the miss.
 #[derive(Clone, Debug)]
 pub(crate) struct EntryConflict {
     pub(crate) missed: Pair,
@@ -49,7 +49,7 @@ pub(crate) fn entry_conflicts(
     for pull in &flow.pulls {
         let missing = pull.weight - (point[pull.to] - point[pull.from]);
         if missing > tolerance {
-            // Three searches over every pull on every channel.
+            // Three breadth-first searches, each over every pull at every channel.
             effort.spend((flow.pulls.len() * constraints.nodes()) as u64 / 8);
             effort.check()?;
             if let Some(conflict) = flow.smallest_through(pull) {
@@ -63,7 +63,8 @@ pub(crate) fn entry_conflicts(
     Ok(found)
 }
 
-/// A constrained entry that stage 1 missed: it requires `s_to - s_from >= weight`, and gets less.
+/// A constrained entry that stage 1 missed: it requires `s_to - s_from >= weight`, but the
+/// difference is smaller.
 #[derive(Clone, Copy)]
 struct Pull {
     from: usize,
@@ -122,7 +123,7 @@ impl<'a> Flow<'a> {
         let mut net = vec![0.0; constraints.nodes()];
         for (asked, target) in constraints.entries.iter().zip(&reached.targets) {
             let missing = asked.sum - target.sum;
-            // A smaller miss is rounding in stage 1.
+            // A smaller miss is a rounding error of stage 1.
             if missing.abs() <= 1e-11 * (1.0 + asked.sum.abs()) {
                 continue;
             }
@@ -228,8 +229,8 @@ impl<'a> Flow<'a> {
         None
     }
 
-    /// Whether the run needs more than the span from its first node's least value to its last
-    /// node's greatest value.
+    /// Whether the run needs more than the span from the minimum of its first node to the maximum
+    /// of its last node.
     fn is_impossible(&self, run: &[Pull]) -> bool {
         let (Some(first), Some(last)) = (run.first(), run.last()) else {
             return false;
@@ -240,7 +241,7 @@ impl<'a> Flow<'a> {
         needed - (most - least) > STRAIN
     }
 
-    /// Returns the conflict in a path from a node at its least value to a node at its greatest.
+    /// Returns the conflict in a path from a node at its minimum to a node at its maximum.
     fn path_conflict(&self, path: &[Pull]) -> Conflict {
         let needed: f64 = path.iter().map(|pull| pull.weight).sum();
         let start = path.first().map_or(0, |pull| pull.from);
@@ -248,8 +249,8 @@ impl<'a> Flow<'a> {
         let coordinate = self.problem.coordinate();
         let start = self.constraints.channel(start);
         let end = self.constraints.channel(end);
-        // An output's node is minus its coordinate: at its least value the output is at its upper
-        // bound.
+        // An output's node is minus its coordinate: at the node's minimum the output is at its
+        // upper bound.
         let kind = match (start, end) {
             (Channel::Output(_), Channel::Input(_)) => ConflictKind::AboveUpper {
                 channels: (end, start),

@@ -91,7 +91,7 @@ struct ConflictText<'a> {
 }
 
 impl ConflictText<'_> {
-    /// Remedies of too little lead besides another bound.
+    /// Remedies for insufficient lead, besides another bound.
     const MORE_LEAD: &'static str = "a larger R_max or a smaller n gives more";
 
     /// Composes "entries cannot be held: limit; remedies".

@@ -18,26 +18,27 @@ use super::pade::Pade;
 const SAMPLE_TOLERANCE: f64 = 1e-6;
 
 /// Delay \[s\] below which a delay counts as zero: rounding residues would give states with
-/// enormous entries. At 12 rad/s it changes the phase by less than a millionth of a degree.
+/// enormous entries. At 12 rad/s such a delay changes the phase by less than a millionth of a
+/// degree.
 const LEAST_DELAY_S: f64 = 1e-9;
 
 /// `M_O H M_I` without delays: those in the correction and in the model itself have become states
 /// (M10, M2a).
 ///
-/// In continuous time each delayed channel has the states for a Pade approximant, in discrete time
-/// one state for each sample, exactly. Gains are exact, and so are lead filters in continuous time
-/// (M15.3); in discrete time these follow Tustin's rule. A channel without delay and lead adds no
-/// state. The states follow the signal: input leads, input delays, the model's own states, output
-/// delays, output leads.
+/// In continuous time each delayed channel has the states of a Pade approximant; in discrete time
+/// the delay is exact, with one state for each sample. Gains are exact, and so are lead filters in
+/// continuous time (M15.3); in discrete time these follow Tustin's rule. A channel without delay
+/// and lead adds no state. The states follow the signal: input leads, input delays, the model's own
+/// states, output delays, output leads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrectedModel {
-    /// Four matrices; no delays.
+    /// State-space matrices, without delays.
     pub model: StateSpace,
-    /// Delay states for each channel: input states precede the model's own, output states follow
-    /// them.
+    /// Number of delay states of each channel: input states precede the model's own, output states
+    /// follow them.
     pub delay_states: Channels<usize>,
-    /// Lead filter states for each channel: input states precede all others, output states follow
-    /// all others.
+    /// Number of lead filter states of each channel: input states precede all others, output states
+    /// follow all others.
     pub lead_states: Channels<usize>,
     leads: Channels<Option<LeadFilter>>,
     sample_time_s: Option<f64>,
@@ -52,7 +53,7 @@ pub enum CorrectedModelError {
     /// A discrete-time model's delay is not a whole sample count.
     PartOfSample {
         channel: Channel,
-        /// Its delay \[s\].
+        /// The model's delay \[s\].
         delay_s: f64,
         /// The sample time \[s\].
         sample_time_s: f64,
@@ -61,7 +62,7 @@ pub enum CorrectedModelError {
     SlowSamples {
         /// Sample time \[s\].
         sample_time_s: f64,
-        /// Longest admissible sample time \[s\].
+        /// Maximum admissible sample time \[s\].
         longest_s: f64,
     },
     /// The delays need more states than a model may have.
@@ -69,7 +70,7 @@ pub enum CorrectedModelError {
         /// States needed.
         states: usize,
     },
-    /// A product is not finite.
+    /// A matrix product is not finite.
     Matrices(#[from] StateSpaceError),
 }
 
@@ -115,8 +116,8 @@ impl CorrectedModel {
     /// ```
     ///
     /// # Errors
-    /// [`CorrectedModelError`] where a discrete-time delay is not a whole sample count, or states
-    /// or numbers become too many or too large.
+    /// [`CorrectedModelError`] where a discrete-time delay is not a whole sample count, a model
+    /// would have too many states, or a matrix entry is not finite.
     pub fn new(
         model: &StateSpace,
         correction: &ChannelCorrection,
@@ -158,9 +159,9 @@ impl CorrectedModel {
         })
     }
 
-    /// Computes the greatest phase error \[rad\] in its responses at `omega` \[rad/s\]: the lag
-    /// that the approximated delays lack, or the phase that Tustin's rule removes from lead filters
-    /// in a discrete-time model.
+    /// Computes the maximum phase error \[rad\] over the model's responses at `omega` \[rad/s\]:
+    /// the lag that the approximated delays lack, or the phase that Tustin's rule removes from lead
+    /// filters in a discrete-time model.
     ///
     /// A response's error is the sum over its two channels.
     pub fn phase_error(&self, omega: f64) -> f64 {
@@ -183,12 +184,12 @@ impl CorrectedModel {
     }
 }
 
-/// Sums a count over all channels.
+/// Returns the total number of states over all channels.
 fn total(states: &Channels<usize>) -> usize {
     states.iter().map(|(_, states)| states).sum()
 }
 
-/// Returns the greatest error \[rad\] in the filters' phases at a warped frequency \[rad/s\].
+/// Returns the maximum phase error \[rad\] of the filters at a warped frequency \[rad/s\].
 fn greatest_warping_error(filters: &[Option<LeadFilter>], omega: f64, warped: f64) -> f64 {
     filters
         .iter()
@@ -197,7 +198,7 @@ fn greatest_warping_error(filters: &[Option<LeadFilter>], omega: f64, warped: f6
         .fold(0.0, f64::max)
 }
 
-/// Longest delay \[s\].
+/// Returns the longest delay \[s\].
 fn longest(delays_s: &[f64]) -> f64 {
     delays_s.iter().copied().fold(0.0, f64::max)
 }
@@ -220,7 +221,7 @@ fn delay_s(channel: Channel, correction: &ChannelCorrection, timing: &Timing) ->
     }
 }
 
-/// Creates the state-space model for a channel's delay.
+/// Creates the state-space model of a channel's delay.
 fn delay_model(
     channel: Channel,
     delay_s: f64,
@@ -242,7 +243,7 @@ fn delay_model(
             sample_time_s,
         });
     }
-    // Rejected before memory is allocated.
+    // A model too large is rejected before memory is allocated.
     if samples > MOST_STATES as f64 {
         return Err(CorrectedModelError::TooManyStates {
             states: samples as usize,
@@ -251,7 +252,7 @@ fn delay_model(
     Ok(ChannelModel::samples(samples as usize))
 }
 
-/// Creates the state-space model for a channel's lead filter.
+/// Creates the state-space model of a channel's lead filter.
 fn lead_model(
     filter: Option<LeadFilter>,
     sample_time_s: Option<f64>,

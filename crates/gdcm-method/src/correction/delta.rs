@@ -73,9 +73,9 @@ impl Delta {
 /// `Delta phi(H_sim, H_ref)` for a single response.
 struct MissingPhase<'a> {
     mismatch: &'a Mismatch,
-    /// \[rad\] at each frequency.
+    /// Phase \[rad\] at each frequency.
     phase: Vec<f64>,
-    /// \[rad/s\].
+    /// Frequencies \[rad/s\].
     omega: &'a [f64],
 }
 

@@ -9,10 +9,10 @@ use super::leads::ChannelLeads;
 
 /// Multiple of the band's top at which the gain above the band is reported (M15.6).
 pub const ABOVE_BAND: f64 = 10.0;
-/// Gain that counts as zero when rounded to 0.1 dB.
+/// Gain \[dB\] below which the displayed value, rounded to 0.1 dB, is zero.
 const NOTHING_DB: f64 = 0.05;
 
-/// Validity limit for a model with leads, and the gain that the filters add at ten times that
+/// Validity limit of a model with leads, and the gain that the filters add at ten times that
 /// frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadPrice {
@@ -41,8 +41,8 @@ impl LeadPrice {
         })
     }
 
-    /// Returns the greater of both gains for each channel, as needed by a schedule whose leads
-    /// follow the airspeed.
+    /// Returns the larger of both gains for each channel, for a schedule whose leads depend on
+    /// airspeed.
     #[must_use]
     pub fn or_more(self, other: &Self) -> Self {
         let gains_db = self

@@ -17,7 +17,7 @@ pub struct LeadSettings {
     /// `n`: the lag time constant is `b = 1 / (n omega_B)`, `omega_B` the band's top.
     #[serde(rename = "n")]
     pub pole: f64,
-    /// `R_max`: greatest high-frequency gain (ratio) for a channel's filter.
+    /// `R_max`: maximum high-frequency gain (ratio) of a channel's filter.
     #[serde(rename = "r_max")]
     pub limit: f64,
 }
@@ -67,7 +67,7 @@ impl LeadDesign {
         self.settings
     }
 
-    /// Returns the frequencies \[rad/s\] over which a filter's band delay is taken.
+    /// Returns the frequencies \[rad/s\] over which the band delay of a filter is computed.
     pub fn omega(&self) -> &[f64] {
         &self.omega
     }
@@ -91,7 +91,7 @@ impl LeadDesign {
         }
     }
 
-    /// Returns `LB_tau = d(l_max)` \[s\], the least signed delay for a channel.
+    /// Returns `LB_tau = d(l_max)` \[s\], the lower bound on a channel's signed delay.
     pub fn lower_s(&self) -> f64 {
         self.lower_s
     }
@@ -101,8 +101,8 @@ impl LeadDesign {
         LeadFilter::new(self.settings.order, lead_s, self.lag_s())
     }
 
-    /// Computes `d(l) = - sum omega arg L / sum omega^2` \[s\], the band delay for the filter with
-    /// lead time `l` (M15.2): 0 at 0, strictly falling.
+    /// Computes `d(l) = - sum omega arg L / sum omega^2` \[s\], the band delay of the filter with
+    /// lead time `l` (M15.2): 0 at `l = 0`, strictly falling.
     pub fn band_delay_s(&self, lead_s: f64) -> f64 {
         let filter = self.filter_of(lead_s);
         -band_delay_s(
@@ -191,7 +191,7 @@ impl LeadDesign {
 pub struct ChannelLeads {
     /// Design that gives the filter for a signed delay.
     pub design: Arc<LeadDesign>,
-    /// Signed delay for each channel \[s\].
+    /// Signed delay of each channel \[s\].
     pub taus_s: Channels<f64>,
     filters: Arc<OnceLock<Channels<Option<LeadFilter>>>>,
     curves: Arc<OnceLock<Channels<Option<LeadCurve>>>>,
@@ -321,8 +321,8 @@ mod tests {
             let tau_s = share * design.lower_s();
             let lead_s = design.lead_s(tau_s);
             // Rounding of a sum of 200 phases, whose errors may all have the same sign: 200 times
-            // 2.2e-16, and the same for the divisor. For a lead far below the filter's lag b the
-            // difference a - b has lost digits: 2.2e-16 b, against a lead near share times b.
+            // 2.2e-16, and as much again for the divisor. For a lead far below the filter's lag b
+            // the difference a - b has lost digits: 2.2e-16 b, against a lead near share times b.
             let tolerance = 1e-13 + 1e-15 / share;
             prop_assert!((design.band_delay_s(lead_s) / tau_s - 1.0).abs() < tolerance, "{tau_s}");
         }

@@ -1,11 +1,11 @@
-//! From two models to one gain and one delay or lead for each channel (M6 to M10, M15).
+//! Computes one gain and one delay or lead for each channel from two models (M6 to M10, M15).
 //!
 //! [`Delta`](delta::Delta) gives the gain and delay that each response needs; [`solve`] minimises
 //! eq. (7) or the convex eq. (11), in logarithms of gains or in seconds, and proves the global
-//! minimum. The signed delays in M15 are a convex program in the same form;
-//! [`LeadDesign`](leads::LeadDesign) turns the negative ones into filters. `solve` also explains
+//! minimum. The signed delays of M15 solve a convex program in the form of eq. (11);
+//! [`LeadDesign`](leads::LeadDesign) turns negative delays into filters. `solve` also explains
 //! infeasible constraints and their remedies; [`sensitivities`](sensitivity::sensitivities) and
-//! [`toggles`](sensitivity::toggles) give the cost for each constrained entry. Tables are `[output,
+//! [`toggles`](sensitivity::toggles) give the cost of each constrained entry. Tables are `[output,
 //! input]`, gains are ratios, delays are seconds.
 
 pub mod branch_and_bound;

@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector, RowDVector};
 
 use super::channel_model::ChannelModel;
 
-/// Highest approximation order offered.
+/// Maximum order of an approximant.
 pub const HIGHEST_PADE_ORDER: usize = 8;
 
 /// Pade approximant `[N/N]` to `e^(-tau s)`: among all rational functions of this order it agrees
@@ -14,7 +14,8 @@ pub const HIGHEST_PADE_ORDER: usize = 8;
 /// With `z = tau s / 2` it is `(1 - t) / (1 + t)`, where `t` is the N-th convergent in Lambert's
 /// continued fraction `tanh z = z / (1 + z^2 / (3 + z^2 / (5 + ...)))`. The fraction, read as an
 /// integrator ladder, is a state-space model whose controllability and observability Gramians are
-/// both the identity, whatever the order and the delay, so its entries are similar in magnitude.
+/// both the identity, whatever the order and the delay, so the entries of its matrices are similar
+/// in magnitude.
 ///
 /// Source: NIST Digital Library of Mathematical Functions, 4.39.1 (Lambert's fraction).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +40,7 @@ impl Pade {
         }
     }
 
-    /// Order `N`, which is also the state count.
+    /// Returns the order `N`, which is also the number of states.
     pub fn order(self) -> usize {
         self.order
     }
@@ -82,7 +83,7 @@ impl Pade {
         }
     }
 
-    /// Whether a place, counted from 1, has the order's parity.
+    /// Whether an index, counted from 1, is odd or even like the order.
     fn has_parity(self, place: usize) -> bool {
         (place + 1) % 2 == self.order % 2
     }
@@ -184,7 +185,8 @@ mod tests {
             let pade = Pade::new(order).unwrap();
             let mut followed = 0.0;
             let mut before = Complex::from(1.0);
-            // Steps far below half a turn, up to where the approximant has long stopped lagging.
+            // Steps far below half a turn, up to angles at which the lag of the approximant no
+            // longer grows.
             for step in 1..=4000 {
                 let angle = f64::from(step) * 0.01;
                 let error = by_polynomials(order, Complex::new(0.0, angle))

@@ -9,7 +9,7 @@ use super::branch_and_bound::effort::SearchStopped;
 use super::interval::Interval;
 use super::quantity::{Coordinate, GainObjective, Quantity};
 
-/// Least and greatest value for every channel (M7): gains `0 < lower <= upper`, delays \[s\] with
+/// Minimum and maximum value of every channel (M7): gains `0 < lower <= upper`, delays \[s\] with
 /// `lower` zero, signed delays \[s\] `lower <= 0 <= upper` (M15.4).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "[f64; 2]", into = "[f64; 2]")]
@@ -56,11 +56,10 @@ pub struct Problem {
     pub fitted: PairTable<bool>,
     /// Bounds on every channel.
     pub bounds: Bounds,
-    /// Weight on departures: output gains from 1, output delays from 0, or all signed delays from
-    /// 0; `alpha = 0` means the limit `alpha -> 0+`.
+    /// Weight of the departures of output gains from 1, of output delays from 0, or of all signed
+    /// delays from 0; `alpha = 0` means the limit `alpha -> 0+`.
     pub alpha: f64,
-    /// Greatest mismatch, in dB or seconds, up to which a loop of constrained entries counts as
-    /// agreeing.
+    /// Mismatch, in dB or seconds, up to which a loop of constrained entries counts as agreeing.
     pub agreement: f64,
 }
 
@@ -87,7 +86,6 @@ pub enum ProblemError {
     #[error("the response of output {} to input {} has no delta {quantity}, so its {quantity} cannot be held", pair.output + 1, pair.input + 1)]
     ConstrainedUndefined {
         quantity: Quantity,
-        /// Constrained entry without a delta.
         pair: Pair,
     },
     /// A delta gain is not a positive number with a representable square.
@@ -108,13 +106,11 @@ pub enum ProblemError {
     #[error("{}", bounds_error(*quantity, *bounds))]
     Bounds {
         quantity: Quantity,
-        /// The rejected bounds.
         bounds: Bounds,
     },
     /// `alpha` is negative or not a number.
     #[error("alpha is {alpha}; it must be a number from 0 to 1e12")]
     Alpha {
-        /// The rejected weight.
         alpha: f64,
     },
     /// The quadratic program for the delays was not solved.
@@ -151,10 +147,11 @@ impl From<SearchStopped> for ProblemError {
     }
 }
 
-/// Delta gains outside this range overflow when squared and summed.
+/// Valid delta gains; outside this range they overflow or underflow when squared and summed.
 const GAINS: std::ops::RangeInclusive<f64> = 1e-50..=1e50;
 
-/// Bounds outside this range (180 dB) overflow in products during the search for a proof.
+/// Valid gain bounds (-180 to 180 dB); outside this range products overflow during the search for a
+/// proof.
 const GAIN_BOUNDS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 /// Delta delays and bounds beyond this \[s\] overflow when squared.
@@ -168,7 +165,7 @@ pub(crate) struct Entry {
 }
 
 impl Problem {
-    /// Creates the problem in eq. (7) that fits every entry: `alpha = 1`, gains compared as ratios,
+    /// Creates the problem of eq. (7) that fits every entry: `alpha = 1`, gains compared as ratios,
     /// no tolerance on loops.
     pub fn gains(
         delta: PairTable<Option<f64>>,
@@ -188,7 +185,7 @@ impl Problem {
         }
     }
 
-    /// Creates the problem in eq. (11) that fits every entry, with `alpha = 1`; all times in
+    /// Creates the problem of eq. (11) that fits every entry, with `alpha = 1`; all times in
     /// seconds.
     pub fn delays(
         delta_s: PairTable<Option<f64>>,
@@ -205,7 +202,7 @@ impl Problem {
         }
     }
 
-    /// Creates the convex program in M15.4 that fits every entry, with `alpha = 1`; all times in
+    /// Creates the convex program of M15.4 that fits every entry, with `alpha = 1`; all times in
     /// seconds.
     pub fn signed_delays(
         delta_s: PairTable<Option<f64>>,
@@ -340,7 +337,7 @@ impl Problem {
     }
 
     /// Returns the coordinate in which the constrained entries are sums. Delays are homogeneous: in
-    /// units of the problem's greatest time (1 s where every time is 0) every number is near 1.
+    /// units of the problem's longest time (1 s where every time is 0) the values are of order 1.
     pub(crate) fn coordinate(&self) -> Coordinate {
         if self.quantity.is_gain() {
             return Coordinate::Logarithm;
@@ -350,7 +347,8 @@ impl Problem {
             .iter()
             .filter_map(|(_, delay_s)| *delay_s)
             .fold(0.0_f64, |most, delay_s| most.max(delay_s.abs()));
-        // A bound far above any channel's possible target does not indicate the answer's size.
+        // A bound far above any channel's possible target does not indicate the size of the
+        // solution.
         let unit_s = if asked_s > 0.0 {
             asked_s
         } else {
@@ -368,8 +366,8 @@ impl Problem {
         let high = coordinate.coordinate(self.bounds.upper);
         match coordinate {
             Coordinate::Logarithm => Interval { low, high },
-            // No path along constrained entries asks a channel for more than a unit for each entry:
-            // a bound above that never acts.
+            // A path along constrained entries requires at most one unit of a channel for each
+            // entry: an upper bound beyond that sum is never active.
             Coordinate::Time { .. } => {
                 let most = (self.delta.outputs() + self.delta.inputs()) as f64;
                 Interval {

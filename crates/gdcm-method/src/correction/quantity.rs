@@ -13,8 +13,9 @@ pub enum GainObjective {
     #[default]
     #[serde(rename = "ratio")]
     Ratio,
-    /// `sum w (20 log10 G - 20 log10 k_o k_i)^2 + alpha sum (20 log10 k_o)^2`: errors up and down
-    /// count alike, and an entry with a large `G` counts no more than another. Convex.
+    /// `sum w (20 log10 G - 20 log10 k_o k_i)^2 + alpha sum (20 log10 k_o)^2`: gains too high and
+    /// too low by the same factor count alike, and an entry with a large `G` counts no more than
+    /// another. Convex.
     #[serde(rename = "dB")]
     Decibel,
 }
@@ -22,11 +23,12 @@ pub enum GainObjective {
 /// Quantity of the channels. Gains of two channels multiply, delays add.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
-    /// Gains, dimensionless, compared as the objective says (eq. (7), M8).
+    /// Gains, dimensionless, compared by the given objective (eq. (7), M8).
     Gain(GainObjective),
     /// Delays in seconds (eq. (11), M9).
     Delay,
-    /// Signed delays in seconds; a negative delay is a lead. Both sides are regularised (M15.4).
+    /// Signed delays in seconds; a negative delay is a lead. Inputs and outputs are both
+    /// regularised (M15.4).
     SignedDelay,
 }
 
@@ -84,7 +86,8 @@ impl Quantity {
         }
     }
 
-    /// Computes the squared residual's slope in a logarithmic gain or in a delay.
+    /// Computes the derivative of the squared residual with respect to a logarithmic gain or a
+    /// delay.
     pub(crate) fn slope(self, delta: f64, output: f64, input: f64) -> f64 {
         let net = self.net(output, input);
         match self {
@@ -149,7 +152,7 @@ impl Coordinate {
         }
     }
 
-    /// Converts an objective from this coordinate to the objective in gains, or to s².
+    /// Converts an objective in this coordinate to the unit of the gains' objective, or to s².
     pub(crate) fn objective(self, objective: f64) -> f64 {
         match self {
             Coordinate::Logarithm => objective,

@@ -18,9 +18,9 @@ use super::rounding::three_digits;
 pub struct Remedy {
     /// Constrained quantity: gains, or delays in seconds.
     pub quantity: Quantity,
-    /// Least sufficient upper bound with the present lower bound, rounded up to three digits.
+    /// Minimum sufficient upper bound if the lower bound stays, rounded up to three digits.
     pub upper: Option<f64>,
-    /// Greatest sufficient lower bound with the present upper bound, rounded down to three digits;
+    /// Maximum sufficient lower bound if the upper bound stays, rounded down to three digits;
     /// `None` for delays.
     pub lower: Option<f64>,
     /// Each constrained entry whose release alone suffices.
@@ -28,8 +28,8 @@ pub struct Remedy {
 }
 
 impl Remedy {
-    /// Finds the remedy for the `constraints` in `problem` with these conflicts; `None` where there
-    /// is no conflict.
+    /// Finds the remedy of these conflicts between the `constraints` of `problem`; `None` where
+    /// there is no conflict.
     pub(crate) fn new(
         problem: &Problem,
         constraints: &Constraints,
@@ -86,17 +86,17 @@ fn sufficient_releases(
     Ok(sufficient)
 }
 
-/// Sufficient ends for the channels' range, each with the other end unchanged, in coordinates.
+/// Sufficient ends of the channels' coordinate range, each with the other end unchanged.
 #[derive(Default)]
 struct SufficientRange {
-    /// Greatest sufficient lower end.
+    /// Maximum sufficient lower end.
     low: Option<f64>,
-    /// Least sufficient upper end.
+    /// Minimum sufficient upper end.
     high: Option<f64>,
 }
 
 impl SufficientRange {
-    /// Finds both ends; none where a loop does not close.
+    /// Finds both ends; both are `None` where a loop is inconsistent.
     fn new(constraints: &Constraints) -> Self {
         let components = Components::new(constraints);
         for entry in &constraints.entries {
@@ -106,7 +106,7 @@ impl SufficientRange {
             }
         }
         let nodes = components.nodes();
-        // Greatest width that a component needs, and the sums that its channel pairs need at each
+        // Maximum width that a component needs, and the sums that its channel pairs need at each
         // end.
         let mut widest = 0.0_f64;
         let mut lowest = f64::INFINITY;

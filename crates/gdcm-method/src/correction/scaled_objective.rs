@@ -103,7 +103,7 @@ fn in_coordinate(entries: &[SquareEntry], coordinate: Coordinate, factor: f64) -
         .collect()
 }
 
-/// Combines entries compared as ratios to one term for each two scales that share an entry:
+/// Combines entries compared as ratios to one term for each pair of scales that share an entry:
 /// `forward` contains the entries whose input has the greater index.
 fn ratio_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
     let mut groups: Vec<Vec<ProductEntry>> = vec![Vec::new(); scales * scales];
@@ -135,11 +135,11 @@ fn ratio_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
     TermSum { terms, constant }
 }
 
-/// Returns the objective below which rounding decides, not the search, in the problem's coordinate.
+/// Returns the rounding level of the objective, in the problem's coordinate.
 ///
-/// 1e-9 times the objective without any correction (rounding in a sum of squares grows with the
-/// root of the squared numbers), and for the outputs, known to their rounding, that rounding
-/// squared.
+/// This is 1e-9 times the objective without any correction (rounding in a sum of squares grows with
+/// the magnitude of the summed values), plus `1e-20 alpha` for each output, the square of a
+/// rounding error.
 pub(crate) fn rounding_floor(problem: &Problem) -> f64 {
     let coordinate = problem.coordinate();
     let energy: f64 = problem
@@ -149,7 +149,7 @@ pub(crate) fn rounding_floor(problem: &Problem) -> f64 {
     (1e-9 * energy + 1e-20 * problem.alpha * problem.delta.outputs() as f64).max(f64::MIN_POSITIVE)
 }
 
-/// Returns the size of an entry's square without any correction.
+/// Returns an entry's squared residual without any correction.
 fn uncorrected_square(quantity: Quantity, coordinate: Coordinate, delta: f64) -> f64 {
     match quantity {
         Quantity::Gain(GainObjective::Ratio) => delta * delta,

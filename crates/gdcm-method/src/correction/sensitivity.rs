@@ -19,7 +19,7 @@ use super::solve::solve;
 pub enum ActiveConstraint {
     /// An entry constrained to its target.
     Held(Pair),
-    /// A channel on its lower bound; a delay that would have to be negative.
+    /// A channel on its lower bound; a delay at zero that would have to be negative.
     LowerBound(Channel),
     UpperBound(Channel),
 }
@@ -29,8 +29,8 @@ pub enum ActiveConstraint {
 pub struct Sensitivity {
     pub quantity: Quantity,
     pub restraint: ActiveConstraint,
-    /// Change in the least objective for each dB or ms by which the constrained value or the bound
-    /// is raised (to first order).
+    /// Change in the minimum objective for each dB or ms by which the constrained value or the
+    /// bound is raised (to first order).
     pub per_unit: f64,
     /// `per_unit` as a share of the objective; 0 where the objective is 0.
     pub share_per_unit: f64,
@@ -41,7 +41,7 @@ impl Sensitivity {
     /// extrapolated to at most half the objective, which cannot fall below zero.
     pub fn step(&self) -> f64 {
         const MOST_SHARE: f64 = 0.5;
-        /// The least step is a nanosecond or 1e-6 dB.
+        /// The minimum step is a nanosecond or 1e-6 dB.
         const MOST_POWERS: i32 = 6;
         let share = self.share_per_unit.abs();
         for power in 0..MOST_POWERS {
@@ -63,7 +63,7 @@ impl Sensitivity {
             }
         };
         let step = self.step();
-        // An objective close to zero is used up before the least step ends.
+        // An objective close to zero would reach zero within the minimum step.
         let percent = (100.0 * step * self.share_per_unit.abs()).min(100.0);
         let change = if self.quantity.is_gain() {
             self.gain_change_words(&number(step))
@@ -123,7 +123,7 @@ pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity>
     }
     let channels = Channel::all(minimum.inputs, solution.outputs.len());
     for (channel, &slope) in channels.zip(&multipliers.channels) {
-        // The objective falls as the upper bound is raised, or the lower bound lowered.
+        // The objective decreases if the upper bound is raised, or the lower bound lowered.
         let bound = if slope < 0.0 {
             ActiveConstraint::UpperBound(channel)
         } else if slope != 0.0 {
@@ -185,7 +185,7 @@ fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
     slopes
 }
 
-/// Computes a solution's Karush-Kuhn-Tucker residual: the greatest objective slope along which
+/// Computes a solution's Karush-Kuhn-Tucker residual: the maximum objective slope along which
 /// channels could still move together, inside the bounds and with the entries constrained. For a
 /// convex problem zero is a proof.
 ///
@@ -213,7 +213,7 @@ struct AtBounds {
 /// Slope along the common movement in a piece of tied channels.
 struct Push {
     slope: f64,
-    /// Channels whose bounds stop the movement.
+    /// Channels whose active bounds stop the movement.
     stopping: Vec<usize>,
 }
 
@@ -284,11 +284,11 @@ impl ConstrainedMinimum {
     }
 }
 
-/// The least objective's derivatives with respect to each constrained entry's target and each
+/// Derivatives of the minimum objective with respect to each constrained entry's target and each
 /// channel's active bound (0 where none is active).
 struct Multipliers {
     entries: Vec<f64>,
-    /// Inputs first.
+    /// By channel, inputs first.
     channels: Vec<f64>,
 }
 
@@ -296,8 +296,8 @@ impl Multipliers {
     /// Solves `slopes + sum(multipliers) = 0`.
     ///
     /// The slope that pushes a piece of tied channels against a bound is divided equally among the
-    /// channels on that bound; the constrained entries carry the rest, in a loop with the least
-    /// squares.
+    /// channels on that bound; the multipliers of the constrained entries balance the rest, in a
+    /// loop with the minimum sum of squares.
     fn new(minimum: &ConstrainedMinimum) -> Self {
         let mut channels = vec![0.0; minimum.slopes.len()];
         for piece in minimum.pieces() {
@@ -330,26 +330,26 @@ fn entry_multipliers(minimum: &ConstrainedMinimum, bounds: &[f64]) -> Vec<f64> {
             0.0
         }
     });
-    // The squared singular values are the Laplacian eigenvalues for a bipartite graph on n
-    // channels: 0, or at least 4 / n^2 (Mohar, "Eigenvalues, diameter and mean distance in graphs",
-    // 1991). The tolerance is half that root.
+    // The squared singular values are the Laplacian eigenvalues of a bipartite graph on n channels:
+    // 0, or at least 4 / n^2 (Mohar, "Eigenvalues, diameter and mean distance in graphs", 1991).
+    // The tolerance is half of `2 / n`, the lower bound on nonzero singular values.
     match ties.svd(true, true).solve(&left, 1.0 / channels as f64) {
         Ok(multipliers) => multipliers.iter().copied().collect(),
         Err(_) => Vec::new(),
     }
 }
 
-/// The solution with one free entry constrained, or one constrained entry released.
+/// Effect on the solution if one free entry is constrained, or one constrained entry is released.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Toggle {
     pub pair: Pair,
     /// Whether the entry is constrained now.
     pub held_now: bool,
-    /// Least objective without the toggle.
+    /// Minimum objective without the toggle.
     pub before: f64,
-    /// Least objective with the toggle.
+    /// Minimum objective with the toggle.
     pub after: f64,
-    /// Count of infeasible constrained entries with the toggle.
+    /// Number of infeasible constrained entries with the toggle.
     pub unmatched_after: usize,
     /// Whether the entry itself is feasible, if the toggle constrains it.
     pub matched_after: bool,
@@ -369,7 +369,8 @@ impl Toggle {
         }
     }
 
-    /// Describes the cost: a constrained entry has a cost, a free entry would have it.
+    /// Describes the cost: the present cost of a constrained entry, or the cost of constraining a
+    /// free entry.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let pair = pair_name(self.pair, inputs, outputs);
         // Without the added zero, no change would read -0.0.
@@ -396,8 +397,8 @@ impl Toggle {
 /// Solves `problem` with every entry that has a delta toggled in turn, row by row, until `stop`
 /// returns true.
 ///
-/// The result is the table for the entry matrix, to be computed in the background behind the live
-/// solution `solution`. A list shorter than the entries means that it was stopped.
+/// The result is a list of toggles for the entry matrix, to be computed in the background while
+/// `solution` is displayed. A list shorter than the entries means that it was stopped.
 ///
 /// # Errors
 /// See [`solve`].

@@ -10,16 +10,16 @@ use super::conflict::Conflict;
 use super::quantity::Quantity;
 use super::remedy::Remedy;
 
-/// Whether the solution is known to be the global minimum.
+/// Whether the solution is proven to be the global minimum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// No feasible channels are better by more than the relative gap, which is at most 1e-9.
+    /// No feasible channel values are better by more than the relative gap, which is at most 1e-9.
     Proven {
         /// `(objective - lower bound) / objective`.
         gap: f64,
     },
-    /// The search ended first: better solutions may exist, but none better by more than the
-    /// relative gap.
+    /// The search ended before a proof: better solutions may exist, but none better by more than
+    /// the relative gap.
     NotProven {
         /// `(objective - lower bound) / objective`.
         gap: f64,
@@ -67,7 +67,7 @@ pub struct LocalMinimum {
     pub objective: f64,
 }
 
-/// Proof of the least objective.
+/// Proof of the minimum objective.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proof {
     /// Lower bound on the objective over all channels inside the bounds that meet the targets.
@@ -95,8 +95,8 @@ pub struct Unmatched {
     /// Excess over the delta: `20 log10 (target / delta)` dB, negative where the correction is too
     /// weak; or `target - delta` seconds, the additional lead that would be needed.
     pub excess: f64,
-    /// The conflict; where it does not contain the entry, the miss is the compromise with the
-    /// conflicting entries.
+    /// The conflict; where it does not contain the entry, the entry is missed as a compromise with
+    /// the conflicting entries.
     pub why: Conflict,
 }
 
@@ -165,7 +165,7 @@ pub struct Solution {
     /// (M8 and M9, stage 1).
     pub targets: PairTable<Option<f64>>,
     /// Whether every constrained entry meets its delta, within 1e-8 of its logarithm, or within
-    /// 1e-8 times the problem's greatest delay (at least a nanosecond); or within the tolerance
+    /// 1e-8 times the problem's longest delay (at least a nanosecond); or within the tolerance
     /// [`Problem::agreement`](super::problem::Problem::agreement) where a loop requires it.
     pub matched: bool,
     /// The constrained entries that miss their delta.
@@ -174,7 +174,7 @@ pub struct Solution {
     /// consistent values.
     pub agreeing: Vec<Conflict>,
     /// Each infeasible set (constrained entries and bounds), without duplicates; loops first, then
-    /// by their entry count.
+    /// by number of entries.
     pub conflicts: Vec<Conflict>,
     /// Single changes that would make every constrained entry feasible, where some are not.
     pub remedy: Option<Remedy>,

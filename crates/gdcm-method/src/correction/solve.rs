@@ -1,4 +1,4 @@
-//! Solver for eq. (7) and (11), and for signed delays (M15.4): the gains or delays with the least
+//! Solver for eq. (7) and (11), and for signed delays (M15.4): the gains or delays with the minimum
 //! objective, and the proof that they are optimal.
 
 use gdcm_model::dataset::PairTable;
@@ -20,7 +20,7 @@ use super::remedy::Remedy;
 use super::scaled_objective::{rounding_floor, scaled_objective};
 use super::solution::{LocalMinimum, Outcome, Proof, Solution, Unmatched};
 
-/// Residual in natural logarithms, or as a fraction of the problem's greatest delay, below which a
+/// Residual in natural logarithms, or as a fraction of the problem's longest delay, below which a
 /// constrained entry counts as matched (M8).
 const MATCHED: f64 = 1e-8;
 
@@ -30,7 +30,7 @@ const MATCHED: f64 = 1e-8;
 const MATCHED_DELAY_S: f64 = 1e-9;
 
 /// Finds the channel gains (eq. (7), M8), delays (eq. (11), M9) or signed delays (M15.4) with the
-/// least objective, with a proof that no others are better.
+/// minimum objective, and the proof that no others are better.
 ///
 /// ```text
 /// 1  targets: the sums nearest to the deltas that the box and the loops allow (stage 1)
@@ -141,8 +141,8 @@ fn minimise(
     Ok(scales)
 }
 
-/// Takes the limit `alpha -> 0+`: sets a free common scale where the regularised departures are
-/// least.
+/// Takes the limit `alpha -> 0+`: sets a free common scale to the value with the minimum
+/// regularised departures.
 fn take_alpha_limit(
     quantity: Quantity,
     components: &Components,
@@ -171,9 +171,9 @@ fn select_piece(piece: &[usize], nodes: &[Placement], values: &[f64]) -> Vec<f64
     selected
 }
 
-/// Returns the shift of a piece's scales (inputs rise, outputs fall) at which the regularised
-/// departures are least: the outputs nearest to gain 1 or to zero delay (the inputs, where there is
-/// no output); for signed delays the least sum over all their squares.
+/// Returns the shift of a piece's scales (inputs rise, outputs fall) that minimises the regularised
+/// departures: those of the outputs from gain 1 or zero delay (of the inputs, where there is no
+/// output); for signed delays the sum of all their squares.
 fn least_departure_shift(quantity: Quantity, channels: &ChannelCoordinates) -> f64 {
     let ChannelCoordinates { inputs, outputs } = channels;
     if quantity.regularises_inputs() {
@@ -190,7 +190,7 @@ fn least_departure_shift(quantity: Quantity, channels: &ChannelCoordinates) -> f
     if quantity != Quantity::Gain(GainObjective::Ratio) {
         return mean(outputs);
     }
-    // sum (k e^-shift - 1)^2 is least at e^shift = sum k^2 / sum k.
+    // sum (k e^-shift - 1)^2 is minimal at e^shift = sum k^2 / sum k.
     let mut sum = 0.0;
     let mut square = 0.0;
     for logarithm in outputs {
@@ -219,7 +219,7 @@ fn channel_values(problem: &Problem, coordinates: &[f64]) -> Vec<f64> {
     let coordinate = problem.coordinate();
     let low = coordinate.coordinate(bounds.lower);
     let high = coordinate.coordinate(bounds.upper);
-    // A few roundings in coordinates this large.
+    // A few roundings at the magnitude of the range.
     let rounding = 16.0 * f64::EPSILON * (1.0 + low.abs().max(high.abs()));
     let mut values = Vec::with_capacity(coordinates.len());
     for &at in coordinates {
@@ -308,7 +308,7 @@ fn matching_tolerance(coordinate: Coordinate) -> f64 {
     }
 }
 
-/// Returns the conflict between all constrained entries, where none smaller is found.
+/// Returns the conflict between all constrained entries, used where no smaller conflict is found.
 fn unclear_conflict(problem: &Problem, constraints: &Constraints) -> Conflict {
     Conflict {
         quantity: problem.quantity,
@@ -344,7 +344,7 @@ fn unmatched(
     }
 }
 
-/// Returns the constraints with entries in agreeing loops at their targets.
+/// Returns the constraints after the entries in agreeing loops are set to their targets.
 fn settled_loops(
     constraints: &Constraints,
     reached: &Reached,
@@ -359,7 +359,7 @@ fn settled_loops(
     constraints.with_entries(entries)
 }
 
-/// Collects the distinct conflicts behind the misses: loops first, then by their entry count.
+/// Collects the distinct conflicts behind the misses: loops first, then by number of entries.
 fn distinct_conflicts(misses: &[Unmatched]) -> Vec<Conflict> {
     let mut conflicts: Vec<Conflict> = Vec::new();
     for miss in misses {

@@ -17,7 +17,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// The normal equations as an arrow.
 pub(super) struct ArrowSystem {
-    /// By input column.
+    /// Equations by input column.
     pub(super) columns: Vec<ArrowColumn>,
     /// `C`.
     pub(super) corner: DMatrix<f64>,
@@ -79,7 +79,7 @@ impl ArrowSystem {
         Some(ArrowSolution { mixing, feedback })
     }
 
-    /// Returns the largest residual over the largest right side.
+    /// Returns the maximum residual relative to the maximum right side.
     pub(super) fn residual(&self, solution: &ArrowSolution) -> f64 {
         let mut largest_residual = 0.0_f64;
         let mut largest_right = self.right.amax();

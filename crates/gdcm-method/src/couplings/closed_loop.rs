@@ -93,7 +93,8 @@ impl<'a> ClosedLoop<'a> {
         is_usable
     }
 
-    /// Returns the column from `at` on with the largest entry in row `at`, the last if repeated.
+    /// Returns the column, from `at` on, with the entry of maximum modulus in row `at`; the last
+    /// among equals.
     fn pivot(&self, at: usize) -> usize {
         let inputs = self.feedback.nrows();
         let mut pivot = at;

@@ -22,7 +22,7 @@ use super::error::CouplingError;
 use super::pair_products::{CHUNK, PairProducts, ProductChunk, RowParts, pair_count};
 use super::weighted_condition::WeightedCondition;
 
-/// The last pass's couplings at a condition.
+/// The couplings from the last pass, evaluated at a condition.
 struct LastPass<'a> {
     /// `M(V)`, m x m.
     mixing: DMatrix<f64>,
@@ -52,9 +52,9 @@ pub(super) struct ColumnBlocks {
 
 /// Work memory for a frequency.
 struct Scratch {
-    /// Input column of `H_c = F M`.
+    /// A column of `H_c = F M`.
     coupled: Vec<Complex<f64>>,
-    /// Input column of `S R'`.
+    /// A column of `S R'`.
     target: Vec<Complex<f64>>,
     /// `q^2` by output.
     squared_weights: Vec<f64>,
@@ -66,7 +66,7 @@ struct Scratch {
 struct ClosedResponse {
     /// Frequency index.
     k: usize,
-    /// Column by column.
+    /// `F`, column by column.
     f: Vec<Complex<f64>>,
     rows: RowParts,
 }

@@ -1,6 +1,6 @@
 //! Effects of mixing and feedback (M16.4): their entries in pilot units (percent stick, degrees
-//! swashplate phase), the loop's distance from ringing, its action above the band, and the poles that
-//! they move.
+//! swashplate phase), the distance of the loop from ringing, its action above the band, and the
+//! shifted poles.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -62,7 +62,7 @@ pub fn feedback_shares(
     shares
 }
 
-/// An output's largest `|R'_jl|`.
+/// Maximum of `|R'_jl|` for an output j.
 struct PeakResponse {
     magnitude: f64,
     /// The input `l`.
@@ -165,10 +165,10 @@ pub fn cyclic_inputs(
     cyclic.try_into().ok()
 }
 
-/// The smallest singular value of `I - K H` over several frequencies.
+/// Minimum over several frequencies of the smallest singular value of `I - K H`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopMargin {
-    /// 1 without feedback, 0 if a closed-loop pole is at `j omega`.
+    /// Minimum over the frequencies: 1 without feedback, 0 if a closed-loop pole is at `j omega`.
     pub least: f64,
     pub omega_rad_s: f64,
 }
@@ -177,8 +177,7 @@ impl LoopMargin {
     /// Threshold below which the loop is close to ringing.
     pub const CAUTION: f64 = 0.5;
 
-    /// Returns the smallest among singular values at `omega` \[rad/s\]; `None` if no value is
-    /// finite.
+    /// Returns the minimum of singular values at `omega` \[rad/s\]; `None` if no value is finite.
     pub fn of(singular_values: &[f64], omega: &[f64]) -> Option<Self> {
         let mut margin: Option<Self> = None;
         for (&least, &omega_rad_s) in singular_values.iter().zip(omega) {
@@ -249,9 +248,9 @@ pub fn relative_change_db(
 /// A coupled model's pole and its match in the physics model; conjugate pairs count once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoleShift {
-    /// Without coupling \[rad/s\]; `None` for additional states (delays inside the loop).
+    /// Pole without coupling \[rad/s\]; `None` for additional states (delays inside the loop).
     pub before: Option<Complex<f64>>,
-    /// With coupling \[rad/s\].
+    /// Pole with coupling \[rad/s\].
     pub after: Complex<f64>,
 }
 
@@ -279,8 +278,8 @@ impl PoleShift {
 
 impl CouplingMatrices {
     /// Returns a physics model's poles with mixing and feedback, in ascending `|lambda|`, matched
-    /// to the poles without coupling with the smallest sum of distances. Discrete-time poles are
-    /// converted by `s = ln z / T`.
+    /// to the poles without coupling so that the sum of distances is minimal. Discrete-time poles
+    /// are converted by `s = ln z / T`.
     ///
     /// # Errors
     /// [`PoleShiftError`] if there is no coupled model or no eigenvalues.

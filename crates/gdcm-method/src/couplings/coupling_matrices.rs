@@ -182,7 +182,7 @@ impl CouplingMatrices {
     }
 }
 
-/// Condition number of `I - D K` beyond which a loop through the feed-through is refused.
+/// Condition number of `I - D K` above which the loop through the feed-through is rejected.
 const WORST_CONDITION: f64 = 1e6;
 
 /// Reasons why mixing and feedback cannot be applied to a model as matrices.
@@ -195,7 +195,7 @@ pub enum CoupledModelError {
         number(*condition_number)
     )]
     AlgebraicLoop {
-        /// Infinite if `I - D K` is singular.
+        /// Condition number of `I - D K`; infinite if singular.
         condition_number: f64,
     },
     /// Model and couplings have different channels.
@@ -203,9 +203,9 @@ pub enum CoupledModelError {
         "it has {} outputs and {} inputs, and the couplings have {} and {}", found[0], found[1], expected[0], expected[1]
     )]
     Channels {
-        /// In the model: outputs, inputs.
+        /// Numbers of outputs and inputs of the model.
         found: [usize; 2],
-        /// In the couplings: outputs, inputs.
+        /// Numbers of outputs and inputs of the couplings.
         expected: [usize; 2],
     },
     /// The channel delays inside the loop cannot become states.

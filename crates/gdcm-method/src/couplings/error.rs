@@ -7,7 +7,7 @@ use gdcm_model::units::{number, telling};
 /// Reasons why no couplings can be fitted (M16.2).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CouplingError {
-    /// There is no condition, or no response is available in both representatives.
+    /// There is no condition, or no response is available in both representatives of a condition.
     #[error(
         "no response of the {conditions} conditions is known for both the physics model and flight"
     )]
@@ -15,7 +15,7 @@ pub enum CouplingError {
     /// Too few conditions for the request.
     #[error("error bars need at least {needed} conditions, found {found}")]
     TooFewConditions {
-        /// Fewest sufficient conditions.
+        /// Minimum number of conditions.
         needed: usize,
         found: usize,
     },

@@ -29,12 +29,12 @@ pub struct CouplingFit {
     pub matrices: CouplingMatrices,
     /// The fitted unknowns.
     pub unknowns: Vec<Unknown>,
-    /// Values by solve and unknown.
+    /// Values of the unknowns after each solve.
     pub coefficients: Vec<Vec<f64>>,
-    /// Optimality check for the last solve, a convex problem with a single optimum: the largest
-    /// residual of the normal equations over the largest right side.
+    /// Optimality check for the last solve, a convex problem with a single optimum: the maximum
+    /// residual of the normal equations relative to the maximum right side.
     pub residual: f64,
-    /// Outputs that cannot be fed back, because their response to some input is unknown in every
+    /// Outputs that cannot be fed back, because their response to some input is missing in every
     /// condition.
     pub not_fed_back: Vec<usize>,
     /// Unknowns that no response determines; they keep their uncoupled values.
@@ -50,8 +50,8 @@ const BLOCK_MEMORY: usize = 256 << 20;
 /// every condition in every pass, and polled every few frequencies for cancellation.
 ///
 /// # Errors
-/// [`CouplingError`] if tables do not fit together, no response has a weight, the loop is singular in
-/// a pass, the responses do not determine the unknowns, or `progress` is cancelled.
+/// [`CouplingError`] if tables differ in shape, no response has a weight, the loop is singular in a
+/// pass, the responses do not determine the unknowns, or `progress` is cancelled.
 pub fn fit_couplings(
     problem: &CouplingProblem,
     executor: &dyn Executor,
@@ -117,18 +117,18 @@ pub fn fit_couplings(
 /// Step name in progress reports.
 const FITTING: &str = "mixing and feedback";
 
-/// Data that all passes of a fit share.
+/// Data common to all passes of a fit.
 struct Fitting<'a> {
     conditions: &'a [WeightedCondition<'a>],
     fed_back: &'a [usize],
     layout: UnknownLayout,
     shares: Shares<'a>,
-    /// Progress of the fit per condition and pass.
+    /// Share of the fit's progress that a condition contributes in a pass.
     share: f64,
 }
 
 impl Fitting<'_> {
-    /// Returns the normal equations for the pass after these couplings.
+    /// Returns the normal equations of the pass that starts from these couplings.
     ///
     /// As many conditions run in parallel as memory permits for their blocks; they are added in
     /// order.
@@ -161,7 +161,7 @@ impl Fitting<'_> {
     }
 }
 
-/// Fewest conditions for error bars.
+/// Minimum number of conditions for error bars.
 pub const LEAST_CONDITIONS: usize = 3;
 
 /// A fit without a condition.
@@ -214,11 +214,11 @@ fn check_count(found: usize) -> Result<(), CouplingError> {
 /// Half-widths of the error bars for mixing and feedback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CouplingBars {
-    /// Half-widths for `M~` at an airspeed, m x m; 0 on its diagonal, which is 1.
+    /// Half-widths of `M~` at an airspeed, m x m; 0 on its diagonal, which is 1.
     pub mixing: DMatrix<f64>,
-    /// Half-widths for `K`, m x p.
+    /// Half-widths of `K`, m x p.
     pub feedback: DMatrix<f64>,
-    /// Student's quantile, the ratio between half-width and standard deviation.
+    /// Student's quantile: half-width divided by standard deviation.
     pub quantile: f64,
 }
 

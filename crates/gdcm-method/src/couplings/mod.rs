@@ -13,7 +13,7 @@
 //!  7     theta <- solution of  (G + rho diag G) theta = b + rho diag G theta_0,  theta_0: M = I, K = 0, by Cholesky's factors
 //!  8  M~(V) <- M(V) diag(M(V))^-1: the level stays with the channels
 //!  9  bars: theta again without each condition;  sd^2 <- (n - 1) / n sum (theta_(-c) - mean)^2,  Student's t(n - 1)
-//! 10  H~, its state space, its poles, the least singular value of I - K H
+//! 10  H~, its state space, its poles, the smallest singular value of I - K H
 //! ```
 //!
 //! | step | file |

@@ -1,4 +1,4 @@
-//! The normal equations in a pass: sum over the conditions, scaling, regularisation (M16.2).
+//! The normal equations of a pass: sum over the conditions, scaling, regularisation (M16.2).
 //!
 //! ```text
 //! 1  G, b <- the conditions' blocks summed, with powers of the airspeed v for the unknowns M_ji
@@ -25,11 +25,11 @@ pub(super) struct NormalEquations<'a> {
     right: DMatrix<f64>,
 }
 
-/// The optimum in a pass.
+/// The optimum of a pass.
 pub(super) struct PassOptimum {
     /// `theta`, by unknown.
     pub(super) coefficients: DVector<f64>,
-    /// Largest residual of the scaled normal equations over their largest right side.
+    /// Maximum residual of the scaled normal equations relative to their maximum right side.
     pub(super) residual: f64,
     /// Indices of the unknowns that no response determines; they keep their uncoupled values.
     pub(super) undetermined: Vec<usize>,
@@ -118,7 +118,7 @@ impl<'a> NormalEquations<'a> {
         })
     }
 
-    /// Returns the unknowns' scales from the diagonal (step 2).
+    /// Computes the scales of the unknowns from the diagonal (step 2).
     fn scaling<'u>(&self, unknowns: &'u [Unknown], ridge: f64) -> Scaling<'u> {
         let mut scaling = Scaling::new(unknowns, ridge);
         for (equations, mixing) in self.columns.iter().zip(&self.layout.mixing) {
@@ -220,9 +220,9 @@ fn scaled_column(
 struct Scaling<'a> {
     unknowns: &'a [Unknown],
     ridge: f64,
-    /// By unknown; 1 for an undetermined unknown.
+    /// Scale of each unknown; 1 for an undetermined unknown.
     scale: Vec<f64>,
-    /// By unknown: whether its diagonal entry is positive.
+    /// Whether the diagonal entry of each unknown is positive.
     is_determined: Vec<bool>,
 }
 

@@ -14,7 +14,7 @@ use nalgebra::{Complex, DMatrix, DMatrixView};
 /// cache.
 pub(super) const CHUNK: usize = 64;
 
-/// Returns how many pairs `a <= b` there are among `count` items.
+/// Returns the number of pairs `a <= b` among `count` items.
 pub(super) fn pair_count(count: usize) -> usize {
     count * (count + 1) / 2
 }
@@ -29,9 +29,9 @@ pub(super) fn pair_index(a: usize, b: usize, count: usize) -> usize {
 #[derive(Clone)]
 pub(super) struct PairProducts {
     inputs: usize,
-    /// Products of real parts.
+    /// Sums of the products of real parts.
     real: DMatrix<f64>,
-    /// Products of imaginary parts.
+    /// Sums of the products of imaginary parts.
     imaginary: DMatrix<f64>,
 }
 
@@ -86,17 +86,17 @@ impl PairProducts {
     }
 }
 
-/// Factors of the products, a column by frequency.
+/// Factors of the products, a column for each frequency.
 pub(super) struct ProductChunk {
-    /// Filled columns.
+    /// Number of filled columns.
     filled: usize,
     /// `Re conj(t_a) t_b`, a row for each pair `a <= b`.
     t_re: DMatrix<f64>,
-    /// Imaginary parts of the same.
+    /// `Im conj(t_a) t_b`, in the layout of `t_re`.
     t_im: DMatrix<f64>,
     /// `Re P_jl`, a row for each pair `j <= l`.
     p_re: DMatrix<f64>,
-    /// Imaginary parts of the same.
+    /// `Im P_jl`, in the layout of `p_re`.
     p_im: DMatrix<f64>,
 }
 

@@ -46,13 +46,13 @@ pub struct CouplingCondition {
     /// Standard deviation of the identified model's `ln H` by frequency ([`response_deviation`]);
     /// `None` counts as 0.
     pub deviation: Option<PairTable<Vec<f64>>>,
-    /// Weights from the identified representative's coherence (M4a); `None` if all frequencies
-    /// weigh the same.
+    /// Weights from the identified representative's coherence (M4a); `None` if all frequencies have
+    /// the same weight.
     pub coherence: Option<PairTable<CoherenceWeights>>,
 }
 
-/// Data for the coupling fit: the analysed conditions with both representatives, without those
-/// reserved for validation.
+/// Data for the coupling fit: the analysed conditions with both representatives, without the
+/// conditions reserved for validation.
 #[derive(Clone, Debug)]
 pub struct CouplingProblem {
     pub kind: CouplingKind,
@@ -67,10 +67,10 @@ pub struct CouplingProblem {
 /// Settings for the coupling fit (M16.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplingOptions {
-    /// `rho`: regularisation towards M = I, K = 0, relative to the responses' information about each
-    /// entry.
+    /// `rho`: regularisation towards M = I, K = 0, relative to the diagonal entry of each unknown
+    /// in the normal matrix.
     pub ridge: f64,
-    /// Successive linear least-squares problems.
+    /// Number of successive linear least-squares problems.
     pub solves: usize,
     /// Highest power of the scaled airspeed on the diagonal of `M`.
     pub degree: usize,
@@ -148,8 +148,8 @@ impl CouplingProblem {
         (0..self.outputs()).any(|output| self.is_known(Pair::new(output, input)))
     }
 
-    /// Whether a flight response is known at some frequency at which the physics model has all
-    /// responses of its output.
+    /// Whether a flight response is available at a frequency at which the physics model has all
+    /// responses of the same output.
     fn is_known(&self, pair: Pair) -> bool {
         self.conditions.iter().any(|condition| {
             let flight = condition.flight.curve(pair);

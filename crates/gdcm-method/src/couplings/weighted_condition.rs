@@ -11,14 +11,15 @@ use gdcm_model::dataset::{ConditionId, Pair, PairTable};
 use super::problem::{CouplingCondition, CouplingProblem};
 use crate::fidelity::summand;
 
-/// Weight for an on-axis response relative to the others, `w_p`.
+/// Weight of an on-axis response relative to the others, `w_p`.
 const ON_AXIS: f64 = 2.0;
-/// Standard deviation of `ln H` from which a response loses weight clearly.
+/// Standard deviation of `ln H` at which the weight `s` of a response is reduced by the factor `1 /
+/// sqrt(2)`.
 const DEVIATION: f64 = 0.06;
-/// `e s` from which a frequency counts as an outlier.
+/// `e s` at which the weight of a frequency is reduced by the factor `2^(-1/4)`, as an outlier.
 const OUTLIER: f64 = 10.0;
 
-/// The weight factors that stay the same in all passes.
+/// Weight factors that do not change between passes.
 #[derive(Clone, Copy, Debug, Default)]
 struct FixedWeight {
     /// `s = w_p / sqrt(1 + (sd / 0.06)^2)`; 0 for a response without weight.
@@ -137,7 +138,7 @@ impl FixedWeight {
         let robust = (1.0 + summand(error_db, error_deg) * (self.s / OUTLIER).powi(2)).sqrt();
         let scale = flight_square.max(0.25 * coupled_square);
         let squared = self.s * self.s * self.coherence / scale / robust;
-        // A zero value has no decibels, and an overflow cannot be compared.
+        // A zero value has no value in dB, and an overflow cannot be compared.
         if squared.is_finite() { squared } else { 0.0 }
     }
 }
@@ -216,7 +217,7 @@ fn fixed_weights(
     weights
 }
 
-/// Whether a flight response is known at frequency `k`.
+/// Whether a flight response is available at frequency `k`.
 fn has_flight(condition: &CouplingCondition, pair: Pair, k: usize) -> bool {
     condition.flight.curve(pair)[k].is_finite()
 }

@@ -71,7 +71,8 @@ fn best_vertex(
     start: Vertex,
     cancelled: &dyn Fn() -> bool,
 ) -> Result<Vertex, FitError> {
-    /// Far more than the vertices on a face with few unknowns; limits only the run time.
+    /// Maximum number of compared vertices, to limit the run time: far more than a face with few
+    /// unknowns has.
     const MOST_VERTICES: usize = 300;
     let mut best = start.clone();
     let mut equal = vec![start];
@@ -171,9 +172,9 @@ const ZERO: f64 = 1e-11;
 const FLAT: f64 = 1e-10;
 
 /// The constraints `x_i w = y_i` (the rows) and `w_k = 0` (the weights), counted in this order; a
-/// vertex is where as many constraints intersect as there are unknowns.
+/// vertex is an intersection of as many constraints as there are unknowns.
 struct Fit<'a> {
-    /// Row-major.
+    /// The rows `x_i`, row-major.
     x: Vec<f64>,
     unknowns: usize,
     y: &'a [f64],
@@ -190,9 +191,9 @@ struct Vertex {
 
 /// Destinations along a vertex's edges.
 enum Neighbours {
-    /// End vertex for an edge along which the deviations decrease.
+    /// End vertex of an edge along which the deviations decrease.
     Better(Vertex),
-    /// End vertices for the edges along which the deviations stay the same.
+    /// End vertices of the edges along which the deviations do not change.
     Equal(Vec<Vertex>),
 }
 
@@ -206,7 +207,7 @@ impl<'a> Fit<'a> {
         }
     }
 
-    /// Constraint count.
+    /// Returns the number of constraints.
     fn count(&self) -> usize {
         self.y.len() + self.unknowns
     }
@@ -238,7 +239,7 @@ impl<'a> Fit<'a> {
         constraint >= self.y.len()
     }
 
-    /// Returns the left-hand sides for some constraints: rows from `x` or the identity.
+    /// Returns the left-hand sides of these constraints, a row each: from `x` or the identity.
     fn matrix(&self, constraints: &[usize]) -> DMatrix<f64> {
         DMatrix::from_fn(
             constraints.len(),
@@ -281,9 +282,9 @@ struct Edge {
     /// The released constraint's position in the vertex's basis.
     leaving: usize,
     direction: Vec<f64>,
-    /// Rate at which the summed deviations change along the edge.
+    /// Rate of change of the summed deviations along the edge.
     slope: f64,
-    /// Largest possible magnitude for that rate.
+    /// Maximum possible magnitude of `slope`.
     scale: f64,
 }
 
@@ -302,7 +303,7 @@ struct Crossing {
     constraint: usize,
     /// Distance along the edge.
     step: f64,
-    /// Half the change in the rate at this intersection.
+    /// Half the change of the edge's slope at this intersection.
     change: f64,
 }
 
@@ -340,8 +341,8 @@ fn crossing_at(mut crossings: Vec<Crossing>, rise: f64) -> Option<usize> {
 }
 
 impl Vertex {
-    /// Returns the vertex of the constraints that `weights` satisfies best; `None` if they define
-    /// no vertex, or a vertex with a negative weight.
+    /// Returns the vertex of the constraints that `weights` satisfies best; `None` if these
+    /// constraints define no vertex, or a vertex with a negative weight.
     fn nearest(fit: &Fit<'_>, weights: &[f64]) -> Option<Self> {
         let deviations: Vec<f64> = (0..fit.count())
             .map(|constraint| fit.deviation(constraint, weights).abs())
@@ -400,7 +401,7 @@ impl Vertex {
     }
 
     /// Returns the end vertices of the edges along which the deviations do not grow. Among
-    /// descending edges it takes the steepest: with many rows, the first descending edge would need
+    /// descending edges the steepest is taken: with many rows, the first descending edge would need
     /// ten times as many steps.
     fn neighbours(&self, fit: &Fit<'_>) -> Neighbours {
         let deviations = self.deviations(fit);
@@ -501,11 +502,11 @@ impl Vertex {
     }
 }
 
-/// Rates at which the summed deviations change along a direction and against it.
+/// Rates of change of the summed deviations along a direction and against it.
 struct EdgeRates {
     along: f64,
     against: f64,
-    /// Largest possible magnitude for the rates.
+    /// Maximum possible magnitude of the rates.
     scale: f64,
 }
 

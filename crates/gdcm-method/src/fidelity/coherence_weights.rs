@@ -41,7 +41,7 @@ impl CoherenceWeights {
                 None => true,
             };
             let weight = coherence_weight(coherence);
-            // A zero weight would count in N' and nowhere else.
+            // A frequency with zero weight would only increase the frequency count N'.
             if coherence >= threshold && weight > 0.0 && is_valid {
                 selected.places.push(place);
                 selected.omega.push(omega);
@@ -51,8 +51,8 @@ impl CoherenceWeights {
         selected
     }
 
-    /// Returns the weights for every response of a model; `None` without coherence, so that all
-    /// frequencies weigh the same.
+    /// Returns the weights of every response of a model; `None` without coherence: all frequencies
+    /// then have equal weight.
     pub fn of_model(
         dynamics: &Dynamics,
         omega: &[f64],

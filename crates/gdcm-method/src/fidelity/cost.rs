@@ -19,12 +19,13 @@ pub const ACCEPTABLE: f64 = 100.0;
 /// Common factor in both parts of J.
 const COST_SCALE: f64 = 20.0;
 
-/// Returns the term that J averages, at a single frequency: `20 (W_g e_dB^2 + W_p e_deg^2)` (M4).
+/// Returns the summand of J at a single frequency, before averaging: `20 (W_g e_dB^2 + W_p
+/// e_deg^2)` (M4).
 pub fn summand(error_db: f64, error_deg: f64) -> f64 {
     COST_SCALE * (MAGNITUDE_WEIGHT * error_db * error_db + PHASE_WEIGHT * error_deg * error_deg)
 }
 
-/// Average over the squared errors at all frequencies.
+/// Average of the squared errors over all frequencies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CostAverage {
@@ -35,7 +36,7 @@ pub enum CostAverage {
 }
 
 impl CostAverage {
-    /// Averages the squares, which are overwritten; M4a with weights.
+    /// Averages the squares, which are overwritten; with weights by M4a.
     fn average(self, squares: &mut [f64], weights: Option<&[f64]>) -> f64 {
         match (self, weights) {
             (CostAverage::Median, None) => median(squares),
@@ -64,7 +65,7 @@ pub struct Cost {
 impl Cost {
     /// Computes J from the magnitude errors \[dB\] and the phase errors \[rad\] at each frequency.
     ///
-    /// `weights` has a weight for each frequency; `None` where all weigh the same.
+    /// `weights` has a weight for each frequency; `None` where all weights are equal.
     pub fn from_errors(
         magnitude_error_db: impl Iterator<Item = f64>,
         phase_error: impl Iterator<Item = f64>,
@@ -200,7 +201,8 @@ mod tests {
         });
         // 20 / 3 (0.5 + 9 + 1).
         assert!((mean - 70.0).abs() < 1e-13);
-        // Among the squares 1, 4, 9 half the total weight 1.75 is exceeded at the last.
+        // Weights 0.5, 0.25, 1 of the squares 1, 4, 9: the cumulative weight exceeds 1.75 / 2 only
+        // at 9.
         assert_eq!(median, 180.0);
     }
 }

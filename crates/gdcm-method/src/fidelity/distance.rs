@@ -14,7 +14,7 @@ use super::coherence_weights::CoherenceWeights;
 use super::cost::{Cost, CostAverage, mean_cost};
 use super::mismatch::Mismatch;
 
-/// The responses that measure distance in a bundle, and those that each model lacks (M5b).
+/// The responses that measure distances in a bundle, and the responses that each model lacks (M5b).
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredPairs {
     /// The marked responses available in at least one model.
@@ -46,7 +46,7 @@ impl MeasuredPairs {
         Self { compared, lacks }
     }
 
-    /// Returns the indices, in bundle order, for the models that are not set aside.
+    /// Returns the indices, in bundle order, of the models that are not set aside.
     pub fn compared_models(&self) -> Vec<usize> {
         (0..self.lacks.len())
             .filter(|&model| !self.is_set_aside(model))
@@ -59,14 +59,14 @@ impl MeasuredPairs {
     }
 }
 
-/// The distance between every two models of a bundle (M5): `d(a, b) = sqrt(mean over the measuring
+/// Distances between all pairs of models in a bundle (M5): `d(a, b) = sqrt(mean over the measuring
 /// pairs of J(a against b))`, J with the mean over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BundleDistance {
     measured: MeasuredPairs,
-    /// Count of models that are not set aside.
+    /// Number of models that are not set aside.
     count: usize,
-    /// Each model's position among them; `None` if set aside.
+    /// Position of each model among those not set aside; `None` if set aside.
     places: Vec<Option<usize>>,
     /// Upper triangle by rows, without the models set aside: d(0,1), d(0,2), ..., d(1,2), ...
     distances: Vec<f64>,
@@ -102,7 +102,7 @@ impl BundleDistance {
         self.distances.get(row_start + high - low - 1).copied()
     }
 
-    /// Returns the compared responses and those that each model lacks.
+    /// Returns the compared responses, and the responses that each model lacks.
     pub fn measured(&self) -> &MeasuredPairs {
         &self.measured
     }
@@ -112,7 +112,7 @@ impl BundleDistance {
 #[derive(Clone, Copy, Debug)]
 pub struct ComparedModel<'a> {
     pub responses: &'a PolarResponse,
-    /// Frequency weights for each response, if measured with coherence (M4a).
+    /// Frequency weights of each response, if measured with coherence (M4a).
     pub coherence_weights: Option<&'a PairTable<CoherenceWeights>>,
 }
 
@@ -141,7 +141,7 @@ impl ComparedModel<'_> {
 /// J is weighted by the reference model's coherence (M4a), and in a bundle either model can be the
 /// reference: if either has coherence, J is the mean over both directions, so that a distance does
 /// not depend on the models' order. A response without any weighted frequency is compared over all
-/// frequencies, because poorly measured models must not look alike.
+/// frequencies, so that poorly measured models do not appear similar.
 pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair]) -> Vec<f64> {
     models[a + 1..]
         .iter()
@@ -211,7 +211,7 @@ impl Representative {
 
 /// Discontinuity ratio above which a model is suggested as an outlier.
 pub const SUGGESTION_RATIO: f64 = 2.5;
-/// Fewest models in a bundle for the outlier search.
+/// Minimum number of models in a bundle for the outlier search.
 const LEAST_MODELS: usize = 5;
 
 /// Each physics model's distance from the others, relative to the distance explained by its
@@ -221,7 +221,7 @@ pub struct Discontinuity {
     /// `r_a` for each model: near 1 in a smooth bundle. `None` for a model set aside, and where no
     /// two models have a fitted distance.
     pub ratios: Vec<Option<f64>>,
-    /// Fitted weights, for each perturbed coordinate.
+    /// Fitted weight of each perturbed coordinate.
     pub weights: Vec<CoordinateWeight>,
 }
 
@@ -230,9 +230,9 @@ pub struct Discontinuity {
 pub struct CoordinateWeight {
     /// Coordinate name ("airspeed_kt").
     pub name: String,
-    /// Its largest magnitude in the bundle, used as the scale.
+    /// Maximum magnitude of the coordinate in the bundle, by which the coordinate is divided.
     pub largest: f64,
-    /// `w_k`.
+    /// Fitted weight `w_k`.
     pub weight: f64,
 }
 
@@ -253,7 +253,7 @@ pub enum DiscontinuityError {
         /// Model name.
         model: String,
     },
-    /// All models were linearised at the same trim.
+    /// Every perturbation coordinate is zero: all models were linearised at the same trim.
     #[error("outliers cannot be suggested: every perturbation is zero")]
     AllZero,
     #[error("outliers cannot be suggested: {0}")]
@@ -265,14 +265,15 @@ impl Discontinuity {
     /// `perturbations` are the models' names and trim offsets in bundle order.
     ///
     /// ```text
-    /// 1  p: each perturbation coordinate, divided by its largest magnitude in the bundle; 0 where a model lacks it
+    /// 1  p: each perturbation coordinate, divided by its maximum magnitude in the bundle;
+    ///    0 where a model lacks it
     /// 2  fit d(a,b)^2 ~ sum_k w_k (p_ak - p_bk)^2, w >= 0, by least absolute deviations over all model pairs
     /// 3  r_ab = d(a,b) / sqrt(fitted), r_a = median over b of r_ab; pairs with zero fitted distance are skipped
     /// ```
     ///
-    /// Among equally good fits it takes the fit whose fitted distances are closest to the distances
-    /// in least squares. The fit, over half a million pairs for a thousand models, ends without a
-    /// result once it is `cancelled`.
+    /// Among equally good fits, the fit with the minimum sum of squared differences between fitted
+    /// and computed distances is taken. A thousand models make half a million pairs: the fit ends
+    /// without a result once it is `cancelled`.
     pub fn fit(
         distance: &BundleDistance,
         perturbations: &[(&str, Option<&BTreeMap<String, f64>>)],
@@ -362,9 +363,9 @@ impl CoordinateWeight {
 /// The models' perturbation coordinates, scaled to at most 1.
 #[derive(Debug)]
 struct ScaledCoordinates<'a> {
-    /// Largest magnitude for each coordinate by name; none is zero.
+    /// Maximum magnitude of each coordinate, by name; none is zero.
     largest: BTreeMap<&'a str, f64>,
-    /// Each model's coordinates divided by the largest magnitude, in the same order as `largest`.
+    /// Each model's coordinates divided by the maximum magnitude, in the order of `largest`.
     models: Vec<Vec<f64>>,
 }
 
@@ -483,7 +484,8 @@ mod tests {
         };
         assert_eq!(weighed, turned, "whichever comes first");
         assert!(weighed > 0.0 && weighed < apart);
-        // One direction contributes J/2 at the weight 0.879, the other nothing.
+        // One direction contributes J/2, multiplied by its coherence weight; the other contributes
+        // nothing.
         assert!((weighed / apart - (0.5 * coherence_weight(0.9)).sqrt()).abs() < 0.01);
     }
 }

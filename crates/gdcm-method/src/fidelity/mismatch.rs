@@ -21,8 +21,8 @@ pub struct Mismatch {
     /// Frequencies with weights, if the reference has coherence (M4a); otherwise the errors cover
     /// the whole grid with equal weights.
     pub coherence_weights: Option<CoherenceWeights>,
-    /// Angle \[rad\], whole turns, that is added to `Delta phi` after phase unwrapping; zero for
-    /// the representatives (M13.1).
+    /// Whole turns \[rad\] that are added to `Delta phi` after phase unwrapping; zero for the
+    /// representatives (M13.1).
     pub turn: f64,
 }
 
@@ -81,7 +81,7 @@ impl Mismatch {
         }
     }
 
-    /// Returns each frequency's weight, unless all weigh the same (M4a).
+    /// Returns the weight of each frequency; `None` if all weights are equal (M4a).
     pub fn weights(&self) -> Option<&[f64]> {
         self.coherence_weights
             .as_ref()
@@ -89,8 +89,8 @@ impl Mismatch {
     }
 
     /// Computes J after a correction to the simulated response (M4, M10). The correction removes
-    /// `omega tau` from the phase, and the principal value is used: a zero passed on the other side
-    /// of the axis must not cost a whole turn.
+    /// `omega tau` from the phase, and the principal value is used: a zero on the other side of the
+    /// imaginary axis must not add a whole turn to the error.
     pub fn cost(&self, omega: &[f64], correction: GainDelay, average: CostAverage) -> Cost {
         let omega = self.omega(omega);
         let phase = correction.phases(&self.phase, omega).map(wrap);
@@ -156,7 +156,7 @@ impl Mismatch {
         phase
     }
 
-    /// Returns the median over frequency for `Delta phi` \[rad\].
+    /// Returns the median of `Delta phi` \[rad\] over frequency.
     pub fn median_phase(&self, omega: &[f64]) -> f64 {
         median(&mut self.phase_difference(omega))
     }

@@ -1,6 +1,6 @@
 //! A mode followed across the models of a bundle, and the models at which it jumps.
 //!
-//! The matching is an assignment problem with the smallest total cost.
+//! The modes are matched by an assignment with minimum total cost.
 //!
 //! ```text
 //! 1  row potentials u_i, column potentials v_j, with u_i + v_j <= c_ij, equal where i goes with j
@@ -17,33 +17,33 @@ use nalgebra::Complex;
 use gdcm_model::response::Mode;
 use gdcm_model::statistics::median;
 
-/// Distance between a jump and the centre, in track spreads: a smooth track over perturbations to
-/// both sides ends at two to three.
+/// Minimum distance of a jump from the centre, in track spreads: a smooth track over perturbations
+/// to both sides ends at two to three spreads.
 const JUMP_SPREADS: f64 = 5.0;
-/// Smallest jump \[rad/s\]: a smaller shift in a helicopter's slowest mode changes the response in
-/// no band.
+/// Minimum distance \[rad/s\] that counts as a jump: a smaller shift of a helicopter's slowest mode
+/// does not change the response within any band.
 const LEAST_JUMP_RAD_S: f64 = 0.05;
 
 /// A mode in the reference model and its matches in the other models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeTrack {
-    /// Its index among the reference model's modes.
+    /// Index of the mode in the reference model.
     pub reference: usize,
     /// The matched mode's index in each model; `None` if the model has fewer poles.
     pub modes: Vec<Option<usize>>,
     /// The poles' centre \[rad/s\]: median real part and median imaginary part.
     pub centre: Complex<f64>,
-    /// Median distance from the centre \[rad/s\].
+    /// Median distance of the poles from the centre \[rad/s\].
     pub spread_rad_s: f64,
-    /// Models whose pole is farther from the centre than 5 spreads and than 0.05 rad/s.
+    /// Models whose pole is more than 5 spreads and more than 0.05 rad/s from the centre.
     pub jumps: Vec<usize>,
 }
 
 /// Returns the track of each mode of `models[reference]`, in its order; a conjugate pair has one
 /// track, unless a model matches it with two poles that are not a pair.
 ///
-/// Each model's poles are matched to the reference's poles with the smallest summed distance in the
-/// s-plane (an assignment problem). No tracks if the reference has no modes.
+/// The poles of each model are matched to those of the reference with the minimum sum of s-plane
+/// distances (an assignment problem). No tracks if the reference has no modes.
 pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
     let Some(reference_modes) = models.get(reference).copied() else {
         return Vec::new();
@@ -70,7 +70,7 @@ pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
     tracks
 }
 
-/// Measures the track for a reference mode from its match in each model.
+/// Computes the track of a reference mode from its match in each model.
 fn track(reference: usize, modes: Vec<Option<usize>>, poles: &[Option<Complex<f64>>]) -> ModeTrack {
     let known: Vec<Complex<f64>> = poles.iter().flatten().copied().collect();
     let mut real_parts: Vec<f64> = known.iter().map(|pole| pole.re).collect();
@@ -142,11 +142,11 @@ pub(crate) fn least_total(
     column_of
 }
 
-/// A partial assignment of least cost.
+/// A partial assignment of minimum cost.
 struct Assignment {
-    /// `u`.
+    /// `u`, by row.
     row_potentials: Vec<f64>,
-    /// `v`.
+    /// `v`, by column.
     column_potentials: Vec<f64>,
     /// Each column's row; `None` for a free column.
     row_of: Vec<Option<usize>>,
@@ -315,7 +315,7 @@ mod assignment_tests {
 
     use super::*;
 
-    /// The smallest total over every assignment, by exhaustive search.
+    /// Minimum total over all assignments, by exhaustive search.
     fn tried_out(costs: &[Vec<f64>], row: usize, taken: &mut Vec<usize>) -> f64 {
         if row == costs.len() {
             return 0.0;
@@ -349,7 +349,7 @@ mod assignment_tests {
             distinct.dedup();
             prop_assert_eq!(distinct.len(), rows);
             let total: f64 = columns.iter().enumerate().map(|(row, &column)| costs[row][column]).sum();
-            // Sums of five terms in another order.
+            // Sums of five terms are rounded in another order.
             prop_assert!((total - tried_out(&costs, 0, &mut Vec::new())).abs() < 1e-13);
         }
     }

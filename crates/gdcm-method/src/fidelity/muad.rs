@@ -73,15 +73,15 @@ fn polynomial(coefficients: [f64; 3], omega: f64) -> Complex<f64> {
 /// The envelopes at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Muad {
-    /// Lower and upper magnitude \[dB\] for the added dynamics.
+    /// Lower and upper limit of the magnitude of the added dynamics \[dB\].
     pub magnitude_db: [f64; 2],
-    /// Lower and upper phase \[deg\] for the added dynamics.
+    /// Lower and upper limit of the phase of the added dynamics \[deg\].
     pub phase_deg: [f64; 2],
 }
 
 impl Muad {
-    /// Evaluates the envelopes at `omega` \[rad/s\], greater than zero. The underlying trials range
-    /// from 0.1 to about 10 rad/s.
+    /// Evaluates the envelopes at `omega` \[rad/s\], greater than zero. The underlying trials cover
+    /// 0.1 to about 10 rad/s.
     pub fn at(omega: f64) -> Self {
         Self {
             magnitude_db: [
@@ -102,7 +102,7 @@ impl Muad {
     }
 }
 
-/// Returns the distance from an error to the nearer end of `[least, most]`, positive outside.
+/// Returns the distance from an error to the nearer limit of an envelope, positive outside.
 fn distance_outside(envelope: [f64; 2], error: f64) -> f64 {
     let [least, most] = envelope;
     (least - error).max(error - most)

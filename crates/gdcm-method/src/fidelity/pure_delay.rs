@@ -2,11 +2,11 @@
 
 use nalgebra::Complex;
 
-/// Delays between -600 and 600 steps are compared.
+/// Delays from -600 to 600 steps are compared.
 const STEPS: i32 = 600;
 /// Step between two compared delays \[s\].
 const STEP_S: f64 = 1e-3;
-/// Steps between two delays in the coarse grid.
+/// Number of steps between neighbouring delays of the coarse grid.
 const COARSE: i32 = 16;
 
 /// Delays on a grid: `first_s`, `first_s + step_s`, ...

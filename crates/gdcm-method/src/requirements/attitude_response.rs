@@ -14,10 +14,10 @@ use gdcm_model::response::{FrequencyResponse, GainDelay, PreparedModel, wrap};
 use gdcm_model::units::physical_unit::PhysicalUnit;
 use gdcm_model::units::{number, ratio_to_db};
 
-/// Frequency count in the search for sign changes.
+/// Number of frequencies searched for sign changes.
 const SEARCH_POINTS: usize = 400;
-/// The search for a model extends from the lower band end divided by this factor to the upper band
-/// end times this factor.
+/// A model is searched from the lower band end divided by this factor to the upper band end times
+/// this factor.
 const SEARCH_BEYOND_BAND: f64 = 4.0;
 
 /// Meaning of an output: an attitude or its rate.
@@ -29,7 +29,7 @@ pub enum AttitudeOutput {
     Attitude,
 }
 
-/// Reasons why a response has no attitude to read a bandwidth from.
+/// Reasons why no attitude response, and hence no bandwidth, is available.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AttitudeResponseError {
     /// The output is neither a rate nor an attitude.
@@ -78,7 +78,7 @@ impl AttitudeOutput {
     }
 }
 
-/// A response evaluated at any frequencies \[rad/s\]; NaN where it is unknown.
+/// A response evaluated at any frequencies \[rad/s\]; NaN where the response is unknown.
 pub type ResponseAt<'a> = dyn Fn(&[f64]) -> Vec<Complex<f64>> + 'a;
 
 /// Returns the frequencies \[rad/s\] searched for crossings of a model: 400, logarithmic, from
@@ -98,10 +98,10 @@ pub fn search_frequencies(band: Band) -> Vec<f64> {
 /// unstable modes turn a physics model's phase by whole turns.
 pub struct AttitudeResponse<'a> {
     response: &'a ResponseAt<'a>,
-    /// Faster source for long frequency sequences.
+    /// Source of long frequency sequences; may interpolate, for speed.
     samples: &'a ResponseAt<'a>,
     output: AttitudeOutput,
-    /// Grid frequencies \[rad/s\] with a known response, ascending; at least two.
+    /// Grid frequencies \[rad/s\] with a finite nonzero response, ascending; at least two.
     pub(super) omega: Vec<f64>,
     /// `20 log10 |Theta|` on the grid, up to a constant that depends on the units.
     pub(super) magnitude_db: Vec<f64>,
@@ -114,8 +114,8 @@ pub struct AttitudeResponse<'a> {
 impl<'a> AttitudeResponse<'a> {
     /// Creates an output's attitude response from `response`, searched on the ascending frequencies
     /// `omega` \[rad/s\]: [`search_frequencies`] for a model, its own frequencies for a measured
-    /// response. It ends at the first missing value. The phase branch is chosen at the first
-    /// frequency in `band`.
+    /// response. The attitude response ends at the first missing value. The phase branch is chosen
+    /// at the first frequency in `band`.
     ///
     /// # Errors
     /// [`AttitudeResponseError::NoResponse`] if no two neighbouring frequencies have a value.
@@ -243,7 +243,7 @@ fn polar(response: &ResponseAt<'_>, output: AttitudeOutput, omega: &[f64]) -> Ve
     polar
 }
 
-/// Returns the range from the first known value to the last before a gap.
+/// Returns the index range of the first run of values without a gap.
 fn first_run(polar: &[Option<Polar>]) -> Range<usize> {
     let start = polar
         .iter()
@@ -257,12 +257,12 @@ fn first_run(polar: &[Option<Polar>]) -> Range<usize> {
 }
 
 /// A model with its response on the search frequencies and, at equal ratios, up to twice the
-/// highest: a phase delay needs `2 omega_180`.
+/// highest search frequency: a phase delay needs `2 omega_180`.
 pub struct SampledModel {
     prepared: PreparedModel,
     omega: Vec<f64>,
     values: FrequencyResponse,
-    /// Search frequency count.
+    /// Number of search frequencies.
     searched: usize,
 }
 
@@ -275,7 +275,7 @@ impl SampledModel {
         let highest = omega[omega.len() - 1];
         let ratio = omega[1] / omega[0];
         let beyond = std::iter::successors(Some(highest * ratio), |omega| Some(omega * ratio));
-        // With an extra neighbour for the interpolation.
+        // One more sample serves the interpolation.
         omega.extend(beyond.take(1 + (2f64.ln() / ratio.ln()).ceil() as usize));
         let values = prepared.at(&omega);
         Self {
@@ -301,8 +301,8 @@ impl SampledModel {
         }
     }
 
-    /// Returns the same response, interpolated between the samples by a cubic over ln omega; NaN
-    /// outside.
+    /// Returns the response under `correction`, interpolated between the samples by a cubic over ln
+    /// omega; NaN outside the samples.
     pub fn interpolated(
         &self,
         pair: Pair,

@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! 1  Theta = H/(j omega) for a rate, H for an attitude; phase continuous, in (-270, 90] deg at the lowest frequency of the band
-//! 2  omega_180, omega_phase: the lowest omega from the band's lower end on at which it falls through -180, -135 deg;
-//!    where it is below that at the band's lowest frequency: the next crossing below the band, or without it the first within
+//! 2  omega_180, omega_phase: the lowest omega from the band's lower end on at which the phase
+//!    falls through -180, -135 deg; where the phase is below that level at the band's lowest
+//!    frequency: the next crossing below the band; without one, the first within
 //! 3  omega_gain: the greatest omega < omega_180 at which |Theta| = 10^(6/20) |Theta(omega_180)|
 //! 4  omega_BW = min(omega_phase, omega_gain) for a rate response; omega_phase for attitude command
-//! 5  Phi at 400 logarithmic points in omega_180 ... 2 omega_180; its largest departure from the line between its ends
+//! 5  Phi at 400 logarithmic points in omega_180 ... 2 omega_180; its maximum departure from the
+//!    line between its ends
 //! 6  up to 10 deg: tau_p = -(Phi(2 omega_180) + pi) / (2 omega_180)
 //! 7  above: least-squares line through Phi over omega; tau_p = its phase loss from omega_180 to 2 omega_180, over 2 omega_180
 //! ```
@@ -33,7 +35,7 @@ const NEUTRAL_DEG: f64 = -180.0;
 /// Phase at `omega_phase` \[deg\]: a 45 deg margin.
 const PHASE_MARGIN_DEG: f64 = -135.0;
 
-/// Response type to the inceptor of an axis.
+/// Type of the response to the inceptor of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CommandType {
@@ -50,7 +52,7 @@ pub struct BandwidthSettings {
     pub command: CommandType,
     /// The identified or measured band \[rad/s\].
     pub band: Band,
-    /// Treatment of values above it.
+    /// Treatment of values above the band.
     pub above_band: AboveBand,
 }
 
@@ -60,7 +62,7 @@ pub struct BandwidthSettings {
 pub enum BandwidthRule {
     /// The 45 deg phase margin.
     Phase,
-    /// The 6 dB gain margin, which occurs first.
+    /// The 6 dB gain margin, which occurs at the lower frequency.
     Gain,
     /// The phase margin, with an unknown gain margin: an upper bound of the bandwidth.
     PhaseGainUnknown,
@@ -81,7 +83,7 @@ pub struct Bandwidth {
     pub rule: Option<BandwidthRule>,
     /// Phase delay \[s\].
     pub phase_delay_s: Result<Metric, NoMetric>,
-    /// The phase data behind it; `None` without a phase delay.
+    /// Phase data from which the phase delay is computed; `None` without a phase delay.
     pub phase_line: Option<PhaseLine>,
 }
 
@@ -114,8 +116,8 @@ impl Bandwidth {
         }
     }
 
-    /// Whether the gain margin occurs before the phase margin: the standard warns about it for
-    /// every response type.
+    /// Whether the gain margin occurs at a lower frequency than the phase margin: the standard
+    /// warns of this for every response type.
     pub fn is_gain_limited(&self) -> bool {
         match (&self.omega_gain, &self.omega_phase) {
             (Ok(gain), Ok(phase)) => gain.value < phase.value,
@@ -138,7 +140,7 @@ struct LimitingMargin {
     rule: BandwidthRule,
 }
 
-/// The phase delay with the phase data behind it.
+/// The phase delay with the phase data from which it is computed.
 #[derive(Clone, Copy)]
 struct PhaseDelay {
     metric: Metric,
@@ -189,8 +191,8 @@ impl Reading<'_> {
     }
 
     /// Returns the index `k` of the grid interval `[k, k + 1]` in which the phase falls through
-    /// `level` \[rad\]: the lowest in the band, unless the phase has fallen through below the band
-    /// and stayed there.
+    /// `level` \[rad\]: the lowest in the band, unless the phase has fallen through `level` below
+    /// the band and stays below it.
     fn falling_interval(&self, level: f64) -> Option<usize> {
         let phase = &self.attitude.phase;
         let first = self.attitude.lowest_of_band;
@@ -275,8 +277,8 @@ impl Reading<'_> {
         }
     }
 
-    /// Returns the lower of both margins; it also rests on the other's frequencies, which it was
-    /// compared with.
+    /// Returns the lower of both margins; the result also depends on the frequencies of the other
+    /// margin, because both are compared.
     fn lower_margin(&self, phase: Metric, gain: Metric) -> Result<LimitingMargin, NoMetric> {
         let rule = if gain.value < phase.value {
             BandwidthRule::Gain
@@ -293,7 +295,7 @@ impl Reading<'_> {
         Ok(LimitingMargin { metric, rule })
     }
 
-    /// Returns the phase delay and the phase data behind it.
+    /// Returns the phase delay, and the phase data from which it is computed.
     fn phase_delay(&self, omega_180: Metric) -> Result<PhaseDelay, NoMetric> {
         let from = omega_180.value;
         let to = 2.0 * omega_180.value;

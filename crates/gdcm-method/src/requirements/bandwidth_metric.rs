@@ -5,14 +5,15 @@ use gdcm_model::units::number;
 /// Treatment of values read above the identified band.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum AboveBand {
-    /// Returned, and marked as resting on the model.
+    /// Returned, and marked as dependent on the model above the band.
     #[default]
     Marked,
     /// Refused: lead filters do not represent the aircraft there (M15).
     Refused,
 }
 
-/// A value read from a response, with its uncertainty and the frequencies that it rests on.
+/// A value read from a response, with its uncertainty and the range of frequencies that determine
+/// the value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
     /// The value: \[rad/s\] or \[s\].
@@ -20,11 +21,11 @@ pub struct Metric {
     /// Standard deviation to first order, from the response's uncertainty band (M14); `None` where
     /// the response has none.
     pub deviation: Option<f64>,
-    /// Lowest and highest frequency \[rad/s\] that the value was read from.
+    /// Lowest and highest frequency \[rad/s\] at which the response determines the value.
     pub read_at: [f64; 2],
-    /// Whether the value rests on the model above the band.
+    /// Whether the value depends on the model above the band.
     pub rests_above_band: bool,
-    /// Whether the value rests on the model below the band.
+    /// Whether the value depends on the model below the band.
     pub rests_below_band: bool,
 }
 
@@ -34,21 +35,22 @@ pub enum NoMetric {
     /// The phase never falls through the level.
     #[error("no crossing of {} deg up to {} rad/s", number(*level_deg), number(*up_to))]
     NoCrossing {
-        /// The requested phase \[deg\].
+        /// Phase level \[deg\].
         level_deg: f64,
         /// Highest frequency searched \[rad/s\].
         up_to: f64,
     },
-    /// The phase is below the level at the lowest band frequency, and never falls through it below
-    /// the band.
+    /// The phase is below the level at the lowest band frequency, and never falls through the level
+    /// below the band.
     #[error("no crossing of {} deg: the phase is below it from {from:.3} rad/s on", number(*level_deg))]
     BelowFromStart {
-        /// The requested phase \[deg\].
+        /// Phase level \[deg\].
         level_deg: f64,
         /// Lowest band frequency \[rad/s\].
         from: f64,
     },
-    /// The magnitude nowhere below `omega_180` exceeds that at `omega_180` by 6 dB.
+    /// At no frequency below `omega_180` does the magnitude exceed its value at `omega_180` by 6
+    /// dB.
     #[error("no crossing of 6 dB above the magnitude at {omega_180:.3} rad/s down to {} rad/s", number(*down_to))]
     NoGainCrossing {
         /// Frequency at -180 deg \[rad/s\].
@@ -62,7 +64,7 @@ pub enum NoMetric {
         /// `2 omega_180` \[rad/s\].
         needed: f64,
     },
-    /// The value rests on lead filters above the band.
+    /// The value depends on lead filters above the band.
     #[error("rests on the leads above the band: {needed:.3} rad/s, beyond {} rad/s", number(*top))]
     AboveBand {
         /// Highest frequency that the value needs \[rad/s\].

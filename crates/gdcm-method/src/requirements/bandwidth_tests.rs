@@ -1,4 +1,4 @@
-//! Tests of bandwidth and phase delay against known answers (M17.1).
+//! Tests of bandwidth and phase delay against reference results (M17.1).
 
 use std::f64::consts::PI;
 
@@ -147,7 +147,7 @@ fn an_output_is_a_rate_or_an_attitude_by_its_unit() {
     ] {
         assert_eq!(AttitudeOutput::of(&Channel::new("P", unit)), Ok(expected));
     }
-    // A rotor speed is no rate of the fuselage.
+    // A rotor speed is not an angular rate of the fuselage.
     for unit in ["rpm", "g", "m/s^2"] {
         assert_eq!(
             AttitudeOutput::of(&Channel::new("NZ", unit)),
@@ -213,8 +213,8 @@ fn a_phase_that_never_falls_through_a_level_has_no_crossing() {
 
 #[test]
 fn slow_modes_below_the_band_move_neither_branch_nor_crossings() {
-    // An unstable phugoid at 0.2 rad/s turns the phase by a turn below the band, and nearby zeros
-    // turn it back.
+    // An unstable phugoid at 0.2 rad/s shifts the phase by a full turn below the band, and nearby
+    // zeros shift it back.
     let [.., short] = attitudes();
     let rate = settings(CommandType::Rate);
     let plain = rate_bandwidth(short, &rate);
@@ -239,7 +239,7 @@ fn a_slow_aircraft_crosses_below_the_band() {
     let omega_phase = slow.omega_phase.unwrap();
     assert!((omega_phase.value - 0.2).abs() < 1e-10 && omega_phase.rests_below_band);
     // Lightly damped zeros and poles near 1.5 rad/s lift the phase for a while, so that it falls
-    // through once more within the band.
+    // through the level a second time within the band.
     let lifted = rate_bandwidth(
         |s| (s * s + 0.002 * s + 1.96) / (s * s + 0.002 * s + 2.56) / (s * (s + 0.2)),
         &rate,
@@ -267,7 +267,7 @@ fn a_reversed_sign_is_suspected_from_the_phase() {
 
 #[test]
 fn a_flat_magnitude_has_no_gain_margin_and_no_bandwidth() {
-    // Only the delay turns the phase.
+    // Only the delay changes the phase.
     let delay = |s: Complex<f64>| (-0.2 * s).exp();
     let found = rate_bandwidth(delay, &settings(CommandType::Rate));
     for metric in [found.omega_bw, found.omega_gain] {
@@ -283,7 +283,7 @@ fn a_flat_magnitude_has_no_gain_margin_and_no_bandwidth() {
 
 #[test]
 fn values_above_the_band_are_marked_or_with_leads_refused() {
-    // omega_180 is 8 rad/s: 16 is above the band.
+    // omega_180 is 8 rad/s: twice that, 16 rad/s, is above the band.
     let attitude = |s: Complex<f64>| (-PI / 16.0 * s).exp() / s;
     let marked = rate_bandwidth(attitude, &settings(CommandType::Rate));
     let omega_180 = marked.omega_180.unwrap();
@@ -303,7 +303,7 @@ fn values_above_the_band_are_marked_or_with_leads_refused() {
         with_leads.phase_delay_s,
         Err(NoMetric::AboveBand { needed, top: 12.0 }) if (needed - 16.0).abs() < 1e-8
     ));
-    // omega_180 is 15.7 rad/s: the gain margin rests on the model, and so does the bandwidth.
+    // omega_180 is 15.7 rad/s: gain margin and bandwidth depend on the model above the band.
     let fast = |s: Complex<f64>| (-0.1 * s).exp() / s;
     let marked = rate_bandwidth(fast, &settings(CommandType::Rate));
     assert!(marked.omega_bw.unwrap().rests_above_band);
@@ -413,13 +413,14 @@ fn a_model_and_its_correction_are_evaluated_exactly() {
         (interpolated.omega_gain, exact.omega_gain),
         (interpolated.phase_delay_s, exact.phase_delay_s),
     ] {
-        // Four points 1.5 % apart: the fourth power of the spacing times the delay's phase.
+        // Cubic through four points 1.5 % apart: the error is the fourth power of the spacing times
+        // the phase of the delay.
         let difference = (value(interpolated) / value(exact) - 1.0).abs();
         assert!(difference > 0.0 && difference < 1e-7, "{difference}");
     }
 }
 
-/// An uncertainty band with the same standard deviations at these frequencies.
+/// An uncertainty band with equal standard deviations at all these frequencies.
 fn uniform_bands(omega: Vec<f64>, sd_db: f64, sd_deg: f64) -> ModelBands {
     let sd_db = PairTable::filled(1, 1, vec![sd_db; omega.len()]);
     let sd_deg = PairTable::filled(1, 1, vec![sd_deg; omega.len()]);
@@ -454,7 +455,7 @@ fn phase_deviations_agree_with_turning_the_response() {
     for (crossing, metric) in crossings(&middle).iter().enumerate() {
         let deviation = metric.deviation.unwrap();
         let half_change = 0.5 * (high[crossing].value - low[crossing].value).abs();
-        // First order: the remainder is the phase curvature over 0.3 deg.
+        // The deviation is of first order: the remainder is the phase curvature over 0.3 deg.
         assert!(
             (deviation / half_change - 1.0).abs() < 1e-2,
             "{deviation} {half_change}"
@@ -514,8 +515,8 @@ proptest! {
 
     #[test]
     fn a_straight_phase_has_half_its_pure_delay_as_phase_delay(delay_s in 0.04_f64..0.6) {
-        // 1/s and a delay: the phase is straight. It loses pi/2 up to omega_180 and as much again
-        // up to twice that.
+        // 1/s and a delay: the phase is straight. It falls by pi/2 up to omega_180, and by another
+        // pi/2 up to 2 omega_180.
         let found = rate_bandwidth(
             |s| (-delay_s * s).exp() / s,
             &settings(CommandType::Rate),

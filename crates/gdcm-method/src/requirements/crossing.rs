@@ -12,7 +12,7 @@ struct Sample {
 
 impl Sample {
     /// Evaluates `value` at `omega`; a missing value or NaN counts as negative, so that the root
-    /// lies above it.
+    /// lies above `omega`.
     fn new(omega: f64, value: &impl Fn(f64) -> Option<f64>) -> Self {
         let value = value(omega).filter(|value| !value.is_nan()).unwrap_or(-1.0);
         Self { omega, value }
@@ -23,8 +23,8 @@ impl Sample {
     }
 }
 
-/// Finds the root of `value` between two frequencies, where it is positive at the upper and not at
-/// the lower.
+/// Finds the root of `value` between two frequencies; `value` is positive at the upper frequency
+/// and not positive at the lower frequency.
 ///
 /// ```text
 /// 1  [a, b] brackets the root, a the newest point; c is the point dropped last
@@ -37,7 +37,7 @@ impl Sample {
 pub(super) fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> f64 {
     let mut a = Sample::new(high, &value);
     let mut b = Sample::new(low, &value);
-    // Place of the next point: 0 at a, 1 at b.
+    // Position of the next point: 0 at a, 1 at b.
     let mut fraction = 0.5;
     loop {
         let new = Sample::new(a.omega + fraction * (b.omega - a.omega), &value);
@@ -68,8 +68,8 @@ fn is_monotonic(a: Sample, b: Sample, c: Sample) -> bool {
     phi.powi(2) < xi && (1.0 - phi).powi(2) < 1.0 - xi
 }
 
-/// Returns the root of the inverse quadratic through three points, as its place between `a` (0) and
-/// `b` (1).
+/// Returns the root of the inverse quadratic through three points, as its position between `a` (0)
+/// and `b` (1).
 fn quadratic_fraction(a: Sample, b: Sample, c: Sample) -> f64 {
     a.value / (b.value - a.value) * c.value / (b.value - c.value)
         + (c.omega - a.omega) / (b.omega - a.omega) * a.value / (c.value - a.value) * b.value

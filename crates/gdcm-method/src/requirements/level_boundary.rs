@@ -1,8 +1,8 @@
 //! Handling-qualities level boundaries over bandwidth and phase delay, read from a user file
 //! (M17.1).
 //!
-//! None is built in, because they depend on the mission task element and the category (ADS-33E-PRF,
-//! figures 5, 6, 11 and 12).
+//! No boundaries are built in, because they depend on the mission task element and the category
+//! (ADS-33E-PRF, figures 5, 6, 11 and 12).
 
 use serde::{Deserialize, Serialize};
 
@@ -12,9 +12,9 @@ use gdcm_model::units::number;
 /// A boundary: a polyline in the plane of bandwidth and phase delay.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelBoundary {
-    /// Its name ("Level 1").
+    /// Level name ("Level 1").
     pub name: String,
-    /// The output that it applies to ("P").
+    /// Output to which the boundary applies ("P").
     pub axis: String,
     /// Points \[rad/s, s\]: bandwidth and phase delay, in drawing order; at least two.
     pub points: Vec<[f64; 2]>,
@@ -141,7 +141,7 @@ mod tests {
         serde_json::from_str(text).map_err(|error| error.to_string())
     }
 
-    /// The error for a file with a single boundary.
+    /// Returns the error of reading a file with this single boundary.
     fn read_error(name: &str, axis: &str, points: &str) -> String {
         let boundary = format!(r#"[{{"name":"{name}","axis":"{axis}","points":{points}}}]"#);
         read(&boundary).unwrap_err()

@@ -47,13 +47,13 @@ pub use mode_name::{ModeName, NamedBy};
 pub use test_input::{TestInput, TestInputShape};
 pub use tolerance::{RecordCheck, Tolerance, ToleranceTable};
 
-/// Known answers for M17, from independent code.
+/// Reference results for M17, from independent code.
 #[cfg(test)]
 mod known_answers {
     use nalgebra::Complex;
     use serde_json::Value;
 
-    /// Reads the whole file.
+    /// Reads the file of reference results.
     pub(super) fn answers() -> Value {
         serde_json::from_str(include_str!(
             "../../../../tests/data/reference/requirements.json"
@@ -61,12 +61,12 @@ mod known_answers {
         .unwrap()
     }
 
-    /// Returns a named number.
+    /// Returns the number with this name in a case.
     pub(super) fn number(case: &Value, name: &str) -> f64 {
         case[name].as_f64().unwrap()
     }
 
-    /// The attitude responses, as the cases describe them.
+    /// The attitude responses of the cases in the file.
     pub(super) fn attitudes() -> [fn(Complex<f64>) -> Complex<f64>; 4] {
         fn second_order(
             gain: f64,

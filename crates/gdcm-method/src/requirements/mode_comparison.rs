@@ -22,7 +22,8 @@ pub use super::mode_values::ModeValues;
 use super::mode_name::{ModeName, NamedBy};
 use super::mode_pairing::{ModePair, mode_pairs, single_modes};
 
-/// Relative distance within which an estimate matches a pole: the same model in another notation.
+/// Maximum relative distance between a pole and its estimate, which come from the same model in
+/// different notation.
 const SAME_POLE: f64 = 1e-3;
 
 /// A model's modes, with its state names if available.
@@ -39,22 +40,22 @@ pub struct ModelModes<'a> {
 pub enum ModeVerdict {
     /// Within the tolerance.
     Within,
-    /// Beyond it.
+    /// Outside the tolerance.
     Outside,
     /// Flight does not determine the mode to within the tolerance.
     NotDetermined,
     /// The table has no tolerance for the mode.
     NoTolerance,
-    /// Unpaired: no mode of the model is near and similar enough.
+    /// Unpaired: no remaining mode of the model is within the limits on distance and likeness.
     NotPaired,
 }
 
 /// A model's counterpart of a flown mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComparedMode {
-    /// Its index among the model's modes.
+    /// Index among the model's modes.
     pub mode: usize,
-    /// Its pole \[rad/s\].
+    /// Pole \[rad/s\].
     pub pole: Complex<f64>,
     pub values: ModeValues,
 }
@@ -72,15 +73,15 @@ impl ComparedMode {
 /// A flown mode and its counterparts in the models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeRow {
-    /// Its name; `None` if neither states nor frequency determine it.
+    /// Name of the mode; `None` if neither states nor frequency determine a name.
     pub name: Option<ModeName>,
     pub named_by: NamedBy,
     /// The identified mode.
     pub flown: ComparedMode,
     /// Standard deviations of `flown`; `None` if the identification result is unavailable.
     pub deviation: Option<ModeValues>,
-    /// Whether flight determines the mode: not below the band, and its standard deviations within
-    /// the tolerance if both are known.
+    /// Whether flight determines the mode: its frequency is not below the band, and its standard
+    /// deviations are within the tolerance (if both are available).
     pub is_determined: bool,
     /// The tolerance, if the table has one.
     pub tolerance: Option<ModeTolerance>,
@@ -96,7 +97,7 @@ pub struct ModeRow {
 /// measured response).
 ///
 /// A row takes its name from the first model with named states and a counterpart. No two rows have
-/// the same name: the row with the surest match keeps it.
+/// the same name: of two rows, that with the lower pairing cost keeps the name.
 pub fn compare_modes(
     flown: ModelModes<'_>,
     models: &[ModelModes<'_>],
@@ -146,10 +147,10 @@ pub fn compare_modes(
     rows
 }
 
-/// A model with its partners for the flown modes.
+/// A model with its partners of the flown modes.
 struct PairedModel<'a> {
     model: ModelModes<'a>,
-    /// By row; `None` for an unpaired flown mode.
+    /// Partner of the flown mode in each row; `None` if unpaired.
     pairs: Vec<Option<ModePair>>,
 }
 
@@ -161,7 +162,7 @@ impl PairedModel<'_> {
     }
 }
 
-/// The identified model, as far as its uncertainty is concerned.
+/// Modes, pole uncertainty and band of the identified model.
 struct FlownModel<'a> {
     modes: &'a [Mode],
     /// The flown poles with their uncertainty; empty if unavailable.
@@ -198,7 +199,7 @@ impl FlownModel<'_> {
     }
 }
 
-/// A row's name, and the doubt about it.
+/// A row's name, and how doubtful the name is.
 #[derive(Clone, Copy, Debug)]
 struct Naming {
     name: Option<ModeName>,
@@ -208,8 +209,8 @@ struct Naming {
 }
 
 impl Naming {
-    /// Returns the name from states: those of the first model that names them and has a
-    /// counterpart, the flown model first; otherwise a guess from the flown mode's frequency.
+    /// Returns the name from the states of the first model with named states and a counterpart, the
+    /// flown model first; otherwise a guess from the flown mode's frequency.
     fn from_states_or_frequency(
         flown: ModelModes<'_>,
         mode: usize,
@@ -247,8 +248,8 @@ impl Naming {
     }
 }
 
-/// Removes a duplicate name from all rows except the surest; among equally sure rows the slowest
-/// keeps it.
+/// Removes a duplicate name from all rows except the least doubtful; among equally doubtful rows
+/// the slowest mode keeps the name.
 fn keep_surest_names(namings: &mut [Naming]) {
     let mut by_doubt: Vec<usize> = (0..namings.len()).collect();
     by_doubt.sort_by(|&a, &b| namings[a].doubt.total_cmp(&namings[b].doubt));
@@ -286,7 +287,8 @@ fn verdict(
     }
 }
 
-/// Returns the nearest estimate, if it is the mode's pole.
+/// Returns the estimate nearest to the mode's pole; `None` if their relative distance exceeds
+/// [`SAME_POLE`].
 fn matching_estimate<'a>(mode: &Mode, estimates: &'a [PoleEstimate]) -> Option<&'a PoleEstimate> {
     let nearest = estimates
         .iter()

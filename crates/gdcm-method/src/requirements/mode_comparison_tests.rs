@@ -81,11 +81,11 @@ fn period_time_to_half_and_damping_are_those_of_the_pole() {
 #[test]
 fn a_mode_is_within_if_its_period_and_its_amplitude_or_damping_are() {
     assert_eq!(verdict(-0.4, 2.0, &[]), ModeVerdict::Within);
-    // 3.14 s and 0.5 s more: 1.7255 rad/s. The damping ratio differs by 0.03, the time to half
-    // not at all.
+    // A period of 3.14 s + 0.5 s corresponds to 1.7255 rad/s. The damping ratio differs by 0.03,
+    // the time to half does not differ.
     assert_eq!(verdict(-0.4, 1.73, &[]), ModeVerdict::Within);
     assert_eq!(verdict(-0.4, 1.72, &[]), ModeVerdict::Outside);
-    // Time to half 15 % off; the damping ratio by 0.0195 or by 0.029.
+    // The time to half differs by 15 %, the damping ratio by 0.0195 or 0.029.
     assert_eq!(verdict(-0.36, 1.99, &[]), ModeVerdict::Within);
     assert_eq!(verdict(-0.34, 2.0, &[]), ModeVerdict::Outside);
     assert_eq!(
@@ -146,7 +146,7 @@ fn deviations_agree_with_moving_the_pole() {
     let by_re = half_changes(sd_re, 0.0);
     let by_im = half_changes(0.0, sd_im);
     for (deviation, (by_re, by_im)) in deviation.iter().zip(by_re.iter().zip(by_im)) {
-        // Third order in 1e-4.
+        // The difference quotient has an error of third order in 1e-4.
         assert!((deviation / by_re.hypot(by_im) - 1.0).abs() < 1e-6);
     }
 }
@@ -219,8 +219,8 @@ fn rows_are_named_by_the_physics_model_and_unpaired_modes_are_marked() {
 
 #[test]
 fn a_mode_is_named_once_and_a_fast_flown_pole_is_no_phugoid() {
-    // An overdamped flown pole, and a physics phugoid with two real poles: these were once two
-    // rows named phugoid.
+    // An overdamped flown pole, and a physics phugoid with two real poles: an earlier version named
+    // two rows phugoid.
     let flown = uncontrolled_modes(dmatrix![-0.26, 0.0; 0.0, -2.8]);
     let physics = pair(-0.26, 0.1);
     let states = ["u".to_owned(), "theta".to_owned()];

@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! if states are named: sum the participations by kind of state
-//!    cyclic flap >= 0.4, an oscillation below 25 rad/s             regressing flap
-//!    u, w, q, theta  more than  v, p, r, phi, psi, and over 0.3:   u, theta more than w, q: phugoid; else oscillation: short period
-//!                                                                  real: q more than w: pitch subsidence, else heave
-//!    v, p, r, phi, psi, over 0.3:                                  oscillation: Dutch roll
-//!                                                                  real: p most: roll subsidence; else, below 1 rad/s: spiral
+//!    cyclic flap >= 0.4, an oscillation below 25 rad/s: regressing flap
+//!    u, w, q, theta more than v, p, r, phi, psi, and at least 0.3:
+//!       u, theta more than w, q: phugoid; any other oscillation: short period
+//!       real, q more than w: pitch subsidence; any other real mode: heave
+//!    otherwise v, p, r, phi, psi, if at least 0.3:
+//!       oscillation: Dutch roll
+//!       real, p at least half of these: roll subsidence; otherwise, below 1 rad/s: spiral
 //! else by frequency and damping, a guess
 //! ```
 //!
@@ -24,7 +26,7 @@ const FLAP_SHARE: f64 = 0.4;
 const FUSELAGE_SHARE: f64 = 0.3;
 /// Frequency \[rad/s\] below which a flapping mode is regressing.
 const FASTEST_REGRESSING_RAD_S: f64 = 25.0;
-/// Frequency \[rad/s\] below which a real lateral mode without roll rate is the spiral.
+/// Frequency \[rad/s\] below which a real lateral mode without dominant roll rate is the spiral.
 const FASTEST_SPIRAL_RAD_S: f64 = 1.0;
 
 /// A helicopter mode (Padfield 2007, 4.3).
@@ -103,7 +105,7 @@ fn state_kind(name: &str) -> Option<&'static str> {
     })
 }
 
-/// How much named states participate in a mode.
+/// Participation of named states in a mode.
 struct KindShares<'a> {
     /// Index and participation of each participating state.
     shares: &'a [(usize, f64)],
@@ -128,8 +130,8 @@ impl KindShares<'_> {
 
 impl ModeName {
     /// Names a mode: by state participation if `states` is not empty, otherwise by frequency and
-    /// damping. `None` if this is inconclusive, or if a pole cannot be separated from another, as
-    /// for identical actuators.
+    /// damping. `None` if this is inconclusive, or if the pole cannot be separated from another,
+    /// for example with identical actuators.
     pub fn of(mode: &Mode, states: &[String]) -> (Option<Self>, NamedBy) {
         if states.is_empty() {
             return (Self::by_frequency(mode), NamedBy::Frequency);
@@ -167,7 +169,8 @@ impl ModeName {
         }
     }
 
-    /// Guesses a name from frequency \[rad/s\] and damping, as typical for helicopters.
+    /// Guesses a name from values of frequency \[rad/s\] and damping that are typical of
+    /// helicopters.
     fn by_frequency(mode: &Mode) -> Option<Self> {
         let damping = mode.damping_ratio?;
         match (mode.oscillates(), mode.frequency_rad_s) {

@@ -6,7 +6,8 @@
 //! 2  output scale:  s_i^2 = sum_k |r_ki|^2 / max(|lambda_k|, omega_min)^2 over the flown modes,  r_k = (C v_k) |w_k B|
 //! 3  distance  d = |lambda - lambda'| / max(|lambda|, |lambda'|, omega_min)
 //!    likeness  c = |sum_i r_i* r'_i / s_i^2|^2 / (sum_i |r_i|^2 / s_i^2  sum_i |r'_i|^2 / s_i^2)
-//! 4  a pair has d <= 1/2 and c >= 1/2; least sum over d + 1 - c, where an unpaired flown mode counts 1
+//! 4  a pair has d <= 1/2 and c >= 1/2; the sum of d + 1 - c is minimised,
+//!    an unpaired flown mode counts as 1
 //! ```
 //!
 //! `omega_min` is the lower band end: below it flight resolves poles only by their absolute
@@ -20,13 +21,13 @@ use gdcm_model::response::Mode;
 
 use crate::fidelity::mode_tracks::least_total;
 
-/// Largest s-plane distance within a pair, relative to the larger modulus.
+/// Maximum s-plane distance within a pair, relative to the larger modulus.
 pub const LARGEST_PAIR_DISTANCE: f64 = 0.5;
-/// Smallest likeness within a pair.
+/// Minimum likeness within a pair.
 pub const LEAST_PAIR_LIKENESS: f64 = 0.5;
-/// Cost of a flown mode without a partner: the same as the worst pair.
+/// Cost of a flown mode without a partner: that of the worst admissible pair.
 const UNPAIRED_COST: f64 = LARGEST_PAIR_DISTANCE + 1.0 - LEAST_PAIR_LIKENESS;
-/// Cost of an impossible pair: more than all modes unpaired.
+/// Cost of an inadmissible pair: more than that of leaving all modes unpaired.
 const BARRED_COST: f64 = 1e9;
 
 /// A model's counterpart of a flown mode.
@@ -83,7 +84,7 @@ fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Op
         .max(model.frequency_rad_s)
         .max(least_rad_s);
     let distance = (flown.pole - model.pole).norm() / largest;
-    // The distance decides if a shape is unknown.
+    // If a shape is unknown, only the distance counts.
     let likeness = likeness(flown, model, scales).unwrap_or(LEAST_PAIR_LIKENESS);
     let is_pair = distance <= LARGEST_PAIR_DISTANCE && likeness >= LEAST_PAIR_LIKENESS;
     if is_pair {
@@ -93,7 +94,7 @@ fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Op
     }
 }
 
-/// Returns `s_i` by output; zero if no flown mode reaches it.
+/// Returns `s_i` by output; zero if no flown mode has a residue in the output.
 fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
     let mut squares: Vec<f64> = Vec::new();
     for mode in flown {
@@ -106,7 +107,8 @@ fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
     squares.into_iter().map(f64::sqrt).collect()
 }
 
-/// Returns `c` of two modes; `None` if one shape is unknown, or no flown mode reaches any output.
+/// Returns `c` of two modes; `None` if one shape is unknown, or no flown mode has a residue in any
+/// output.
 fn likeness(flown: &Mode, model: &Mode, scales: &[f64]) -> Option<f64> {
     let flown = mode_shape(flown)?;
     let model = mode_shape(model)?;
@@ -128,7 +130,7 @@ fn likeness(flown: &Mode, model: &Mode, scales: &[f64]) -> Option<f64> {
         return None;
     }
     let likeness = product.norm_sqr() / (flown_square * model_square);
-    // A mode that no input excites or no output observes resembles no other.
+    // A mode that no input excites or no output observes has zero likeness to any other.
     Some(if likeness.is_finite() { likeness } else { 0.0 })
 }
 
@@ -183,7 +185,7 @@ mod tests {
         let roll = [1.0, 0.0];
         let pitch = [0.0, 1.0];
         let flown = lags(&[2.0, 3.0], &[pitch, roll]);
-        // By distance alone the first would be paired with the first.
+        // By distance alone the first flown mode would be paired with the first mode of the model.
         assert_eq!(
             partners(&flown, &lags(&[2.1, 2.9], &[roll, pitch])),
             [Some(1), Some(0)]
@@ -234,7 +236,7 @@ mod tests {
             partners(&lags(&[2.0], &shape), &lags(&[0.99], &shape)),
             [None]
         );
-        // Below the band, relative to its lower end, 0.5 rad/s.
+        // Below the band, distances are relative to its lower end, 0.5 rad/s.
         assert_eq!(
             partners(&lags(&[0.2], &shape), &lags(&[0.01], &shape)),
             [Some(0)]

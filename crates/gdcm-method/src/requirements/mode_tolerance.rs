@@ -11,22 +11,22 @@ use super::mode_name::ModeName;
 use super::mode_values::ModeValues;
 use super::positive_number::{NamedNumber, first_not_positive};
 
-/// A row: a tolerance for the period, and alternative tolerances for amplitude and damping.
+/// A row: a tolerance of the period, and alternative tolerances of amplitude and damping.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModeTolerance {
     /// Name in the source ("long term").
     pub response: String,
-    /// The modes that the row applies to.
+    /// Modes to which the row applies.
     pub modes: Vec<ModeName>,
-    /// Relative to the flown period.
+    /// Tolerance of the period, relative to the flown period.
     pub period: f64,
-    /// Absolute tolerance for the period \[s\], used if wider than the relative tolerance; `None`
-    /// if only the latter applies.
+    /// Absolute tolerance of the period \[s\], used if wider than the relative tolerance; `None` if
+    /// only the latter applies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period_s: Option<f64>,
-    /// Relative to the flown time to half or double amplitude.
+    /// Tolerance of the time to half or double amplitude, relative to the flown time.
     pub amplitude_time: f64,
-    /// Absolute difference.
+    /// Absolute tolerance of the damping ratio.
     pub damping_ratio: f64,
     /// Entry in the source ("2.c.3.a").
     #[serde(default)]
@@ -89,9 +89,9 @@ impl ModeTolerance {
         }
     }
 
-    /// Whether the flown mode itself is known to within the tolerance: the standard deviation of
-    /// its period, and that of its time to half amplitude or damping ratio. A value that the flown
-    /// mode lacks has no tolerance.
+    /// Whether the standard deviations of the flown mode are within the tolerance: that of its
+    /// period, and that of its time to half amplitude or of its damping ratio. A value that the
+    /// flown mode lacks has the tolerance zero.
     pub fn is_known(&self, flown: &ModeValues, deviation: &ModeValues) -> bool {
         let period_s = match flown.period_s {
             Some(period_s) => self.period_tolerance_s(period_s),

@@ -9,23 +9,23 @@ use super::attitude_response::AttitudeResponse;
 
 /// Points used to judge the phase between `omega_180` and `2 omega_180`.
 const LINE_POINTS: usize = 400;
-/// Departure \[deg\] from its chord up to which the phase counts as straight.
+/// Departure of the phase from its chord \[deg\] up to which the phase counts as straight.
 const STRAIGHT_DEG: f64 = 10.0;
 
 /// The phase from `omega_180` to `2 omega_180`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseLine {
-    /// Largest departure from the line between its ends \[deg\].
+    /// Maximum departure of the phase from the line between its ends \[deg\].
     pub departure_deg: f64,
-    /// `-(Phi(2 omega_180) + pi) / (2 omega_180)` \[s\].
+    /// Phase delay from the two ends \[s\]: `-(Phi(2 omega_180) + pi) / (2 omega_180)`.
     pub two_points_s: f64,
-    /// Half the negative slope of the least-squares line \[s\].
+    /// Phase delay from the least-squares line \[s\]: half its negative slope.
     pub least_squares_s: f64,
 }
 
 impl PhaseLine {
     /// Reads the phase from `omega_180` \[rad/s\] to twice that frequency; `None` if the response
-    /// ends before.
+    /// ends below that.
     pub(super) fn read(attitude: &AttitudeResponse<'_>, omega_180: f64) -> Option<Self> {
         let from = omega_180;
         let to = 2.0 * omega_180;
@@ -54,7 +54,7 @@ impl PhaseLine {
     }
 }
 
-/// Returns the largest distance \[rad\] between a phase and the line through its ends.
+/// Returns the maximum distance \[rad\] between a phase and the line through its ends.
 fn chord_departure(omega: &[f64], phase: &[f64]) -> f64 {
     let last = omega.len() - 1;
     let slope = (phase[last] - phase[0]) / (omega[last] - omega[0]);

@@ -1,12 +1,12 @@
 //! Check of user-defined limits.
 
-/// A number with the field name that a message cites.
+/// A limit with its field name, for error messages.
 pub(super) struct NamedNumber {
     pub(super) name: &'static str,
     pub(super) value: f64,
 }
 
-/// Returns the first number that is not finite, or not above zero; absent numbers are skipped.
+/// Returns the first limit that is not finite, or not above zero; absent limits are skipped.
 pub(super) fn first_not_positive<const N: usize>(
     numbers: [(&'static str, Option<f64>); N],
 ) -> Option<NamedNumber> {

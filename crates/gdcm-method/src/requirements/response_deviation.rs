@@ -7,9 +7,10 @@
 //! phase delay:     sd = sqrt(sd_phase(omega_180)^2 + sd_phase(2 omega_180)^2) / (2 omega_180)
 //! ```
 //!
-//! Errors at distant frequencies are taken as independent, errors at neighbouring frequencies are
-//! not: a phase delay read from the least-squares line also has its two ends' deviation, because
-//! independent errors along the line would make it arbitrarily small with more points.
+//! Errors at distant frequencies are assumed independent, errors at neighbouring frequencies are
+//! not: the deviation of a phase delay read from the least-squares line is also computed from the
+//! two ends, because independent errors along the line would make it arbitrarily small with more
+//! points.
 
 use gdcm_model::dataset::Pair;
 use gdcm_model::dataset::model::ModelBands;
@@ -106,8 +107,8 @@ fn difference_quotient(omega: f64, value: impl Fn(f64) -> Option<f64>) -> Option
 }
 
 /// Computes the representatives' error bar for `value` from the values with each other physics or
-/// identified model substituted (M13.1, M13.3). `None` entries are swapped pairs without the value;
-/// they are counted as left out. The value is never negative.
+/// identified model substituted (M13.1, M13.3). A `None` entry is a substitution for which the
+/// value does not exist; the bar counts these entries as left out. The value is never negative.
 pub fn substitution_bar(value: f64, physics: &[Option<f64>], identified: &[Option<f64>]) -> Bar {
     let left_out = physics
         .iter()

@@ -22,9 +22,9 @@ use crate::fidelity::{CostAverage, Mismatch, leaves};
 /// Means over the on-axis responses and over all responses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OnAxisAndAll {
-    /// Over the on-axis responses; `None` if none is defined.
+    /// Mean over the on-axis responses; `None` if none is defined.
     pub on_axis: Option<f64>,
-    /// Over all responses; `None` if none is defined.
+    /// Mean over all responses; `None` if none is defined.
     pub all: Option<f64>,
 }
 
@@ -101,7 +101,7 @@ impl RmsCost {
 struct WeightedOutput {
     /// Output index.
     output: usize,
-    /// From its unit to deg, deg/s, ft/s or ft/s^2.
+    /// Factor from the output's unit to deg, deg/s, ft/s or ft/s^2.
     factor: f64,
 }
 
@@ -143,16 +143,16 @@ pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> 
 #[derive(Clone, Copy)]
 pub struct SummarySource<'a> {
     /// Difference between the model's responses and the identified representative's; `None` where
-    /// they are not compared.
+    /// no comparison exists.
     pub mismatch: &'a PairTable<Option<Mismatch>>,
-    /// Correction by response; `None` without a positive net gain.
+    /// Correction of each response; `None` without a positive net gain.
     pub correction: &'a dyn Fn(Pair) -> Option<GainDelay>,
     pub on_axis: &'a PairTable<bool>,
     /// Band frequencies \[rad/s\], ascending.
     pub omega: &'a [f64],
     /// Average over frequency in J.
     pub average: CostAverage,
-    /// The model against a record in time, if any.
+    /// Comparison of the model with a record of flight, if any.
     pub validation: Option<&'a Validation>,
     pub outputs: &'a [Channel],
 }
@@ -298,7 +298,7 @@ mod tests {
             muad_share(&mismatch(60.0, 0.0), &omega, GainDelay::NONE),
             Some(0.0)
         );
-        // A delay of 0.25 s, removed by the correction including its whole turns.
+        // A lead of 0.25 s, which the correction removes including its whole turns.
         let lead = mismatch(0.0, -0.25);
         let share = muad_share(&lead, &omega, GainDelay::NONE).unwrap();
         assert!(share < 0.5, "{share}");

@@ -17,14 +17,14 @@ pub enum TestInputShape {
     Doublet,
 }
 
-/// A test: an input moved from its trim, and back.
+/// A test: an input is moved from its trim value and returned to it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "TestInputText")]
 pub struct TestInput {
     pub shape: TestInputShape,
     /// Amplitude, in the input's unit.
     pub size: f64,
-    /// Duration \[s\].
+    /// Duration of the whole input \[s\]; for a doublet, of both halves.
     pub duration_s: f64,
 }
 
@@ -33,14 +33,13 @@ pub struct TestInput {
 pub enum TestInputError {
     #[error("the model has {inputs} inputs, found no input {}", input + 1)]
     NoInput { input: usize, inputs: usize },
-    /// Size or duration is not a number, or the duration is zero.
+    /// The size is not finite, or the duration is not above zero and at most 600 s.
     #[error("test input: expected a size, and a duration above 0 s up to {LONGEST_S} s; found {} and {} s", number(*size), number(*duration_s))]
     Numbers {
         size: f64,
-        /// Duration \[s\].
         duration_s: f64,
     },
-    /// The model is in discrete time, or has channel delays beyond its states.
+    /// The model is in discrete time, or has channel delays that are not states.
     #[error(
         "expected a model in continuous time without delays: convert its delays to states first"
     )]
@@ -49,7 +48,7 @@ pub enum TestInputError {
     NotFinite,
 }
 
-/// Longest test duration \[s\].
+/// Maximum test duration \[s\].
 const LONGEST_S: f64 = 600.0;
 
 impl Default for TestInput {
@@ -63,7 +62,7 @@ impl Default for TestInput {
     }
 }
 
-/// A test in its file format.
+/// A test as written in files.
 #[derive(Deserialize)]
 struct TestInputText {
     shape: TestInputShape,
@@ -85,7 +84,7 @@ impl TryFrom<TestInputText> for TestInput {
 }
 
 impl TestInput {
-    /// Returns the test if its numbers are valid.
+    /// Returns the test if its size and duration are valid.
     ///
     /// # Errors
     /// [`TestInputError::Numbers`].
@@ -106,7 +105,7 @@ impl TestInput {
     pub fn signal(&self, sample_time_s: f64, samples: usize) -> Vec<f64> {
         (0..samples)
             .map(|n| {
-                // The addition, a millionth of a sample, covers rounding.
+                // The added millionth of a sample covers rounding errors.
                 let time_s = (n as f64 + 1e-6) * sample_time_s;
                 self.at(time_s)
             })
@@ -125,7 +124,7 @@ impl TestInput {
     }
 
     /// Simulates the outputs of `model` from rest, samples x outputs: the input acts from the first
-    /// sample on, and later changes take one sample time \[s\].
+    /// sample on, and every later change is a ramp over one sample time \[s\].
     ///
     /// # Errors
     /// [`TestInputError`] if there is no such input, its numbers are invalid, or the model cannot

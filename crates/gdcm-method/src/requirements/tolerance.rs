@@ -4,7 +4,8 @@
 //! 1  attitudes: theta_n = theta_(n-1) + dt (q_(n-1) + q_n) / 2 from the start of the manoeuvre, flown and simulated alike
 //! 2  corridor: w_n = max(absolute, relative |y_n - y_0|), the wider of the two
 //! 3  excess: e_n = |y^_n - y_n| - w_n; a sample is inside where e_n <= 0
-//! 4  share inside, largest e_n and its time; trend: sign of the correlation between y^ and y about their means
+//! 4  share inside, maximum e_n and its time;
+//!    trend: sign of the correlation between y^ and y about their means
 //! ```
 //!
 //! 14 CFR part 60, appendix C, table C2A. The check is not a qualification: the tests of that table
@@ -57,17 +58,17 @@ pub struct ToleranceCheck {
     pub simulated: Vec<f64>,
     /// Half-width of the corridor around flight at each sample.
     pub width: Vec<f64>,
-    /// Sample count inside the corridor.
+    /// Number of samples inside the corridor.
     pub inside: usize,
-    /// The largest distance beyond the corridor; negative if all samples are inside.
+    /// Maximum distance beyond the corridor; negative if all samples are inside.
     pub largest_excess: f64,
-    /// Time of the largest excess \[s\].
+    /// Time of `largest_excess` \[s\].
     pub largest_excess_at_s: f64,
     trend: Moments,
 }
 
-/// Sums over flown and simulated samples about their means: flown squared, simulated squared, flown
-/// times simulated.
+/// Sums over flown and simulated samples, each less its mean: flown squared, simulated squared,
+/// flown times simulated.
 type Moments = Vector3<f64>;
 
 fn moments(flown: &[f64], simulated: &[f64]) -> Moments {
@@ -95,10 +96,10 @@ fn correlation(moments: Moments) -> Option<f64> {
 }
 
 impl ToleranceCheck {
-    /// Checks a window of a record, a manoeuvre of its own, against `tolerance`.
+    /// Checks a window of a record, treated as a separate manoeuvre, against `tolerance`.
     ///
     /// # Errors
-    /// [`ToleranceCheckError`] if there is no such output, there are no samples, their numbers
+    /// [`ToleranceCheckError`] if there is no such output, there are no samples, the sample counts
     /// differ, or a sample is not finite.
     pub fn new(
         window: &ValidationWindow,
@@ -123,7 +124,7 @@ impl ToleranceCheck {
         })
     }
 
-    /// Returns the compared sample count, at least one.
+    /// Returns the number of compared samples, at least one.
     pub fn samples(&self) -> usize {
         self.flown.len()
     }
@@ -227,7 +228,7 @@ fn excesses<'a>(
         .map(|((flown, simulated), width)| (simulated - flown).abs() - width)
 }
 
-/// Returns the index of the largest value, the first if repeated.
+/// Returns the index of the maximum, the first among equals.
 fn first_maximum(values: &[f64]) -> usize {
     let mut largest = 0;
     for (n, value) in values.iter().enumerate() {
@@ -259,7 +260,8 @@ pub struct RecordCheck {
 }
 
 impl RecordCheck {
-    /// Checks the records of `windows` against `tolerance`; every window is a manoeuvre of its own.
+    /// Checks the records of `windows` against `tolerance`; every window is treated as a separate
+    /// manoeuvre.
     ///
     /// # Errors
     /// [`ToleranceCheckError`] for the first window that cannot be compared.

@@ -20,14 +20,14 @@ const TEN_PERCENT: Option<f64> = Some(0.1);
 pub struct Tolerance {
     /// Quantity, as displayed ("bank angle").
     pub quantity: String,
-    /// The output that it is read from, as named in the dataset ("P").
+    /// Output from which the quantity is read, as named in the dataset ("P").
     pub channel: String,
     /// Whether the output is integrated: an attitude, from its rate.
     #[serde(default)]
     pub integrated: bool,
     /// The absolute tolerance, in `unit`.
     pub absolute: f64,
-    /// Unit for `absolute` ("deg").
+    /// Unit of `absolute` ("deg").
     pub unit: String,
     /// The tolerance relative to the change from the start of the manoeuvre; `None` if only
     /// `absolute` applies.
@@ -47,7 +47,7 @@ pub struct ToleranceTable {
     rows: Vec<Tolerance>,
 }
 
-/// The table in its file format.
+/// The table as written in files.
 #[derive(Deserialize)]
 struct ToleranceRows {
     #[serde(default)]
@@ -83,12 +83,12 @@ pub enum ToleranceError {
         quoted(channel)
     )]
     NoChannel {
-        /// The quantity to compare.
+        /// Quantity in the table.
         quantity: String,
-        /// The output that it needs.
+        /// The output that the dataset lacks.
         channel: String,
     },
-    /// The integral of an output that is not a rate.
+    /// An output to be integrated is not a rate.
     #[error(
         "{} is not compared: it integrates a rate (deg/s, rad/s), and the unit of {} is {}",
         quoted(quantity),
@@ -96,7 +96,7 @@ pub enum ToleranceError {
         quoted(unit)
     )]
     NotARate {
-        /// The quantity to compare.
+        /// Quantity in the table.
         quantity: String,
         channel: String,
         unit: String,
@@ -110,7 +110,7 @@ pub enum ToleranceError {
         quoted(compared_unit)
     )]
     Unit {
-        /// The quantity to compare.
+        /// Quantity in the table.
         quantity: String,
         channel: String,
         unit: String,

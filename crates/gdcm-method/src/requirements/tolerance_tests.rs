@@ -40,7 +40,7 @@ fn check_of(
     ToleranceCheck::new(&window, tolerance)
 }
 
-/// The synthetic record of the known answers.
+/// The synthetic record of the reference results.
 struct SyntheticRecord {
     flown: Vec<f64>,
     simulated: Vec<f64>,

@@ -9,9 +9,9 @@ pub struct Airspeeds {
     pub mean_kt: f64,
     /// Half the range \[kt\]; zero if all conditions have the same airspeed.
     pub half_range_kt: f64,
-    /// Least airspeed \[kt\].
+    /// Minimum airspeed \[kt\].
     pub min_kt: f64,
-    /// Largest airspeed \[kt\].
+    /// Maximum airspeed \[kt\].
     pub max_kt: f64,
     /// Conditions, by index, grouped by airspeed in rising order: the airspeeds in a cluster lie
     /// within the tolerance from neighbour to neighbour (M11b).
@@ -63,7 +63,7 @@ impl Airspeeds {
             .map(|cluster| {
                 let first = values[cluster[0]];
                 if cluster.iter().all(|&condition| values[condition] == first) {
-                    // A sum would round it.
+                    // A sum of equal values would be rounded.
                     return first;
                 }
                 let sum = cluster

@@ -12,7 +12,7 @@ pub enum ScheduleCaution {
     DegreeLowered {
         /// Requested degree.
         asked: usize,
-        /// Cluster count.
+        /// Number of clusters.
         clusters: usize,
     },
     /// A gain leaves the conditions' range by more than half its width, between two clusters
@@ -21,10 +21,10 @@ pub enum ScheduleCaution {
         channel: Channel,
         /// Mean airspeeds \[kt\] in the neighbouring clusters.
         between_kt: [f64; 2],
-        /// Airspeed at the largest excursion \[kt\].
+        /// Airspeed at the maximum excursion \[kt\].
         airspeed_kt: f64,
         gain: f64,
-        /// Least and greatest gain in the conditions.
+        /// Minimum and maximum gain over the conditions.
         range: [f64; 2],
     },
     /// A channel's signed delay in a condition is far from the others, or has another sign (M15.6).
@@ -39,7 +39,8 @@ pub enum ScheduleCaution {
     /// A gain is not positive at an intermediate airspeed, possible only if `k` itself is
     /// regressed.
     NotPositive,
-    /// The schedule gives a condition much more J than its own correction does (M12).
+    /// J of a condition under the schedule is more than twice that under the condition's own
+    /// correction (M12).
     CostsMore(ScheduledCost),
 }
 
@@ -47,7 +48,7 @@ pub enum ScheduleCaution {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduledCost {
     pub condition: ConditionId,
-    /// Name: nominal, or representative if the nominal model is rejected.
+    /// Name of the nominal model, or of the representative if the nominal model is rejected.
     pub model: String,
     /// J under the schedule.
     pub scheduled: f64,
@@ -58,10 +59,10 @@ pub struct ScheduledCost {
 impl ScheduledCost {
     /// Ratio between scheduled and own J above which a caution is raised.
     const NOTABLE_RATIO: f64 = 2.0;
-    /// Scheduled J below which no caution is raised: 1 is 0.2 dB.
+    /// Scheduled J below which no caution is raised: 1 corresponds to an error of 0.2 dB.
     const LEAST_NOTABLE: f64 = 1.0;
 
-    /// Whether the scheduled J is more than twice the condition's own.
+    /// Whether the scheduled J is above 1 and more than twice the condition's own J.
     pub fn is_notable(&self) -> bool {
         self.scheduled > Self::LEAST_NOTABLE && self.scheduled > Self::NOTABLE_RATIO * self.own
     }
@@ -123,7 +124,7 @@ impl ScheduleCaution {
                 "a scheduled gain is not positive at an airspeed between the conditions".to_owned()
             }
             ScheduleCaution::CostsMore(cost) => {
-                // Rounded so that both numbers differ.
+                // Rounded to enough digits that both values differ.
                 let (scheduled, own) = told_apart(cost.scheduled, cost.own, 0);
                 format!(
                     "condition {}, model {}: mean on-axis J {scheduled} with the schedule, {own} with the condition's own correction",

@@ -20,7 +20,7 @@ use super::second_term::SecondTerm;
 use super::settings::{ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use crate::correction::{ChannelCorrection, Channels, LeadPrice};
 
-/// Steps over the airspeed range at which a schedule is inspected.
+/// Number of steps over the airspeed range at which a schedule is inspected.
 pub(super) const STEPS: u32 = 100;
 
 /// Every channel's gain (and delay, where requested) as a function of airspeed.
@@ -100,8 +100,8 @@ impl Schedule {
         self.delays.is_some() || self.leads.is_some()
     }
 
-    /// Returns the price for the scheduled leads: by channel the maximum over the airspeeds. `None`
-    /// for a schedule without lead filters.
+    /// Returns the price of the scheduled leads: for each channel the maximum over the airspeeds.
+    /// `None` for a schedule without lead filters.
     pub fn lead_price(&self) -> Option<LeadPrice> {
         let leads = self.leads.as_ref()?;
         let steps = if leads.degree() == 0 { 0 } else { STEPS };
@@ -119,7 +119,7 @@ impl Schedule {
         highest
     }
 
-    /// Returns the airspeed \[kt\] at an inspection step between the least and the greatest.
+    /// Returns the airspeed \[kt\] at an inspection step between the minimum and the maximum.
     pub(super) fn step_kt(&self, step: u32) -> f64 {
         let fraction = f64::from(step) / f64::from(STEPS);
         self.airspeeds.min_kt + fraction * (self.airspeeds.max_kt - self.airspeeds.min_kt)
@@ -137,7 +137,7 @@ impl Schedule {
     /// end value applies.
     ///
     /// Scheduled delays are limited to their bounds: from zero to the conditions' upper bounds,
-    /// interpolated linearly. A second variable takes its middle value.
+    /// interpolated linearly. A second variable is set to the middle of its range.
     pub fn at(&self, airspeed_kt: f64) -> ChannelCorrection {
         self.evaluate(airspeed_kt, None)
     }
@@ -193,7 +193,7 @@ impl Schedule {
     }
 
     /// Returns the design row for an airspeed \[kt\], limited to the conditions' range. A second
-    /// variable takes its middle value.
+    /// variable is set to the middle of its range.
     pub fn design_row(&self, airspeed_kt: f64) -> Vec<f64> {
         let mut row = match self.degree() {
             Some(degree) => powers(self.airspeeds.scaled(airspeed_kt), degree),
@@ -296,7 +296,7 @@ mod tests {
         let direct = Regression::polynomial(&schedule.airspeeds, &products, 2);
         for airspeed in [40.0, 88.0, 140.0] {
             let product = schedule.at(airspeed).net_gain(Pair::new(0, 0));
-            // The same least squares, rounded in another order.
+            // The same least squares problem, rounded in another order.
             assert!((product / direct.at(&schedule.airspeeds, airspeed).exp() - 1.0).abs() < 1e-13);
         }
     }

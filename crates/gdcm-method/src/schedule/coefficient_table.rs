@@ -6,7 +6,7 @@ use super::regression::Regression;
 use super::settings::ScheduledQuantity;
 use crate::correction::{Channel, Channels};
 
-/// Column headings for a polynomial, lowest power first.
+/// Column headings of a polynomial, lowest power first.
 const POWERS: [&str; 4] = ["1", "v", "v²", "v³"];
 
 /// A channel's coefficients or values.
@@ -15,16 +15,16 @@ pub struct CoefficientRow {
     pub channel: Channel,
     /// Scheduled quantity with its channel: "ln k_LON", "k_Q", "τ_PED \[s\]".
     pub name: String,
-    /// By column.
+    /// Coefficients or values by column.
     pub figures: Vec<f64>,
 }
 
 /// Polynomial coefficients in the scaled airspeed, or a lookup table's values (M11).
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoefficientTable {
-    /// Factors of the coefficients ("1", "v", "v²", "v³"), or airspeeds ("60.0 kt").
+    /// Powers multiplied by the coefficients ("1", "v", "v²", "v³"), or airspeeds ("60.0 kt").
     pub columns: Vec<String>,
-    /// Inputs, then outputs; gains, then delays where they are scheduled.
+    /// Inputs, then outputs; gains, then delays if scheduled.
     pub rows: Vec<CoefficientRow>,
     /// Definition of `v`: "v = (V − 92.3 kt) / 47.5 kt"; empty for a table.
     pub scale: String,
@@ -87,7 +87,7 @@ impl Schedule {
         }
     }
 
-    /// Returns the regressions for delays and signed delays, where these are scheduled.
+    /// Returns the regressions of delays and signed delays, where these are scheduled.
     fn scheduled_delays(&self) -> Vec<&Channels<Regression>> {
         let mut scheduled = Vec::new();
         if let Some(delays) = &self.delays {
@@ -99,10 +99,10 @@ impl Schedule {
         scheduled
     }
 
-    /// Returns a regression's figures in the table's columns.
+    /// Returns the coefficients or values of a regression in the table's columns.
     fn row_figures(&self, regression: &Regression, columns: usize) -> Vec<f64> {
         match (self.degree(), regression) {
-            // Signed delays have a polynomial even besides a table for the gains.
+            // Signed delays are a polynomial even where the gains are a lookup table.
             (None, Regression::Polynomial { .. }) => self
                 .airspeeds
                 .clusters_kt()

@@ -1,4 +1,4 @@
-//! Comparison between forms and degrees: residuals and leave-one-condition-out errors (M11, M15.5).
+//! Comparison of forms and degrees: residuals and leave-one-condition-out errors (M11, M15.5).
 
 use gdcm_model::dataset::{Pair, PairTable};
 
@@ -46,7 +46,8 @@ impl Residual {
 pub struct FitResiduals {
     /// `None` if the scheduled gain is not positive.
     pub residuals: Vec<Option<Residual>>,
-    /// Residual against the schedule made without that condition; `None` for the only condition.
+    /// Residual of each condition against the schedule fitted without that condition; `None` for
+    /// the only condition.
     pub left_out: Vec<Option<Residual>>,
 }
 
@@ -162,7 +163,7 @@ struct Predictions {
     degree: Option<usize>,
     /// From the schedule of all conditions.
     scheduled: Vec<ChannelCorrection>,
-    /// From the schedule of the others; `None` if it does not exist.
+    /// From the schedule of the other conditions; `None` if that schedule does not exist.
     unseen: Vec<Option<ChannelCorrection>>,
 }
 
@@ -210,7 +211,7 @@ impl Predictions {
         }
     }
 
-    /// Returns the fit for a response's net signed delay.
+    /// Returns the fit of a response's net signed delay.
     fn lead_fit(&self, points: &[ScheduledPoint<'_>], pair: Pair) -> LeadFit {
         let unseen: Option<Vec<&ChannelCorrection>> =
             self.unseen.iter().map(Option::as_ref).collect();
@@ -244,11 +245,11 @@ fn delay_rms_s<'a>(
 pub struct LeadFit {
     /// Over all conditions.
     pub rms_s: f64,
-    /// Over predictions from the schedule of the others; `None` if there are no others.
+    /// Over predictions from the schedule of the other conditions; `None` for the only condition.
     pub left_out_rms_s: Option<f64>,
 }
 
-/// Fit for the signed delays with a polynomial degree.
+/// Fit of the signed delays by polynomials of a degree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadDegreeFit {
     pub degree: usize,
@@ -256,7 +257,7 @@ pub struct LeadDegreeFit {
     pub pairs: PairTable<LeadFit>,
 }
 
-/// Computes the fit for the signed delays with each degree from 0 to [`HIGHEST_DEGREE`]; empty if a
+/// Computes the fit of the signed delays for each degree from 0 to [`HIGHEST_DEGREE`]; empty if a
 /// condition's correction has no leads.
 pub fn compare_lead_degrees(
     points: &[ScheduledPoint<'_>],
@@ -268,7 +269,7 @@ pub fn compare_lead_degrees(
     }
     for degree in 0..=HIGHEST_DEGREE {
         let settings = ScheduleSettings {
-            // Signed delays depend on airspeed alone, with any form for the gains.
+            // Signed delays depend on airspeed only, whatever the form of the gains.
             kind: ScheduleKind::Polynomial { degree: 0 },
             tau_degree: degree,
             second: None,

@@ -74,7 +74,7 @@ impl Schedule {
             let gain = point.correction.gain(channel);
             range = [range[0].min(gain), range[1].max(gain)];
         }
-        // Where all gains are equal, rounding is no overshoot.
+        // The second term keeps rounding from counting as an overshoot where all gains are equal.
         let mut farthest = 0.5 * (range[1] - range[0]) + 1e-9 * range[1];
         let mut found = None;
         for neighbours in self.airspeeds.clusters_kt().windows(2) {

@@ -12,7 +12,7 @@ use crate::correction::leads::{ChannelLeads, LeadDesign};
 /// regression of the sum, so every response's net lead is scheduled exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadSchedule {
-    /// Design from which the filter for a signed delay follows.
+    /// Design that gives the filter of a signed delay.
     pub design: Arc<LeadDesign>,
     /// Signed delays by channel \[s\].
     pub taus_s: Channels<Regression>,
@@ -59,7 +59,7 @@ impl LeadSchedule {
         Some(schedule)
     }
 
-    /// Returns the highest degree among its polynomials.
+    /// Returns the maximum degree of the polynomials.
     pub fn degree(&self) -> usize {
         self.taus_s
             .iter()
@@ -139,7 +139,7 @@ mod tests {
                 .collect();
             let direct = Regression::polynomial(&airspeeds, &sums, degree);
             let at = schedule.at(&airspeeds, 93.0);
-            // The same least squares, rounded in another order.
+            // The same least squares problem, rounded in another order.
             assert!(
                 (at.taus_s.inputs[0] + at.taus_s.outputs[0] - direct.at(&airspeeds, 93.0)).abs()
                     < 1e-15

@@ -100,13 +100,13 @@ pub(super) fn powers(v: f64, degree: usize) -> Vec<f64> {
     (0..=degree).map(|power| v.powi(power as i32)).collect()
 }
 
-/// Neighbours among rising places; both are the end place beyond the ends.
+/// Neighbouring points in an ascending list; beyond its ends both are the end point.
 struct Bracket {
-    /// Index.
+    /// Index of the lower neighbour.
     before: usize,
-    /// Index.
+    /// Index of the upper neighbour.
     after: usize,
-    /// Place between the neighbours, 0 to 1.
+    /// Position between the neighbours, 0 to 1.
     fraction: f64,
 }
 
@@ -131,7 +131,7 @@ impl Bracket {
     }
 }
 
-/// Returns the weights of ascending places in the linear interpolation at `x`.
+/// Returns the weight of each of the ascending `places` in the linear interpolation at `x`.
 pub(super) fn interpolation_weights(places: &[f64], x: f64) -> Vec<f64> {
     let mut weights = vec![0.0; places.len()];
     let Bracket {

@@ -2,7 +2,7 @@
 
 use crate::correction::ChannelCorrection;
 
-/// A condition's optimum.
+/// A condition with its own optimal correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScheduledPoint<'a> {
     /// True airspeed \[kt\].

@@ -15,7 +15,7 @@ const DEPENDENT: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondTerm {
     pub variable: SecondVariable,
-    /// Least and greatest value over the conditions.
+    /// Minimum and maximum value over the conditions.
     pub range: [f64; 2],
     /// Scaled values by condition.
     pub scaled: Vec<f64>,
@@ -28,8 +28,8 @@ impl SecondTerm {
     ///
     /// `values` are the second variable by condition, `airspeed_design` the other design columns (a
     /// row by condition), `regressed` the values by channel and condition. By the
-    /// Frisch-Waugh-Lovell theorem `gamma = z_r' y / z_r' z_r`, where `z_r` is what remains from
-    /// `z` after projection on the other columns.
+    /// Frisch-Waugh-Lovell theorem `gamma = z_r' y / z_r' z_r`, where `z_r` is the residual of `z`
+    /// after projection on the other columns.
     ///
     /// # Errors
     /// [`ScheduleError::NotToldApart`] if the values depend linearly on those columns.
@@ -66,7 +66,7 @@ impl SecondTerm {
         })
     }
 
-    /// Scales a value to -1 to 1; beyond the conditions' range the end applies.
+    /// Scales a value to -1 to 1; beyond the conditions' range the scaled value is -1 or 1.
     pub fn scale(&self, value: f64) -> f64 {
         scaled(value.clamp(self.range[0], self.range[1]), self.range)
     }

@@ -52,8 +52,8 @@ impl SecondVariable {
         }
     }
 
-    /// Returns a number by condition: the values, or -1 and 1 for two different labels; `None` if a
-    /// condition has neither.
+    /// Returns a value for each condition: the altitude or mass, or -1 and 1 for two different
+    /// labels; `None` if a condition has neither.
     pub fn values(self, states: &[&FlightState]) -> Option<Vec<f64>> {
         let numbers: Option<Vec<f64>> = states.iter().map(|state| self.value(state)).collect();
         if numbers.is_some() {

@@ -44,13 +44,13 @@ pub const NOTABLE_DELAY_S: f64 = 5e-4;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DelayScheduling {
-    /// Where a constrained response has a net delay above [`NOTABLE_DELAY_S`] in a scheduled
-    /// condition.
+    /// Delays are scheduled if a constrained response has a net delay above [`NOTABLE_DELAY_S`] in
+    /// a scheduled condition.
     #[default]
     Automatic,
-    /// In every study.
+    /// Delays are always scheduled.
     Always,
-    /// In no study.
+    /// Delays are never scheduled.
     Never,
 }
 
@@ -97,14 +97,14 @@ impl Visitor<'_> for DelaySchedulingVisitor {
 pub struct ScheduleSettings {
     pub kind: ScheduleKind,
     pub quantity: ScheduledQuantity,
-    /// Whether this schedule has delays too: the outcome from [`DelayScheduling`] for its
-    /// conditions. Older program versions read this field from study settings; it is `true` there
-    /// if delays are always scheduled.
+    /// Whether this schedule has delays too, as decided by [`DelayScheduling`] for its conditions.
+    /// Older program versions read this field from study settings; it is `true` there if delays are
+    /// always scheduled.
     pub delays: bool,
-    /// Polynomial degree for signed delays, 0 to [`HIGHEST_DEGREE`]; 0 by default, because servo,
+    /// Polynomial degree of signed delays, 0 to [`HIGHEST_DEGREE`]; 0 by default, because servo,
     /// sensor and computing lags do not depend on airspeed (M15.5).
     pub tau_degree: usize,
-    /// Largest distance between neighbours in a cluster of airspeeds \[kt\] (M11b).
+    /// Maximum distance between neighbours in a cluster of airspeeds \[kt\] (M11b).
     pub airspeed_tolerance_kt: f64,
     /// Variable scheduled besides airspeed (M13.7).
     pub second: Option<SecondVariable>,

@@ -25,9 +25,9 @@ pub struct Bar {
     /// condition and without a reported error.
     pub identification: Option<VarianceComponent>,
     pub source: IdentificationSource,
-    /// Substitutions for which the value does not exist.
+    /// Number of substitutions for which the value does not exist.
     pub left_out: usize,
-    /// Least and greatest admissible value.
+    /// Minimum and maximum admissible value.
     pub range: [f64; 2],
 }
 
@@ -42,23 +42,23 @@ impl Bar {
         self.variance().sqrt()
     }
 
-    /// Iterates over the known variance components.
+    /// Iterates over the available variance components.
     pub fn parts(&self) -> impl Iterator<Item = VarianceComponent> + use<> {
         [self.trim, self.identification].into_iter().flatten()
     }
 
-    /// Returns the degrees of freedom in `u`; `None` if the bundles have no spread.
+    /// Returns the degrees of freedom of `u`; `None` if the bundles have no spread.
     pub fn degrees_of_freedom(&self) -> Option<f64> {
         satterthwaite(self.parts())
     }
 
-    /// Returns the whole bar's half-width, `h = t(max(nu, 1)) u`; `None` without a known spread.
+    /// Returns the whole bar's half-width, `h = t(max(nu, 1)) u`; `None` without spread.
     pub fn half_width(&self, level: f64) -> Option<f64> {
         let degrees = self.degrees_of_freedom()?;
         Some(student_quantile(level, degrees) * self.deviation())
     }
 
-    /// Returns the inner bar's half-width, `t(nu_id) s_id`, which holds for the chosen physics
+    /// Returns the inner bar's half-width, `t(nu_id) s_id`, the uncertainty for a fixed physics
     /// model.
     pub fn inner_half_width(&self, level: f64) -> Option<f64> {
         let part = self.identification.filter(|part| part.variance > 0.0)?;
@@ -83,7 +83,7 @@ impl Bar {
         ]
     }
 
-    /// Returns the trim's share in the variance, from 0 to 1; `None` without spread.
+    /// Returns the trim's share of the variance, from 0 to 1; `None` without spread.
     pub fn trim_share(&self) -> Option<f64> {
         let variance = self.variance();
         if variance > 0.0 {
@@ -138,7 +138,7 @@ mod tests {
         }
     }
 
-    /// Reference case A, condition 1 (independent numpy code).
+    /// Reference results from independent numpy code: case A, condition 1.
     #[test]
     fn a_bar_combines_both_parts_with_student_s_quantile() {
         let bar = bar(0.0316227766017, 0.0206881608656);

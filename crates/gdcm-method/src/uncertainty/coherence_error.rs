@@ -7,9 +7,9 @@ use gdcm_model::statistics::median;
 /// Measurement data that determine a response's error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
-    /// Independent averages, `n_d`.
+    /// Number of independent averages, `n_d`.
     pub averages: f64,
-    /// Window length \[s\], `T_w`. Without it all frequencies share the same error.
+    /// Window length \[s\], `T_w`. `None` if unknown: all frequencies then have a common error.
     pub window_s: Option<f64>,
     /// `C_epsilon`: 1, or `sqrt(0.55)` for windows that overlap by half.
     pub factor: f64,
@@ -30,8 +30,8 @@ impl Measurement {
         2.0 * self.averages
     }
 
-    /// Computes the standard deviation both of `ln |H|` and `arg H` \[rad\], `epsilon = C sqrt(1 -
-    /// gamma^2) / (|gamma| sqrt(2 n_d))`.
+    /// Computes the standard deviation of `ln |H|`, equal to that of `arg H` \[rad\], `epsilon = C
+    /// sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`.
     ///
     /// J. S. Bendat and A. G. Piersol, *Random Data*, 4th ed. 2010, chapter 9.
     pub fn deviation(&self, coherence: f64) -> f64 {

@@ -4,7 +4,7 @@ use super::bar::Bar;
 use super::distributions::student_two_sided;
 use super::variance_component::satterthwaite;
 
-/// Difference between two conditions in a value, with the standard deviation expected from both
+/// Difference in a value between two conditions, with the standard deviation expected from both
 /// bars.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
@@ -12,7 +12,7 @@ pub struct Difference {
     pub delta: f64,
     /// Expected standard deviation, `u_delta`.
     pub deviation: f64,
-    /// `None` if neither condition has a spread.
+    /// Degrees of freedom of `deviation`; `None` if neither condition has a spread.
     pub degrees_of_freedom: Option<f64>,
 }
 
@@ -27,8 +27,8 @@ impl Difference {
         }
     }
 
-    /// Returns `|delta| / u_delta`, as a multiple of the expected difference; `None` without a
-    /// spread.
+    /// Returns `|delta| / u_delta`, the difference as a multiple of its expected standard
+    /// deviation; `None` without a spread.
     pub fn ratio(&self) -> Option<f64> {
         self.degrees_of_freedom?;
         Some(self.delta.abs() / self.deviation)

@@ -1,6 +1,6 @@
-//! Least squares over the conditions: split of the scatter about a fit (M13.5), bands for scheduled
-//! `ln k` (M13.6), and the test whether the schedule needs a second variable besides airspeed
-//! (M13.7).
+//! Least squares over the conditions: split of the scatter about a fit (M13.5), bands of the
+//! scheduled `ln k` (M13.6), and the test whether the schedule needs a second variable besides
+//! airspeed (M13.7).
 
 use std::sync::Arc;
 
@@ -16,7 +16,8 @@ use super::variance_component::{VarianceComponent, satterthwaite};
 /// before it.
 const DEPENDENT: f64 = 1e-9;
 
-/// Most columns in a design; a table over more airspeeds has neither a split nor bands.
+/// Maximum number of columns in a design; a lookup table over more airspeeds has neither a split
+/// nor bands.
 pub const MOST_COLUMNS: usize = 200;
 
 /// Design matrix `X` with full column rank, n conditions by r columns, stored as `Q R`.
@@ -29,9 +30,9 @@ pub struct Design {
 /// Least-squares fit to a value by condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// By column.
+    /// Coefficient of each column.
     pub coefficients: Vec<f64>,
-    /// By condition.
+    /// Residual of each condition.
     pub residuals: Vec<f64>,
 }
 
@@ -129,13 +130,13 @@ impl Design {
 /// Half-widths of the two bands about a scheduled `ln k` at an airspeed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandWidths {
-    /// Confidence band for the schedule itself.
+    /// Half-width of the confidence band of the schedule itself.
     pub confidence: f64,
-    /// Band for a further condition.
+    /// Half-width of the band that is expected to contain a further condition.
     pub scatter: f64,
 }
 
-/// Bands for a schedule: `t(n - r) S' sqrt(h)` and `t(n - r) S' sqrt(1 + h)`, `S'^2 = max(S^2, B)`.
+/// Bands of a schedule: `t(n - r) S' sqrt(h)` and `t(n - r) S' sqrt(1 + h)`, `S'^2 = max(S^2, B)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduleBand {
     design: Arc<Design>,
@@ -153,7 +154,7 @@ impl ScheduleBand {
         }
     }
 
-    /// Returns the half-widths for a design row.
+    /// Returns the half-widths of the bands at a design row.
     pub fn at(&self, row: &[f64]) -> BandWidths {
         let h = self.design.leverage(row);
         BandWidths {
@@ -166,7 +167,7 @@ impl ScheduleBand {
 /// Scatter about a fit, split into the parts expected from the bundles and the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VarianceDecomposition {
-    /// Degrees of freedom in the scatter, `f = n - r`.
+    /// Degrees of freedom of the scatter, `f = n - r`.
     pub freedom: usize,
     /// Residual variance `S^2 = sum e^2 / f`.
     pub scatter: f64,
@@ -174,7 +175,7 @@ pub struct VarianceDecomposition {
     pub trim: f64,
     /// `B_id`, expected from the identification.
     pub identification: f64,
-    /// Degrees of freedom in `B`; `None` if the bundles have no spread.
+    /// Degrees of freedom of `B`; `None` if the bundles have no spread.
     pub degrees_of_freedom: Option<f64>,
 }
 
@@ -214,8 +215,8 @@ impl VarianceDecomposition {
         (self.scatter - self.explained()).max(0.0)
     }
 
-    /// Returns the shares in `max(S^2, B)` from trim, identification and rest; `None` without
-    /// scatter and spread.
+    /// Returns the shares of trim, identification and rest in `max(S^2, B)`; `None` without scatter
+    /// and spread.
     pub fn shares(&self) -> Option<[f64; 3]> {
         let whole = self.scatter.max(self.explained());
         if whole > 0.0 {
@@ -225,7 +226,8 @@ impl VarianceDecomposition {
         }
     }
 
-    /// Returns `sqrt(S^2 / B)`, as a multiple of the expected scatter; `None` without spread.
+    /// Returns `sqrt(S^2 / B)`, the scatter as a multiple of the expected scatter; `None` without
+    /// spread.
     pub fn ratio(&self) -> Option<f64> {
         self.degrees_of_freedom?;
         Some((self.scatter / self.explained()).sqrt())
@@ -240,7 +242,7 @@ impl VarianceDecomposition {
         )
     }
 
-    /// Returns the rest's confidence interval, as a standard deviation.
+    /// Returns the confidence interval of `rest`, the unexplained standard deviation.
     pub fn unexplained_interval(&self, level: f64) -> Option<[f64; 2]> {
         Some([
             self.unexplained_limit(0.5 * (1.0 + level))?,
@@ -345,7 +347,7 @@ impl SecondVariableDesign {
         } else {
             coefficient / error
         };
-        // Conditions that either fit interpolates count in neither error.
+        // A condition that either of the two fits interpolates counts in neither error.
         let mut errors_without = Vec::new();
         let mut errors_with = Vec::new();
         let left_out = without
@@ -376,7 +378,8 @@ fn rms(values: &[f64]) -> Option<f64> {
     Some((sum_of_squares(values) / values.len() as f64).sqrt())
 }
 
-/// Largest ratio between the leave-one-out errors with and without a variable that is needed.
+/// Maximum ratio of the leave-one-out error with a variable to that without it, for the variable to
+/// count as needed.
 const NOTABLE_RATIO: f64 = 0.9;
 
 impl SecondVariableEffect {

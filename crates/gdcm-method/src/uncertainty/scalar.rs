@@ -10,7 +10,7 @@ use crate::correction::Channel;
 /// A condition's scalars; `None` if a scalar does not exist.
 pub type Figures = ScalarTable<Option<f64>>;
 
-/// Scalar result for a condition, `q` in M13.
+/// Scalar result of a condition, `q` in M13.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Scalar {
     /// `ln G`.
@@ -37,7 +37,7 @@ impl Scalar {
     }
 }
 
-/// A table with an entry for each scalar.
+/// An entry for each scalar of a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScalarTable<T>(BTreeMap<Scalar, T>);
 

@@ -32,8 +32,8 @@ pub struct ConditionSpread {
 
 impl ConditionSpread {
     /// Computes the mean squares about the representatives' scalars. `trim` has an entry for each
-    /// other kept physics model, `own` for each other kept identified model; `None` if that pair's
-    /// analysis failed.
+    /// other kept physics model, `own` for each other kept identified model; `None` if the analysis
+    /// with that model failed.
     pub fn of(
         representatives: &Figures,
         trim: &[Option<&Figures>],
@@ -72,11 +72,11 @@ fn changes_from(base: f64, scalar: Scalar, swaps: &[Option<&Figures>]) -> Vec<f6
 pub struct BarSource<'a> {
     /// Scalars with both representatives.
     pub figures: Figures,
-    /// Their changes under substitution.
+    /// Changes of the scalars if other models are substituted.
     pub spread: &'a ConditionSpread,
     /// Errors reported by the identified representative itself.
     pub reported: ScalarTable<Option<ReportedUncertainty>>,
-    /// Lower and upper bound for a channel delay \[s\].
+    /// Lower and upper bound on a channel delay \[s\].
     pub delay_bounds_s: [f64; 2],
 }
 
@@ -127,9 +127,10 @@ impl BarSource<'_> {
 }
 
 impl ReportedUncertainty {
-    /// Whether the reported error replaces the spread, because it is larger. Models that each leave
-    /// a record out spread less than each errs, by about the root of the record count (Efron's
-    /// jackknife); their bands do not have this defect.
+    /// Whether the reported error replaces the spread, because it is larger. The spread of models
+    /// that each leave a record out is smaller than the error of each model, by a factor of about
+    /// the square root of the number of records (Efron's jackknife); their bands do not have this
+    /// defect.
     fn replaces(&self, spread: Option<VarianceComponent>) -> bool {
         spread.is_none_or(|spread| self.part.variance > spread.variance)
     }

@@ -1,13 +1,12 @@
 //! Variances with degrees of freedom: from substitutions, summed, and pooled over conditions (M13.1 to
 //! M13.3).
 
-/// A variance with its degrees of freedom: for the natural logarithm of a gain, or for a delay
-/// \[s^2\].
+/// Variance of the natural logarithm of a gain, or of a delay \[s^2\], with its degrees of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VarianceComponent {
     /// The mean square.
     pub variance: f64,
-    /// Degrees of freedom, at least 1; infinite for a variance taken as known.
+    /// Degrees of freedom, at least 1; infinite for a variance without uncertainty of its own.
     pub degrees_of_freedom: f64,
 }
 
@@ -19,11 +18,11 @@ impl VarianceComponent {
     /// Computes the mean square of changes from the representative's value (M13.1); `None` without
     /// changes.
     ///
-    /// It is not a variance about the mean, and never divided by the model count: a further model
-    /// does not determine the flown trim better, and identified models share records. For
-    /// independent identified models it is about twice their error variance. The surplus keeps the
-    /// bars at their level while up to half the error variance is common to all models (measured in
-    /// `docs/uncertainty.md`).
+    /// The mean square is not a variance about the mean, and is never divided by the number of
+    /// models: a further model does not determine the flown trim better, and identified models
+    /// share records. For independent identified models it is about twice their error variance. The
+    /// surplus keeps the bars at their confidence level if up to half the error variance is common
+    /// to all models (measured in `docs/uncertainty.md`).
     pub fn from_changes(changes: &[f64]) -> Option<Self> {
         if changes.is_empty() {
             return None;
@@ -98,7 +97,7 @@ pub fn pooled(
         let n = own.degrees_of_freedom;
         let borrowed = prior_degrees.min(count - n);
         let degrees = n + borrowed;
-        // Without borrowing, a condition with a single model has no estimate.
+        // A condition with a single model has no estimate if nothing is borrowed from the others.
         pooled.push(if count > 0.0 && degrees > 0.0 {
             Some(VarianceComponent {
                 variance: (n * own.variance + borrowed * square / count) / degrees,

@@ -25,7 +25,7 @@ impl Derivatives {
     }
 }
 
-/// Least and greatest derivative over an interval, rounded outward.
+/// Minimum and maximum of a derivative over an interval, rounded outward.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Range {
     pub(crate) least: f64,

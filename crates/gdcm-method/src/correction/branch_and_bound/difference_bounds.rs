@@ -9,7 +9,7 @@ use crate::correction::interval::Interval;
 /// is the tightest implied bound.
 #[derive(Clone, Debug)]
 pub(crate) struct DifferenceBounds {
-    /// Scale count, with the ground.
+    /// Number of scales, including the ground.
     count: usize,
     /// Row-major, count x count.
     bounds: Vec<f64>,
@@ -30,7 +30,7 @@ impl DifferenceBounds {
         Self { count, bounds }
     }
 
-    /// Returns the range for `s_to - s_from`.
+    /// Returns the range of `s_to - s_from`.
     pub(crate) fn range(&self, from: usize, to: usize) -> Interval {
         Interval {
             low: -self.bounds[to * self.count + from],
@@ -84,16 +84,16 @@ impl DifferenceBounds {
         Self { count, bounds }
     }
 
-    /// Memory for the bounds on `count` scales, in bytes.
+    /// Returns the memory that the bounds on `count` scales need, in bytes.
     pub(crate) fn bytes(count: usize) -> usize {
         count * count * size_of::<f64>()
     }
 
-    /// Writes each scale's least and greatest value.
+    /// Writes the minimum and maximum of each scale.
     pub(crate) fn write_box(&self, lower: &mut [f64], upper: &mut [f64]) {
         let ground = self.count - 1;
         for scale in 0..ground {
-            // An empty interval can only be rounding: `below` has refused empty parts.
+            // Only rounding can make an interval empty: `below` returns `None` for an empty part.
             let range = self.range(ground, scale).not_empty();
             lower[scale] = range.low;
             upper[scale] = range.high;

@@ -116,8 +116,8 @@ impl Line {
     }
 }
 
-/// Returns the height at `low` by which the tangent at `v` exceeds the value `start`: it falls as
-/// `v` rises beyond the inflection.
+/// Returns the amount by which the tangent at `v`, extended to `low`, exceeds the value `start`;
+/// the amount falls as `v` rises beyond the inflection.
 fn overshoot(low: f64, start: &Derivatives, v: f64, at: &Derivatives) -> f64 {
     at.value.value + at.slope.value * (low - v) - start.value.value
 }

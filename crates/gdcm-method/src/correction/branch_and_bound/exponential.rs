@@ -84,8 +84,8 @@ impl CombinedEntries {
             least.add(at_minimum.square());
             worst = worst.max(entry.error);
         }
-        // A sum of n positive terms is exact to n roundings of half an epsilon. The centre is a
-        // quotient of two such sums, in which the product appears three times.
+        // A sum of n positive terms has a relative error of at most n times half an epsilon. The
+        // centre is a quotient of two such sums, in which the product appears three times.
         let rounding = 3.0 * worst + (entries.len() as f64 + 4.0) * f64::EPSILON;
         let exponential = Exponential {
             weight,

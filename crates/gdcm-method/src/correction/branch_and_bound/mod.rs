@@ -1,9 +1,9 @@
 //! The objective's global minimum over the scales that the constrained products leave free, with a
 //! proof.
 //!
-//! Constraining `k_o k_i` ties the logarithms in a connected piece of channels together up to a
-//! *scale* `s` (M8, structure). With the ground, scale 0, the objective is a sum of functions, each
-//! of a single difference:
+//! Constraining `k_o k_i` fixes the logarithms in a connected piece of channels up to a common
+//! offset, the *scale* `s` (M8, structure). With the ground, whose scale is always 0, the objective
+//! is a sum of functions, each of a single difference of scales:
 //!
 //! ```text
 //! F(s) = c + sum over terms f_t(s_j - s_i),     f_t(u) = R1 (e^u - c1)^2 + R2 (e^-u - c2)^2   or   w (u - c)^2:
@@ -16,14 +16,16 @@
 //! ```text
 //!  1  best <- local minimum of F from the given start (projected Newton)
 //!  2  open <- { the whole box }
-//!  3  while the least open bound < (1 - 2e-10) best (proof), then < 1.01 best (listing), and the budget lasts
-//!  4     node <- the open node with the least bound;  listing: monotonicity test, convexity test: without an unknown minimum, close it
+//!  3  while the lowest open bound < (1 - 2e-10) best (proof), then < 1.01 best (listing),
+//!     and the budget lasts
+//!  4     node <- the open node with the lowest bound;  listing: by monotonicity and
+//!        convexity tests, close it if it contains no minimum other than those found
 //!  5     node.bound <- tangent plane to its underestimator (each term's convex envelope) at its minimum, less the rounding
 //!  6     best <- local minimum of F from there, where that may be a new one worth listing
 //!  7     if node.bound >= 1.01 best, close it; if only >= best, keep it for the listing
 //!  8     if F is convex over the hull of node and best (convexity test), close it with the bound from best's gradient and Hessian
 //!  9     branch: at the difference whose term lies furthest above its envelope, or at a concave interval's end
-//! 10  lower bound <- least bound over closed and open nodes
+//! 10  lower bound <- lowest bound of all closed and open nodes
 //! ```
 //!
 //! Sources: Hansen and Walster, *Global Optimization Using Interval Analysis* (2004), for

@@ -6,9 +6,9 @@ use super::objective::{Curvature, Differentiable, Expansion, ScaleBox};
 /// A projected Newton method.
 ///
 /// ```text
-/// 1  quadratic model at the present point; its minimum over the box is the step
+/// 1  quadratic model at the current point; its minimum over the box is the step
 /// 2  the longest halving of the step that decreases the function
-/// 3  end where the step is at rounding, or the caller has seen enough
+/// 3  end where the step is at rounding, or `enough` holds
 /// ```
 ///
 /// Each step minimises the model over the box exactly, so that the active bounds are right as soon
@@ -23,7 +23,7 @@ pub(crate) struct Newton<'a> {
 }
 
 impl<'a> Newton<'a> {
-    /// Allocates the method for `scales` scales; the work is counted in `effort`.
+    /// Allocates the method for `scales` scales; `effort` counts the work.
     pub(crate) fn new(scales: usize, effort: &'a Effort<'a>) -> Self {
         Self {
             effort,
@@ -43,8 +43,8 @@ impl<'a> Newton<'a> {
         scales: &mut [f64],
         mut enough: impl FnMut(&[f64], &Expansion) -> bool,
     ) {
-        // Newton's method needs about ten steps; a flat start or a run along an inflection a few
-        // tens.
+        // Newton's method needs about ten steps; from a flat start or along an inflection it needs
+        // a few tens.
         const STEPS: usize = 100;
         self.effort.spend(function.work());
         function.expand(scales, Curvature::True, &mut self.reached);
@@ -145,9 +145,9 @@ impl<'a> Newton<'a> {
     }
 }
 
-/// Minimum of the quadratic model.
+/// Step to the minimum of the quadratic model.
 struct ModelStep {
-    /// Decrease of the model.
+    /// Decrease of the model over the step.
     decrease: f64,
     /// Whether the model has the function's curvature, not its magnitude.
     has_true_curvature: bool,
@@ -157,17 +157,17 @@ struct ModelStep {
 #[derive(Clone, Debug)]
 struct QuadraticModel {
     scales: usize,
-    /// Least step for each scale, at most 0.
+    /// Lower bound on the step of each scale, at most 0.
     low: Vec<f64>,
-    /// Greatest step for each scale, at least 0.
+    /// Upper bound on the step of each scale, at least 0.
     high: Vec<f64>,
     step: Vec<f64>,
     /// The model's slope after the step.
     slope: Vec<f64>,
-    /// Scales that no active bound holds, in rising order.
+    /// Scales without an active bound, in ascending order.
     free: Vec<usize>,
     is_free: Vec<bool>,
-    /// Cholesky factor for the free part of the Hessian, row-major.
+    /// Cholesky factor of the free part of the Hessian, row-major.
     factor: Vec<f64>,
     /// Move to the minimum without bounds, for each free scale.
     move_to: Vec<f64>,
@@ -298,7 +298,7 @@ impl QuadraticModel {
         Some(())
     }
 
-    /// Returns the part that the box allows.
+    /// Returns the fraction of `move_to` that the box allows.
     fn longest_step(&self) -> AllowedMove {
         let mut fraction = 1.0;
         let mut blocking = None;
@@ -329,7 +329,8 @@ impl QuadraticModel {
         }
     }
 
-    /// Returns the scale on an active bound whose release helps most; `None` at the minimum.
+    /// Returns the scale on an active bound from which the model decreases most steeply into the
+    /// box; `None` at the minimum.
     fn worst_active_bound(&self) -> Option<usize> {
         let scale = self
             .slope
@@ -355,11 +356,11 @@ impl QuadraticModel {
     }
 }
 
-/// Part of a move inside the box.
+/// The part of a move that lies inside the box.
 struct AllowedMove {
-    /// 1 for the whole move.
+    /// Share of the move; 1 for the whole move.
     fraction: f64,
-    /// The first bound in the way.
+    /// The first bound that the move reaches; `None` for the whole move.
     blocking: Option<Blocking>,
 }
 

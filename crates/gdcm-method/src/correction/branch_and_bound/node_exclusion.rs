@@ -1,5 +1,6 @@
-//! Tests that exclude a node: monotonicity (the node has no minimum) and convexity (no minimum
-//! other than a known one). Hansen & Walster, *Global Optimization Using Interval Analysis*, 2004.
+//! Tests that exclude a node: monotonicity (the node has no minimum) and convexity (the node has no
+//! minimum other than one already found). Hansen & Walster, *Global Optimization Using Interval
+//! Analysis*, 2004.
 
 use nalgebra::DMatrix;
 
@@ -14,11 +15,11 @@ use crate::correction::interval::Interval;
 /// The objective with the structure needed by the exclusion tests.
 pub(super) struct NodeExclusion<'a> {
     objective: &'a Objective,
-    /// Reference for each scale: the ground, or the first scale in its floating piece.
+    /// Reference scale of each scale: the ground, or the first scale in its floating piece.
     base: Vec<usize>,
     /// Scales whose bounds can stop each scale: the ground, or the others in its floating piece.
     stops: Vec<Vec<usize>>,
-    /// Scale pieces that are not tied to the ground.
+    /// Pieces of scales that no term ties to the ground.
     floating: Vec<Vec<usize>>,
 }
 
@@ -95,7 +96,7 @@ impl<'a> NodeExclusion<'a> {
         })
     }
 
-    /// Whether `s_to - s_from` may be as great in the region as in the whole box.
+    /// Whether the maximum of `s_to - s_from` over the region equals that over the whole box.
     fn reaches_box(&self, region: &DifferenceBounds, from: usize, to: usize) -> bool {
         region.range(from, to).high >= self.objective.upper[to] - self.objective.lower[from] - 1e-12
     }
@@ -121,7 +122,8 @@ impl<'a> NodeExclusion<'a> {
     /// Bounds the objective from below over a region on which it is convex, from its gradient and
     /// Hessian next to `minimum`. `None` where these give no bound.
     pub(super) fn bound_at(&self, minimum: &[f64], at: &Expansion) -> Option<f64> {
-        // Far above the scales' error, far below a change that matters to the curvature.
+        // Far greater than the error in the scales, far less than a change that affects the
+        // curvature.
         const WITHIN: f64 = 0.01;
         let least = self.least_hessian(|term| {
             let u = term.difference(minimum);
@@ -164,8 +166,8 @@ impl<'a> NodeExclusion<'a> {
     }
 
     /// Chooses a reference scale for each floating piece: a fixed scale or, where bounds push, the
-    /// scale pushed hardest. Slopes in scales that no bound pushes lean on it; `None` where its
-    /// push does not outweigh them.
+    /// scale pushed hardest. Returns `None` where its push is less than the sum of the slope
+    /// magnitudes in the piece's scales that no bound pushes.
     fn anchors(&self, at: &Expansion, push: &[f64]) -> Option<Vec<usize>> {
         let mut anchors = Vec::new();
         for piece in &self.floating {
@@ -193,8 +195,8 @@ impl<'a> NodeExclusion<'a> {
         Some(anchors)
     }
 
-    /// Builds the Hessian from every term's least curvature over its range. The gradient's error is
-    /// the sum over the magnitudes behind its diagonal.
+    /// Builds the Hessian from every term's minimum curvature over its range. The error of a
+    /// gradient entry is the sum of the curvature sizes on that diagonal entry.
     fn least_hessian(&self, range: impl Fn(&Term) -> Interval) -> Expansion {
         let mut least = Expansion::zero(self.objective.scales());
         for term in &self.objective.terms {
@@ -207,8 +209,8 @@ impl<'a> NodeExclusion<'a> {
     }
 
     /// Whether the objective is convex in the `free` scales over the region: the Hessian built from
-    /// every term's least curvature is positive definite, and the true Hessian differs from it by a
-    /// positive semidefinite matrix.
+    /// every term's minimum curvature is positive definite, and the true Hessian differs from it by
+    /// a positive semidefinite matrix.
     fn is_convex_in(&self, region: &DifferenceBounds, mut free: Vec<usize>) -> bool {
         let least = self.least_hessian(|term| region.range(term.from, term.to));
         // A floating piece's reference scale does not move.

@@ -82,21 +82,22 @@ pub(crate) struct ScaleBox<'a> {
 
 /// `constant + sum(terms)`, over the scale box.
 ///
-/// Scale `n - 1` is the *ground*: it is 0, so a term with it depends on a single scale.
+/// Scale `n - 1` is the *ground*: it is 0, so a term that contains the ground depends on a single
+/// scale.
 #[derive(Clone, Debug)]
 pub(crate) struct Objective {
-    /// Least value for each scale, the ground last.
+    /// Minimum of each scale, the ground last.
     pub(crate) lower: Vec<f64>,
-    /// Greatest value for each scale, the ground last.
+    /// Maximum of each scale, the ground last.
     pub(crate) upper: Vec<f64>,
-    /// At most one term for each two scales.
+    /// At most one term for each pair of scales.
     pub(crate) terms: Vec<Term>,
     /// Part that does not depend on the scales.
     pub(crate) constant: Rounded,
 }
 
 impl Objective {
-    /// Scale count, with the ground.
+    /// Returns the number of scales, including the ground.
     pub(crate) fn scales(&self) -> usize {
         self.lower.len()
     }
@@ -145,8 +146,8 @@ impl Objective {
     /// Takes the limit `alpha -> 0+`: moves each floating piece in `scales` by a common amount, as
     /// far as the box allows.
     ///
-    /// `shift(piece, scales)` returns the shift without the box. The fit does not depend on it, so
-    /// it is set by the departures on the outputs (M8, M9).
+    /// `shift(piece, scales)` returns the shift without the box. The fit does not depend on the
+    /// shift, so the departures of the outputs determine it (M8, M9).
     pub(crate) fn shift_floating_pieces(
         &self,
         scales: &mut [f64],

@@ -29,18 +29,18 @@ impl PartialOrd for Node {
 }
 
 impl Ord for Node {
-    /// Reversed order, so that the heap returns the least bound first.
+    /// Reversed order, so that the heap returns the node with the lowest bound first.
     fn cmp(&self, other: &Self) -> Ordering {
         other.bound.total_cmp(&self.bound)
     }
 }
 
-/// The open nodes, least bound first.
+/// The open nodes, lowest bound first.
 pub(super) struct OpenNodes {
     heap: BinaryHeap<Node>,
-    /// Greatest node count that fits into the memory.
+    /// Maximum number of nodes that fit into the memory.
     most: usize,
-    /// Least bound over the nodes refused for lack of memory.
+    /// Minimum bound of the nodes refused for lack of memory.
     refused: f64,
 }
 
@@ -74,13 +74,12 @@ impl OpenNodes {
         self.refused < f64::INFINITY
     }
 
-    /// Removes the node with the least bound.
+    /// Removes and returns the node with the lowest bound.
     pub(super) fn pop(&mut self) -> Option<Node> {
         self.heap.pop()
     }
 
-    /// Returns the least bound over all nodes, including refused nodes; infinite where there are
-    /// none.
+    /// Returns the minimum bound over all nodes, including refused nodes; infinite without nodes.
     pub(super) fn least_bound(&self) -> f64 {
         match self.heap.peek() {
             Some(node) => node.bound.min(self.refused),

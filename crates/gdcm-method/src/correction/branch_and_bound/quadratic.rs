@@ -12,7 +12,7 @@ pub(crate) struct SquareEntry {
     /// Index of the input's scale (the ground, for an output's own departure).
     pub(crate) input: usize,
     pub(crate) weight: f64,
-    /// The entry's target.
+    /// Target: delta gain or delta delay, in the coordinate.
     pub(crate) delta: f64,
     /// The entry's value where both scales are 0.
     pub(crate) offset: Rounded,
@@ -60,9 +60,9 @@ struct SquareGroup {
     weight: f64,
     /// `sum weight difference`.
     moment: f64,
-    /// Greatest difference in magnitude.
+    /// Maximum magnitude of a difference.
     size: f64,
-    /// Greatest error in a difference.
+    /// Maximum error in a difference.
     error: f64,
 }
 
@@ -76,8 +76,8 @@ impl SquareGroup {
         self.error = self.error.max(difference.error);
     }
 
-    /// Returns the scale difference at the group's minimum: a quotient of sums, and no more
-    /// accurate than its worst entry.
+    /// Returns the scale difference at the group's minimum: a quotient of sums, whose error bound
+    /// includes the maximum error of an entry.
     fn centre(&self) -> Rounded {
         Rounded {
             value: self.moment / self.weight,
@@ -94,8 +94,8 @@ impl SquareGroup {
     }
 }
 
-/// Combines entries over `scales` scales to one quadratic term for each two scales that share an
-/// entry; the constant is the sum over all residuals at the terms' minima.
+/// Combines entries over `scales` scales to one quadratic term for each pair of scales that share
+/// an entry; the constant is the sum of the squared residuals at the minima of the terms.
 pub(crate) fn quadratic_terms(entries: &[SquareEntry], scales: usize) -> TermSum {
     let mut groups = vec![SquareGroup::default(); scales * scales];
     for entry in entries {

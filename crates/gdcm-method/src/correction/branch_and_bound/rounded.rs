@@ -1,8 +1,8 @@
-//! Numbers with a bound on their rounding error.
+//! Values with a bound on their rounding error.
 
 use std::ops::Neg;
 
-/// A number with a bound on its rounding: the exact value differs by at most `error`.
+/// A value with a bound on its rounding: the exact value differs by at most `error`.
 ///
 /// Sums carry a running error bound (Higham, *Accuracy and Stability of Numerical Algorithms*,
 /// 2002, section 3.3): each addition rounds its result by at most half an epsilon. A whole epsilon
@@ -25,7 +25,7 @@ impl Neg for Rounded {
 }
 
 impl Rounded {
-    /// Adds another number.
+    /// Adds another value and its error.
     pub(crate) fn add(&mut self, other: Self) {
         self.value += other.value;
         self.error += other.error + f64::EPSILON * self.value.abs();

@@ -34,15 +34,15 @@ pub(crate) struct Minima {
     /// Limit that ended the search, where the gap is not a proof.
     pub(crate) limit: Option<Limit>,
     pub(crate) nodes: usize,
-    /// Whether any other local minimum within 1 % is excluded.
+    /// Whether the list is complete: no other local minimum lies within 1 % of the best.
     pub(crate) all_minima: bool,
 }
 
-/// Finds the global minimum for `objective` over its box, with a rigorous lower bound ([`super`]
-/// has the algorithm).
+/// Finds the global minimum of `objective` over its box, with a rigorous lower bound ([`super`] has
+/// the algorithm).
 ///
-/// Newton's method begins at `start`; `floor` is the objective, set by rounding, below which the
-/// gap is no longer relative.
+/// Newton's method begins at `start`. `floor` is the rounding level of the objective: the gap is
+/// measured relative to the larger of the best value and `floor`.
 ///
 /// # Errors
 /// [`SearchStopped`] where the search was stopped from outside.
@@ -68,19 +68,19 @@ struct Search<'a> {
     newton: Newton<'a>,
     /// Distinct local minima, in the order found.
     minima: Vec<Minimum>,
-    /// Least value among the minima.
+    /// Minimum value among the minima.
     best: f64,
     open: OpenNodes,
-    /// Least bound of the closed nodes.
+    /// Minimum bound of the closed nodes.
     closed: f64,
     nodes: usize,
-    /// Work spent until the best was proven.
+    /// Work spent until the best minimum was proven; `None` before.
     proven_at: Option<u64>,
-    /// Whether every closed node is known to contain no unknown local minimum.
+    /// Whether every closed node was shown to contain no local minimum other than those found.
     all_minima: bool,
-    /// Present node's box: least value for each scale.
+    /// Box of the current node: minimum of each scale.
     lower: Vec<f64>,
-    /// Present node's box: greatest value for each scale.
+    /// Box of the current node: maximum of each scale.
     upper: Vec<f64>,
     /// Curvature of underestimators beyond their node: well above the objective's own, so that a
     /// node next to a minimum is bounded by its own edge.
@@ -115,8 +115,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Lines 1 to 3: best-first, until the best is proven and then until the other minima are
-    /// listed.
+    /// Lines 1 to 3: best-first, until the best minimum is proven and then until the other minima
+    /// are listed.
     fn run(&mut self, start: &[f64]) -> Result<(), SearchStopped> {
         self.descend(start);
         let region = DifferenceBounds::from_box(&self.objective.lower, &self.objective.upper);
@@ -151,17 +151,17 @@ impl<'a> Search<'a> {
         is_listing_spent || spent >= self.budget.work || self.open.is_full()
     }
 
-    /// Divisor in the relative gap.
+    /// Returns the divisor of the relative gap.
     fn denominator(&self) -> f64 {
         self.best.max(self.floor)
     }
 
-    /// Least bound that proves the best.
+    /// Returns the lower bound at which the search for a proof ends.
     fn aim(&self) -> f64 {
         self.best - AIM * self.denominator()
     }
 
-    /// Bound above which no minimum is worth listing.
+    /// Returns the bound above which no minimum is listed.
     fn cutoff(&self) -> f64 {
         NEAR * self.best + AIM * self.denominator()
     }
@@ -188,7 +188,7 @@ impl<'a> Search<'a> {
         }
         let known = self.minima.len();
         let value = self.objective.value(&start);
-        // A minimum worth listing is below the cutoff, and so is a start near it.
+        // A minimum to be listed is below the cutoff, and so is a start near that minimum.
         if value < self.best || (value < NEAR * self.cutoff() && !self.has_minimum_in(&region)) {
             self.descend(&start);
         }
@@ -303,7 +303,7 @@ impl<'a> Search<'a> {
         longest <= 1e-6 || rise <= AIM * self.denominator()
     }
 
-    /// Whether a known minimum is inside the region.
+    /// Whether a minimum found so far is inside the region.
     fn has_minimum_in(&self, region: &DifferenceBounds) -> bool {
         let scales = self.objective.scales();
         self.effort
@@ -341,7 +341,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether the node contains no local minimum other than a known one.
+    /// Whether the node contains no local minimum other than those found.
     fn is_searched(&self, region: &DifferenceBounds) -> bool {
         self.effort.spend(self.exclusion.work());
         if self.exclusion.has_no_minimum(region) {
@@ -398,8 +398,8 @@ impl<'a> Search<'a> {
         self.close(bound);
     }
 
-    /// Splits off the parts beyond each end in a concave interval, as seen from `start`, and keeps
-    /// the rest as one node.
+    /// Splits off, beyond each concave interval's end, the part on the far side from `start`, and
+    /// keeps the rest as one node.
     fn split_concave(
         &mut self,
         ends: &[ConcaveEnd],
@@ -457,7 +457,7 @@ impl<'a> Search<'a> {
         let within = self
             .minima
             .partition_point(|minimum| minimum.value <= cutoff);
-        // The best itself always stays in the list.
+        // The best minimum always stays in the list.
         self.minima.truncate(within.max(1));
         Minima {
             minima: self.minima,
@@ -479,7 +479,7 @@ pub struct ProofBudget {
     /// Total work, in evaluations of a term of the objective (20 to 30 ns on a core). A step in
     /// progress is completed.
     pub work: u64,
-    /// Work after the proof, to find every other local minimum within 1 %.
+    /// Work after the proof, to find every other local minimum within 1 % of the best.
     pub listing: u64,
     /// Memory for the open nodes, in bytes.
     pub bytes: usize,
@@ -487,7 +487,7 @@ pub struct ProofBudget {
 
 impl Default for ProofBudget {
     /// About two seconds on one core and 64 MB, far more than a condition with constrained on-axis
-    /// responses needs; at most some milliseconds for the other minima.
+    /// responses needs; at most a few milliseconds for the other minima.
     fn default() -> Self {
         Self {
             work: 80_000_000,

@@ -103,8 +103,8 @@ impl Function {
         }
     }
 
-    /// Returns the concave interval's end on the side of `u`; `None` where `u` is inside that
-    /// interval, or the end outside the open interval `within`.
+    /// Returns the end of the concave interval on the side of `u`; `None` where `u` is inside that
+    /// interval, or its end is outside the open interval `within`.
     pub(crate) fn concave_end(&self, u: f64, within: Interval) -> Option<f64> {
         let Function::Exponential {
             concave: Some(concave),
@@ -187,8 +187,8 @@ impl Function {
     }
 }
 
-/// Finds the only interval on which the sum of two exponentials is concave, never too narrow;
-/// `None` where the sum is convex everywhere.
+/// Finds the only interval on which the sum of two exponentials is concave, or a slightly wider
+/// interval; `None` where the sum is convex everywhere.
 ///
 /// With `z = e^u` the curvature times `z^2 / 2` is the quartic `2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2
 /// R2`. Its coefficients change sign twice, so it has no or two positive roots (Descartes); its
@@ -242,8 +242,8 @@ fn is_surely_convex(forward: &Exponential, backward: &Exponential, u: f64) -> bo
     least > 0.0
 }
 
-/// Returns the positive `z` where the quartic of [`concave_interval`] is least: the root of `8 R1
-/// z^3 - 3 R1 c1 z^2 - R2 c2`, by Newton's method from the right, where the cubic is convex and
+/// Returns the positive `z` at the minimum of the quartic of [`concave_interval`]: the root of `8
+/// R1 z^3 - 3 R1 c1 z^2 - R2 c2`, by Newton's method from the right, where the cubic is convex and
 /// increasing.
 fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
     let square = 3.0 * forward.centre / 8.0;
@@ -259,9 +259,9 @@ fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
     z
 }
 
-/// Finds the concave interval's end between `outside` and `inside` by bisection, and returns the
-/// bracket's convex side. The sum is not surely convex at `inside`; `outside` is moved further away
-/// until it is surely convex there.
+/// Finds the end of the concave interval between `outside` and `inside` by bisection, and returns
+/// the convex side of the final bracket. The sum is not surely convex at `inside`; `outside` is
+/// moved further away until it is surely convex there.
 fn convex_end(forward: &Exponential, backward: &Exponential, outside: f64, inside: f64) -> f64 {
     let mut convex = outside;
     let mut other = inside;

@@ -1,4 +1,4 @@
-//! Values and lower bounds against the same in 50 digits.
+//! Compares values and lower bounds with results computed in 50 digits.
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
@@ -25,18 +25,18 @@ fn exact(figure: f64) -> Exact {
     Exact::try_from(figure).unwrap().with_precision(170).value()
 }
 
-/// The exact figure less the computed one, in double precision.
+/// The exact value less the computed value, in double precision.
 fn excess(figure: &Exact, computed: f64) -> f64 {
     (figure - exact(computed)).to_f64().value()
 }
 
-/// Exact logarithmic gains.
+/// Exact logarithms of the channel gains.
 struct Logarithms {
     inputs: Vec<Exact>,
     outputs: Vec<Exact>,
 }
 
-/// A node's exact value.
+/// Computes the exact value of a node.
 fn exact_node(node: &Placement, scales: &[f64]) -> Exact {
     exact(node.offset.value) + exact(scales[node.component])
 }
@@ -61,8 +61,8 @@ impl Sample {
         }
     }
 
-    /// Computes exact logarithmic gains: an input's is its component's scale, a constrained
-    /// output's follows from its entry.
+    /// Computes the exact logarithmic gains: for an input the scale of its component, for a
+    /// constrained output the value that follows from its entry.
     fn logarithms(&self, scales: &[f64]) -> Logarithms {
         let nodes = self.components.nodes();
         let inputs: Vec<Exact> = nodes
@@ -84,7 +84,7 @@ impl Sample {
         Logarithms { inputs, outputs }
     }
 
-    /// Computes the exact square for an entry's residual, a ratio or in dB.
+    /// Computes the exact square of an entry's residual, as a ratio or in dB.
     fn exact_square(&self, delta: f64, logarithm: &Exact) -> Exact {
         let miss = match self.problem.quantity {
             Quantity::Gain(GainObjective::Ratio) => exact(delta) - logarithm.exp(),
@@ -107,7 +107,7 @@ impl Sample {
         sum
     }
 
-    /// Returns the point in the box at these shares along its width.
+    /// Returns the point in the box at these shares of its width.
     fn at(&self, shares: &[f64]) -> Vec<f64> {
         let ends = self
             .objective
@@ -119,8 +119,8 @@ impl Sample {
             .collect()
     }
 
-    /// Returns a part of the box that contains `inside`: every difference is cut at a share along
-    /// the width on either side.
+    /// Returns a part of the box that contains `inside`: every difference is cut at a share of the
+    /// width on either side.
     fn region(&self, inside: &[f64], width: f64) -> DifferenceBounds {
         let mut region = DifferenceBounds::from_box(&self.objective.lower, &self.objective.upper);
         for from in 0..inside.len() {
@@ -175,8 +175,8 @@ proptest! {
         sample.objective.expand(&scales, Curvature::True, &mut expansion);
         let off = excess(&sample.exact_objective(&scales), expansion.value.value).abs();
         prop_assert!(off <= expansion.value.error, "off by {:e}, not {:e}", off, expansion.value.error);
-        // The bound is sharp, too: some hundred roundings of the squares' size, which differs from
-        // the sum's where they cancel.
+        // The bound is also sharp: a few hundred roundings relative to the squares, which exceed
+        // their sum where they cancel.
         let squares: f64 = sample.problem.fit_entries().map(|entry| entry.delta.powi(2) + 1.0).sum();
         let size = 1e4 * (expansion.value.value + squares);
         prop_assert!(expansion.value.error <= 1e3 * f64::EPSILON * size * (1.0 + sample.problem.alpha));
@@ -187,7 +187,7 @@ proptest! {
         sample in samples(),
         inside in shares(),
         others in prop::collection::vec(shares(), 4),
-        // Down to nodes in which rounding decides.
+        // Down to nodes so small that rounding errors dominate.
         decades in 0.0..16.0_f64,
     ) {
         let inside = sample.at(&inside);

@@ -71,24 +71,24 @@ impl TermUnder {
     }
 }
 
-/// Where a term's concave interval ends.
+/// End of a term's concave interval.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ConcaveEnd {
     pub(super) from: usize,
     pub(super) to: usize,
-    /// `s_to - s_from`.
+    /// Scale difference `s_to - s_from` at the end.
     pub(super) at: f64,
-    /// Distance from the present difference.
+    /// Distance of the end from the current difference.
     distance: f64,
 }
 
-/// A term with the figure by which terms are compared.
+/// A term with the value by which terms are compared.
 struct RankedTerm<'a> {
     term: &'a Term,
     rank: f64,
 }
 
-/// Returns the term with the greatest rank, the last among equals.
+/// Returns the term with the highest rank, the last among equals.
 fn highest<'a>(terms: impl Iterator<Item = RankedTerm<'a>>) -> Option<RankedTerm<'a>> {
     terms.max_by(|a, b| a.rank.total_cmp(&b.rank))
 }
@@ -106,7 +106,7 @@ impl<'a> Underestimator<'a> {
     pub(crate) const WORK_PER_TERM: u64 = 12;
 
     /// Creates the underestimator of `objective` over `region`, with curvature `beyond` outside the
-    /// differences' ranges.
+    /// ranges of the differences.
     pub(crate) fn new(objective: &'a Objective, region: &DifferenceBounds, beyond: f64) -> Self {
         let unders = objective
             .terms
@@ -120,7 +120,7 @@ impl<'a> Underestimator<'a> {
         }
     }
 
-    /// Whether it equals the objective: every term is convex over the node.
+    /// Whether the underestimator equals the objective: every term is convex over the node.
     pub(crate) fn is_exact(&self) -> bool {
         self.unders.iter().all(TermUnder::is_exact)
     }
@@ -174,8 +174,8 @@ impl<'a> Underestimator<'a> {
         ends
     }
 
-    /// Returns the term whose slope varies most over the node, weighted with its range: it hides
-    /// the sign of a scale's slope, or that the minimum is unique.
+    /// Returns the term whose slope varies most over the node, weighted with its range: it may
+    /// prevent the monotonicity and convexity tests from succeeding.
     pub(crate) fn widest_slope(&self) -> Option<&'a Term> {
         let terms = self.objective.terms.iter().zip(&self.unders);
         let variations = terms.map(|(term, under)| {
@@ -240,7 +240,7 @@ pub(super) fn tangent_bound(scales: &[f64], at: &Expansion, bounds: ScaleBox<'_>
         let up = (error - slope).max(0.0) * (bounds.upper[index] - scale).max(0.0);
         bound -= down.max(up);
     }
-    // Each of the n + 1 differences rounds a figure between the value and the bound; each product
+    // Each of the n + 1 subtractions rounds a number between the value and the bound; each product
     // rounds four times, relative to their sum.
     bound - (scales.len() as f64 + 5.0) * f64::EPSILON * at.value.value.abs().max(bound.abs())
 }
@@ -302,7 +302,7 @@ mod tests {
         })
     }
 
-    /// The same, or the forward exponential alone.
+    /// Like [`functions`], or the forward exponential alone.
     fn functions_of_one_or_two() -> impl Strategy<Value = Function> {
         let forward = (0.01..10.0_f64, 0.05..20.0_f64);
         let alone = forward.prop_map(|(weight, centre)| {
@@ -357,8 +357,8 @@ mod tests {
         ) {
             let convex = function.is_convex_over(Interval { low: at, high: at });
             let curvature = function.at(at).curvature;
-            // The interval is widened by 1e-11; the curvature there is as small as that times its
-            // own slope.
+            // The interval is widened by 1e-11; the curvature at its ends is therefore 1e-11 times
+            // the slope of the curvature.
             prop_assert!(convex == (curvature > 0.0) || curvature.abs() <= 1e-6, "{} {}", convex, curvature);
         }
 

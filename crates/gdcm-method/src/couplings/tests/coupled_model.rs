@@ -38,7 +38,7 @@ fn pade() -> Pade {
     Pade::new(4).unwrap()
 }
 
-/// The largest difference between two responses.
+/// Maximum difference between two responses.
 fn largest_difference(first: &FrequencyResponse, second: &FrequencyResponse) -> f64 {
     let mut largest = 0.0;
     for (pair, curve) in first.curves().iter() {
@@ -75,8 +75,8 @@ fn without_couplings_nothing_changes() {
 #[test]
 fn the_matrices_have_the_response_of_the_loop() {
     let continuous = small_aircraft();
-    // The same matrices as a sampled model: stable, since scaling by 0.5 puts the poles inside the
-    // unit circle.
+    // A sampled model with the same matrices, stable because scaling by 0.5 puts the poles inside
+    // the unit circle.
     let sampled = StateSpace::new(
         continuous.a() * 0.5,
         continuous.b().clone(),
@@ -95,7 +95,7 @@ fn the_matrices_have_the_response_of_the_loop() {
             &response_of(&coupled),
             &small_couplings().response(&response_of(&physics), 60.0),
         );
-        // A dozen operations in two orders, with numbers near 1.
+        // A dozen operations in two orders, with values near 1.
         assert!(difference < 1e-12, "{difference:e}");
     }
 }

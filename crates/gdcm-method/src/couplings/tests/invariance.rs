@@ -44,7 +44,7 @@ fn permuting_the_channels_permutes_the_couplings() {
     let k = found.matrices.feedback();
     let expected_m = DMatrix::from_fn(2, 2, |to, from| m[(inputs[to], inputs[from])]);
     let expected_k = DMatrix::from_fn(2, 3, |input, output| k[(inputs[input], outputs[output])]);
-    // Sums in another order, five times.
+    // In each of five passes the sums are rounded in another order.
     assert!((moved.matrices.mixing(70.0) - expected_m).amax() < 1e-12);
     assert!((moved.matrices.feedback() - expected_k).amax() < 1e-12);
 }
@@ -70,7 +70,7 @@ fn scaled_response(
     }))
 }
 
-/// Divides each column of `shares` by the output's largest physics response.
+/// Divides each column of `shares` by the maximum physics response of the output.
 fn feedback_with_shares(problem: &CouplingProblem, shares: &DMatrix<f64>) -> DMatrix<f64> {
     let mut peaks = [0.0_f64; 3];
     for condition in &problem.conditions {
@@ -132,7 +132,8 @@ proptest! {
         let shares = DMatrix::from_row_slice(2, 3, &share);
         let feedback = feedback_with_shares(&disturbed(), &shares);
         let found = fit(&flown_with(&mixing, &feedback)).matrices;
-        // The ridge, 1e-9, times the information ratio between the best and the least known entry.
+        // The ridge, 1e-9, times the ratio of the information about the best and the worst
+        // determined entry.
         prop_assert!((found.normalised_mixing(70.0) - &mixing).amax() < 1e-5, "{found:?}");
         prop_assert!((found.feedback() - &feedback).amax() < 1e-5 * feedback.amax().max(1.0), "{found:?}");
     }
@@ -144,7 +145,7 @@ fn the_order_of_the_conditions_does_not_matter() {
     let found = fit(&problem);
     problem.conditions.reverse();
     let reversed = fit(&problem);
-    // The same sums in another order.
+    // The sums are rounded in another order.
     assert!((found.matrices.mixing(70.0) - reversed.matrices.mixing(70.0)).amax() < 1e-12);
     assert!((found.matrices.feedback() - reversed.matrices.feedback()).amax() < 1e-12);
 }

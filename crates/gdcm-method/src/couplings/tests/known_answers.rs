@@ -99,8 +99,8 @@ fn a_state_space_with_feed_through_is_coupled_exactly() {
     }
 }
 
-/// Columns and weights of the last pass with a complex row by response and frequency, without using
-/// structure.
+/// Columns and weights of the last pass with a complex row for each response and frequency, stored
+/// densely.
 struct DenseProblem {
     columns: Vec<Vec<Complex<f64>>>,
     target: Vec<Complex<f64>>,

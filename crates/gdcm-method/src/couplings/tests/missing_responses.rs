@@ -1,4 +1,4 @@
-//! The fit and the coupled response if responses are missing.
+//! Fits and coupled responses of data with missing responses.
 
 use std::sync::Arc;
 
@@ -113,7 +113,8 @@ fn an_output_missing_in_flight_or_physics_is_not_fed_back() {
 fn an_input_column_is_skipped_where_flight_lacks_a_fed_back_output() {
     let mut lacking = disturbed();
     let mut unusable = disturbed();
-    // The first condition lacks a response: the result is that without this input in this condition.
+    // The first condition lacks a response: the result equals that of a fit without this input in
+    // this condition.
     lacking.conditions[0].flight = without(&lacking.conditions[0].flight, |pair, _| {
         pair == Pair::new(2, 1)
     });

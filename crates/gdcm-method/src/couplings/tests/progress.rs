@@ -11,7 +11,7 @@ use crate::couplings::fit::left_out_fits;
 use crate::couplings::fit_couplings;
 use crate::couplings::problem::CouplingError;
 
-/// Cancels immediately.
+/// A progress listener that cancels immediately.
 struct Impatient;
 
 impl Progress for Impatient {
@@ -67,7 +67,7 @@ fn a_fit_reports_every_condition_in_every_pass_in_order() {
     let listener = Listener::cancelling_after(usize::MAX);
     fit_couplings(&disturbed(), &Sequential, &listener).unwrap();
     let reports = listener.reports.into_inner().unwrap();
-    // Four conditions and the solution, in five passes, and the end.
+    // Reports for four conditions and the solution in each of five passes, and for the end.
     assert_eq!(
         (
             reports.len(),

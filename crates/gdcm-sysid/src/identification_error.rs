@@ -8,9 +8,9 @@ use crate::spectra::local_polynomial::LocalPolynomialError;
 use crate::spectra::preparation_settings::PreparationError;
 use crate::spectra::scales::ScalingError;
 
-/// The highest order that may be requested.
+/// Maximum order that may be requested.
 pub const HIGHEST_ORDER: usize = 60;
-/// The longest past window that may be requested.
+/// Maximum past window that may be requested.
 pub const LONGEST_PAST: usize = 60;
 
 /// Why a flight condition cannot be identified.
@@ -34,14 +34,15 @@ pub enum IdentificationError {
         longest_s: f64,
         /// Lower band end \[rad/s\].
         lowest: f64,
-        /// 1.5 periods \[s\].
+        /// Required length of the longest record: 1.5 periods at the lower band end \[s\].
         needed_s: f64,
-        /// 5 periods, or 3 an input if several are moved in the same record \[s\].
+        /// Recommended length: 5 periods, or 3 for each input if several are moved in the same
+        /// record \[s\].
         better_s: f64,
         /// Lower band end for which the records are long enough \[rad/s\].
         enough: f64,
     },
-    /// Fewer real values than a first-order model needs.
+    /// The lines hold fewer real values than a first-order model needs.
     #[error(
         "the lines of the records in the band hold {figures} real values, and {needed} are needed, 5 for each of the {unknowns} \
          unknowns in a first-order model: log longer or more records, widen the band, or leave out channels"
@@ -50,7 +51,7 @@ pub enum IdentificationError {
         /// Real values in the lines.
         figures: usize,
         needed: usize,
-        /// Unknowns in a first-order model.
+        /// Number of unknowns of a first-order model.
         unknowns: usize,
     },
     /// The band ends are invalid or interchanged.
@@ -66,9 +67,9 @@ pub enum IdentificationError {
     SampledTooSlowly {
         /// Upper band end \[rad/s\].
         highest: f64,
-        /// The longest sample time \[s\].
+        /// Longest sample time of the records \[s\].
         sample_time_s: f64,
-        /// Highest possible upper end \[rad/s\].
+        /// Maximum possible upper band end \[rad/s\].
         limit: f64,
     },
     /// Orders, past windows or poles are missing or invalid.
@@ -83,7 +84,6 @@ pub enum IdentificationError {
     HeldOutMissing {
         /// Counted from 0.
         record: usize,
-        /// Record count.
         records: usize,
     },
     /// All records are held out or unusable.
@@ -102,7 +102,7 @@ pub enum IdentificationError {
          widen the band, or leave out channels"
     )]
     NoModel {
-        /// In all records.
+        /// Number of lines in all records.
         lines: usize,
         /// Total record length \[s\].
         seconds: f64,

@@ -1,6 +1,6 @@
 //! The Gain-Delay Correction Method: from flight records to identified models (M14).
 //!
-//! **Question answered:** which linear model does the flight show, and how well is it known?
+//! **Question answered:** which linear model describes the flight, and how uncertain is it?
 //!
 //! | module | contents |
 //! |---|---|

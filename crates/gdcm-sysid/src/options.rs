@@ -6,14 +6,14 @@ use gdcm_model::simulation::{FlightRecord, Signal};
 use crate::identification_error::{HIGHEST_ORDER, IdentificationError, LONGEST_PAST};
 use crate::spectra::preparation_settings::Preparation;
 
-/// Lowest line used over the lower band end.
+/// Lowest line used, over the lower band end.
 const LOWEST_LINE: f64 = 0.5;
-/// Highest line used over the upper band end.
+/// Highest line used, over the upper band end.
 const HIGHEST_LINE: f64 = 4.0 / 3.0;
 
 /// The band, the channels, the held-out records, and the orders, poles and windows to try.
 ///
-/// M14.9 states the defaults: fixed on five conditions in the example, and right on the other
+/// M14.9 states the defaults: chosen on five conditions of the example, and confirmed on the other
 /// six, on fresh noise and on half the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
@@ -21,16 +21,17 @@ pub struct Options {
     pub band: [f64; 2],
     /// The channels and their preparation.
     pub preparation: Preparation,
-    /// Number of references at the end of the inputs: recorded signals, no model inputs, that
-    /// drove the loop from outside (M14.15).
+    /// Number of references at the end of the inputs: recorded signals outside the model that drove
+    /// the loop from outside (M14.15).
     pub references: usize,
-    /// Records that no model is fitted to, counted from 0: they judge the model.
+    /// Indices, from 0, of the records reserved for validation: no model is fitted to them.
     pub held_out: Vec<usize>,
-    /// Orders to try; `None` for those that the records can carry (M14.13).
+    /// Orders to try; `None` for those that the amount of data allows (M14.13).
     pub orders: Option<Vec<usize>>,
-    /// Laguerre poles over the upper band end.
+    /// Laguerre poles to try, relative to the upper band end.
     pub poles: Vec<f64>,
-    /// Past windows, in Laguerre projections; `None` for those that the records can carry (M14.13).
+    /// Past windows to try, in Laguerre projections; `None` for those that the amount of data
+    /// allows (M14.13).
     pub pasts: Option<Vec<usize>>,
 }
 
@@ -49,7 +50,7 @@ impl Options {
         }
     }
 
-    /// Refuses invalid options.
+    /// Returns an error for invalid options.
     pub(crate) fn check(&self) -> Result<(), IdentificationError> {
         let [lowest, highest] = self.band;
         if !(lowest.is_finite() && highest.is_finite() && 0.0 < lowest && lowest < highest) {
@@ -81,7 +82,7 @@ impl Options {
             .saturating_sub(self.references)
     }
 
-    /// Returns the record names that models are fitted to, but for the record `without`.
+    /// Returns the names of the records to which models are fitted, without the record `without`.
     pub(crate) fn fitted(&self, records: &[FlightRecord], without: Option<usize>) -> Vec<String> {
         let mut names = Vec::new();
         for (number, record) in records.iter().enumerate() {
@@ -104,18 +105,18 @@ impl Options {
         }
     }
 
-    /// Returns the lowest line used \[rad/s\]: half the lower band end.
+    /// Returns the lowest line used, half the lower band end \[rad/s\].
     pub(crate) fn lowest(&self) -> f64 {
         LOWEST_LINE * self.band[0]
     }
 
-    /// Returns the highest line used \[rad/s\]: 4/3 times the upper band end.
+    /// Returns the highest line used, 4/3 times the upper band end \[rad/s\].
     pub(crate) fn highest(&self) -> f64 {
         HIGHEST_LINE * self.band[1]
     }
 }
 
-/// Whether a list, if given, is not empty and holds numbers from 1 to `most`.
+/// Whether a list, if given, is not empty and holds integers from 1 to `most`.
 fn is_within(list: &Option<Vec<usize>>, most: usize) -> bool {
     match list {
         None => true,
@@ -123,7 +124,7 @@ fn is_within(list: &Option<Vec<usize>>, most: usize) -> bool {
     }
 }
 
-/// Replacements for the defaults to try; an empty list keeps them.
+/// User settings that replace the defaults to try; an empty list keeps the default.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SearchSpace {
     pub orders: Vec<usize>,

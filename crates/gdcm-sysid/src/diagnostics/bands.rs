@@ -20,14 +20,14 @@ use super::feedback::Feedback;
 use crate::likelihood::blocks::{Block, BlockModel};
 use crate::likelihood::covariance::ParameterCovariance;
 
-/// Standard deviations that hold 95 %.
+/// Half-width of a two-sided 95 % confidence interval, in standard deviations.
 pub const TWO_SIDED_95: f64 = 1.96;
-/// Measured variance factor (M14.5).
+/// Factor on the variances from the fit and from the order, found by measurement (M14.5).
 const MEASURED_FACTOR: f64 = 2.0;
-/// Largest reported standard deviation, in neper and radians.
+/// Maximum reported standard deviation, in neper and radians.
 const UNKNOWN: f64 = 1e3;
 
-/// A model, and the further causes for its uncertainty.
+/// A model, and the causes of its uncertainty besides the fit.
 pub(crate) struct BandModels<'a> {
     pub(crate) model: &'a BlockModel,
     /// Models with neighbouring orders.
@@ -35,14 +35,14 @@ pub(crate) struct BandModels<'a> {
     pub(crate) feedback: Option<&'a Feedback>,
 }
 
-/// Standard deviations over frequency, for a single response.
+/// Standard deviations of a single response over frequency.
 struct PairBands {
     sd_db: Vec<f64>,
     sd_deg: Vec<f64>,
 }
 
 impl BandModels<'_> {
-    /// Computes all responses' standard deviations at `omegas` \[rad/s\]; `None` for fewer
+    /// Computes the standard deviations of all responses at `omegas` \[rad/s\]; `None` for fewer
     /// than two frequencies.
     pub(crate) fn bands(
         &self,
@@ -56,7 +56,7 @@ impl BandModels<'_> {
             .iter()
             .map(|&omega| ResponsePoint::new(self, omega))
             .collect();
-        // Response by response, outputs first.
+        // One entry for each response; the output index runs fastest.
         let bands: Vec<PairBands> = each(executor, 0..outputs * inputs, |number| {
             let pair = Pair::new(number % outputs, number / outputs);
             self.pair_bands(covariance, &points, pair)
@@ -70,7 +70,7 @@ impl BandModels<'_> {
         ModelBands::new(omegas.to_vec(), sd_db, sd_deg).ok()
     }
 
-    /// Computes a single response's standard deviations.
+    /// Computes the standard deviations of a single response.
     fn pair_bands(
         &self,
         covariance: &ParameterCovariance,
@@ -116,7 +116,7 @@ impl BandModels<'_> {
     }
 }
 
-/// Returns the parameter places that a response depends on: the blocks, a `B` column, a
+/// Returns the indices of the parameters on which a response depends: the blocks, a `B` column, a
 /// `C` row, a `D` entry.
 fn pair_places(model: &BlockModel, pair: Pair) -> Vec<usize> {
     let order = model.order();
@@ -127,7 +127,7 @@ fn pair_places(model: &BlockModel, pair: Pair) -> Vec<usize> {
     places
 }
 
-/// A model's responses at a frequency, with the factors of their gradients.
+/// Responses of a model at a frequency, with the factors of their gradients.
 struct ResponsePoint {
     /// \[rad/s\].
     omega: f64,
@@ -193,7 +193,7 @@ impl ResponsePoint {
     }
 }
 
-/// Returns a number squared, or a large value if it is not finite.
+/// Returns `part` squared; `UNKNOWN` if it is not finite.
 fn finite_square(part: f64) -> f64 {
     if part.is_finite() {
         part * part
@@ -202,7 +202,7 @@ fn finite_square(part: f64) -> f64 {
     }
 }
 
-/// Returns a number, or a large value if it is not finite.
+/// Returns `value`; `UNKNOWN` if it is not finite.
 fn finite_or_unknown(value: Complex<f64>) -> Complex<f64> {
     if value.re.is_finite() && value.im.is_finite() {
         value
@@ -293,8 +293,8 @@ mod tests {
         };
         let progress = Shares::new(&Unobserved);
         let data = PreparedData::new(&records, &options, &Sequential, &progress).unwrap();
-        // The known answers use all lines around the band, also the first of a record, which does
-        // not count here (M14.12).
+        // The reference code uses all lines around the band, including the first line of a record,
+        // which is not used otherwise (M14.12).
         let [lowest, highest] = [0.5 * band[0], 4.0 / 3.0 * band[1]];
         let between = |lines: Spectrum| lines.between(lowest / 1.3, 1.3 * highest);
         let wide: Vec<Spectrum> = spectra(&data.unfiltered, 1.3 * highest, &Sequential)
@@ -350,7 +350,7 @@ mod tests {
             for (Pair { output, input }, found) in found.iter() {
                 for (k, found) in found.iter().enumerate() {
                     let expected = matrix(&expected[name][k])[(output, input)];
-                    // Independent numpy code; the tolerance is stated in its file.
+                    // Independent numpy code; its file states the tolerance.
                     assert!(
                         (found / expected - 1.0).abs() < tolerance,
                         "{name} {k}: {found}, not {expected}"

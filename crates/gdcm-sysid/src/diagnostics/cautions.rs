@@ -1,4 +1,4 @@
-//! Doubts about an identified model, with the data that a remedy needs (M14.10).
+//! Doubts about an identified model, with the data for a remedy (M14.10).
 
 use nalgebra::Complex;
 
@@ -11,7 +11,7 @@ use crate::spectra::gaps::listed;
 use crate::spectra::record_cautions::RecordCaution;
 use crate::spectra::response_estimate::TRUSTED_COHERENCE;
 
-/// Periods at the lower band end that a record should last (M14.12).
+/// Recommended minimum record length, in periods at the lower band end (M14.12).
 const BETTER_PERIODS: f64 = 5.0;
 
 /// A doubt about the model or its parts.
@@ -20,7 +20,7 @@ pub enum IdentificationCaution {
     /// A doubt about the records themselves.
     #[error(transparent)]
     Records(#[from] RecordCaution),
-    /// The records are shorter than they should be for the lower band end.
+    /// The longest record is shorter than recommended for the lower band end.
     #[error(
         "the longest record lasts {longest_s:.0} s, {periods:.1} periods at {lowest:.2} rad/s: the models are less certain at the \
          lower end of the band; {better_s:.0} s would be better"
@@ -33,22 +33,22 @@ pub enum IdentificationCaution {
         periods: f64,
         better_s: f64,
     },
-    /// An input was not moved, or only together with others.
+    /// An input was not moved, or was moved only together with others.
     #[error(
         "{signal} was not swept, or only with another input (partial coherence {partial_coherence:.2}): its column is not \
                  identified"
     )]
     NotSwept {
         signal: Signal,
-        /// Median partial coherence with the output that it moves most.
+        /// Median partial coherence with the output that the input affects most.
         partial_coherence: f64,
     },
-    /// Inputs were moved together.
+    /// Several inputs were moved only together.
     #[error(
         "the inputs were not moved independently (condition number {condition:.0}): sweep them one after another"
     )]
     MovedTogether {
-        /// Their spectral matrix's median condition number.
+        /// Median condition number of the spectral matrix of the inputs.
         condition: f64,
     },
     /// No input moves any output at an end of the band.
@@ -60,16 +60,16 @@ pub enum IdentificationCaution {
     BandNotShown {
         /// The requested band \[rad/s\].
         band: [f64; 2],
-        /// The part that the records show \[rad/s\].
+        /// The part of the band in which the records show a response \[rad/s\].
         shown: [f64; 2],
     },
-    /// An output vibrates above the band, so that the projections were filtered lower.
+    /// An output vibrates above the band; a lower cut-off was used before the projections.
     #[error(
         "{percent:.0} % of {signal} is vibration above the band: CT-PBSID was run below {cut_off:.0} rad/s"
     )]
     Vibration {
         signal: Signal,
-        /// Share of its variance above the cut-off \[%\].
+        /// Share of the variance of the output above the cut-off \[%\].
         percent: f64,
         /// \[rad/s\].
         cut_off: f64,
@@ -87,13 +87,13 @@ pub enum IdentificationCaution {
         /// The output with the largest residual.
         signal: Signal,
     },
-    /// A record's residual is larger than the noise.
+    /// The residual of a record is larger than the noise.
     #[error(
         "{name} is unlike the others: its residual is {cost:.1} times the noise. Possible causes: another trim, a large amplitude, \
          a gust. It can be left out"
     )]
     UnlikeRecord {
-        /// Record number, counted from 0.
+        /// Index of the record, counted from 0.
         record: usize,
         name: String,
         /// Cost per degree of freedom; 1 is adequate.
@@ -102,18 +102,18 @@ pub enum IdentificationCaution {
     /// A record contradicts the others, or two records contradict each other.
     #[error("{}", contradiction_text(records, *contrast))]
     Contradiction {
-        /// The record, or both.
+        /// The contradicting record, or both records.
         records: Vec<ContradictingRecord>,
-        /// The worse record's `F`; 1 is agreement.
+        /// The larger `F` of the records; 1 is agreement.
         contrast: f64,
     },
     /// Gusts and noise went into the inputs through the feedback.
     #[error("{}", feedback_text(*level, *share))]
     Feedback {
         level: FeedbackLevel,
-        /// Median share of the response.
+        /// Median of `|G_b / G|`, the share of the measured response that is fed back.
         share: f64,
-        /// Median square over the variance.
+        /// Median of `|G_b|^2` over its variance.
         significance: f64,
     },
     /// The model departs from the measured points.
@@ -128,7 +128,7 @@ pub enum IdentificationCaution {
         input: Signal,
         /// \[rad/s\].
         band: [f64; 2],
-        /// Mean square distance over the points' variance; 12 is the limit.
+        /// Mean squared distance over the variance of the points; 12 is the limit.
         strength: f64,
     },
     /// The criterion still falls at the highest order tried.
@@ -151,19 +151,19 @@ pub enum IdentificationCaution {
     HeldOut {
         /// Names of the held-out records.
         records: Vec<String>,
-        /// Cost per degree of freedom.
+        /// Cost per degree of freedom of the model as fitted.
         raw: f64,
-        /// The same with the model free to move within its uncertainty.
+        /// Cost per degree of freedom with the model free to move within its uncertainty.
         normalised: f64,
     },
-    /// Records were weighed by their noise; the greatest over the least cost per degree of freedom
-    /// before.
+    /// Records were weighed by their noise; the value is the ratio of the largest to the smallest
+    /// cost per degree of freedom before.
     #[error("the records differ in noise by a factor of {0:.1}: they were weighed accordingly")]
     Reweighed(f64),
     /// The held-out records cannot be compared with the model in time.
     #[error("the model was not compared with the held-out records in time: {0}")]
     NotValidated(ValidationError),
-    /// An unstable pole that no line shows.
+    /// An unstable pole above the lines used.
     #[error(
         "the model has an unstable pole of {:.0} rad/s, above the lines used (to {highest:.0} rad/s): it is an artefact, and the model \
          was not simulated in time",
@@ -181,7 +181,7 @@ pub enum IdentificationCaution {
 }
 
 impl IdentificationCaution {
-    /// Whether some inputs' effects cannot be separated.
+    /// Whether the effects of some inputs cannot be separated.
     pub(crate) fn is_of_collinear_inputs(&self) -> bool {
         matches!(
             self,
@@ -189,10 +189,10 @@ impl IdentificationCaution {
         )
     }
 
-    /// Whether another caution is a mere consequence of this caution.
+    /// Whether another caution is a mere consequence of this one.
     ///
-    /// A record that contradicts the others is unlike them for another reason than its noise; and
-    /// if its sign is turned, no input seems to be swept in the mean over records.
+    /// The residual of a contradicting record is not due to its noise; and if the sign of a channel
+    /// is reversed, no input seems to be swept in the mean over the records.
     pub(crate) fn explains(&self, other: &Self) -> bool {
         let Self::Contradiction { records, .. } = self else {
             return false;
@@ -268,12 +268,12 @@ impl IdentificationCaution {
     }
 }
 
-/// Whether a record's fault is a turned sign.
+/// Whether the fault of a record is a reversed sign.
 fn has_turned_sign(record: &ContradictingRecord) -> bool {
     matches!(record.fault, Some(RecordFault::Gain(_, factor)) if factor < 0.0)
 }
 
-/// Returns the code for a record's fault.
+/// Returns the code of a record's fault.
 fn fault_code(record: &ContradictingRecord) -> &'static str {
     match &record.fault {
         Some(RecordFault::OutputsLate(_) | RecordFault::Late(..)) => "time-skew",
@@ -282,7 +282,7 @@ fn fault_code(record: &ContradictingRecord) -> &'static str {
     }
 }
 
-/// Returns the fault's code if it is the same whichever record is wrong.
+/// Returns the code of the fault if it is the same whichever record is wrong.
 fn common_code(records: &[ContradictingRecord]) -> &'static str {
     let Some(code) = records.first().map(fault_code) else {
         return "record";
@@ -308,7 +308,7 @@ fn common_channel(records: &[ContradictingRecord]) -> Option<&Signal> {
     }
 }
 
-/// Lists a band's hidden ends: `below 0.80 rad/s and above 8.0 rad/s`.
+/// Lists the ends of the band without a visible response: `below 0.80 rad/s and above 8.0 rad/s`.
 fn hidden_ends(band: [f64; 2], shown: [f64; 2]) -> String {
     let mut ends = Vec::new();
     if shown[0] > band[0] {
@@ -361,7 +361,7 @@ fn contradiction_text(records: &[ContradictingRecord], contrast: f64) -> String 
     }
 }
 
-/// Writes the feedback's effect, and the remedy.
+/// Describes the effect of the feedback, and the remedy.
 fn feedback_text(level: FeedbackLevel, share: f64) -> String {
     let percent = 100.0 * share;
     let remedy =

@@ -9,9 +9,9 @@
 //! 2  A, B from S with a ridge on unit columns; e from the records
 //! 3  V = (I - sum A_i z^-i)^-1 E on the lines, z = e^(j omega dt dec): the effect of noise
 //!    and gusts on y
-//! 4  G_b = local polynomial of V on U at 16 points in the band, beside the model's G
+//! 4  G_b = local polynomial of V on U at 16 points in the band, and G of the model there
 //! 5  b = median |G_b / G|,  z = median |G_b|^2 / var
-//!    over the points with |G| > 3 % of the output's largest and sd G_b < 0.4 |G|
+//!    over the points with |G| > 3 % of the maximum of the output and sd G_b < 0.4 |G|
 //! ```
 //!
 //! With feedback, gusts act on the inputs through the outputs, and the cost stays at 1 however
@@ -30,30 +30,30 @@ use crate::spectra::local_polynomial::local_polynomial;
 use crate::spectra::response_estimate::ResponseEstimate;
 use crate::spectra::spectrum::{LineRange, Spectrum};
 
-/// Predictor sample time, times the upper band end \[rad\].
+/// Sample time of the predictor times the upper band end \[rad\].
 const STEP: f64 = 0.25;
-/// Fewest past samples in the predictor.
+/// Minimum number of past samples in the predictor.
 const LEAST_PAST: usize = 6;
-/// Most past samples in the predictor.
+/// Maximum number of past samples in the predictor.
 const MOST_PAST: usize = 40;
-/// Samples for each unknown in the predictor.
+/// Minimum number of samples for each unknown in the predictor.
 const SAMPLES_AN_UNKNOWN: usize = 8;
-/// Ridge over unit columns.
+/// Ridge, relative to columns of unit length.
 const RIDGE: f64 = 1e-6;
 /// Frequencies at which the responses are compared.
 const POINTS: usize = 16;
-/// Modulus over an output's largest response, below which a point does not count.
+/// Minimum `|G|` of a counted point, relative to the largest response of its output.
 const LARGE: f64 = 0.03;
-/// `sd G_b` over `|G|` from which a point does not count.
+/// `sd G_b / |G|` from which a point is not counted.
 const SURE: f64 = 0.4;
-/// Least share of points that have to count; otherwise all count.
+/// Minimum share of counted points; below it all points are counted.
 const LEAST_SHARE: f64 = 0.05;
-/// Share fed back from which the bands are widened (M14.17).
+/// Fed-back share from which the bands are widened (M14.17).
 const WIDENED: f64 = 0.04;
-/// Share by which sample times may differ in a predictor.
+/// Segments are used if their sample time differs from that of the first by less than this share.
 const ALIKE: f64 = 0.01;
 
-/// Values of `b` and `z` from which a feedback level is reached.
+/// Minimum `b` and `z` of a feedback level.
 struct Threshold {
     share: f64,
     significance: f64,
@@ -71,9 +71,9 @@ const TOO_MUCH: Threshold = Threshold {
 /// Noise and gusts fed back into the measured response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feedback {
-    /// `b`: median share of the response.
+    /// `b`, the median of `|G_b / G|`.
     pub share: f64,
-    /// `z`: median square over the variance; 0.7 without feedback.
+    /// `z`, the median of `|G_b|^2` over its variance; 0.7 without feedback.
     pub significance: f64,
     /// \[rad/s\], ascending.
     omega: Vec<f64>,
@@ -81,18 +81,18 @@ pub struct Feedback {
     ratios: Vec<DMatrix<f64>>,
 }
 
-/// The feedback's effect on a model.
+/// Effect of the feedback on a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FeedbackLevel {
     /// No visible effect.
     None,
-    /// The models are off by some tenths of a dB.
+    /// The models are wrong by some tenths of a dB.
     Some,
     /// The models must not be used.
     TooMuch,
 }
 
-/// The records in which feedback is looked for.
+/// The records that are examined for feedback.
 pub(crate) struct FeedbackRecords<'a> {
     /// Scaled segments without a filter.
     pub(crate) segments: &'a [Segment],
@@ -102,7 +102,7 @@ pub(crate) struct FeedbackRecords<'a> {
 }
 
 impl Feedback {
-    /// Returns the effect on a model.
+    /// Returns the effect of the feedback on a model.
     #[must_use]
     pub fn level(&self) -> FeedbackLevel {
         if self.reaches(&TOO_MUCH) {
@@ -118,8 +118,8 @@ impl Feedback {
         self.share >= threshold.share && self.significance >= threshold.significance
     }
 
-    /// Returns a response's `|G_b / G|` at `omega` \[rad/s\], root mean square over three points; 0
-    /// if the bands need no widening.
+    /// Returns `|G_b / G|` of a response at `omega` \[rad/s\], as the root mean square over three
+    /// points; 0 if the bands need no widening.
     pub(crate) fn ratio(&self, omega: f64, pair: (usize, usize)) -> f64 {
         if self.share < WIDENED {
             return 0.0;
@@ -142,7 +142,7 @@ impl Feedback {
         (squares / near.len() as f64).sqrt()
     }
 
-    /// Measures the feedback beside a model; `None` if the records are too short for a
+    /// Measures the feedback relative to a model; `None` if the records are too short for a
     /// predictor.
     pub(crate) fn measure(
         records: &FeedbackRecords<'_>,
@@ -172,7 +172,7 @@ impl Feedback {
         Some(Self::compare(model, &fed_back))
     }
 
-    /// Compares `G_b` with the model's response (step 5).
+    /// Compares `G_b` with the response of the model (step 5).
     fn compare(model: &BlockModel, fed_back: &ResponseEstimate) -> Self {
         let moduli: Vec<DMatrix<f64>> = fed_back
             .points
@@ -195,7 +195,7 @@ impl Feedback {
     }
 }
 
-/// `G_b` for a response at a frequency.
+/// `G_b` of a response at a frequency.
 #[derive(Clone, Copy)]
 struct ComparedPoint {
     /// `|G_b / G|`.
@@ -204,8 +204,8 @@ struct ComparedPoint {
     significance: f64,
 }
 
-/// Returns all responses' points that are large and well enough known, or all points if
-/// these are too few.
+/// Returns the points with large modulus and small relative standard deviation, over all responses;
+/// all points if these are too few.
 fn counted_points(moduli: &[DMatrix<f64>], fed_back: &ResponseEstimate) -> Vec<ComparedPoint> {
     let (outputs, inputs) = moduli.first().map_or((0, 0), DMatrix::shape);
     let mut sure = Vec::new();
@@ -238,8 +238,8 @@ fn counted_points(moduli: &[DMatrix<f64>], fed_back: &ResponseEstimate) -> Vec<C
     }
 }
 
-/// Returns every `step`-th sample less the means; columns are instants, rows are inputs, then
-/// outputs.
+/// Returns every `step`-th sample less the means; columns are instants, rows are the inputs, then
+/// the outputs.
 fn thin(segment: &Segment, step: usize) -> DMatrix<f64> {
     let inputs = segment.inputs.ncols();
     let outputs = segment.outputs.ncols();
@@ -258,7 +258,7 @@ fn thin(segment: &Segment, step: usize) -> DMatrix<f64> {
     samples
 }
 
-/// Predicts the outputs from the past.
+/// Linear prediction of the outputs from past samples and the present inputs.
 struct Predictor {
     inputs: usize,
     past: usize,
@@ -305,8 +305,8 @@ impl Predictor {
         })
     }
 
-    /// Returns the segment with the prediction errors as outputs. They stand at every
-    /// `step`-th sample, `step` times as large, with zeros between.
+    /// Returns the segment with the prediction errors as outputs: at every `step`-th sample,
+    /// multiplied by `step`, with zeros between.
     fn error_segment(&self, segment: &Segment, samples: &DMatrix<f64>, step: usize) -> Segment {
         let mut outputs = DMatrix::zeros(segment.outputs.nrows(), segment.outputs.ncols());
         for k in self.past..samples.ncols() {
@@ -321,7 +321,7 @@ impl Predictor {
         }
     }
 
-    /// Computes a record's prediction error `e_k` at instant `k`.
+    /// Computes the prediction error `e_k` of a record at instant `k`.
     fn error(&self, record: &DMatrix<f64>, k: usize) -> DVector<f64> {
         let channels = record.nrows();
         let mut error = record
@@ -343,8 +343,8 @@ impl Predictor {
         error
     }
 
-    /// Turns the lines of the errors into the effect of noise and gusts on the outputs (step 3);
-    /// `None` where that is singular.
+    /// Converts the lines of the errors to the effect of noise and gusts on the outputs (step 3);
+    /// `None` where the predictor is singular.
     fn add_memory(&self, spectrum: &mut Spectrum, step_s: f64) -> Option<()> {
         let outputs = self.coefficients.ncols();
         let channels = self.inputs + outputs;

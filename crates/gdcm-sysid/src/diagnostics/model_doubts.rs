@@ -17,21 +17,24 @@ use crate::spectra::spectrum::Spectrum;
 
 /// Cost per degree of freedom above which a model is not adequate.
 const ADEQUATE: f64 = 1.5;
-/// A record's cost per degree of freedom over all records', above which it is unlike the others.
+/// A record is unlike the others if its cost per degree of freedom exceeds this many times the one
+/// of all records.
 const UNLIKE: f64 = 1.5;
-/// Held-out cost per degree of freedom, with the model free to move within its
-/// uncertainty, up to which records are predicted well, and above which they are not (M14.17).
+/// Limits on the held-out cost per degree of freedom, with the model free to move within its
+/// uncertainty: up to the first, records are predicted well; above the second, they are not
+/// (M14.17).
 pub const HELD_OUT: [f64; 2] = [1.3, 2.0];
-/// Window half width over its centre up to which a point shows a single frequency.
+/// Maximum half-width of a window, relative to its centre, at which a point represents a single
+/// frequency.
 pub const NARROW_WINDOW: f64 = 0.6;
-/// Points in a mean.
+/// Number of neighbouring points in a mean.
 const POINTS: usize = 5;
-/// `T` above which the model leaves the points (M14.17).
+/// `T` above which the model departs from the points (M14.17).
 const SIGNIFICANT: f64 = 12.0;
-/// `D` above which the model leaves the points: 1 dB or 7 degrees (M14.17).
+/// `D` above which the model departs from the points: 1 dB or 7 degrees (M14.17).
 const RELEVANT: f64 = 0.12;
 
-/// The recommended model, and the data to examine it with.
+/// The recommended model, and the data for examining it.
 pub(crate) struct Diagnostics<'a> {
     pub(crate) records: &'a [FlightRecord],
     pub(crate) options: &'a Options,
@@ -44,7 +47,7 @@ pub(crate) struct Diagnostics<'a> {
 pub(crate) struct MeasuredData<'a> {
     /// Spectral lines of the fitted records.
     pub(crate) spectra: &'a [Spectrum],
-    /// The response without a model.
+    /// The measured response.
     pub(crate) measured: &'a ResponseEstimate,
     pub(crate) executor: &'a dyn Executor,
 }
@@ -57,7 +60,7 @@ impl Diagnostics<'_> {
             .map_or_else(String::new, |record| record.name.clone())
     }
 
-    /// Judges the costs for all records, for each record and for the held-out records.
+    /// Compares the costs of all records, of each record and of the held-out records with limits.
     pub(crate) fn adequacy(&self, fits: &RecordFits) -> Vec<IdentificationCaution> {
         let (held_out, fitted): (Vec<&RecordFit>, Vec<&RecordFit>) =
             fits.records.iter().partition(|fit| fit.held_out);
@@ -116,7 +119,7 @@ impl Diagnostics<'_> {
         Some(IdentificationCaution::PairsNotIdentified(signals))
     }
 
-    /// Reports the responses that leave their measured points.
+    /// Reports the responses that depart from their measured points.
     pub(crate) fn departures(&self) -> Vec<IdentificationCaution> {
         let (outputs, inputs) = self.fit.model.d.shape();
         let predicted = predict_points(&self.fit.model, &self.data, self.options);
@@ -143,7 +146,7 @@ impl Diagnostics<'_> {
     }
 }
 
-/// Returns the last place with the greatest value; 0 without values.
+/// Returns the last index of the maximum; 0 if `values` is empty.
 fn place_of_greatest(values: &[f64]) -> usize {
     let greatest = values.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
     greatest.map_or(0, |(place, _)| place)
@@ -151,8 +154,8 @@ fn place_of_greatest(values: &[f64]) -> usize {
 
 /// Predicts the measured points from a model.
 ///
-/// Without a reference the model passes through the same local polynomials as the records, so that
-/// a peak within a window is flattened alike.
+/// Without a reference, the model passes through the same local polynomials as the records, which
+/// flatten a peak within a window equally in both.
 pub(crate) fn predict_points(
     model: &BlockModel,
     data: &MeasuredData<'_>,
@@ -184,7 +187,7 @@ pub(crate) fn predict_points(
         .collect()
 }
 
-/// Returns the lines with the model's outputs, `Y = G_model U`.
+/// Returns the lines with the outputs of the model, `Y = G_model U`.
 fn predict_lines(model: &BlockModel, lines: &Spectrum) -> Spectrum {
     let mut outputs = lines.outputs.clone();
     for (k, omega) in lines.omega.iter().enumerate() {
@@ -197,7 +200,7 @@ fn predict_lines(model: &BlockModel, lines: &Spectrum) -> Spectrum {
     }
 }
 
-/// A model's distance from its measured points (M14.17).
+/// Distance of a model from its measured points (M14.17).
 ///
 /// ```text
 /// at the points inside the band whose window is no wider than 0.6 omega
@@ -206,22 +209,22 @@ fn predict_lines(model: &BlockModel, lines: &Spectrum) -> Spectrum {
 /// the model leaves the points where T > 12 and D > 0.12 (1 dB or 7 degrees)
 /// ```
 pub(crate) struct Departure {
-    /// The greatest `T`.
+    /// Maximum of `T`.
     pub(crate) greatest: f64,
-    /// The band in which the model leaves the points.
+    /// The band in which the model departs from the points.
     pub(crate) band: Option<DepartureBand>,
 }
 
-/// A band in which a model leaves its measured points.
+/// A band in which a model departs from its measured points.
 #[derive(Clone, Copy)]
 pub(crate) struct DepartureBand {
     /// \[rad/s\].
     pub(crate) ends: [f64; 2],
-    /// The greatest `T` there.
+    /// Maximum of `T` in the band.
     pub(crate) strength: f64,
 }
 
-/// The distance at a point.
+/// Distance of the model from a measured point.
 struct PointDistance {
     omega: f64,
     /// `|G_model - G|^2 / var G`.
@@ -231,7 +234,7 @@ struct PointDistance {
 }
 
 impl Departure {
-    /// Measures a response's distance; `predicted` is the model at each measured point.
+    /// Measures the distance of a response; `predicted` holds the model at each measured point.
     pub(crate) fn measure(
         predicted: &[DMatrix<Complex<f64>>],
         measured: &ResponseEstimate,
@@ -263,7 +266,7 @@ impl Departure {
         departure
     }
 
-    /// Adds five neighbouring points.
+    /// Updates the maximum and the band with the means of `T` and `D` over neighbouring points.
     fn add(&mut self, near: &[PointDistance]) {
         let significance = near
             .iter()

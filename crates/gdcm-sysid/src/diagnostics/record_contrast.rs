@@ -1,21 +1,21 @@
 //! Records compared with each other: contradictions and their causes (M14.16).
 //!
 //! ```text
-//! G = sum G_r, V'GV = I, at the optimum before records are reweighed, which hides the wrong record
-//! 1  a = V'G_r V = Q diag(eps) Q';  the nu directions with 0.02 < eps < 0.98 are known to the record
-//!    and to the others
+//! G = sum G_r, V'GV = I, at the optimum before reweighing, which would hide the wrong record
+//! 1  a = V'G_r V = Q diag(eps) Q';  in the nu directions with 0.02 < eps < 0.98 both the
+//!    record and the others hold information
 //! 2  c = Q'(V'g_r - a V'g);   F_r = sum c^2 / (eps (1 - eps)) / (nu phi): 1 if the record agrees with
 //!    the others' model
-//! 3  for the record with the greatest F, residual columns d with transient and theta
+//! 3  for the record with the largest F, residual columns d with transient and theta
 //!    projected out:
 //!      all outputs late W jw Y,  an output late W e_o jw Y_o,
 //!      an input late -W G_j jw U_j,  a gain W e_o Y_o
 //!      h = d'e - d'J G^+ g,  S = d'd - d'J G^+ J'd
-//!    the fault with the greatest h^2/S; its size is -h/S
+//!    the fault with the largest h^2/S; its size is -h/S
 //! ```
 //!
-//! A changed model without a record is no evidence against that record: it only says that the
-//! record carries an axis alone.
+//! A large change of the model when a record is left out does not show that the record is wrong: it
+//! may be the only record that excites an axis.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -33,45 +33,47 @@ use crate::likelihood::refinement::Fit;
 use crate::options::Options;
 use crate::spectra::spectrum::Spectrum;
 
-/// Least share of a direction that a record has to know, so that it can be compared.
+/// Minimum share `eps` of the information in a direction that a record must hold to be compared.
 const LEAST_KNOWN: f64 = 0.02;
-/// Greatest share of a direction that a record may know, so that the others know it too.
+/// Maximum share `eps` of the information in a direction, so that the others hold some of it too.
 const MOST_KNOWN: f64 = 0.98;
-/// Share of the largest eigenvalue of `G` below which a direction is a free scale of the states.
+/// Eigenvalues of the information matrix `G` below this share of the largest belong to
+/// unidentifiable directions (state scaling).
 const FREE_SCALE: f64 = 1e-9;
 /// `F` above which a record contradicts the others.
 const CONTRADICTS: f64 = 4.0;
-/// The same with gusts fed back, which differ from flight to flight.
+/// `F` above which a record contradicts the others if gusts are fed back: these differ between
+/// flights.
 const CONTRADICTS_IN_GUSTS: f64 = 12.0;
-/// The worst record's `F` over the second's, from which the worst is wrong alone.
+/// Ratio of the largest `F` to the second largest from which only the worst record is reported.
 const ALONE: f64 = 1.5;
-/// Gain over the greatest gain from which a common delay of all outputs is preferred to another
-/// fault.
+/// A common delay of all outputs is preferred to another fault if it explains at least this share
+/// of the largest explained cost.
 const AS_GOOD: f64 = 0.98;
 
-/// How far a record contradicts the others.
+/// Contradiction between a record and the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordContrast {
-    /// Record number, counted from 0.
+    /// Index of the record, counted from 0.
     pub record: usize,
     /// `F`; 1 is agreement.
     pub contrast: f64,
 }
 
-/// The records behind a fit that minimises its likelihood.
+/// The records behind a fit that minimises their likelihood.
 pub(crate) struct RecordContrasts<'a> {
     likelihood: &'a Likelihood<'a>,
-    /// Each segment's lines in scaled units, not whitened.
+    /// Lines of each segment in scaled units, not whitened.
     spectra: &'a [Spectrum],
     fit: &'a Fit,
     whole: NormalSystem,
-    /// `V`.
+    /// `V`, with `V'GV = I`.
     root: DMatrix<f64>,
-    /// By record, ascending; empty for a single record.
+    /// Contrast of each record, in ascending order of records; empty for a single record.
     pub(crate) contrasts: Vec<RecordContrast>,
 }
 
-/// `h` and `S` for a fault.
+/// `h` and `S` of a fault.
 #[derive(Clone, Copy)]
 struct FaultSums {
     h: f64,
@@ -79,7 +81,7 @@ struct FaultSums {
 }
 
 impl FaultSums {
-    /// Returns `h^2/S`, the cost that the fault explains.
+    /// Returns `h^2/S`, the part of the cost that the fault explains.
     fn gain(self) -> f64 {
         if self.s > 0.0 {
             self.h * self.h / self.s
@@ -123,7 +125,7 @@ impl<'a> RecordContrasts<'a> {
         })
     }
 
-    /// Names the record that contradicts the others, or two that contradict each other, each with
+    /// Reports the record that contradicts the others, or two that contradict each other, each with
     /// its most likely fault.
     pub(crate) fn caution(
         &self,
@@ -162,7 +164,7 @@ impl<'a> RecordContrasts<'a> {
         })
     }
 
-    /// Finds the fault that explains most in a record's residual (step 3).
+    /// Finds the fault that explains most of the residual of a record (step 3).
     pub(crate) fn fault(&self, record: usize, options: &Options) -> Option<RecordFault> {
         let faults = self.possible_faults(options);
         let sums = each(self.likelihood.executor, &faults, |fault| {
@@ -202,7 +204,7 @@ impl<'a> RecordContrasts<'a> {
                 0.0,
             ));
         }
-        // A single early input is the same as all outputs late.
+        // With a single input, its delay is equivalent to the opposite delay of all outputs.
         if inputs > 1 {
             for input in 0..inputs {
                 faults.push(RecordFault::Late(
@@ -220,7 +222,7 @@ impl<'a> RecordContrasts<'a> {
         faults
     }
 
-    /// Computes `h` and `S` for a fault of a record; `None` if they are not finite.
+    /// Computes `h` and `S` of a fault in a record; `None` if they are not finite.
     fn sums(&self, record: usize, fault: &RecordFault) -> Option<FaultSums> {
         let model = &self.fit.model;
         let mut with_residual = 0.0;
@@ -272,7 +274,7 @@ fn contrast(
     Some(compared.iter().sum::<f64>() / (count * dispersion))
 }
 
-/// Returns a unit fault's effect on the whitened residual, outputs x lines.
+/// Returns the effect of a unit fault on the whitened residual, outputs x lines.
 fn residual_effect(
     fault: &RecordFault,
     lines: &SpectralLines,

@@ -5,15 +5,16 @@ use std::fmt;
 use gdcm_model::dataset::condition::ChannelRemedy;
 use gdcm_model::simulation::Signal;
 
-/// A gain this close to -1 is taken for a turned sign: a turned output was found as -0.98 (M14.16).
+/// A gain this close to -1 is treated as a reversed sign: for a reversed output, -0.98 was found
+/// (M14.16).
 const NEAR_A_SIGN: f64 = 0.3;
 
-/// A record's fault.
+/// Fault of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecordFault {
-    /// All outputs' delay \[s\]; negative if they are early.
+    /// Delay of all outputs \[s\]; negative if they are early.
     OutputsLate(f64),
-    /// A channel's delay \[s\]; negative if it is early.
+    /// Delay of a channel \[s\]; negative if it is early.
     Late(Signal, f64),
     /// Factor by which an output has to be multiplied.
     Gain(Signal, f64),
@@ -29,7 +30,7 @@ impl RecordFault {
         }
     }
 
-    /// Returns each channel's correction; a factor near -1 becomes a mere sign change.
+    /// Returns the correction of each channel; a factor near -1 becomes a mere sign change.
     #[must_use]
     pub fn remedies(&self, outputs: &[Signal]) -> Vec<(Signal, ChannelRemedy)> {
         match self {
@@ -49,7 +50,7 @@ impl RecordFault {
         }
     }
 
-    /// Returns a timing fault's delay \[s\].
+    /// Returns the delay of a timing fault \[s\].
     #[must_use]
     pub fn delay_s(&self) -> Option<f64> {
         match self {
@@ -59,7 +60,7 @@ impl RecordFault {
     }
 }
 
-/// The correction for a delay \[s\].
+/// Returns the correction of a delay \[s\].
 fn delay_remedy(delay_s: f64) -> ChannelRemedy {
     ChannelRemedy {
         delay_s,
@@ -93,10 +94,9 @@ fn delay_text(delay_s: f64) -> String {
 /// A record that contradicts others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContradictingRecord {
-    /// Record number, counted from 0.
+    /// Index of the record, counted from 0.
     pub record: usize,
-    /// Its name.
     pub name: String,
-    /// Its most likely fault, if it is the wrong record.
+    /// Most likely fault of the record, if it is the wrong one.
     pub fault: Option<RecordFault>,
 }

@@ -7,14 +7,14 @@ use crate::likelihood::cost::{Likelihood, SegmentCost};
 use crate::likelihood::covariance::ParameterCovariance;
 use crate::subspace::search_extent::parameters_of_order;
 
-/// How well the recommended model fits a record.
+/// Fit of the recommended model to a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordFit {
-    /// Record number, counted from 0.
+    /// Index of the record, counted from 0.
     pub record: usize,
     /// `J` per degree of freedom; 1 is adequate.
     pub cost: f64,
-    /// Real values in the lines less the transients' unknowns.
+    /// Number of real values in the lines, less the unknowns of the transients.
     pub freedom: usize,
     /// Whether the record was held out.
     pub held_out: bool,
@@ -24,25 +24,25 @@ pub struct RecordFit {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HeldOutCost {
     pub(crate) raw: f64,
-    /// With the model free to move within its uncertainty (M14.17).
+    /// Cost with the model free to move within its uncertainty (M14.17).
     pub(crate) normalised: f64,
 }
 
-/// How well a model fits all records, each record and each output.
+/// Fit of a model to all records, each record and each output.
 pub(crate) struct RecordFits {
-    /// Every record with degrees of freedom, in record order. Fitted records are
-    /// corrected for the parameters: `J_r / dof_r  N / (N - k)` (M14.13).
+    /// Fits of the records that have degrees of freedom, in record order. Those of fitted records
+    /// are corrected for the number of parameters: `J_r / dof_r  N / (N - k)` (M14.13).
     pub(crate) records: Vec<RecordFit>,
-    /// Each output's `J` per degree of freedom over the fitted records.
+    /// `J` per degree of freedom of each output over the fitted records.
     pub(crate) outputs: Vec<f64>,
     /// `J` per degree of freedom over the fitted records.
     pub(crate) cost: f64,
-    /// The same over the held-out records, if there are any.
+    /// Costs of the held-out records, if there are any.
     pub(crate) held_out: Option<HeldOutCost>,
 }
 
 impl RecordFits {
-    /// Computes a model's fits; `None` if a cost is not finite or nothing has degrees of
+    /// Computes the fits of a model; `None` if a cost is not finite or there are no degrees of
     /// freedom.
     pub(crate) fn new(
         fitted: &Likelihood,
@@ -82,8 +82,8 @@ impl RecordFits {
     }
 }
 
-/// Relates held-out costs to their degrees of freedom; `moved` is the total cost with
-/// the model moved within its uncertainty.
+/// Divides held-out costs by their degrees of freedom; `moved` is the total cost with the model
+/// moved within its uncertainty.
 fn held_out_cost(held_out: &[RecordFit], moved: Option<f64>) -> Option<HeldOutCost> {
     let raw = mean_cost(held_out)?;
     let freedom: usize = held_out.iter().map(|fit| fit.freedom).sum();
@@ -94,7 +94,7 @@ fn held_out_cost(held_out: &[RecordFit], moved: Option<f64>) -> Option<HeldOutCo
     Some(HeldOutCost { raw, normalised })
 }
 
-/// Computes the fit for each record that has degrees of freedom, by record.
+/// Computes the fit of each record that has degrees of freedom, in record order.
 pub(crate) fn fits_of_records(
     likelihood: &Likelihood,
     model: &BlockModel,
@@ -134,8 +134,8 @@ fn mean_cost(fits: &[RecordFit]) -> Option<f64> {
     }
 }
 
-/// Computes each output's own `J` per degree of freedom: `sum |E_o|^2 / (Cv_oo / 2)` over its
-/// share of the degrees of freedom.
+/// Computes `J` per degree of freedom of each output: `sum |E_o|^2 / (Cv_oo / 2)` over its share of
+/// the degrees of freedom.
 fn output_costs(likelihood: &Likelihood, model: &BlockModel, parts: &[SegmentCost]) -> Vec<f64> {
     let outputs = model.c.nrows();
     let freedom = likelihood.freedom(model.order()) as f64 / outputs as f64;

@@ -23,27 +23,28 @@ use crate::likelihood::models_without_record::{ModelWithoutRecord, without_each_
 use crate::likelihood::normal_system::NormalSystem;
 use crate::options::Options;
 
-/// Frequencies in the bands.
+/// Number of frequencies in the bands.
 const BAND_POINTS: usize = 60;
-/// Upper end of the suggested narrower band over the present end, if the highest order is too low.
+/// Upper end of the suggested narrower band over the present end, used if the highest order is too
+/// low.
 const NARROWER: f64 = 0.7;
 /// Standard deviation above which a response is not identified \[dB\].
 const NOT_IDENTIFIED_DB: f64 = 3.0;
 
-/// The recommended model's uncertainty.
+/// Uncertainty of the recommended model.
 pub(super) struct Uncertainty {
     covariance: ParameterCovariance,
     /// The covariance from the lines as logged, if the fit used a reference (M14.15).
     logged: Option<ParameterCovariance>,
     pub(super) feedback: Option<Feedback>,
     pub(super) bands: ModelBands,
-    /// Output and input whose responses are not identified.
+    /// Indices of output and input of each response that is not identified.
     pub(super) not_identified: Vec<(usize, usize)>,
 }
 
 impl Uncertainty {
-    /// Returns the covariance from the lines as logged: with a reference the cost says nothing
-    /// about the uncertainty (M14.15).
+    /// Returns the covariance from the lines as logged: with a reference, the cost of the fit is no
+    /// measure of the uncertainty (M14.15).
     pub(super) fn as_logged(&self) -> &ParameterCovariance {
         self.logged.as_ref().unwrap_or(&self.covariance)
     }
@@ -63,7 +64,7 @@ pub(super) struct AssessedModel {
     /// Models without each record.
     pub(super) without: Vec<ModelWithoutRecord>,
     pub(super) fits: RecordFits,
-    /// How far each fitted record contradicts the others (M14.16).
+    /// Contradiction between each fitted record and the others (M14.16).
     pub(super) contrasts: Vec<RecordContrast>,
     pub(super) cautions: Vec<IdentificationCaution>,
     pub(super) validation: Option<Validation>,
@@ -104,8 +105,8 @@ impl Assessment<'_> {
         })
     }
 
-    /// Whether no reference was used. With a reference nothing is fed back, and every record is
-    /// seen through the same reference.
+    /// Whether no reference was used. With a reference there is no feedback to measure, and all
+    /// records are measured through the same reference.
     fn is_direct(&self) -> bool {
         self.options.references == 0
     }
@@ -154,7 +155,7 @@ impl Assessment<'_> {
     }
 
     /// Measures the feedback; `None` with a reference, or if inputs were moved only together, which
-    /// hides it.
+    /// hides the feedback.
     fn feedback(&self) -> Option<Feedback> {
         let mut cautions = self.data.cautions.iter();
         if !self.is_direct() || cautions.any(IdentificationCaution::is_of_collinear_inputs) {
@@ -174,7 +175,7 @@ impl Assessment<'_> {
 
     /// Compares the records with each other; `None` with a reference.
     ///
-    /// The fit before reweighing counts, for weights hide which record is wrong.
+    /// The fit before reweighing is used, because the weights hide which record is wrong.
     fn contrasts(&self) -> Result<Option<RecordContrasts<'_>>, IdentificationError> {
         if !self.is_direct() {
             return Ok(None);
@@ -239,7 +240,8 @@ impl Assessment<'_> {
 
     /// Compares the model with the held-out records in time; a failure becomes a caution.
     ///
-    /// An unstable pole that no line shows would end the windows after a few samples.
+    /// Skipped if the model has an unstable pole above the lines used: its simulation would diverge
+    /// after a few samples.
     fn validate(
         &self,
         cautions: &mut Vec<IdentificationCaution>,
@@ -264,7 +266,7 @@ impl Assessment<'_> {
     }
 }
 
-/// Reports gusts and noise that went into the inputs.
+/// Reports gusts and noise that the feedback brought into the inputs.
 fn feedback_caution(feedback: Option<&Feedback>) -> Option<IdentificationCaution> {
     let feedback = feedback?;
     let level = feedback.level();
@@ -278,7 +280,7 @@ fn feedback_caution(feedback: Option<&Feedback>) -> Option<IdentificationCaution
     })
 }
 
-/// Returns output and input whose responses are known too badly in mid-band.
+/// Returns output and input of each response whose standard deviation in mid-band is too large.
 fn not_identified(bands: &ModelBands) -> Vec<(usize, usize)> {
     let sd_db = bands.sd_db();
     let middle = bands.omega().len() / 2;

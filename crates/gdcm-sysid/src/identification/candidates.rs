@@ -20,11 +20,11 @@ use crate::subspace::triangular_factor::TriangularFactor;
 
 /// Highest order at which poles and past windows are compared.
 const RANKING_ORDER: usize = 18;
-/// Poles and past windows that propose models for all orders.
+/// Number of pairs of pole and past window that propose models of all orders.
 const KEPT: usize = 2;
-/// Modes beyond this many times the upper band end are images of z near -1.
+/// Modes faster than this many times the upper band end are artefacts of discrete poles near -1.
 const FASTEST: f64 = 8.0;
-/// Share of the whole work that the candidates take.
+/// Share of the total progress that the candidates take.
 const SHARE: f64 = 0.2;
 /// Ridge of the predictor over unit columns.
 const RIDGE: f64 = 1e-8;
@@ -38,26 +38,26 @@ pub(crate) struct SubspaceSettings {
     pub(crate) poles: Vec<f64>,
     /// Past windows.
     pub(crate) pasts: Vec<usize>,
-    /// Ascending.
+    /// Orders, ascending.
     pub(crate) orders: Vec<usize>,
-    /// Most block rows in the map to the future.
+    /// Maximum number of block rows in the map to the future.
     pub(crate) longest_future: usize,
 }
 
-/// The states that a Laguerre pole and a past window propose.
+/// States proposed with a Laguerre pole and a past window, and the cost of their model.
 #[derive(Clone, Debug)]
 pub(crate) struct Candidate {
     /// Laguerre pole \[rad/s\].
     pub(crate) pole: f64,
     /// Past window.
     pub(crate) past: usize,
-    /// Cost at the compared order.
+    /// Cost of the model with the order that is compared.
     cost: f64,
     subspace: Subspace,
 }
 
 impl SubspaceSettings {
-    /// Returns the two cheapest poles and past windows, the cheaper first.
+    /// Returns the two pairs of pole and past window with the lowest costs, the lower first.
     ///
     /// ```text
     /// 1  R for each Laguerre pole a
@@ -83,7 +83,7 @@ impl SubspaceSettings {
         Ok(candidates)
     }
 
-    /// Returns each order's cheapest model from `candidates`, with its cost.
+    /// Returns the model with the lowest cost at each order, with its cost.
     pub(crate) fn starts(
         &self,
         candidates: &[Candidate],
@@ -105,7 +105,7 @@ impl SubspaceSettings {
         starts
     }
 
-    /// Returns the poles that a candidate proposes, for all orders.
+    /// Returns the poles that a candidate proposes at each order.
     pub(crate) fn poles_by_order(
         &self,
         candidate: &Candidate,
@@ -121,12 +121,13 @@ impl SubspaceSettings {
         .collect()
     }
 
-    /// Returns an order's model without modes far above the band.
+    /// Returns the model of an order without its modes far above the band.
     fn slow_model(&self, subspace: &Subspace, order: usize) -> Option<StateSpace> {
         without_fast_modes(&subspace.model(order)?, FASTEST * self.highest)
     }
 
-    /// Returns the same in blocks; `None` if all its modes are far above the band.
+    /// Returns the model of an order in blocks, without its modes far above the band; `None` if no
+    /// mode remains.
     fn block_model(&self, subspace: &Subspace, order: usize) -> Option<BlockModel> {
         BlockModel::from_state_space(&self.slow_model(subspace, order)?)
     }
@@ -143,7 +144,7 @@ struct Ranking<'r> {
     longest_past: usize,
     /// Order at which models are compared.
     order: usize,
-    /// Share of the whole work that is reported for a step.
+    /// Share of the total progress that is reported for a step.
     share: f64,
 }
 
@@ -175,7 +176,7 @@ impl<'r> Ranking<'r> {
         })
     }
 
-    /// Computes a pole's candidates, by its number.
+    /// Computes the candidates of the pole with this index.
     fn rank_pole(&self, number: usize) -> Result<Vec<Candidate>, Cancelled> {
         let executor = self.likelihood.executor;
         let poles = &self.settings.poles;
@@ -200,7 +201,7 @@ impl<'r> Ranking<'r> {
         Ok(candidates)
     }
 
-    /// Computes the candidate for a pole and a past window; `None` if it proposes no model.
+    /// Computes the candidate of a pole and a past window; `None` if it proposes no model.
     fn candidate(&self, factor: &TriangularFactor, pole: f64, past: usize) -> Option<Candidate> {
         let shape = SubspaceShape {
             inputs: self.inputs,

@@ -1,4 +1,4 @@
-//! Fresh synthetic flights of one axis, good ones and ones with a single fault: the right caution
+//! Fresh synthetic flights of one axis, without a fault or with a single fault: the right caution
 //! is raised, and no other.
 
 use std::collections::BTreeSet;
@@ -24,7 +24,7 @@ struct Flights {
 }
 
 impl Flights {
-    /// Identifies the flights and returns the codes of the cautions, each once.
+    /// Identifies the flights and returns the codes of the cautions without duplicates.
     fn raised_codes(&self) -> BTreeSet<&'static str> {
         let found = identify(&self.records, &self.options, &Sequential, &Unobserved).unwrap();
         codes(&found).into_iter().collect()
@@ -43,7 +43,7 @@ fn flights(count: u64, seed: u64, flown: impl Fn(u64) -> Flown) -> Vec<FlightRec
         .collect()
 }
 
-/// Flies `count` times; the last flight is logged four samples late.
+/// Flies `count` times; the outputs of the last flight are logged four samples late.
 fn last_late(count: u64, seed: u64) -> Vec<FlightRecord> {
     let mut records = flights(count, seed, calm);
     let last = Flown::calm(10_000 + 10 * seed + count - 1, 4)
@@ -65,7 +65,7 @@ struct Trap {
     code: &'static str,
     /// Further codes that may be raised as consequences.
     follows: &'static [&'static str],
-    /// Flies with a seed.
+    /// Generates the flights from a seed.
     flown: fn(u64) -> Flights,
 }
 
@@ -235,8 +235,8 @@ const TRAPS: [Trap; 11] = [
     },
 ];
 
-/// Asserts that calm flights raise no caution, and each trap its own and its consequences, as often
-/// as M14.14 to M14.18 state.
+/// Asserts that calm flights raise no caution, and that each trap raises its own caution and its
+/// consequences at the rates stated in M14.14 to M14.18.
 fn assert_cautions_over(seeds: Range<u64>) {
     let count = seeds.clone().count();
     let good: Vec<BTreeSet<&str>> = seeds
@@ -279,13 +279,13 @@ fn assert_cautions_over(seeds: Range<u64>) {
 }
 
 impl Trap {
-    /// Whether a code is neither that of the trap nor a consequence.
+    /// Whether a code is neither the one of the trap nor a consequence.
     fn is_other(&self, code: &str) -> bool {
         !code.starts_with(self.code) && !self.follows.contains(&code)
     }
 }
 
-/// Counts the flights that raise a code with this beginning.
+/// Counts the flights that raise a code starting with `start`.
 fn count_raising(flights: &[BTreeSet<&str>], start: &str) -> usize {
     flights
         .iter()
@@ -304,7 +304,7 @@ fn facts(records: &[FlightRecord]) -> Vec<String> {
 fn an_input_at_its_limit_is_a_fact_and_no_caution() {
     let mut records = flights(1, 0, calm);
     assert_eq!(facts(&records), Vec::<String>::new());
-    // A sweep of amplitude 1 is beyond 0.9 for 29 % of the time; the remnant makes that less.
+    // A sweep of amplitude 1 is beyond 0.9 for 29 % of the time; the remnant lowers this share.
     records[0].inputs.apply(|u| *u = u.clamp(-0.9, 0.9));
     let facts = facts(&records);
     assert!(
@@ -338,8 +338,8 @@ fn aircraft(inputs: usize, outputs: usize, random: &mut Generator) -> StateSpace
     StateSpace::new(a, b, c, DMatrix::zeros(outputs, inputs)).unwrap()
 }
 
-/// Flies a sweep of a minute in each input in turn, the others moving a little, with a fiftieth of
-/// noise on every output.
+/// Flies a sweep of a minute in each input in turn, the others moving a little; the noise on every
+/// output has a fiftieth of the amplitude.
 fn sweeps(model: &StateSpace, random: &mut Generator) -> Vec<FlightRecord> {
     const STEP_S: f64 = 0.02;
     let time_s: Vec<f64> = (0..3000).map(|k| STEP_S * f64::from(k)).collect();
@@ -400,8 +400,8 @@ fn assert_identified(inputs: usize, outputs: usize) {
         for input in 0..inputs {
             let pair = Pair::new(output, input);
             for (found, expected) in identified.curve(pair).iter().zip(expected.curve(pair)) {
-                // Noise is a fiftieth of an output, whichever input moves it: weak responses are
-                // known less well.
+                // The noise of an output does not depend on which input moves it: weak responses
+                // have larger relative errors.
                 let error = (found - expected).norm() / expected.norm().max(0.3 * strongest);
                 assert!(
                     error < 0.06,

@@ -26,13 +26,13 @@ use crate::subspace::stabilisation::StabilisationPoint;
 
 /// Method name with refinement, in models and at the beginning of their names (M14).
 const REFINED: &str = "CT-PBSID, refined";
-/// The same without refinement.
+/// Method name without refinement.
 const UNREFINED: &str = "CT-PBSID";
 
-/// A flight condition's identified models, in record units, and their quality.
+/// Identified models of a flight condition, in record units, and their quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identification {
-    /// The recommended model: CT-PBSID, refined, with its response's standard deviations.
+    /// The recommended model: CT-PBSID, refined, with the standard deviations of its responses.
     pub refined: Model,
     /// CT-PBSID without refinement, with the same order.
     pub unrefined: Model,
@@ -40,37 +40,37 @@ pub struct Identification {
     pub bundle: Vec<Model>,
     /// The response measured without a model.
     pub measured: ResponseEstimate,
-    /// The recommended model's poles.
+    /// Poles of the recommended model.
     pub poles: Vec<PoleEstimate>,
-    /// The unrefined models' poles for all orders at the best Laguerre pole and past window.
+    /// Poles of the unrefined models at all orders, for the best Laguerre pole and past window.
     pub stabilisation: Vec<StabilisationPoint>,
     /// Best Laguerre pole \[rad/s\].
     pub laguerre_pole: f64,
     /// Best past window.
     pub past: usize,
-    /// BIC by refined order, ascending.
+    /// BIC of each refined order, ascending by order.
     pub criteria: Vec<(usize, f64)>,
     /// `J / (N - k)` over the fitted records; 1 is adequate.
     pub cost: f64,
-    /// The same over the held-out records, if there are any.
+    /// `J` per degree of freedom over the held-out records, if there are any.
     pub held_out_cost: Option<f64>,
-    /// The same with the model free to move within its uncertainty: up to 1.3 good, above 2 not
-    /// predicted (M14.17).
+    /// `J` per degree of freedom over the held-out records, with the model free to move within its
+    /// uncertainty: up to 1.3 good, above 2 not predicted (M14.17).
     pub held_out_normalised: Option<f64>,
     /// Noise and gusts fed back into the measured response (M14.14).
     pub feedback: Option<Feedback>,
-    /// How far each fitted record contradicts the others; empty for a single record (M14.16).
+    /// Contradiction between each fitted record and the others; empty for a single record (M14.16).
     pub contrasts: Vec<RecordContrast>,
-    /// Every used record's fit, in record order.
+    /// Fit of every used record, in record order.
     pub record_fits: Vec<RecordFit>,
-    /// Every output's cost per degree of freedom, over the fitted records.
+    /// Cost per degree of freedom of each output, over the fitted records.
     pub output_costs: Vec<f64>,
     /// The recommended model against the held-out records in time.
     pub validation: Option<Validation>,
     /// Used parts of every record.
     pub record_uses: Vec<RecordUse>,
-    /// Output and input whose response has a standard deviation over 3 dB in the middle of the
-    /// band.
+    /// Indices of output and input of each response with a standard deviation over 3 dB in the
+    /// middle of the band.
     pub not_identified: Vec<(usize, usize)>,
     /// Doubts about records and models, each with a code.
     pub cautions: Vec<IdentificationCaution>,
@@ -81,15 +81,15 @@ pub struct Identification {
 /// ```text
 /// 1  record segments, scales, spectra, measured response, noise covariance                    10 %
 /// 2  CT-PBSID for each Laguerre pole and past window; models of all orders from the best two  40 %
-/// 3  order by BIC of refined models; the chosen order refined, records weighed by noise  80 %
+/// 3  order by BIC of refined models; the chosen order refined, records weighted by noise 80 %
 /// 4  covariance, bands, bundle, validation                                                   100 %
 /// ```
 ///
-/// The result is the same to the last bit for any `executor`. `progress` receives a first model
-/// after step 2.
+/// The result is bit for bit the same with any `executor`. `progress` receives a first model after
+/// step 2.
 ///
 /// # Errors
-/// Records that cannot be prepared, a band that they do not show, invalid options, channels
+/// Records that cannot be prepared, a band without a visible response, invalid options, channels
 /// that depend on each other, records too short for a model; or `progress` is cancelled.
 pub fn identify(
     records: &[FlightRecord],

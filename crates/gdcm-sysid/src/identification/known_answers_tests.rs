@@ -46,7 +46,7 @@ pub(crate) fn response(value: &Value) -> Vec<DMatrix<Complex<f64>>> {
         .collect()
 }
 
-/// Reads the lines of all records of a case, with noise of variance one.
+/// Reads the lines of all records of a case, with noise of unit variance.
 pub(crate) fn known_records(known: &Value) -> Likelihood<'static> {
     let segments =
         known["records"]

@@ -14,11 +14,12 @@ use crate::likelihood::refinement::{Fit, LEAST_GAIN};
 use crate::options::Options;
 use crate::subspace::stabilisation::{StabilisationPoint, stabilisation};
 
-/// Most further steps for the chosen order, after the comparison.
+/// Maximum number of further steps at the chosen order, after the comparison of orders.
 const FURTHER_STEPS: usize = 15;
-/// Most steps after records were reweighed.
+/// Maximum number of steps after records were reweighed.
 const STEPS_AFTER_REWEIGHING: usize = 3;
-/// Greatest over least cost per degree of freedom up to which records keep their weights.
+/// Maximum ratio of the largest to the smallest cost per degree of freedom at which records keep
+/// their weights.
 const ALIKE: f64 = 1.5;
 
 /// The models that CT-PBSID proposes.
@@ -27,23 +28,24 @@ pub(crate) struct Proposal {
     pub(crate) laguerre_pole: f64,
     /// Best past window.
     pub(crate) past: usize,
-    /// Each order's cheapest model.
+    /// Model with the lowest cost at each order.
     pub(crate) starts: BTreeMap<usize, Fit>,
-    /// Poles over orders at the best Laguerre pole and past window.
+    /// Poles at each order, for the best Laguerre pole and past window.
     pub(crate) stabilisation: Vec<StabilisationPoint>,
 }
 
-/// The chosen order, refined.
+/// The refined model of the chosen order, with the search behind it.
 pub(crate) struct Refinement<'a> {
     /// The orders that were compared.
     pub(crate) search: OrderSearch,
     /// The recommended model.
     pub(crate) fit: Fit,
-    /// The model before records were reweighed, if they were: a minimum over the data as measured.
+    /// The model before records were reweighed, if they were: the minimum of the cost with the
+    /// measured noise.
     pub(crate) before_reweighing: Option<Fit>,
     /// The cost that `fit` minimises.
     pub(crate) likelihood: Likelihood<'a>,
-    /// Reports changed weights.
+    /// Caution about the changed weights.
     pub(crate) caution: Option<IdentificationCaution>,
 }
 
@@ -113,17 +115,17 @@ pub(crate) fn refine<'a>(
     })
 }
 
-/// Records weighed by their cost.
+/// Records weighted by their cost.
 struct Reweighing<'a> {
     likelihood: Likelihood<'a>,
     /// The model at the new weights.
     start: Fit,
-    /// Greatest over least cost per degree of freedom before.
+    /// Ratio of the largest to the smallest cost per degree of freedom, before the reweighing.
     ratio: f64,
 }
 
 impl<'a> Reweighing<'a> {
-    /// Weighs records that differ in turbulence; `None` if they are alike.
+    /// Reweights records with different noise levels; `None` if the levels are similar.
     ///
     /// ```text
     /// Cv_r <- Cv_r (J_r/dof_r) / geometric mean of J/dof

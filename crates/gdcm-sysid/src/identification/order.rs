@@ -2,14 +2,14 @@
 //! M14.13).
 //!
 //! ```text
-//! BIC(n) = J (1 + k ln N / (N - k)),   k = n (m + l) + m l parameters that matter,
+//! BIC(n) = J (1 + k ln N / (N - k)),   k = n (m + l) + m l parameters (no state basis),
 //!                                      N degrees of freedom
-//! 1  n0 = min(16, the order with the least BIC before any refinement)
+//! 1  n0 = min(16, the order with the minimum BIC before any refinement)
 //! 2  small, k(n0) <= 80:  all orders from two above n0 downwards, refined as long as each step
-//!                         gains; each from a second start as well: order n + 1 or n + 2 less the
-//!                         mode that the measured response misses least
+//!                         gains; each also from a second start: order n + 1 or n + 2 without the
+//!                         mode whose removal changes the fit to the measured response least
 //!    large:               n0 and its neighbours, three steps
-//! 3  n = argmin BIC; further orders until two (small) or one (large) on each side are known
+//! 3  n = argmin BIC; further orders until two (small) or one (large) on each side are done
 //! 4  a held-out record decides between orders whose BIC differ by less than 1 %; an order without
 //!    an unstable pole above the lines used is preferred to one with such a pole within 3 %
 //! ```
@@ -28,26 +28,27 @@ use crate::likelihood::blocks::BlockModel;
 use crate::likelihood::cost::Likelihood;
 use crate::likelihood::refinement::{Fit, LEAST_GAIN};
 
-/// The highest order at which the search begins.
+/// Maximum order at which the search begins.
 const FIRST: usize = 16;
-/// Most parameters in a small model.
+/// Maximum number of parameters of a small model.
 const SMALL: usize = 80;
-/// Orders with a criterion up to this much above the least, relatively, are decided by the held-out
-/// record.
+/// The held-out record decides between orders whose criterion exceeds the minimum by at most this
+/// share.
 const NEAR: f64 = 0.01;
-/// An order without a fast unstable pole is preferred if its criterion is worse by at most this,
-/// relatively.
+/// An order without a fast unstable pole is preferred if its criterion is worse by at most this
+/// share.
 const NEAR_UNSTABLE: f64 = 0.03;
-/// A neighbouring order's cost over the chosen order's, beyond which it does not count in the
+/// Cost of a neighbouring order over that of the chosen order, above which it is left out of the
 /// uncertainty.
 const STARVED: f64 = 1.5;
 
-/// How thoroughly orders are compared.
+/// Thoroughness of the comparison between orders.
 #[derive(Clone, Copy)]
 struct Thoroughness {
-    /// Orders that are known in the end on each side of the best.
+    /// Number of orders that must be evaluated on each side of the best order before the search
+    /// ends.
     bracket: usize,
-    /// Most refinement steps.
+    /// Maximum number of refinement steps.
     steps: usize,
     /// Relative gain below which the refinement ends.
     least_gain: f64,
@@ -69,11 +70,11 @@ const FOR_LARGE_MODELS: Thoroughness = Thoroughness {
 #[derive(Clone, Debug)]
 pub(crate) struct OrderSearch {
     pub(crate) fits: BTreeMap<usize, Fit>,
-    /// BIC by order.
+    /// BIC of each order.
     pub(crate) criteria: BTreeMap<usize, f64>,
     /// The chosen order.
     pub(crate) order: usize,
-    /// Whether the criterion still falls at the highest available order.
+    /// Whether the criterion still decreases at the highest available order.
     pub(crate) still_falls: bool,
 }
 
@@ -86,7 +87,8 @@ impl OrderSearch {
         starts.get(&first_order(starts, likelihood)?)
     }
 
-    /// Returns the next lower and the next higher order's model, unless they are starved.
+    /// Returns the models of the next lower and the next higher order, without those whose cost is
+    /// too high.
     pub(crate) fn neighbours(&self) -> Vec<&BlockModel> {
         let below = self.fits.range(..self.order).next_back();
         let above = self.fits.range(self.order + 1..).next();
@@ -113,7 +115,7 @@ fn first_order(starts: &BTreeMap<usize, Fit>, likelihood: &Likelihood) -> Option
         .min_by_key(|order| order.abs_diff(best.min(FIRST)))
 }
 
-/// Computes the criterion for each fit that has fewer parameters than degrees of freedom.
+/// Computes the criterion of each fit that has fewer parameters than degrees of freedom.
 fn criteria(fits: &BTreeMap<usize, Fit>, likelihood: &Likelihood) -> BTreeMap<usize, f64> {
     let mut criteria = BTreeMap::new();
     for (order, fit) in fits {
@@ -124,7 +126,7 @@ fn criteria(fits: &BTreeMap<usize, Fit>, likelihood: &Likelihood) -> BTreeMap<us
     criteria
 }
 
-/// Computes a fit's `BIC`; `None` if it has no more degrees of freedom than parameters.
+/// Computes the `BIC` of a fit; `None` if it has no more degrees of freedom than parameters.
 fn criterion(fit: &Fit, likelihood: &Likelihood) -> Option<f64> {
     let k = fit.effective_parameters() as f64;
     let n = likelihood.freedom(fit.model.order()) as f64;
@@ -135,7 +137,7 @@ fn criterion(fit: &Fit, likelihood: &Likelihood) -> Option<f64> {
     }
 }
 
-/// Returns the lowest order with the least value.
+/// Returns the lowest order with the minimum value.
 fn order_of_least(values: &BTreeMap<usize, f64>) -> Option<usize> {
     values
         .iter()
@@ -144,7 +146,8 @@ fn order_of_least(values: &BTreeMap<usize, f64>) -> Option<usize> {
 }
 
 impl PreparedData<'_> {
-    /// Searches the order from the unrefined models `starts`; `None` if the data carry no model.
+    /// Searches the order from the unrefined models `starts`; `None` if the data do not support any
+    /// model.
     pub(crate) fn search_order(
         &self,
         starts: &BTreeMap<usize, Fit>,
@@ -208,7 +211,7 @@ struct Comparison<'s> {
 }
 
 impl Comparison<'_> {
-    /// Returns the places in `orders` for an order and its neighbours.
+    /// Returns the index range of an order and its neighbours in `orders`.
     fn bracket(&self, orders: &[usize], order: usize) -> Range<usize> {
         let at = orders.partition_point(|other| *other < order);
         let reach = self.thoroughness.bracket;
@@ -237,8 +240,8 @@ impl Comparison<'_> {
         Ok(())
     }
 
-    /// Gives each order, from the highest down, a second start from the two orders above it, and
-    /// keeps the cheaper model.
+    /// Starts each order, from the highest down, a second time from the models of the two orders
+    /// above it, and keeps the model with the lower cost.
     fn start_from_above(&mut self) -> Result<(), IdentificationError> {
         let likelihood = &self.data.likelihood;
         let Thoroughness {
@@ -257,8 +260,8 @@ impl Comparison<'_> {
         Ok(())
     }
 
-    /// Removes a real pole from the next order's model, or a pair from the order after it, and
-    /// returns the cheaper result.
+    /// Removes a real pole from the model of the next order, or a pair from that of the order after
+    /// it, and returns the result with the lower cost.
     fn cheapest_from_above(&self, order: usize) -> Option<Fit> {
         let mut starts = Vec::new();
         for size in [1, 2] {
@@ -296,14 +299,14 @@ impl Comparison<'_> {
         order_of_least(&held_out_costs).unwrap_or(best)
     }
 
-    /// Whether an order's model has no fast unstable pole.
+    /// Whether the model of an order has no fast unstable pole.
     fn is_sound(&self, order: usize) -> bool {
         self.fits
             .get(&order)
             .is_some_and(|fit| fast_unstable_pole(&fit.model, self.data.highest).is_none())
     }
 
-    /// Computes an order's held-out cost per degree of freedom.
+    /// Computes the held-out cost per degree of freedom of an order.
     fn held_out_cost(&self, order: usize) -> Option<f64> {
         let model = &self.fits.get(&order)?.model;
         let held_out = &self.data.held_out;
@@ -311,7 +314,7 @@ impl Comparison<'_> {
     }
 }
 
-/// Returns the criteria that exceed the criterion at `best` by at most `share`, relatively.
+/// Returns the criteria that exceed the criterion of `best` by at most the relative `share`.
 fn within(criteria: &BTreeMap<usize, f64>, best: usize, share: f64) -> BTreeMap<usize, f64> {
     let Some(value) = criteria.get(&best) else {
         return BTreeMap::new();
@@ -321,7 +324,8 @@ fn within(criteria: &BTreeMap<usize, f64>, best: usize, share: f64) -> BTreeMap<
     near.map(|(order, value)| (*order, *value)).collect()
 }
 
-/// Returns an unstable pole faster than `highest` \[rad/s\], which no line shows.
+/// Returns an unstable pole faster than `highest` \[rad/s\], the highest spectral line: the data
+/// cannot support such a pole.
 pub(crate) fn fast_unstable_pole(model: &BlockModel, highest: f64) -> Option<Complex<f64>> {
     model
         .blocks

@@ -1,4 +1,4 @@
-//! The data that models are fitted to and judged by, in scaled units.
+//! The data to which models are fitted and by which they are assessed, in scaled units.
 
 use std::f64::consts::{PI, TAU};
 
@@ -29,24 +29,25 @@ use crate::spectra::scales::{Scales, ScalingError};
 use crate::spectra::spectrum::{LineRange, Spectrum};
 use crate::subspace::search_extent::{Extent, FIGURES_AN_UNKNOWN, parameters_of_order};
 
-/// Frequencies in the measured response.
+/// Number of frequencies of the measured response.
 const MEASURED_POINTS: usize = 40;
-/// Highest line for the measured response over the highest line used.
+/// Upper limit of the lines of the measured response, over the highest line used.
 const BEYOND: f64 = 1.3;
-/// Condition number of the inputs' correlations above which they depend on each other.
+/// Condition number of the correlation matrix of the inputs above which they depend on each other.
 const COPY: f64 = 1e9;
-/// Entry over an eigenvector's largest, above which an input is involved in a dependence.
+/// An input is involved in a dependence if its entry in the eigenvector exceeds this share of the
+/// largest.
 const INVOLVED: f64 = 0.1;
 /// Upper band end over the highest line used.
 const BAND_END: f64 = 0.75;
-/// Periods at the lower band end that the longest record has to last (M14.12).
+/// Minimum length of the longest record, in periods at the lower band end (M14.12).
 const LEAST_PERIODS: f64 = 1.5;
-/// Periods that it should last (M14.12).
+/// Recommended length of the longest record, in periods at the lower band end (M14.12).
 const BETTER_PERIODS: f64 = 5.0;
-/// Periods that it should last for each input if several are moved in a single record.
+/// Recommended periods for each input if several are moved in a single record.
 const PERIODS_AN_INPUT: f64 = 3.0;
 
-/// Records, prepared, transformed and weighed.
+/// Records, prepared, transformed and weighted.
 pub(crate) struct PreparedData<'a> {
     /// Used parts of every record.
     pub(crate) record_uses: Vec<RecordUse>,
@@ -54,19 +55,19 @@ pub(crate) struct PreparedData<'a> {
     pub(crate) scales: Scales,
     /// Segments to fit, low-passed for the projections.
     pub(crate) segments: Vec<Segment>,
-    /// The same without the filter.
+    /// Segments to fit, without the low-pass.
     pub(crate) unfiltered: Vec<Segment>,
-    /// The lines behind the measured response.
+    /// Range of the lines of the measured response.
     pub(crate) lines: LineRange,
     /// Held-out segments in record units.
     pub(crate) held_out_segments: Vec<Segment>,
     /// Spectral lines to fit.
     pub(crate) spectra: Vec<Spectrum>,
-    /// The response without a model.
+    /// The measured response.
     pub(crate) measured: ResponseEstimate,
     /// The cost over the fitted records.
     pub(crate) likelihood: Likelihood<'a>,
-    /// The cost over the lines as logged, if the fit uses the lines seen through a reference
+    /// The cost over the lines as logged, if the fit uses lines measured through a reference
     /// (M14.15).
     pub(crate) direct: Option<Likelihood<'a>>,
     /// The cost over the held-out records.
@@ -81,8 +82,8 @@ impl<'a> PreparedData<'a> {
     /// Prepares the records and measures response and noise (M14.1, M14.2).
     ///
     /// ```text
-    /// 1  segments on a uniform grid; held-out records apart, references apart
-    /// 2  scales; inputs that depend on each other are refused
+    /// 1  segments on a uniform grid, with held-out records and references separated
+    /// 2  scales; an error for inputs that depend on each other
     /// 3  spectral lines, the measured response and the noise covariance
     /// 4  line weights, for the fit and for the held-out records
     /// 5  low-pass for the projections
@@ -152,8 +153,8 @@ impl<'a> PreparedData<'a> {
         })
     }
 
-    /// Returns the settings of CT-PBSID: the options, completed by what the records can
-    /// carry (M14.13).
+    /// Returns the settings of CT-PBSID: the options, completed by those that the amount of data
+    /// allows (M14.13).
     pub(crate) fn subspace_settings(&self, options: &Options) -> SubspaceSettings {
         let outputs = self.scales.outputs.len();
         let highest = options.band[1];
@@ -183,8 +184,8 @@ impl<'a> PreparedData<'a> {
         }
     }
 
-    /// Converts a model to record units: each response is multiplied by the output's
-    /// scale over the input's. `None` if the model is not finite.
+    /// Converts a model to record units: each response is multiplied by the scale of the output
+    /// over that of the input. `None` if the model is not finite.
     pub(crate) fn in_units(&self, model: &BlockModel) -> Option<StateSpace> {
         let mut scaled = model.clone();
         for (input, scale) in self.scales.inputs.iter().enumerate() {
@@ -198,7 +199,7 @@ impl<'a> PreparedData<'a> {
         scaled.state_space()
     }
 
-    /// Returns the data to examine a model with.
+    /// Returns the data for examining a model.
     pub(crate) fn measured_data(&self) -> MeasuredData<'_> {
         MeasuredData {
             spectra: &self.spectra,
@@ -207,7 +208,7 @@ impl<'a> PreparedData<'a> {
         }
     }
 
-    /// The error that no model was found.
+    /// Returns the error that no model was found.
     pub(crate) fn no_model(&self) -> IdentificationError {
         IdentificationError::NoModel {
             lines: self.line_count(),
@@ -223,7 +224,7 @@ impl<'a> PreparedData<'a> {
             .sum()
     }
 
-    /// Returns the total segment length to fit \[s\].
+    /// Returns the total length of the segments to fit \[s\].
     fn duration_s(&self) -> f64 {
         self.spectra
             .iter()
@@ -232,7 +233,7 @@ impl<'a> PreparedData<'a> {
     }
 }
 
-/// Refuses held-out records that do not exist.
+/// Returns an error for held-out records that do not exist.
 fn check_held_out(records: &[FlightRecord], options: &Options) -> Result<(), IdentificationError> {
     for &record in &options.held_out {
         if record >= records.len() {
@@ -248,7 +249,7 @@ fn check_held_out(records: &[FlightRecord], options: &Options) -> Result<(), Ide
 /// Segments to fit and held-out segments, without the references among their inputs.
 struct SplitSegments {
     to_fit: Vec<Segment>,
-    /// Each fitted segment's references, samples x references.
+    /// References of each fitted segment, samples x references.
     references: Vec<DMatrix<f64>>,
     held_out: Vec<Segment>,
 }
@@ -323,12 +324,12 @@ struct Measurement<'a> {
 
 /// The spectral lines of all fitted segments.
 struct Lines {
-    /// The lines to fit.
+    /// Range of the lines to fit.
     used: LineRange,
-    /// The lines behind the measured response.
+    /// Range of the lines of the measured response.
     reach: LineRange,
     wide: Vec<Spectrum>,
-    /// Those of the wide spectra to fit.
+    /// The lines to fit, taken from the wide spectra.
     narrow: Vec<Spectrum>,
 }
 
@@ -414,7 +415,7 @@ fn weigh<'a>(
     Ok(Likelihood { segments, executor })
 }
 
-/// Refuses a band whose highest line is above half the sampling frequency.
+/// Returns an error for a band whose highest line is above half the sampling frequency.
 fn check_sampling(segments: &[Segment], options: &Options) -> Result<(), IdentificationError> {
     let sample_time_s = segments
         .iter()
@@ -431,8 +432,8 @@ fn check_sampling(segments: &[Segment], options: &Options) -> Result<(), Identif
     })
 }
 
-/// Refuses records that are too short for the lower band end or for a first-order
-/// model, and reports records that are shorter than they should be (M14.12).
+/// Returns an error for records that are too short for the lower band end or for a first-order
+/// model, and reports records that are shorter than recommended (M14.12).
 fn check_length(
     segments: &[Segment],
     lines: &[Spectrum],
@@ -473,7 +474,7 @@ fn check_length(
     }))
 }
 
-/// Refuses lines with too few real values for a first-order model (M14.13).
+/// Returns an error for lines with too few real values for a first-order model (M14.13).
 fn check_figures(segments: usize, lines: &[Spectrum]) -> Result<(), IdentificationError> {
     let inputs = lines.first().map_or(0, |lines| lines.inputs.nrows());
     let outputs = lines.first().map_or(0, |lines| lines.outputs.nrows());
@@ -491,7 +492,8 @@ fn check_figures(segments: usize, lines: &[Spectrum]) -> Result<(), Identificati
     Ok(())
 }
 
-/// Refuses inputs that depend on each other, by their correlations' condition number.
+/// Returns an error for inputs that depend on each other, by the condition number of their
+/// correlation matrix.
 fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), IdentificationError> {
     let inputs = options.inputs();
     let mut gram = DMatrix::<f64>::zeros(inputs, inputs);
@@ -514,7 +516,7 @@ fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), Identific
     Err(IdentificationError::InputsDepend(involved))
 }
 
-/// Keeps the cautions about model channels: a reference may well move as an input does.
+/// Keeps the cautions about model channels: a reference may move like an input.
 fn model_cautions(cautions: Vec<RecordCaution>, options: &Options) -> Vec<IdentificationCaution> {
     let mut kept = Vec::new();
     for caution in cautions {
@@ -534,7 +536,7 @@ fn model_cautions(cautions: Vec<RecordCaution>, options: &Options) -> Vec<Identi
     kept
 }
 
-/// Reports an end of the band that the records do not show.
+/// Reports an end of the band at which the records show no response.
 fn band_caution(measured: &ResponseEstimate, options: &Options) -> Option<IdentificationCaution> {
     let shown = measured.shown_band(options.band)?;
     Some(IdentificationCaution::BandNotShown {

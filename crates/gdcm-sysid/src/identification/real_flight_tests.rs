@@ -38,7 +38,7 @@ pub(crate) fn known() -> Value {
     .unwrap()
 }
 
-/// The random generator of the file.
+/// The random number generator described in the file.
 pub(crate) struct Generator(u32);
 
 impl Generator {
@@ -56,7 +56,7 @@ impl Generator {
     }
 }
 
-/// One flight of the file.
+/// A flight generated as the file describes.
 #[derive(Clone, Copy)]
 pub(crate) struct Flown {
     pub(crate) seed: u64,
@@ -83,7 +83,7 @@ impl Flown {
         }
     }
 
-    /// A sweep with a little remnant, seen through noise.
+    /// A sweep with a small remnant and measurement noise.
     pub(crate) fn calm(seed: u64, late: usize) -> Self {
         Self {
             seed,
@@ -97,7 +97,7 @@ impl Flown {
         }
     }
 
-    /// Returns the record, and the sweep that drove it from outside.
+    /// Returns the record, and the sweep that was added to the loop.
     pub(crate) fn record(self, file: &Value) -> (FlightRecord, Vec<f64>) {
         let generator = &file["generator"];
         let f = matrix(&generator["F"]);
@@ -201,7 +201,7 @@ fn lines_orders_and_past_windows_of_a_short_record_match_independent_code() {
     assert_eq!(settings.pasts, whole_numbers(&known["pasts"]));
 }
 
-/// Identifies the short record with a further record held out.
+/// Identifies the short record, with a further record held out.
 fn short_record_identified(file: &Value) -> Identification {
     let answers = &file["short_siso"]["record"];
     let (record, _) = Flown::from_answers(answers, 11).record(file);
@@ -309,7 +309,8 @@ pub(crate) fn codes(found: &Identification) -> Vec<&'static str> {
         .collect()
 }
 
-/// Identifies a record at these orders, and measures the model's distance from its points.
+/// Identifies a record at these orders, and measures the distance of the model from the measured
+/// points.
 fn departure(record: &FlightRecord, orders: Option<Vec<usize>>) -> Departure {
     let options = Options {
         orders,
@@ -564,8 +565,8 @@ fn a_reference_frees_the_response_from_feedback() {
         };
         for (omega, expected) in numbers(&points["w"]).into_iter().zip(line(&points["G"])) {
             let point = nearest(omega);
-            // The nearest line of 60 s is within 0.05 rad/s, over which the response turns by as
-            // much.
+            // The nearest line of a 60 s record is within 0.06 rad/s; the tolerance allows the
+            // change of the response over this distance.
             let error = (point.response[(0, 0)] / expected - 1.0).norm();
             assert!(
                 error < tolerance + 0.06 / omega * 2.0,
@@ -581,7 +582,8 @@ fn a_reference_frees_the_response_from_feedback() {
                 20.0 * (response_at(model, omega)[(0, 0)].norm() / truth[k].norm()).log10();
             // The file states the error where the reference excites (M14.15). At 1.5 rad/s in
             // gusts, where the chirp has just begun, it does not: its coherence with the input is
-            // 0.2, which the views hatch; the independent code is 2.3 dB off there, this one 5.6.
+            // 0.2, which the views hatch; the error of the independent code is 2.3 dB there, and
+            // here 5.6 dB.
             let excites = nearest(omega).partial_coherence[(0, 0)] >= TRUSTED_COHERENCE;
             assert_eq!(
                 excites,
@@ -610,8 +612,8 @@ fn a_reference_frees_the_response_from_feedback() {
     }
 }
 
-/// Reads the pitch rate of the quadrotor and its moment command, and the position reference as a
-/// second input if wanted.
+/// Reads the pitch rate of the quadrotor and its moment command; optionally with the position
+/// reference as a second input.
 fn quadrotor(text: &str, with_reference: bool) -> FlightRecord {
     let rows: Vec<Vec<f64>> = text
         .lines()
@@ -659,7 +661,7 @@ fn the_quadrotor_is_identified_from_its_binary_sequence() {
         assert!((found - expected).abs() < 0.7, "{found} dB, not {expected}");
     }
     assert_eq!(codes(&found), Vec::<&str>::new(), "{:?}", found.cautions);
-    // The sweep, held out, is predicted.
+    // The held-out sweep is predicted.
     let both = [quadrotor(PRBS, false), quadrotor(SWEEP, false)];
     let held_out = Options {
         held_out: vec![1],
@@ -709,8 +711,8 @@ fn the_quadrotors_sweep_shows_its_feedback_and_the_reference_mends_that() {
         error(&mended),
         error(&found)
     );
-    // The bands come from the lines as logged (M14.15). They hold the result from the binary
-    // sequence, which is known to 0.7 dB itself.
+    // The bands come from the lines as logged (M14.15). They contain the result from the binary
+    // sequence, whose own uncertainty is 0.7 dB.
     let bands = mended.refined.bands.clone().unwrap();
     let omega = bands.omega();
     let by_reference = &bands.sd_db()[Pair {
@@ -727,7 +729,7 @@ fn the_quadrotors_sweep_shows_its_feedback_and_the_reference_mends_that() {
             "{at} rad/s: {found}, not {expected}, sd {sd} dB"
         );
     }
-    // Where the reference does not excite, little is known.
+    // Where the reference does not excite, the uncertainty is large.
     let coherence = |omega: &f64| {
         let nearest = |point: &&EstimatePoint| (point.omega / omega).ln().abs();
         let near = mended

@@ -13,17 +13,17 @@ use nalgebra::{Complex, DMatrix, DVector};
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::response::schur_form::SchurForm;
 
-/// Imaginary part over modulus up to which an eigenvalue is real: the Schur iteration's error.
+/// Maximum imaginary part over modulus of a real eigenvalue: the error of the Schur iteration.
 const REAL: f64 = 1e-9;
 
-/// A block's free parameters.
+/// The free parameters of a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Block {
     /// Two rows: `s^2 + a1 s + a0`.
     Pair {
-        /// Pole product \[rad^2/s^2\].
+        /// Product of the poles \[rad^2/s^2\].
         a0: f64,
-        /// Negative pole sum \[rad/s\].
+        /// Negative sum of the poles \[rad/s\].
         a1: f64,
     },
     /// One row: the pole \[rad/s\].
@@ -31,7 +31,7 @@ pub(crate) enum Block {
 }
 
 impl Block {
-    /// Counts the rows.
+    /// Returns the number of rows.
     pub(crate) fn size(self) -> usize {
         match self {
             Self::Pair { .. } => 2,
@@ -53,7 +53,8 @@ impl Block {
                         Complex::new(half, -imaginary),
                     ];
                 }
-                // The pole of greater modulus without cancellation, the other from the product.
+                // The pole of larger modulus is computed without cancellation, the other from the
+                // product.
                 let far = half + squared.sqrt().copysign(half);
                 let near = if far == 0.0 { 0.0 } else { a0 / far };
                 vec![Complex::from(far), Complex::from(near)]
@@ -81,12 +82,12 @@ impl BlockModel {
         self.b.nrows()
     }
 
-    /// Counts the parameters: n + n inputs + n outputs + outputs x inputs.
+    /// Counts the parameters: n (1 + inputs + outputs) + outputs x inputs.
     pub(crate) fn parameters(&self) -> usize {
         self.order() * (1 + self.b.ncols() + self.c.nrows()) + self.d.len()
     }
 
-    /// Returns the blocks, each with its first row.
+    /// Returns the blocks, each with the index of its first row.
     pub(crate) fn rows(&self) -> impl Iterator<Item = (usize, Block)> + '_ {
         self.blocks.iter().scan(0, |next, &block| {
             let first = *next;
@@ -131,7 +132,7 @@ impl BlockModel {
         }
     }
 
-    /// Scales each block's states so that `|B| = |C|`.
+    /// Scales the states of each block so that `|B| = |C|`.
     fn balance(&mut self) {
         let rows: Vec<_> = self.rows().collect();
         for (first, block) in rows {
@@ -145,7 +146,7 @@ impl BlockModel {
         }
     }
 
-    /// Returns the model's four matrices; `None` if they are not finite.
+    /// Returns the four matrices of the model; `None` if they are not finite.
     pub(crate) fn state_space(&self) -> Option<StateSpace> {
         let mut a = DMatrix::zeros(self.order(), self.order());
         for (first, block) in self.rows() {
@@ -180,17 +181,17 @@ impl BlockModel {
         stepped
     }
 
-    /// Returns the parameter number for `B[state, input]`.
+    /// Returns the parameter index of `B[state, input]`.
     pub(crate) fn place_of_b(&self, state: usize, input: usize) -> usize {
         self.order() + state * self.b.ncols() + input
     }
 
-    /// Returns the parameter number for `C[output, state]`.
+    /// Returns the parameter index of `C[output, state]`.
     pub(crate) fn place_of_c(&self, output: usize, state: usize) -> usize {
         self.order() * (1 + self.b.ncols()) + output * self.order() + state
     }
 
-    /// Returns the parameter number for `D[output, input]`.
+    /// Returns the parameter index of `D[output, input]`.
     pub(crate) fn place_of_d(&self, output: usize, input: usize) -> usize {
         self.order() * (1 + self.b.ncols() + self.c.nrows()) + output * self.d.ncols() + input
     }
@@ -259,7 +260,7 @@ fn add_steps<'p, 's>(
     }
 }
 
-/// A block, and the basis columns that bring `A` to it.
+/// A block, and the basis columns that transform `A` to it.
 struct ModalBlock {
     block: Block,
     columns: Vec<DVector<f64>>,
@@ -271,13 +272,13 @@ struct RealMode {
     vector: DVector<f64>,
 }
 
-/// A complex pair's mode with the positive imaginary part.
+/// The mode of a complex pair that has the positive imaginary part.
 struct ComplexMode {
     pole: Complex<f64>,
     vector: DVector<Complex<f64>>,
 }
 
-/// A model's modes, by ascending modulus.
+/// Modes of a model, by ascending modulus.
 struct Modes {
     complex: Vec<ComplexMode>,
     real: Vec<RealMode>,
@@ -297,7 +298,7 @@ impl Modes {
             let pole = schur.t[(at, at)];
             let vector = schur.eigenvector(at);
             let largest = vector[vector.icamax()];
-            // Turned so that its largest entry is real.
+            // Rotated so that its largest entry is real.
             let vector = vector * (largest.conj() / largest.norm());
             if pole.im.abs() <= REAL * pole.norm() {
                 modes.real.push(RealMode {
@@ -320,8 +321,8 @@ impl Modes {
         Some(modes)
     }
 
-    /// Gives neighbouring real modes outputs with the same sign, so that their difference shows
-    /// how they differ.
+    /// Gives neighbouring real modes outputs with the same sign, so that the difference of their
+    /// vectors shows how the modes differ.
     fn align_real_modes(&mut self, c: &DMatrix<f64>) {
         for k in 1..self.real.len() {
             let before = c * &self.real[k - 1].vector;
@@ -333,9 +334,9 @@ impl Modes {
     }
 }
 
-/// Returns a model's blocks, pairs before real poles and each by modulus.
+/// Returns the blocks of a model: pairs, then real poles, each by ascending modulus.
 ///
-/// A block's columns are `t2` in the invariant subspace and `t1 = A t2 + a1 t2`.
+/// The columns of a block are `t2` in the invariant subspace and `t1 = A t2 + a1 t2`.
 fn modal_blocks(model: &StateSpace) -> Option<Vec<ModalBlock>> {
     let mut modes = Modes::of_model(model)?;
     modes.align_real_modes(model.c());

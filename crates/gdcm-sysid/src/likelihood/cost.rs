@@ -1,9 +1,9 @@
-//! A model's cost over the records' spectral lines, transients eliminated (M14.4).
+//! Cost of a model over the spectral lines of the records, with the transients eliminated (M14.4).
 //!
 //! ```text
 //! J = sum_r sum_k | W_k (Y_r - G U_r - C (j omega - A)^-1 tau_r - c1_r/(j omega) - c0_r) |^2
 //!
-//! 1  once a record: orthonormal bases for the columns W (real parts) and W/omega
+//! 1  for each record: orthonormal bases of the columns W (real parts) and W/omega
 //!    (imaginary parts), which eliminate c0 and c1
 //! 2  T = W C (j omega - A)^-1, e0 = W (Y - G U), both less their projections on these bases
 //! 3  tau = argmin |e0 - T tau|^2 from the scaled columns' Gram matrix,
@@ -28,10 +28,10 @@ use crate::spectra::spectrum::Spectrum;
 /// Eigenvalues of a transient's Gram matrix below this share of the largest are dropped.
 pub(crate) const DEPENDENT: f64 = 1e-12;
 
-/// A segment's spectral lines, whitened.
+/// Whitened spectral lines of a segment.
 #[derive(Clone, Debug)]
 pub(crate) struct SpectralLines {
-    /// Record number, counted from 0.
+    /// Index of the record, counted from 0.
     pub(crate) record: usize,
     /// \[rad/s\].
     pub(crate) omega: Vec<f64>,
@@ -41,13 +41,13 @@ pub(crate) struct SpectralLines {
     pub(crate) outputs: DMatrix<Complex<f64>>,
     /// `W` at each line, lower triangular.
     pub(crate) weights: Vec<DMatrix<f64>>,
-    /// Orthonormal basis for `W c0` in real parts, (outputs lines) x outputs.
+    /// Orthonormal basis of `W c0` in real parts, (outputs lines) x outputs.
     constant: DMatrix<f64>,
-    /// Orthonormal basis for `W c1 / (j omega)` in imaginary parts, (outputs lines) x outputs.
+    /// Orthonormal basis of `W c1 / (j omega)` in imaginary parts, (outputs lines) x outputs.
     drift: DMatrix<f64>,
 }
 
-/// A segment's share in the cost.
+/// Contribution of a segment to the cost.
 #[derive(Clone, Debug)]
 pub(crate) struct SegmentCost {
     /// `J_r`.
@@ -61,7 +61,7 @@ pub(crate) struct SegmentCost {
 impl SpectralLines {
     /// Whitens a spectrum in scaled units with the noise covariance.
     ///
-    /// Returns `None` where the covariance is not positive definite at a line.
+    /// Returns `None` if the covariance is not positive definite at a line.
     pub(crate) fn new(spectrum: &Spectrum, noise: &NoiseCovariance) -> Option<Self> {
         let weights = spectrum
             .omega
@@ -108,14 +108,14 @@ impl SpectralLines {
         }
     }
 
-    /// Returns the degrees of freedom at this model order: real values in the lines less the
-    /// transient's unknowns.
+    /// Returns the degrees of freedom at this model order: the number of real values in the lines
+    /// less the unknowns of the transient.
     pub(crate) fn freedom(&self, order: usize) -> usize {
         let outputs = self.outputs.nrows();
         (2 * outputs * self.omega.len()).saturating_sub(order + 2 * outputs)
     }
 
-    /// Computes the segment's share in the cost; `None` if it is not finite.
+    /// Computes the contribution of the segment to the cost; `None` if it is not finite.
     pub(crate) fn cost(&self, model: &BlockModel) -> Option<SegmentCost> {
         let outputs = self.outputs.nrows();
         let mut state = vec![Complex::default(); model.order()];
@@ -135,7 +135,7 @@ impl SpectralLines {
         })
     }
 
-    /// Removes the transient for `model`, trim and drift from a whitened column, outputs x lines.
+    /// Removes trim, drift and the transient of `model` from a whitened column, outputs x lines.
     ///
     /// Returns `None` if the result is not finite.
     pub(crate) fn without_transient(
@@ -149,10 +149,10 @@ impl SpectralLines {
         Some(left.residual)
     }
 
-    /// Eliminates trim, drift and the transient for `model` from `e0` (steps 2 to 4).
+    /// Eliminates trim, drift and the transient of `model` from `e0` (steps 2 to 4).
     ///
-    /// `fill(k, cr, e0)` receives a line number and `C (j omega - A)^-1` at it, and writes
-    /// `e0` at that line.
+    /// `fill(k, cr, e0)` receives the index of a line and `C (j omega - A)^-1` at this line, and
+    /// writes `e0` at the line.
     fn eliminate(
         &self,
         model: &BlockModel,
@@ -216,10 +216,10 @@ fn residual_of(part: &DMatrix<f64>, transient: &DVector<f64>) -> DVector<f64> {
     part.column(order) - part.columns(0, order) * transient
 }
 
-/// The segments that a model is fitted to.
+/// The segments to which a model is fitted.
 #[derive(Clone)]
 pub(crate) struct Likelihood<'a> {
-    /// By record and time.
+    /// Segments, by record and time.
     pub(crate) segments: Vec<SpectralLines>,
     /// Runs the segments' work.
     pub(crate) executor: &'a dyn Executor,
@@ -234,7 +234,8 @@ impl Likelihood<'_> {
             .sum()
     }
 
-    /// Computes each segment's share in the cost; `None` if a share is not finite.
+    /// Computes the contribution of each segment to the cost; `None` if a contribution is not
+    /// finite.
     pub(crate) fn parts(&self, model: &BlockModel) -> Option<Vec<SegmentCost>> {
         each(self.executor, &self.segments, |segment| segment.cost(model))
             .into_iter()
@@ -246,7 +247,7 @@ impl Likelihood<'_> {
         Some(self.parts(model)?.iter().map(|part| part.cost).sum())
     }
 
-    /// Returns the record numbers that have segments, ascending.
+    /// Returns the indices of the records that have segments, ascending.
     pub(crate) fn records(&self) -> Vec<usize> {
         let mut records: Vec<usize> = self.segments.iter().map(|segment| segment.record).collect();
         records.sort_unstable();
@@ -294,7 +295,7 @@ pub(crate) fn whiten(
     }
 }
 
-/// Subtracts from every column its projection on an orthonormal basis.
+/// Subtracts the projection on an orthonormal basis from every column.
 fn project_out(basis: &DMatrix<f64>, columns: &mut DMatrix<f64>) {
     let products = basis.transpose() * &*columns;
     columns.gemm(-1.0, basis, &products, 1.0);

@@ -1,4 +1,4 @@
-//! The covariance of a model's parameters and poles (M14.5).
+//! Covariance of the parameters and poles of a model (M14.5).
 //!
 //! ```text
 //! Cov theta = phi G^+,   phi = J / (N - k),   G = sum_r J_r'J_r
@@ -16,11 +16,13 @@ use super::gram_matrix::pseudo_inverse_root;
 use super::normal_system::{NormalSystem, normal_systems};
 use super::refinement::Fit;
 
-/// Share of the largest eigenvalue below which a direction is a free scale of the states.
+/// Eigenvalues of the information matrix `G` below this share of the largest belong to
+/// unidentifiable directions (state scaling).
 const FREE_SCALE: f64 = 1e-9;
-/// Largest reported standard deviation over a pole's modulus and the band.
+/// Maximum reported standard deviation of a pole, relative to its modulus or the lower band end,
+/// whichever is larger.
 const UNKNOWN: f64 = 1e3;
-/// A pole's standard deviation over its modulus up to which it is determined.
+/// Maximum standard deviation of a determined pole, relative to its modulus.
 const DETERMINED: f64 = 0.5;
 
 /// Parameter covariance.
@@ -32,7 +34,7 @@ pub(crate) struct ParameterCovariance {
     information: DMatrix<f64>,
 }
 
-/// Variances of real and imaginary part.
+/// Variances of the real and the imaginary part.
 struct ComplexVariance {
     re: f64,
     im: f64,
@@ -48,7 +50,7 @@ impl ParameterCovariance {
         })
     }
 
-    /// Computes a fit's covariance from its normal systems and its cost; `None` if the
+    /// Computes the covariance of a fit from its normal systems and its cost; `None` if the
     /// parameters leave no degrees of freedom.
     pub(crate) fn from_systems(
         likelihood: &Likelihood,
@@ -61,7 +63,7 @@ impl ParameterCovariance {
         Self::new(&system, cost / spare as f64)
     }
 
-    /// Computes a model's covariance from other lines than the fitted ones.
+    /// Computes the covariance of a model from other lines than the fitted ones.
     pub(crate) fn from_lines(likelihood: &Likelihood, fit: &Fit) -> Option<Self> {
         let parts = likelihood.parts(&fit.model)?;
         let systems = normal_systems(likelihood, &fit.model, &parts)?;
@@ -83,7 +85,7 @@ impl ParameterCovariance {
         Some(cost - root.tr_mul(&system.gradient).norm_squared())
     }
 
-    /// Returns the model's poles with their standard deviations; `lowest` is the lower end of
+    /// Returns the poles of the model with their standard deviations; `lowest` is the lower end of
     /// the band \[rad/s\].
     pub(crate) fn poles(&self, model: &BlockModel, lowest: f64) -> Vec<PoleEstimate> {
         let mut place = 0;
@@ -107,7 +109,7 @@ impl ParameterCovariance {
         estimates
     }
 
-    /// Computes a pole's variance; the parameters of its block begin at `place`.
+    /// Computes the variance of a pole; `place` is the index of the first parameter of its block.
     fn pole_variance(&self, block: Block, pole: Complex<f64>, place: usize) -> ComplexVariance {
         match block {
             Block::Single(_) => ComplexVariance {
@@ -121,7 +123,7 @@ impl ParameterCovariance {
         }
     }
 
-    /// Computes the variance for `sum_k gradient_k d theta_k` over the parameters at `places`.
+    /// Computes the variance of `sum_k gradient_k d theta_k` over the parameters at `places`.
     fn variance(&self, places: &[usize], gradient: &[Complex<f64>]) -> ComplexVariance {
         let mut variance = ComplexVariance { re: 0.0, im: 0.0 };
         for (p, x) in places.iter().zip(gradient) {
@@ -141,7 +143,7 @@ impl ParameterCovariance {
     }
 }
 
-/// Returns a variance's square root, at most `most`; `most` if the variance is not finite.
+/// Returns the square root of a variance, at most `most`; `most` if the variance is not finite.
 fn bounded_root(variance: f64, most: f64) -> f64 {
     if variance.is_finite() {
         variance.max(0.0).sqrt().min(most)

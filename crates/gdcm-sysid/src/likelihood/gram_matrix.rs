@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// Scales the columns behind a Gram matrix to unit length.
 ///
-/// Returns the factors; a zero column's factor is 0.
+/// Returns the factors; the factor of a zero column is 0.
 pub(crate) fn scale_columns(gram: &mut DMatrix<f64>) -> DVector<f64> {
     let scales = gram.diagonal().map(inverse_root);
     let size = scales.len();
@@ -25,8 +25,8 @@ fn inverse_root(square: f64) -> f64 {
 
 /// Computes `F` with `F F' = G^+` for a Gram matrix `G` by its eigenvectors in scaled columns.
 ///
-/// Eigenvalues up to `dependent` times the largest are left out. Returns `None` where the matrix is
-/// not finite or the eigenvalue iteration does not converge.
+/// Eigenvalues up to `dependent` times the largest are omitted. Returns `None` if the matrix is not
+/// finite or the eigenvalue iteration does not converge.
 pub(crate) fn pseudo_inverse_root(mut gram: DMatrix<f64>, dependent: f64) -> Option<DMatrix<f64>> {
     let scales = scale_columns(&mut gram);
     if !gram.iter().all(|entry| entry.is_finite()) {

@@ -1,11 +1,11 @@
-//! A model of a lower order from one of a higher order, without the mode that the measured
-//! response misses least (M14.13).
+//! A model of lower order from one of higher order, without the mode whose removal changes the fit
+//! to the measured response least (M14.13).
 //!
 //! ```text
 //! H = sum of modes dH + D: real poles, and complex pairs
-//! 1  for each mode with the wanted size: sum |dH - mean dH|^2 / var G over the points and
-//!    pairs in the measured response
-//! 2  the mode with the least sum is removed; the mean Re dH is kept in D
+//! 1  for each mode of the requested size: sum |dH - mean dH|^2 / var G over the points and
+//!    pairs of the measured response
+//! 2  the mode with the smallest sum is removed; the mean Re dH is kept in D
 //! ```
 
 use nalgebra::{DMatrix, dmatrix};
@@ -13,19 +13,20 @@ use nalgebra::{DMatrix, dmatrix};
 use super::blocks::{Block, BlockModel};
 use crate::spectra::response_estimate::ResponseEstimate;
 
-/// A removed mode's effect.
+/// Effect of the removal of a mode.
 struct Loss {
     /// `sum |dH - mean dH|^2 / var G`.
     cost: f64,
-    /// Mean `Re dH` over frequency, which stays in `D`.
+    /// Mean of `Re dH` over frequency, which is kept in `D`.
     mean: DMatrix<f64>,
 }
 
 impl BlockModel {
-    /// Removes the complex pair (`size` 2) or the real pole (`size` 1) that `measured` misses
-    /// least.
+    /// Removes the complex pair (`size` 2) or the real pole (`size` 1) whose removal changes the
+    /// fit to `measured` least.
     ///
-    /// Returns `None` if there is no such mode, or if the rest cannot be brought to blocks.
+    /// Returns `None` if there is no such mode, or if the remaining model cannot be transformed to
+    /// blocks.
     pub(crate) fn without_least_mode(
         &self,
         size: usize,
@@ -46,7 +47,7 @@ impl BlockModel {
             return None;
         }
         let joined = Self::join(&modes, &self.d + least.mean);
-        // Pairs the remaining real poles anew.
+        // Pairs the remaining real poles again.
         Self::from_state_space(&joined.state_space()?)
     }
 
@@ -65,7 +66,7 @@ impl BlockModel {
         }
     }
 
-    /// Computes the effect if this mode is removed.
+    /// Computes the effect of removing this mode.
     fn loss(&self, measured: &ResponseEstimate) -> Loss {
         let responses: Vec<_> = measured
             .points
@@ -119,7 +120,7 @@ impl BlockModel {
         modes
     }
 
-    /// A single block's model without `D`.
+    /// Returns the model of a single block, without `D`.
     fn mode(block: Block, b: DMatrix<f64>, c: DMatrix<f64>) -> Self {
         Self {
             blocks: vec![block],
@@ -168,8 +169,8 @@ mod tests {
         let less = model.without_least_mode(1, &measured).unwrap();
         assert_eq!(less.order(), 4);
         for omega in [0.5, 2.0, 8.0] {
-            // The servo at 60 rad/s has the gain 0.2 and turns it by 8/60 at most; its mean is
-            // taken at the points.
+            // The servo at 60 rad/s has the gain 0.2, from which its response deviates by at most
+            // 8/60 of the gain; the mean is taken over the points.
             let error = (less.response(omega) - model.response(omega)).camax();
             assert!(error < 0.2 * 10.0 / 60.0, "{omega} rad/s: {error}");
         }

@@ -9,7 +9,7 @@ use super::refinement::{DampedStart, FIRST_DAMPING, Fit};
 
 /// A model fitted to all records but one.
 pub(crate) struct ModelWithoutRecord {
-    /// Record number, counted from 0.
+    /// Index of the record, counted from 0.
     pub(crate) record: usize,
     pub(crate) model: BlockModel,
 }
@@ -21,7 +21,8 @@ pub(crate) struct ModelWithoutRecord {
 /// lambda = 1e-4, times 8 until the cost over the other records falls
 /// ```
 ///
-/// An undamped step runs away in weak directions. Empty for a single record.
+/// An undamped step diverges in weakly determined directions. Returns no models for a single
+/// record.
 pub(crate) fn without_each_record(
     likelihood: &Likelihood,
     fit: &Fit,
@@ -47,7 +48,7 @@ pub(crate) fn without_each_record(
             cost,
             damping: FIRST_DAMPING,
         };
-        // If no step lowers the cost, the full model is best without the record as well.
+        // If no step lowers the cost, the full model is also the best without the record.
         let model = match start.step(&likelihood.without(record)) {
             Some(step) => step.model,
             None => fit.model.clone(),

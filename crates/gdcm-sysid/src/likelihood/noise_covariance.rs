@@ -5,17 +5,17 @@ use nalgebra::DMatrix;
 use crate::spectra::interpolation::Neighbours;
 use crate::spectra::response_estimate::{EstimatePoint, ResponseEstimate};
 
-/// Weights for a point and its neighbours in the smoothed covariance (M14.2).
+/// Weights of a point and its neighbours in the smoothed covariance (M14.2).
 const SMOOTHING: [f64; 5] = [1.0, 2.0, 3.0, 2.0, 1.0];
-/// Share added to the diagonal, so that dependent outputs leave the covariance regular (M14.2).
+/// Share added to the diagonal, which keeps the covariance of dependent outputs regular (M14.2).
 const ADDED: f64 = 1e-4;
-/// Least noise variance over output power: exact data still have rounding.
+/// Minimum noise variance over output power; even exact data have rounding errors.
 const FLOOR: f64 = 1e-16;
 
-/// `Cv(omega)`, a line's noise covariance, outputs x outputs.
+/// `Cv(omega)`, the noise covariance of a line, outputs x outputs.
 ///
-/// A measured response's covariances are smoothed over five neighbours, interpolated linearly
-/// in log frequency and constant beyond the ends (M14.2).
+/// The covariances of the measured response are smoothed over five neighbours, interpolated
+/// linearly in log frequency, and constant beyond the ends (M14.2).
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseCovariance {
     log_omega: Vec<f64>,
@@ -23,7 +23,7 @@ pub struct NoiseCovariance {
 }
 
 impl NoiseCovariance {
-    /// Smooths a measured response's covariances; `None` where it has no points.
+    /// Smooths the covariances of a measured response; `None` if it has no points.
     #[must_use]
     pub fn from_measured(measured: &ResponseEstimate) -> Option<Self> {
         let points = &measured.points;
@@ -50,9 +50,9 @@ impl NoiseCovariance {
     /// Returns `W` at `omega` \[rad/s\]: the inverse lower Cholesky factor of `Cv / 2`,
     /// outputs x outputs, lower triangular.
     ///
-    /// `W e` has real and imaginary parts with unit variance if `e` is noise (M14.4). `None` where
-    /// the covariance is not positive definite: the noise is 1e8 times stronger in one combination
-    /// of outputs than in another.
+    /// `W e` has real and imaginary parts with unit variance if `e` is noise (M14.4). `None` if the
+    /// covariance is not positive definite: the noise is 1e8 times stronger in one combination of
+    /// outputs than in another.
     #[must_use]
     pub fn weight(&self, omega: f64) -> Option<DMatrix<f64>> {
         let lower = self.at(omega).scale(0.5).cholesky()?.unpack();
@@ -66,7 +66,7 @@ impl NoiseCovariance {
     }
 }
 
-/// Returns the weighted mean covariance around point `k`, its diagonal raised.
+/// Returns the weighted mean covariance around point `k`, with the raised diagonal.
 fn smoothed(points: &[EstimatePoint], k: usize) -> DMatrix<f64> {
     let reach = SMOOTHING.len() / 2;
     let mut sum = points[k].noise.scale(0.0);

@@ -1,4 +1,4 @@
-//! The cost's normal equations, in Gram form (M14.4, M14.8).
+//! Normal equations of the cost, in Gram form (M14.4, M14.8).
 //!
 //! ```text
 //! At each line, every Jacobian column of W G U is a vector v (outputs) times a scalar s:
@@ -27,14 +27,14 @@ use super::gram_matrix::{pseudo_inverse_root, scale_columns};
 /// `G` and `g`: a step `d` changes the cost by `-2 g'd + d'G d`.
 #[derive(Clone, Debug)]
 pub(crate) struct NormalSystem {
-    /// `G = J'J`, the transients eliminated.
+    /// `G = J'J`, with the transients eliminated.
     pub(crate) matrix: DMatrix<f64>,
     /// `g = J'e`.
     pub(crate) gradient: DVector<f64>,
 }
 
 impl NormalSystem {
-    /// Sums systems with this many parameters; zero without systems.
+    /// Returns the sum of systems with this many parameters; zero if there are none.
     pub(crate) fn sum<'s>(parameters: usize, systems: impl IntoIterator<Item = &'s Self>) -> Self {
         let mut sum = Self {
             matrix: DMatrix::zeros(parameters, parameters),
@@ -75,7 +75,7 @@ impl NormalSystem {
     }
 }
 
-/// Computes all segments' systems at a model; `parts` are the segment costs there.
+/// Computes the systems of all segments at a model; `parts` are the segment costs there.
 pub(crate) fn normal_systems(
     likelihood: &Likelihood,
     model: &BlockModel,
@@ -89,7 +89,7 @@ pub(crate) fn normal_systems(
     .collect()
 }
 
-/// Sums the normal systems for a record; `systems` holds all segments'.
+/// Sums the normal systems of a record; `systems` holds those of all segments.
 pub(crate) fn system_of_record(
     likelihood: &Likelihood,
     record: usize,
@@ -105,7 +105,8 @@ pub(crate) fn system_of_record(
     NormalSystem::sum(parameters, own)
 }
 
-/// Computes a segment's `J'd`; the residual in `part` is the column `d`, its transient removed.
+/// Computes `J'd` of a segment; `part` holds the column `d` as its residual, with the transient
+/// removed.
 pub(crate) fn gradient_along(
     lines: &SpectralLines,
     model: &BlockModel,
@@ -116,14 +117,14 @@ pub(crate) fn gradient_along(
     gram.gradient
 }
 
-/// The numbers of two vectors, or of two scalars, to be multiplied.
+/// Indices of two vectors, or of two scalars, to be multiplied.
 #[derive(Clone, Copy)]
 struct IndexPair {
     left: usize,
     right: usize,
 }
 
-/// Returns the pairs from `0..count` with the second number not less than the first.
+/// Returns the pairs of indices below `count` whose second index is not smaller than the first.
 fn ordered_pairs(count: usize) -> Vec<IndexPair> {
     let mut pairs = Vec::new();
     for left in 0..count {
@@ -134,7 +135,7 @@ fn ordered_pairs(count: usize) -> Vec<IndexPair> {
     pairs
 }
 
-/// Returns all pairs with the first number below `lefts` and the second below `rights`.
+/// Returns all pairs of a first index below `lefts` and a second below `rights`.
 fn all_pairs(lefts: usize, rights: usize) -> Vec<IndexPair> {
     let mut pairs = Vec::new();
     for left in 0..lefts {
@@ -145,25 +146,25 @@ fn all_pairs(lefts: usize, rights: usize) -> Vec<IndexPair> {
     pairs
 }
 
-/// A block parameter's column: `(W C R)_vector` times `sign X_scalar`.
+/// Column of a block parameter: `(W C R)_vector` times `sign X_scalar`.
 struct BlockColumn {
     vector: usize,
     scalar: usize,
     sign: f64,
 }
 
-/// A segment's vectors and scalars, and the Gram matrix built from them.
+/// Vectors and scalars of a segment, and the Gram matrix built from them.
 ///
-/// Columns are numbered: the parameters, then tau, c1, c0.
+/// Order of the columns: the parameters, then tau, c1, c0.
 struct Gram<'a> {
     model: &'a BlockModel,
     lines: &'a SpectralLines,
     residual: &'a DMatrix<Complex<f64>>,
-    /// `W C R`, outputs x (n lines): n columns a line.
+    /// `W C R`, outputs x (n lines): n columns for each line.
     resolvent: DMatrix<Complex<f64>>,
-    /// `U` and 1, columns are lines: the scalars of `B` and tau.
+    /// Scalars of `B` and tau: `U` and 1; columns are lines.
     resolvent_scalars: DMatrix<Complex<f64>>,
-    /// `X`, `U`, 1/(j omega) and 1, columns are lines: the scalars of `C`, `D`, c1 and c0.
+    /// Scalars of `C`, `D`, c1 and c0: `X`, `U`, 1/(j omega) and 1; columns are lines.
     weight_scalars: DMatrix<Complex<f64>>,
     matrix: DMatrix<f64>,
     gradient: DVector<f64>,
@@ -239,7 +240,7 @@ impl<'a> Gram<'a> {
         })
     }
 
-    /// Returns the column number for `(W C R)_state` times a scalar of `B` and tau.
+    /// Returns the index of the column `(W C R)_state` times a scalar of `B` and tau.
     fn resolvent_column(&self, state: usize, scalar: usize) -> usize {
         if scalar < self.model.b.ncols() {
             self.model.place_of_b(state, scalar)
@@ -248,7 +249,7 @@ impl<'a> Gram<'a> {
         }
     }
 
-    /// Returns the column number for `W e_output` times a scalar of `C`, `D`, c1 and c0.
+    /// Returns the index of the column `W e_output` times a scalar of `C`, `D`, c1 and c0.
     fn weight_column(&self, output: usize, scalar: usize) -> usize {
         let order = self.model.order();
         let inputs = self.model.b.ncols();
@@ -288,8 +289,8 @@ impl<'a> Gram<'a> {
             .sum()
     }
 
-    /// Tabulates `product(k, row)` for each row and line `k`: real and imaginary part in two
-    /// columns a line.
+    /// Tabulates `product(k, row)` over rows and lines: real and imaginary part in two columns for
+    /// each line `k`.
     fn line_products(
         &self,
         rows: usize,
@@ -392,7 +393,7 @@ impl<'a> Gram<'a> {
         }
     }
 
-    /// Returns the columns for all block parameters.
+    /// Returns the columns of all block parameters.
     fn block_columns(&self) -> Vec<BlockColumn> {
         let mut columns = Vec::new();
         for (first, block) in self.model.rows() {
@@ -555,7 +556,7 @@ mod tests {
     fn cost_gradient_and_diagonal_match_independent_code() {
         let known = &answers()["likelihood_noise_free"];
         let (cost, system) = total(&known_records(known), &known_start(known));
-        // Independent numpy code; the tolerance is stated in its file, the cost is as good.
+        // Independent numpy code; its file states the tolerance. The cost agrees as well.
         assert!(
             (cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8,
             "{cost}"
@@ -580,7 +581,7 @@ mod tests {
         }
     }
 
-    /// A step of one parameter.
+    /// A step in one parameter.
     fn single_step(model: &BlockModel, place: usize, size: f64) -> DVector<f64> {
         let mut step = DVector::zeros(model.parameters());
         step[place] = size;
@@ -616,8 +617,8 @@ mod tests {
                 likelihood.cost(&stepped).unwrap()
             });
             let slope = (above - below) / (2.0 * step);
-            // Central differences: the third derivative times 1e-10, and rounding of the cost over
-            // 1e-5.
+            // Central differences: the error is the third derivative times 1e-10, plus the rounding
+            // error of the cost over 1e-5.
             let scale = system.gradient.amax();
             assert!(
                 (slope + 2.0 * system.gradient[place]).abs() < 1e-6 * scale,

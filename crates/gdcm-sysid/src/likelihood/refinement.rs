@@ -4,7 +4,7 @@
 //! lambda = 1e-4;  for each step:
 //! 1  G, g at theta
 //! 2  (G + lambda diag G) d = g; while J(theta + d) >= J(theta): lambda *= 8, at most 8 times
-//! 3  theta += d, lambda /= 8; stop if J has fallen by less than the least gain, a share of itself
+//! 3  theta += d, lambda /= 8; stop if the relative decrease of J is below the minimum gain
 //! ```
 //!
 //! D. W. Marquardt, "An algorithm for least-squares estimation of nonlinear parameters", SIAM J.
@@ -17,27 +17,28 @@ use super::cost::{Likelihood, SegmentCost};
 use super::normal_system::{NormalSystem, normal_systems};
 use crate::subspace::search_extent::parameters_of_order;
 
-/// Relative gain below which the refinement ends, unless large models' orders are compared.
+/// Relative gain in cost below which the refinement ends; the comparison of orders of large models
+/// uses another limit.
 pub(crate) const LEAST_GAIN: f64 = 1e-4;
-/// First step's damping.
+/// Damping of the first step.
 pub(crate) const FIRST_DAMPING: f64 = 1e-4;
 /// Damping factor after a failure, and its inverse after a success.
 const DAMPING_FACTOR: f64 = 8.0;
-/// Failures after which a step is given up.
+/// Maximum number of failures of a step.
 const FAILURES: usize = 8;
-/// Share of the whole work that is reported for a step.
+/// Share of the total progress that is reported for a step.
 const SHARE: f64 = 0.02;
 
-/// A model, its cost, and its refinement state.
+/// A model, its cost, and the state of its refinement.
 #[derive(Clone, Debug)]
 pub(crate) struct Fit {
     pub(crate) model: BlockModel,
-    /// Each segment's share in the cost.
+    /// Contribution of each segment to the cost.
     pub(crate) parts: Vec<SegmentCost>,
     /// `J`.
     pub(crate) cost: f64,
     damping: f64,
-    /// Share of the cost gained by the last step.
+    /// Relative decrease of the cost in the last step.
     gain: f64,
 }
 
@@ -58,7 +59,8 @@ impl Fit {
         })
     }
 
-    /// Takes at most `count` further steps, as long as each gains the cost share `least_gain`.
+    /// Takes at most `count` further steps, as long as each lowers the cost by the share
+    /// `least_gain`.
     pub(crate) fn refined(
         mut self,
         likelihood: &Likelihood,
@@ -79,12 +81,12 @@ impl Fit {
         Ok(self)
     }
 
-    /// Computes the segments' normal systems at the model.
+    /// Computes the normal systems of the segments at the model.
     pub(crate) fn systems(&self, likelihood: &Likelihood) -> Option<Vec<NormalSystem>> {
         normal_systems(likelihood, &self.model, &self.parts)
     }
 
-    /// Counts the parameters that matter.
+    /// Counts the parameters, without those that only change the state basis.
     pub(crate) fn effective_parameters(&self) -> usize {
         parameters_of_order(
             self.model.order(),
@@ -127,7 +129,7 @@ impl Fit {
     }
 }
 
-/// A damped step's starting point.
+/// Starting point of a damped step.
 pub(crate) struct DampedStart<'s> {
     pub(crate) model: &'s BlockModel,
     /// `G` and `g` at the model.
@@ -137,7 +139,7 @@ pub(crate) struct DampedStart<'s> {
     pub(crate) damping: f64,
 }
 
-/// A damped step's result.
+/// Result of a damped step.
 pub(crate) struct DampedStep {
     pub(crate) model: BlockModel,
     parts: Vec<SegmentCost>,
@@ -190,7 +192,7 @@ mod tests {
         let start = StateSpace::new(a, b, c, d).unwrap();
         let likelihood = known_records(known);
         let fit = Fit::start(&likelihood, BlockModel::from_state_space(&start).unwrap()).unwrap();
-        // Independent numpy code; the tolerances are stated in its file.
+        // Independent numpy code; its file states the tolerances.
         assert!(
             (fit.cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8,
             "{}",

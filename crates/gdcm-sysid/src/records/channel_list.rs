@@ -12,13 +12,13 @@ pub struct ChannelList {
     pub channels: Vec<SaidChannel>,
 }
 
-/// A channel as written in a list.
+/// A channel as specified in a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SaidChannel {
     pub name: String,
     /// Unit; empty if not given.
     pub unit: String,
-    /// Column: its name, `TOPIC.FIELD`, or `#3` for the third.
+    /// Column: its name, `TOPIC.FIELD`, or `#3` (the third column).
     pub column: Option<String>,
 }
 
@@ -75,7 +75,7 @@ impl FromStr for SaidChannel {
     }
 }
 
-/// Whether a bracket is an index, as in `xyz[0]`, and not a unit.
+/// Whether the text in a bracket is an index, as in `xyz[0]`, and not a unit.
 fn is_index(inside: &str) -> bool {
     inside.bytes().all(|byte| byte.is_ascii_digit())
 }

@@ -1,4 +1,4 @@
-//! Search for the columns that can be a channel, by name, documentation and unit.
+//! Search for the columns that may hold a channel, by name, documentation and unit.
 //!
 //! ```text
 //! 1  names: the exact name; else the name with a sign mark; else synonyms of the field
@@ -18,7 +18,7 @@ use gdcm_model::units::physical_unit::conversion_factor;
 
 use super::record_table::{RecordColumn, RecordTable};
 
-/// Returns the columns that can be this channel.
+/// Returns the columns that may hold this channel.
 pub(super) fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec<usize> {
     let search = ColumnSearch { table, rule, side };
     let names = search.wanted_names();
@@ -71,7 +71,8 @@ impl ColumnSearch<'_> {
         names
     }
 
-    /// Returns the columns accepted by `is_wanted`, unless the file gives them the other side.
+    /// Returns the columns accepted by `is_wanted`, without those that the file assigns to the
+    /// other side.
     fn named(&self, is_wanted: impl Fn(&str) -> bool) -> Vec<usize> {
         let mut found = Vec::new();
         for (index, column) in self.table.columns.iter().enumerate() {
@@ -99,8 +100,8 @@ impl ColumnSearch<'_> {
         self.named(|column| same_channel(&without_sign_mark(column), &wanted))
     }
 
-    /// Returns the columns with a user-defined name, in any spelling: "elev_yoke1" is "elev,yoke1".
-    /// A column number is not a name.
+    /// Returns the columns whose name is a user-defined alias, in any spelling: "elev_yoke1" is
+    /// "elev,yoke1". A column number selects a column but is not a name.
     fn by_aliases(&self, aliases: &[String]) -> Vec<usize> {
         let exact = self.named(|column| self.rule.aliases.iter().any(|alias| alias == column));
         if !exact.is_empty() {
@@ -150,8 +151,9 @@ impl ColumnSearch<'_> {
         })
     }
 
-    /// Whether a topic's field with the channel's name is the channel. In logs with documented
-    /// columns it is something else, unless the user names it: "PIDR.P" is not a roll rate.
+    /// Whether a field of a topic may be the channel because it has the same name. In logs with
+    /// documented columns the field has another meaning, unless the user names it: "PIDR.P" is not
+    /// a roll rate.
     fn may_be_field(&self) -> bool {
         let is_documented = self
             .table
@@ -165,7 +167,7 @@ impl ColumnSearch<'_> {
         self.columns(|column| names.iter().any(|name| column.field() == *name))
     }
 
-    /// Returns those columns whose unit can be converted to the channel's.
+    /// Returns the columns whose unit can be converted to that of the channel.
     fn convertible(&self, columns: &[usize]) -> Vec<usize> {
         let mut found = Vec::new();
         for column in columns {
@@ -178,20 +180,20 @@ impl ColumnSearch<'_> {
     }
 }
 
-/// Folded names for latitude and longitude.
+/// Folded column names of a latitude.
 const LATITUDE: [&str; 1] = ["lat"];
 const LONGITUDE: [&str; 3] = ["lon", "long", "lng"];
-/// Largest position change in a record \[deg\]: a minute at 140 kt is 0.04 degrees.
+/// Maximum position change in a record \[deg\]; a minute at 140 kt is 0.04 degrees.
 const LARGEST_POSITION_CHANGE_DEG: f64 = 0.5;
-/// Largest position change without a unit, over its largest absolute value.
+/// Maximum position change in a column without a unit, relative to its largest absolute value.
 const LARGEST_RELATIVE_CHANGE: f64 = 0.02;
-/// The same for a column with the channel's exact name: less than any stick moves in
-/// flight.
+/// Maximum relative position change in a column with exactly the channel's name: smaller than the
+/// movement of any stick in flight.
 const LARGEST_RELATIVE_CHANGE_OF_NAMESAKE: f64 = 0.002;
 
-/// Whether a column is a latitude or a longitude, whose names resemble input names: an angle
-/// that hardly changes. Without a unit in the file, the table must have a latitude and a longitude
-/// that are both nearly constant.
+/// Whether a column is a latitude or a longitude, whose names resemble input names: an angle that
+/// hardly changes. Without a unit in the file, the table must have a latitude and a longitude that
+/// are both nearly constant.
 fn is_position(table: &RecordTable, column: usize, rule: &ChannelRule) -> bool {
     let own = &table.columns[column];
     if !has_folded_name(own, &LATITUDE) && !has_folded_name(own, &LONGITUDE) {

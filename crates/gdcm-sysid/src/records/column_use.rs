@@ -38,7 +38,8 @@ impl ColumnUse {
     }
 
     /// Uses a column for a channel with this unit, converted from the unit in the file, or else
-    /// from the only unit that fits its samples; the unit is open if several fit.
+    /// from the only unit in which its samples are plausible; the unit is open if there are
+    /// several.
     pub fn by_unit(table: &RecordTable, column: usize, unit: &str) -> Self {
         let Some(samples) = table.columns.get(column) else {
             return Self::as_it_is(column);
@@ -57,8 +58,8 @@ impl ColumnUse {
         }
     }
 
-    /// Returns the units that fit an open column, for a channel with this unit; empty if nothing
-    /// is open.
+    /// Returns the units in which the samples of an open column are plausible, for a channel with
+    /// this unit; empty if the unit is not open.
     pub fn open_units<'u>(&self, table: &RecordTable, unit: &'u str) -> Vec<&'u str> {
         match table.columns.get(self.column) {
             Some(column) if self.is_unit_open => possible_units(column, unit),
@@ -66,7 +67,7 @@ impl ColumnUse {
         }
     }
 
-    /// Uses the column in a given unit for a channel with another.
+    /// Uses the column in the unit `said` for a channel with the unit `unit`.
     #[must_use]
     pub fn in_unit(self, said: &str, unit: &str) -> Self {
         Self {
@@ -84,7 +85,7 @@ impl ColumnUse {
         }
     }
 
-    /// Returns the use with its unit taken to be the channel's.
+    /// Returns the use, with the column taken to be in the unit of the channel.
     pub(super) fn in_unit_of_channel(self) -> Self {
         Self {
             is_unit_open: false,
@@ -97,9 +98,9 @@ impl ColumnUse {
         self.factor * self.remedy.factor
     }
 
-    /// Returns the remedy to store with the dataset: the record's remedy, times the part of
-    /// the factor that cannot be derived from the file (its unit, or the dataset's unit if it has
-    /// none, and its sign mark). A later reading with the dataset has no other information.
+    /// Returns the remedy to store with the dataset: the remedy of the record, times the part of
+    /// the factor that cannot be derived from the file again. The file gives its unit, or else the
+    /// unit of the dataset applies, and its column name may have a sign mark.
     pub(super) fn kept_remedy(&self, table: &RecordTable, rule: &ChannelRule) -> ChannelRemedy {
         let from_file = match table.columns.get(self.column) {
             Some(column) => factor_from_file(column, rule),
@@ -117,7 +118,8 @@ impl ColumnUse {
     }
 }
 
-/// Returns the factor from the file's unit and sign mark to the channel's.
+/// Returns the factor that converts the column's unit and sign convention to the channel's; 1 where
+/// the units are unknown.
 fn factor_from_file(column: &RecordColumn, rule: &ChannelRule) -> f64 {
     let mut factor = 1.0;
     if let Some(unit) = column.said_unit()

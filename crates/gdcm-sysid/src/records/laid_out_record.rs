@@ -26,13 +26,13 @@ const REFERENCES: &str =
 /// A record as it was read, with its channels' columns.
 #[derive(Clone, Debug)]
 pub struct LaidOutRecord {
-    /// The file's columns.
+    /// Columns of the file.
     pub table: Arc<RecordTable>,
     pub layout: RecordLayout,
-    /// Information from its name, or from the user instead.
+    /// Information from the record's name, or from the user instead.
     pub guess: RecordGuess,
     pub used: bool,
-    /// Problems that prevent its use.
+    /// Problems that prevent the use of the record.
     pub problems: Vec<LayoutProblem>,
     /// Unusual features that may be correct.
     pub cautions: Vec<LayoutCaution>,
@@ -123,8 +123,8 @@ impl LaidOutRecord {
         (record.as_said(&entry, &channels), notes)
     }
 
-    /// Returns its first and last time \[s\], on its own clock; `None` while there
-    /// are problems, or without finite stamps.
+    /// Returns the first and the last time of the record \[s\], on its own clock; `None` while
+    /// there are problems, or without finite stamps.
     pub fn span_s(&self) -> Option<[f64; 2]> {
         let flight = self.flight.as_ref()?;
         let mut stamps = flight.time_s.iter().filter(|time_s| time_s.is_finite());
@@ -133,7 +133,7 @@ impl LaidOutRecord {
         Some([*first_s, *last_s])
     }
 
-    /// Returns the same record with other columns for its channels.
+    /// Returns the record with other columns for its channels.
     #[must_use]
     pub fn laid_out(&self, layout: RecordLayout, channels: &RecordChannels) -> Self {
         let table = Arc::clone(&self.table);
@@ -159,8 +159,9 @@ impl LaidOutRecord {
         record
     }
 
-    /// Returns the varying columns that are neither the time nor a channel and may have driven a
-    /// loop from outside (M14.15), each with a flag for a reference name; flagged columns first.
+    /// Returns the varying columns that are neither the time nor a channel: these may have driven
+    /// the loop from outside (M14.15). The flag of a column tells whether it is named like a
+    /// reference; flagged columns come first.
     pub fn possible_references(&self) -> Vec<(&str, bool)> {
         let mut taken = Vec::new();
         taken.extend(self.layout.time_column());
@@ -172,8 +173,8 @@ impl LaidOutRecord {
             if taken.contains(&index) || !column.varies() {
                 continue;
             }
-            // A column that the system's documentation identifies as an aircraft signal is
-            // not a reference.
+            // A column that the documentation of the logging system identifies as an aircraft
+            // signal is not a reference.
             let may_be_reference = column.meaning.is_none_or(|meaning| meaning == "TARG");
             let is_reference = may_be_reference && is_reference_name(&column.name);
             found.push((column.name.as_str(), is_reference));
@@ -182,7 +183,7 @@ impl LaidOutRecord {
         found
     }
 
-    /// Returns its samples if it is used.
+    /// Returns the samples of the record if it is used.
     pub fn used_flight(&self) -> Option<&Arc<FlightRecord>> {
         if self.used {
             self.flight.as_ref()
@@ -191,8 +192,8 @@ impl LaidOutRecord {
         }
     }
 
-    /// Creates the dataset entry: the location, the information in its name, and the intervals used
-    /// by an identification.
+    /// Creates the dataset entry: the location, the information in the record's name, and the
+    /// intervals used by an identification.
     pub fn entry(&self, found: &RecordUse, channels: &RecordChannels) -> ConditionRecord {
         let mut entry = self
             .layout
@@ -217,9 +218,9 @@ fn ends_as_reference(word: &str) -> bool {
         .any(|end| word == end || (end.len() > 2 && word.ends_with(end)))
 }
 
-/// Excludes each record whose samples repeat an earlier record, with a caution: evidence counts
-/// once, however often and under whatever names it is given. A user decision on a copy that was
-/// already reported is kept.
+/// Excludes each record whose samples repeat an earlier record, with a caution: each measurement
+/// counts once, however often and under whatever names it is read. A user decision on a copy that
+/// was already reported is kept.
 pub fn leave_out_copies(records: &mut [LaidOutRecord]) {
     for index in 1..records.len() {
         let (earlier, rest) = records.split_at_mut(index);

@@ -71,7 +71,7 @@ fn constant_and_equal_channels_are_cautions() {
     );
 }
 
-/// The record under another name, with another first LAT sample.
+/// The record under another name, with a different first sample of LAT.
 fn named_record(name: &str, first: f64) -> LaidOutRecord {
     let mut table = record();
     table.name = name.to_owned();
@@ -123,7 +123,7 @@ fn remedies_apply_to_one_record_only() {
     layout.put_right(&remedies, &channels);
     let [before, after] =
         [&as_logged, &layout].map(|layout| layout.flight_record(&table, &channels).unwrap());
-    // LON is 40 + k at 0.02 k: 30 ms later it is 1.5 more, and there is no value beyond the end.
+    // LON is 40 + k at 0.02 k s: 30 ms later it is larger by 1.5; beyond the end it has no value.
     assert!(
         (after.inputs[(10, 0)] - 51.5).abs() < 1e-12,
         "{}",
@@ -135,8 +135,8 @@ fn remedies_apply_to_one_record_only() {
         (after.inputs.column(1), after.outputs.column(1)),
         (before.inputs.column(1), before.outputs.column(1))
     );
-    // The remedy is stored with the record, is not passed to other records, and survives a change
-    // of columns.
+    // The remedy is stored with the record, is not passed to other records, and is kept when the
+    // columns change.
     let entry = layout.condition_record(&table, &RecordGuess::default(), &channels);
     assert_eq!(entry.remedies, remedies);
     let other = as_logged
@@ -144,7 +144,7 @@ fn remedies_apply_to_one_record_only() {
         .unwrap()
         .with_remedies_of(&layout);
     assert_eq!(other, layout);
-    // Applying it twice accumulates.
+    // A second application of the remedies adds to the first.
     layout.put_right(&remedies, &channels);
     let twice = layout.flight_record(&table, &channels).unwrap();
     assert!((twice.inputs[(10, 0)] - 53.0).abs() < 1e-12 && twice.outputs == before.outputs);

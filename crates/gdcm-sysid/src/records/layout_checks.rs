@@ -12,7 +12,7 @@ use super::record_table::{RecordTable, same_samples};
 use super::resampling::{Resampling, has_holes};
 use super::time_base::{LONGEST_STEP_S, TimeBase};
 
-/// Longest plausible sensor or bus delay \[s\].
+/// Maximum plausible sensor or bus delay \[s\].
 const LONGEST_DELAY_S: f64 = 10.0;
 
 impl RecordLayout {
@@ -53,7 +53,8 @@ impl RecordLayout {
         }
     }
 
-    /// Returns a problem for each column used by two channels, or by a channel and the time.
+    /// Returns a problem for each column that is used by two channels, or by a channel and the
+    /// time.
     fn shared_columns(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutProblem> {
         struct Taken<'r> {
             column: usize,
@@ -143,7 +144,8 @@ fn stamp_problems(time: TimeBase, table: &RecordTable, column: usize) -> Vec<Lay
     problems
 }
 
-/// Returns the problem that stamps repeat or decrease, with their count and the first.
+/// Returns the problem that stamps repeat or decrease, with the number of such stamps and the first
+/// of them.
 fn order_problem(times_s: &[f64], column: &str) -> Option<LayoutProblem> {
     let mut previous: Option<f64> = None;
     let mut problem: Option<LayoutProblem> = None;
@@ -197,7 +199,7 @@ fn channel_problem(
     open_unit(table, rule, used).or_else(|| implausible_magnitude(table, rule, used))
 }
 
-/// Returns the problem that neither file nor samples determine the unit.
+/// Returns the problem that neither the file nor the samples determine the unit.
 fn open_unit(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
     let units = used.open_units(table, &rule.unit);
     let (last, rest) = units.split_last()?;
@@ -261,7 +263,7 @@ fn missing_samples(
     })
 }
 
-/// Returns the first earlier channel with equal samples in another column.
+/// Returns the first earlier channel that has equal samples in another column.
 fn channel_with_same_samples<'c, 'r>(
     table: &RecordTable,
     channel: &ChosenColumn,

@@ -27,15 +27,15 @@ pub enum LayoutProblem {
     TimeOrder {
         /// In quotation marks.
         column: String,
-        /// Count of repeated or decreasing stamps.
+        /// Number of repeated or decreasing stamps.
         count: usize,
-        /// Sample count.
+        /// Number of samples.
         samples: usize,
-        /// First such sample, counted from 1.
+        /// The first repeated or decreasing stamp, counted from 1.
         sample: usize,
-        /// The stamp before it \[s\].
+        /// The preceding stamp \[s\].
         before: f64,
-        /// Its stamp \[s\].
+        /// The repeated or decreasing stamp \[s\].
         after: f64,
     },
     /// Time steps are too long for a manoeuvre.
@@ -73,9 +73,9 @@ pub enum LayoutProblem {
         "the file has {found} columns without names; give the column number of each channel, as in {channel}=#2"
     )]
     Unnamed {
-        /// The first channel.
+        /// Name of the first channel, for the example in the message.
         channel: String,
-        /// Column count.
+        /// Number of columns.
         found: usize,
     },
     /// The column name leaves the sign open.
@@ -103,7 +103,7 @@ pub enum LayoutProblem {
         /// Units that fit the samples, as a list.
         units: String,
     },
-    /// The file's unit has another dimension than the channel's.
+    /// The unit in the file has another dimension than the channel's unit.
     #[error(
         "{channel}: the unit \"{from}\" in the file (column {column}) cannot be converted to \"{to}\"; give a factor"
     )]
@@ -127,7 +127,7 @@ pub enum LayoutProblem {
         /// In quotation marks.
         column: String,
     },
-    /// The column has no numbers.
+    /// The column has no finite values.
     #[error("{channel}: column {column} has no numeric sample; choose another column")]
     Empty {
         channel: String,
@@ -145,10 +145,10 @@ pub enum LayoutProblem {
     #[error("{channel}: the delay of {} s exceeds the limit of 10 s", number(*delay_s))]
     Delay {
         channel: String,
-        /// The delay \[s\].
+        /// Delay \[s\].
         delay_s: f64,
     },
-    /// Samples exceed a helicopter's range in this unit.
+    /// Samples exceed the plausible range of a helicopter in this unit.
     #[error(
         "{channel} (column {column}) reaches {} {unit}, above the limit of {} {unit} for a helicopter: the column or its unit is wrong{hint}",
         telling(*value, 0), number(*most)
@@ -157,13 +157,13 @@ pub enum LayoutProblem {
         channel: String,
         /// In quotation marks.
         column: String,
-        /// The largest absolute sample, converted.
+        /// Maximum absolute sample, in the channel's unit.
         value: f64,
-        /// The largest plausible value.
+        /// Maximum plausible value, in the channel's unit.
         most: f64,
         /// The channel's unit.
         unit: String,
-        /// A guess at the cause; empty without one.
+        /// Possible cause; may be empty.
         hint: String,
     },
     /// Topics with separate clocks cannot be combined into a record.
@@ -203,17 +203,17 @@ pub enum LayoutCaution {
         channel: String,
         /// In quotation marks.
         column: String,
-        /// Missing sample count.
+        /// Number of missing samples.
         count: usize,
-        /// Sample count.
+        /// Number of samples.
         samples: usize,
     },
     /// Stamps are missing.
     #[error("{count} of {samples} time stamps are missing")]
     MissingTime {
-        /// Missing stamp count.
+        /// Number of missing stamps.
         count: usize,
-        /// Sample count.
+        /// Number of samples.
         samples: usize,
     },
 }

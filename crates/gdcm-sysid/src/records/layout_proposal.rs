@@ -28,7 +28,7 @@ pub struct TimeWish {
 /// A layout proposed for a record, with a note for each choice.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LayoutProposal {
-    /// The layout, as far as it is known.
+    /// The layout; columns that are not determined remain open.
     pub layout: RecordLayout,
     /// Choices with their reasons.
     pub notes: Vec<String>,
@@ -68,7 +68,7 @@ impl RecordLayout {
             mut problems,
             ..
         } = proposer;
-        // Missing columns are not reported again if the proposal already reported problems.
+        // Missing columns are not reported again if the proposal has already reported problems.
         let is_reported = !problems.is_empty();
         for problem in layout.problems(table, channels) {
             let is_missing = matches!(
@@ -176,7 +176,7 @@ impl Proposer<'_> {
         None
     }
 
-    /// Proposes a side's columns (step 2).
+    /// Proposes the columns of a side (step 2).
     fn columns_of_side(
         &mut self,
         side: ChannelSide,
@@ -272,9 +272,9 @@ impl Proposer<'_> {
         })
     }
 
-    /// Returns a column's sign for a channel (step 4); `None` if its name leaves it open. A
-    /// user-defined factor includes the sign, and so does an alias without a mark for a column
-    /// without a mark.
+    /// Returns the sign of a column for a channel (step 4); `None` if its name leaves the sign
+    /// open. A user-defined factor includes the sign, and so does an alias without a sign mark for
+    /// a column without one.
     fn sign(&self, rule: &ChannelRule, column: &str, marked_alias: Option<&str>) -> Option<f64> {
         if let Some(alias) = marked_alias {
             return sign_between(alias, &rule.name);
@@ -289,7 +289,7 @@ impl Proposer<'_> {
         sign_between(column, &rule.name)
     }
 
-    /// Returns the column with the factor to the channel's unit (step 3), and adds a note.
+    /// Returns the column with the factor to the unit of the channel (step 3), and adds a note.
     fn converted(&mut self, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
         let table = self.table;
         let quoted = table.quoted(column);
@@ -316,7 +316,7 @@ impl Proposer<'_> {
         Some(self.by_samples(rule, column))
     }
 
-    /// Converts a column from `unit` to the channel's unit, and adds a note.
+    /// Converts a column from `unit` to the unit of the channel, and adds a note.
     fn converted_from(
         &mut self,
         rule: &ChannelRule,
@@ -347,7 +347,7 @@ impl Proposer<'_> {
         Some(ColumnUse::times(column, factor))
     }
 
-    /// Returns a column without a unit in the file; adds a note unless its unit stays open.
+    /// Returns a column for which the file gives no unit; adds a note unless its unit stays open.
     fn by_samples(&mut self, rule: &ChannelRule, column: usize) -> ColumnUse {
         let table = self.table;
         let used = ColumnUse::by_unit(table, column, &rule.unit);

@@ -12,8 +12,8 @@ use super::record_table::RecordTable;
 use super::resampling::Resampling;
 use super::time_base::{TimeBase, median_step};
 
-/// Longest interpolation interval, in median steps: three missing samples, as in preparing
-/// records (M14.1).
+/// Maximum interval of interpolation, in median steps: three missing samples, as in the preparation
+/// of records (M14.1).
 const LONGEST_LINE: f64 = 4.5;
 
 impl RecordLayout {
@@ -40,7 +40,7 @@ impl RecordLayout {
         }
     }
 
-    /// Returns the samples on their common clock, restricted to the record's part.
+    /// Returns the samples on their common clock, restricted to the selected part of the record.
     fn as_logged(&self, table: &RecordTable, time: TimeBase) -> FlightRecord {
         let time_s = if time == TimeBase::Topics {
             self.stamps_of_first_topic(table).unwrap_or_default()
@@ -67,7 +67,7 @@ impl RecordLayout {
         }
     }
 
-    /// Returns the stamps from the first channel's topic \[s\].
+    /// Returns the stamps of the first channel's topic \[s\].
     fn stamps_of_first_topic(&self, table: &RecordTable) -> Option<Vec<f64>> {
         let used = self.inputs.iter().chain(&self.outputs).flatten().next()?;
         let topic = table.columns.get(used.column)?.topic.as_ref()?;
@@ -116,8 +116,8 @@ impl RowSamples<'_> {
 }
 
 /// Removes a logging delay \[s\] from a channel: the value at t becomes the linear interpolation at
-/// t + delay between two adjacent samples; NaN beyond the ends, beside a missing sample, and in a
-/// stamp gap.
+/// t + delay between two adjacent samples; NaN beyond the ends, next to a missing sample, and in a
+/// gap between stamps.
 fn advanced(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
     let lines = SampleLines {
         time_s,
@@ -125,7 +125,7 @@ fn advanced(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
         longest_s: LONGEST_LINE * median_step(time_s).unwrap_or(0.0),
     };
     let mut advanced = Vec::with_capacity(time_s.len());
-    // First row later than the read time, which rises from row to row.
+    // The first row later than the interpolated time, which increases from row to row.
     let mut next = 0;
     for time in time_s {
         let read_s = time + delay_s;
@@ -141,17 +141,18 @@ fn advanced(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
     advanced
 }
 
-/// Lines between a channel's adjacent samples.
+/// Straight lines between adjacent samples of a channel.
 struct SampleLines<'r> {
     /// Stamps \[s\].
     time_s: &'r [f64],
     values: &'r [f64],
-    /// Longest line \[s\].
+    /// Maximum length of a line \[s\].
     longest_s: f64,
 }
 
 impl SampleLines<'_> {
-    /// Returns the value at `read_s` on the line that ends at row `next`; NaN without such a line.
+    /// Returns the value at `read_s` on the line that ends at row `next`; NaN if there is no such
+    /// line.
     fn value_before(&self, next: usize, read_s: f64) -> f64 {
         let Some(before) = next.checked_sub(1) else {
             return f64::NAN;

@@ -48,7 +48,7 @@ fn table(columns: Vec<RecordColumn>) -> RecordTable {
     }
 }
 
-/// A record with another tool's column names and order.
+/// A record with column names and an order from another program.
 pub(super) fn record() -> RecordTable {
     table(vec![
         column("nz", "g", |k| 0.1 * (0.3 * k).sin()),
@@ -140,7 +140,7 @@ fn a_rate_of_thousands_of_degrees_is_refused_with_a_guess_at_the_unit() {
     assert_eq!(hint, "; its samples look like deg/s");
 }
 
-/// The proposal for a roll rate up to `peak` with this unit in the file.
+/// The proposal for a roll rate up to `peak` with the unit `unit_in_file` in the file.
 fn with_roll_rate(unit_in_file: &str, peak: f64, unit: &str) -> LayoutProposal {
     let mut channels = channels();
     channels.outputs[0].unit = unit.to_owned();
@@ -156,7 +156,8 @@ fn with_roll_rate(unit_in_file: &str, peak: f64, unit: &str) -> LayoutProposal {
 
 #[test]
 fn a_unit_that_fits_only_one_way_is_taken_and_an_ambiguous_unit_is_a_problem() {
-    // 6.9 rad/s are 395 deg/s, within a helicopter's range; 7.1 rad/s are 407.
+    // 6.9 rad/s are 395 deg/s, which is plausible for a helicopter; 7.1 rad/s are 407 deg/s, which
+    // is not.
     assert_eq!(
         with_roll_rate("", 6.9, "deg/s").problems,
         [LayoutProblem::UnsaidUnit {
@@ -175,10 +176,10 @@ fn a_unit_that_fits_only_one_way_is_taken_and_an_ambiguous_unit_is_a_problem() {
     let degree = std::f64::consts::PI / 180.0;
     for (unit_in_file, peak, unit, factor) in [
         ("", 7.1, "deg/s", 1.0),
-        // No helicopter turns at forty radians per second: the samples are degrees.
+        // No helicopter turns at 40 rad/s: the samples are in degrees per second.
         ("", 40.0, "rad/s", degree),
         ("deg/s", 6.9, "deg/s", 1.0),
-        // Zero in any unit.
+        // Zero has no unit.
         ("", 0.0, "deg/s", 1.0),
         // An unknown unit is not converted.
         ("", 6.9, "furlong", 1.0),
@@ -393,7 +394,7 @@ fn columns_without_names_need_their_numbers() {
     );
 }
 
-/// The proposal for NZ from this column, with an optional alias.
+/// The proposal of NZ from this column, with an optional alias.
 fn with_acceleration(name: &str, alias: Option<&str>) -> LayoutProposal {
     let table = table(vec![
         column("t", "s", |k| 0.02 * k),
@@ -454,7 +455,7 @@ fn a_column_of_a_matrix_is_found_by_its_index_in_python_and_in_matlab() {
     );
 }
 
-/// Input count proposed for columns LAT and LON with this slope.
+/// Number of inputs proposed from columns LAT and LON with this slope.
 fn inputs_with_slope(slope: f64) -> usize {
     let mut table = table(vec![
         column("t", "s", |k| 0.02 * k),
@@ -568,7 +569,7 @@ fn a_latitude_and_a_longitude_are_no_sticks() {
     );
 }
 
-/// The proposal for a record without names, with NZ from this column number.
+/// The proposal for a record without column names, with NZ from the column with this number.
 fn with_numbers(last: &str) -> LayoutProposal {
     let mut table = record();
     table.named = false;

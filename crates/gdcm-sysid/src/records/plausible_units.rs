@@ -4,7 +4,7 @@ use gdcm_model::units::physical_unit::{Dimension, PhysicalUnit, conversion_facto
 
 use super::record_table::RecordColumn;
 
-/// Largest plausible value in a dimension.
+/// Maximum plausible value of a quantity for a helicopter.
 struct PlausibleLimit {
     dimension: Dimension,
     value: f64,
@@ -19,7 +19,7 @@ const fn limit(dimension: Dimension, value: f64, unit: &'static str) -> Plausibl
     }
 }
 
-/// Largest plausible values for a helicopter.
+/// Maximum plausible values for a helicopter.
 const LIMITS: [PlausibleLimit; 7] = [
     limit(Dimension::AngularRate, 400.0, "deg/s"),
     limit(Dimension::Angle, 3600.0, "deg"),
@@ -30,13 +30,13 @@ const LIMITS: [PlausibleLimit; 7] = [
     limit(Dimension::Length, 50_000.0, "m"),
 ];
 
-/// Units in which channels are logged.
+/// Units used in logs.
 const LOGGED: [&str; 21] = [
     "rad/s", "deg/s", "rad", "deg", "rad/s^2", "deg/s^2", "g", "m/s^2", "ft/s^2", "m/s", "ft/s",
     "kt", "%", "1", "m", "cm", "mm", "ft", "in", "N", "lb",
 ];
 
-/// Returns the largest plausible value for a helicopter, in this unit; `None` without a limit.
+/// Returns the maximum plausible value for a helicopter in this unit; `None` if there is no limit.
 pub(super) fn largest_plausible(unit: &str) -> Option<f64> {
     let dimension = PhysicalUnit::of(unit)?.dimension;
     let limit = LIMITS
@@ -45,9 +45,9 @@ pub(super) fn largest_plausible(unit: &str) -> Option<f64> {
     Some(limit.value * conversion_factor(limit.unit, unit)?)
 }
 
-/// Returns the units that fit a column's samples for a channel with this unit, which comes
-/// first: units in its dimension whose largest plausible value is not below the largest sample.
-/// Empty if all samples are zero or the unit is unknown.
+/// Returns the units in which a column's samples are plausible for a channel with this unit: units
+/// of the same dimension whose maximum plausible value is not below the largest sample, with the
+/// channel's unit first. Empty if all samples are zero or the unit is unknown.
 pub(super) fn possible_units<'u>(column: &RecordColumn, unit: &'u str) -> Vec<&'u str> {
     let Some(peak) = column.peak() else {
         return Vec::new();

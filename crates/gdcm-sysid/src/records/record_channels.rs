@@ -19,8 +19,8 @@ pub enum SaidConversion {
 pub struct ResamplingWish {
     /// Upper band end \[rad/s\]; `None` if unknown.
     pub band_end: Option<f64>,
-    /// Sample rate \[Hz\], also applied to records with one clock; `None` leaves those unchanged
-    /// and resamples topics by the rule.
+    /// Sample rate \[Hz\], also applied to records with a single clock. With `None`, such records
+    /// are unchanged and topics are resampled by the rule.
     pub rate_hz: Option<f64>,
     /// Inputs treated as constant between logged samples, even if they never repeat a sample.
     pub held: BTreeSet<String>,
@@ -54,7 +54,7 @@ impl RecordChannels {
         }
     }
 
-    /// Returns the channels for records named by the dataset: files without a unit are taken to be
+    /// Returns the channels of records named by the dataset: files without a unit are taken to be
     /// in the dataset's units.
     #[must_use]
     pub fn of_named_records(mut self) -> Self {
@@ -65,7 +65,7 @@ impl RecordChannels {
     }
 }
 
-/// Returns the rule for a dataset's channel, in its unit.
+/// Returns the rule of a dataset's channel, in its unit.
 fn rule_of_channel(channel: &Channel) -> ChannelRule {
     ChannelRule {
         unit: channel.unit.clone(),

@@ -28,7 +28,7 @@ const MANOEUVRES: [(RecordKind, &[&str]); 3] = [
         &["3211", "doublet", "dblt", "step"],
     ),
 ];
-/// Name parts for validation records.
+/// Name parts that denote validation records.
 const VALIDATION: [&str; 5] = [
     "validation",
     "validate",
@@ -41,7 +41,7 @@ const VALIDATION: [&str; 5] = [
 const VALIDATION_WORDS: [&str; 4] = ["val", "valid", "check", "verif"];
 
 impl RecordGuess {
-    /// Reads the names of a record, its file, and its variable or file in an archive.
+    /// Reads the names of a record, of its file, and of its variable or its file in an archive.
     pub fn from_table(table: &RecordTable, patterns: &[NamePattern]) -> Self {
         let mut names = vec![table.source.file.as_str()];
         names.extend(table.source.variable.as_deref());
@@ -62,8 +62,7 @@ impl RecordGuess {
         }
     }
 
-    /// Returns the condition in the name; `None` if the name has none, or `dataset` does not have
-    /// it.
+    /// Returns the condition in the name; `None` if the name has none, or if `dataset` lacks it.
     pub fn condition_of(&self, dataset: &Dataset) -> Option<ConditionId> {
         let condition = dataset.condition(ConditionId(self.condition?))?;
         Some(condition.id())

@@ -24,14 +24,14 @@ pub struct RecordLayout {
     pub outputs: Vec<Option<ColumnUse>>,
 }
 
-/// A channel with its column, if that is known.
+/// A channel with its column, if one is chosen.
 pub(super) struct ChannelUse<'r> {
     pub(super) side: ChannelSide,
     pub(super) rule: &'r ChannelRule,
     pub(super) used: Option<ColumnUse>,
 }
 
-/// A channel with a known column.
+/// A channel with its chosen column.
 pub(super) struct ChosenColumn<'r> {
     pub(super) rule: &'r ChannelRule,
     pub(super) used: ColumnUse,
@@ -52,7 +52,7 @@ impl RecordLayout {
         found
     }
 
-    /// Returns the channels with a known column, inputs first.
+    /// Returns the channels for which a column is chosen, inputs first.
     pub(super) fn chosen<'r>(&self, channels: &'r RecordChannels) -> Vec<ChosenColumn<'r>> {
         let mut chosen = Vec::new();
         for ChannelUse { rule, used, .. } in self.uses(channels) {
@@ -89,7 +89,7 @@ impl RecordLayout {
         add_remedies(&mut self.outputs, &channels.outputs, remedies);
     }
 
-    /// Returns the column of a channel, to be edited.
+    /// Returns the column of a channel for editing.
     pub fn channel_mut(&mut self, role: ChannelSide, index: usize) -> Option<&mut ColumnUse> {
         role.of(&mut self.inputs, &mut self.outputs)
             .get_mut(index)?
@@ -140,7 +140,7 @@ impl RecordLayout {
         layout
     }
 
-    /// Takes every open unit to be the channel's.
+    /// Treats the samples of every open column as values in the unit of its channel.
     #[must_use]
     pub fn in_units_of_channels(&self) -> Self {
         let mut layout = self.clone();
@@ -150,7 +150,8 @@ impl RecordLayout {
         layout
     }
 
-    /// Returns the same columns, by name, in another record; `None` if it lacks a column.
+    /// Returns the layout with the same columns, by name, in another record; `None` if a column is
+    /// missing there.
     pub fn carried_to(&self, other: &RecordTable, from: &RecordTable) -> Option<Self> {
         let mut layout = self.clone();
         if let Some(time) = self.time {
@@ -192,8 +193,8 @@ impl RecordLayout {
 }
 
 impl RecordChannels {
-    /// Gives channels without a unit their column's unit in this layout, so that further
-    /// records are converted.
+    /// Gives channels without a unit the unit of their column in this layout, so that further
+    /// records are converted to it.
     pub fn take_units(&mut self, layout: &RecordLayout, table: &RecordTable) {
         for side in [ChannelSide::Input, ChannelSide::Output] {
             let rules = side.of(&mut self.inputs, &mut self.outputs);
@@ -208,8 +209,8 @@ impl RecordChannels {
     }
 }
 
-/// Returns the unit for a channel's samples: the user's, else the file's; `None` if unknown, as
-/// after a user-defined factor other than ±1.
+/// Returns the unit of a channel's samples: the user's, else the one in the file; `None` if
+/// unknown, as after a user-defined factor other than ±1.
 fn unit_of_samples(
     conversion: Option<&SaidConversion>,
     used: Option<ColumnUse>,
@@ -242,8 +243,8 @@ fn add_remedies(
     }
 }
 
-/// Returns a time base for another record, its column matched by name; `None` without such a
-/// column.
+/// Returns the time base for another record, with the column matched by name; `None` if there is no
+/// such column.
 fn time_in_other(time: TimeBase, from: &RecordTable, other: &RecordTable) -> Option<TimeBase> {
     match time {
         TimeBase::Column { column, seconds } => Some(TimeBase::Column {
@@ -254,7 +255,7 @@ fn time_in_other(time: TimeBase, from: &RecordTable, other: &RecordTable) -> Opt
     }
 }
 
-/// Returns a column's index in another record, by name; the same index if the names agree.
+/// Returns the index of a column in another record, by name; the same index if the names agree.
 fn column_in_other(column: usize, from: &RecordTable, other: &RecordTable) -> Option<usize> {
     let name = &from.columns.get(column)?.name;
     match other.columns.get(column) {

@@ -1,4 +1,4 @@
-//! A record as its file holds it: columns of samples.
+//! A record as stored in its file: columns of samples.
 
 use std::sync::Arc;
 
@@ -18,16 +18,15 @@ pub struct RecordColumn {
     pub side: Option<ChannelSide>,
     /// Samples, in the file's unit; NaN where missing.
     pub values: Vec<f64>,
-    /// Topic with a separate clock; `None` on the table's clock.
+    /// Topic with a separate clock; `None` for columns on the table's clock.
     pub topic: Option<Arc<TopicClock>>,
-    /// The channel by the logging system's documentation: "P", "LON".
+    /// The channel, such as "P" or "LON", according to the documentation of the logging system.
     pub meaning: Option<&'static str>,
 }
 
 /// Sample times shared by a topic's columns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TopicClock {
-    /// The topic's name.
     pub name: String,
     /// A stamp for each sample \[s\].
     pub time_s: Vec<f64>,
@@ -46,7 +45,7 @@ impl RecordColumn {
         }
     }
 
-    /// Returns its name within its topic: `xyz[0]` for `vehicle_angular_velocity.xyz[0]`.
+    /// Returns the column name within its topic: `xyz[0]` for `vehicle_angular_velocity.xyz[0]`.
     pub fn field(&self) -> &str {
         let topic = self.topic.as_ref().map_or("", |topic| topic.name.as_str());
         self.name
@@ -55,7 +54,7 @@ impl RecordColumn {
             .unwrap_or(&self.name)
     }
 
-    /// Returns the file's unit unless it is blank.
+    /// Returns the unit in the file unless it is blank.
     pub fn said_unit(&self) -> Option<&str> {
         self.unit.as_deref().filter(|unit| !unit.trim().is_empty())
     }
@@ -88,7 +87,7 @@ impl RecordColumn {
         Some(least.abs().max(most.abs()))
     }
 
-    /// Whether name, unit and samples are equal, samples to the last bit.
+    /// Whether name, unit and samples are equal; samples are compared bit for bit.
     fn is_same(&self, other: &Self) -> bool {
         let bits = self.values.iter().map(|value| value.to_bits());
         let other_bits = other.values.iter().map(|value| value.to_bits());
@@ -106,10 +105,10 @@ pub struct RecordSource {
     pub variable: Option<String>,
 }
 
-/// A record as its file holds it.
+/// A record as stored in its file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordTable {
-    /// Displayed name.
+    /// Name for display.
     pub name: String,
     /// Columns, equally long except for topics with separate clocks.
     pub columns: Vec<RecordColumn>,
@@ -146,7 +145,7 @@ impl RecordTable {
         }
     }
 
-    /// Returns the longest column's sample count.
+    /// Returns the number of samples in the longest column.
     pub fn rows(&self) -> usize {
         self.columns
             .iter()
@@ -178,7 +177,7 @@ impl RecordTable {
             .position(|column| column.name.eq_ignore_ascii_case(name))
     }
 
-    /// Returns the index for `#30`, the thirtieth column.
+    /// Returns the index of the column with this number: 29 for `#30`.
     fn position_by_number(&self, name: &str) -> Option<usize> {
         let number: usize = name.strip_prefix('#')?.parse().ok()?;
         let column = number.checked_sub(1)?;
@@ -189,8 +188,8 @@ impl RecordTable {
         }
     }
 
-    /// Returns a matrix column's index, counted from 0 as in Python (`xyz[0]`) or from 1 as in
-    /// MATLAB (`xyz(1)`); readers name it `xyz_1`.
+    /// Returns the index of a matrix column, which readers name `xyz_1`; the name counts from 0 as
+    /// in Python (`xyz[0]`) or from 1 as in MATLAB (`xyz(1)`).
     fn position_in_matrix(&self, name: &str) -> Option<usize> {
         let (matrix, index, first) = if let Some(rest) = name.strip_suffix(']') {
             let (matrix, index) = rest.rsplit_once('[')?;
@@ -204,8 +203,8 @@ impl RecordTable {
         self.position_ignoring_case(&format!("{matrix}_{number}"))
     }
 
-    /// Returns the record's dataset entry and its condition. The entry names the same variable
-    /// in a file with the same name, or the same record in an archive with another name.
+    /// Returns the dataset entry of the record, and its condition. The entry names the same
+    /// variable in a file with the same name, or the same record in an archive with another name.
     pub fn entry_of_dataset<'d>(
         &self,
         dataset: &'d Dataset,
@@ -226,8 +225,8 @@ impl RecordTable {
         None
     }
 
-    /// Whether both are the same record: the same variable and part in a file, or equal
-    /// samples under the same name. Equal samples under another name are a copy
+    /// Whether both are the same record: the same variable and part of a file, or equal samples
+    /// under the same name. A table with equal samples under another name is a copy
     /// ([`leave_out_copies`](super::leave_out_copies)).
     pub fn is_same_record(&self, other: &Self) -> bool {
         let is_same_file = self.source.sha256 == other.source.sha256
@@ -247,7 +246,7 @@ impl RecordTable {
                 .all(|(column, other)| column.is_same(other))
     }
 
-    /// Returns the part between two times on the record's own clock \[s\].
+    /// Returns the part of the record between two times on its own clock \[s\].
     #[must_use]
     pub fn part_of_time(&self, part_s: [f64; 2]) -> RecordTable {
         let mut part = self.clone();
@@ -280,14 +279,14 @@ impl RecordTable {
     }
 }
 
-/// Returns a path's last part.
+/// Returns the last component of a path.
 fn file_name(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
 }
 
 /// Joins names, shortened to fit a message.
 pub(super) fn shortened_list(names: &[&str]) -> String {
-    /// Sufficient to find the cause.
+    /// Maximum number of names in a message.
     const SHOWN: usize = 20;
     if names.len() <= SHOWN {
         names.join(", ")

@@ -12,19 +12,19 @@ use super::record_table::{RecordColumn, RecordTable};
 use super::time_base::median_step;
 use super::topics::{CommonClock, Topic, TopicError, is_held};
 
-/// Fraction of a column's samples followed by a hole, above which the table counts as a join of
-/// several clocks.
+/// A table counts as a join of several clocks if more than this share of a column's samples are
+/// followed by a missing sample.
 const SHARE_OF_HOLES: f64 = 0.1;
-/// Largest deviation of an even step from a multiple of the median step, over the median step.
+/// Maximum deviation of an even step from a multiple of the median step, over the median step.
 const JITTER: f64 = 0.2;
-/// Least share of even steps in an even clock.
+/// Minimum share of even steps in an even clock.
 const SHARE_OF_EVEN_STEPS: f64 = 0.95;
 
 /// Chosen columns, and their common clock.
 pub(super) struct Resampling {
-    /// Inputs, then outputs.
+    /// Topics of the inputs, then of the outputs.
     topics: Vec<Topic>,
-    /// Input count.
+    /// Number of inputs.
     inputs: usize,
     /// Names of held inputs.
     held: Vec<String>,
@@ -34,7 +34,7 @@ pub(super) struct Resampling {
 /// A channel with its column.
 struct ChannelColumn<'r> {
     channel: ChannelUse<'r>,
-    /// Total factor.
+    /// Total factor, including the remedy.
     gain: f64,
     /// Logging delay to remove \[s\].
     delay_s: f64,
@@ -50,11 +50,11 @@ impl RecordLayout {
 }
 
 impl Resampling {
-    /// Chooses a common clock for the chosen columns; `None` if they already have
-    /// a common clock, or if a column or the time is still open.
+    /// Chooses a common clock for the chosen columns; `None` if they already have a common clock,
+    /// or if a column or the time is still open.
     ///
     /// # Errors
-    /// The reason why they cannot be resampled.
+    /// The reason why the columns cannot be resampled.
     pub(super) fn new(
         layout: &RecordLayout,
         table: &RecordTable,
@@ -120,7 +120,7 @@ impl Resampling {
         notes
     }
 
-    /// Returns the record on the common clock; NaN in each topic's gaps.
+    /// Returns the record on the common clock; NaN in the gaps of each topic.
     pub(super) fn flight_record(&self, name: String) -> FlightRecord {
         let time_s = self.clock.times_s();
         let (inputs, outputs) = self.topics.split_at(self.inputs);
@@ -143,7 +143,7 @@ impl Resampling {
 }
 
 impl ChannelColumn<'_> {
-    /// Returns its topic's stamps, or else the table's, less the delay \[s\].
+    /// Returns the stamps of the column's topic, or else those of the table, less the delay \[s\].
     fn stamps(&self, table_time_s: &[f64]) -> Vec<f64> {
         let stamps = match &self.column.topic {
             Some(topic) => topic.time_s.as_slice(),
@@ -161,7 +161,7 @@ impl ChannelColumn<'_> {
             .collect()
     }
 
-    /// Whether the channel is an input that is constant between its samples.
+    /// Whether the channel is an input that stays constant between its samples.
     fn is_held(&self, values: &[f64], wish: &ResamplingWish) -> bool {
         self.channel.side == ChannelSide::Input
             && (wish.held.contains(&self.channel.rule.name) || is_held(values))
@@ -187,7 +187,7 @@ fn channel_columns<'r>(
     Some(chosen)
 }
 
-/// Whether columns have topics with different or uneven clocks, or only some have a topic.
+/// Whether columns have topics with different or uneven clocks, or only some columns have a topic.
 fn has_separate_clocks(chosen: &[ChannelColumn]) -> bool {
     let clocks: Vec<&[f64]> = chosen
         .iter()

@@ -13,18 +13,18 @@ use super::time_base::TimeBase;
 pub enum Separation {
     /// The table is one record.
     None,
-    /// By a column with a number for each record.
+    /// By a column with record numbers.
     ByColumn(usize),
     /// By a stamp column that restarts.
     ByTime(usize),
 }
 
-/// Names for columns with record numbers.
+/// Column names for record numbers.
 const NUMBERS: &str = "record records recordid recordno recordnumber run runid runno runnumber manoeuvre maneuver segment event \
                        testpoint experiment";
 
 impl Separation {
-    /// Fewest samples in a record, for a table with several.
+    /// Minimum number of samples in a record, for a table with several.
     pub const FEWEST: usize = 20;
 
     /// Proposes a split by column names and stamps.
@@ -42,7 +42,8 @@ impl Separation {
     }
 }
 
-/// Whether a column is named like a record number and has several long, constant, whole runs.
+/// Whether a column is named like a record number and holds several long runs of a constant
+/// integer.
 fn numbers_records(column: &RecordColumn) -> bool {
     let name = folded_name(&column.name);
     if !NUMBERS.split(' ').any(|word| word == name) {
@@ -61,7 +62,7 @@ fn restarts(stamps: &[f64]) -> bool {
     parts.len() > 1 && parts.iter().all(|part| part.len() >= Separation::FEWEST)
 }
 
-/// Table rows that are a record.
+/// Table rows that form a record.
 struct RecordPart {
     rows: Range<usize>,
     /// Name within the table.
@@ -168,8 +169,9 @@ fn constant_runs(numbers: &[f64]) -> Vec<Range<usize>> {
     runs
 }
 
-/// Returns sample ranges between restarts. Stamps restart where they decrease and stay below
-/// the earlier stamp for half of [`Separation::FEWEST`] samples; a shorter decrease is a slip.
+/// Returns the sample ranges between restarts. Stamps restart where they decrease and stay below
+/// the earlier stamp for half of [`Separation::FEWEST`] samples; a shorter decrease is an error in
+/// the stamps.
 fn rising_parts(stamps: &[f64]) -> Vec<Range<usize>> {
     let mut parts = Vec::new();
     let mut start = 0;

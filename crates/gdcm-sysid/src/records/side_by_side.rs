@@ -1,4 +1,4 @@
-//! Tables side by side in one table, each behind its own stamp column.
+//! Tables side by side in one table, each preceded by its own stamp column.
 
 use std::sync::Arc;
 
@@ -8,15 +8,15 @@ use super::record_table::{RecordColumn, RecordTable, TopicClock, same_samples};
 use super::separation::Separation;
 use super::time_base::TimeBase;
 
-/// Least common time for two topics, over the shorter duration.
+/// Minimum common time of two topics, over the shorter duration.
 const LEAST_OVERLAP: f64 = 0.5;
 
 impl RecordTable {
     /// Splits a table with several stamp columns, each followed by its samples, into topics;
     /// returns any other table unchanged.
     ///
-    /// All stamps rise, and all clocks overlap: a second clock with another origin
-    /// is an ordinary column.
+    /// The stamps must increase, and the clocks must overlap: a second clock with another origin is
+    /// an ordinary column.
     #[must_use]
     pub fn side_by_side(mut self) -> RecordTable {
         let stamp_columns = self.stamp_columns();
@@ -51,7 +51,8 @@ impl RecordTable {
         self
     }
 
-    /// Returns the columns named like a time (`time`, `time.1`) with rising values.
+    /// Returns the columns that are named like a time (`time`, `time.1`) and have increasing
+    /// values.
     fn stamp_columns(&self) -> Vec<usize> {
         let mut found = Vec::new();
         for (index, column) in self.columns.iter().enumerate() {
@@ -75,7 +76,7 @@ impl RecordTable {
     }
 }
 
-/// Whether the clocks differ and all overlap with the first.
+/// Whether the clocks differ and all of them overlap with the first.
 fn are_clocks_of_topics(clocks: &[Vec<f64>]) -> bool {
     let Some(first) = clocks.first().and_then(|clock| TimeSpan::new(clock)) else {
         return false;
@@ -89,7 +90,7 @@ fn are_clocks_of_topics(clocks: &[Vec<f64>]) -> bool {
     !clocks.iter().all(|clock| same_samples(clock, &clocks[0]))
 }
 
-/// A clock's first and last time \[s\].
+/// First and last time of a clock \[s\].
 struct TimeSpan {
     start_s: f64,
     end_s: f64,
@@ -112,7 +113,7 @@ impl TimeSpan {
     }
 }
 
-/// Makes columns a topic with this clock, without the rows that have no stamp.
+/// Assigns columns to a topic with this clock, without the rows that have no stamp.
 fn join_to_topic(columns: &mut [RecordColumn], clock: &[f64]) {
     let rows: Vec<usize> = (0..clock.len())
         .filter(|row| clock[*row].is_finite())
@@ -127,8 +128,8 @@ fn join_to_topic(columns: &mut [RecordColumn], clock: &[f64]) {
     }
 }
 
-/// Whether stamps rise and are numerous enough for a signal, without values after the first missing
-/// stamp.
+/// Whether stamps increase and are numerous enough for a signal, without values after the first
+/// missing stamp.
 fn rises(stamps: &[f64]) -> bool {
     let count = stamps
         .iter()
@@ -144,7 +145,7 @@ fn rises(stamps: &[f64]) -> bool {
 mod tests {
     use super::*;
 
-    /// Returns 60 stamps, missing after the first `rows`.
+    /// Returns 60 stamps from `from` on; those after the first `rows` are missing.
     fn stamps(rows: usize, step: f64, from: f64) -> Vec<f64> {
         let mut stamps = vec![f64::NAN; 60];
         for (k, stamp) in stamps.iter_mut().take(rows).enumerate() {

@@ -1,4 +1,4 @@
-//! A channel's power over time and frequency, which shows a sweep in a long record.
+//! Power of a channel over time and frequency, which shows a sweep in a long record.
 
 use std::f64::consts::TAU;
 
@@ -10,47 +10,47 @@ use gdcm_model::statistics::median;
 
 use crate::spectra::spectrum::{Spectrum, spectra};
 
-/// A channel's power over time and frequency.
+/// Power of a channel over time and frequency.
 ///
 /// ```text
 /// windows  Hann, 0.15 times the record, within 4 s and 20 s; an eighth of their length apart,
 ///          or farther for at most 400 windows
 /// power    |U(omega_k)|^2, from the samples in the window less their mean (M14.2); missing samples
 ///          count as the mean
-/// rows     frequencies evenly in ln(omega), from two periods a window to the highest: the greatest
-///          line within half a row
-/// level    10 log10(power / greatest power), not less than FLOOR
+/// rows     frequencies evenly in ln(omega), from two periods in a window up to `highest`: the
+///          maximum of the lines within half a row
+/// level    10 log10(power / maximum power), at least FLOOR
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrogram {
     /// First and last window centre \[s\].
     pub time_s: [f64; 2],
-    /// First and last row's frequency \[rad/s\].
+    /// Frequency of the first and of the last row \[rad/s\].
     pub omega: [f64; 2],
-    /// Level by window and row \[dB\].
+    /// Level of each window and row \[dB\].
     pub levels: Vec<Vec<f64>>,
 }
 
 /// Window length over the record length.
 const WINDOW_SHARE: f64 = 0.15;
-/// Shortest and longest window \[s\].
+/// Minimum and maximum window length \[s\].
 const SHORTEST_WINDOW_S: f64 = 4.0;
 const LONGEST_WINDOW_S: f64 = 20.0;
-/// Fewest samples in a window.
+/// Minimum number of samples in a window.
 const FEWEST_SAMPLES: usize = 8;
-/// Most windows.
+/// Maximum number of windows.
 const MOST_WINDOWS: usize = 400;
-/// Highest frequency, over half the sample rate.
+/// Maximum frequency, over half the sample rate.
 const HIGHEST_OF_RATE: f64 = 0.9;
 
 impl Spectrogram {
-    /// Row count.
+    /// Number of frequency rows.
     pub const ROWS: usize = 64;
-    /// Lowest reported level \[dB\].
+    /// Minimum reported level \[dB\].
     pub const FLOOR: f64 = -40.0;
 
-    /// Computes the spectrogram up to `highest` \[rad/s\]; `None` if the
-    /// record is shorter than a window, or no frequency is resolved by a window.
+    /// Computes the spectrogram up to `highest` \[rad/s\]; `None` if the record is shorter than a
+    /// window, or if a window resolves no frequency.
     #[must_use]
     pub fn new(time_s: &[f64], samples: &[f64], highest: f64) -> Option<Self> {
         let windows = Windows::new(time_s, samples.len())?;
@@ -83,14 +83,14 @@ struct Windows {
     step_s: f64,
     /// Window length \[s\].
     seconds: f64,
-    /// Length in samples.
+    /// Window length in samples.
     length: usize,
-    /// First sample by window.
+    /// Index of the first sample of each window.
     starts: Vec<usize>,
 }
 
 impl Windows {
-    /// Lays windows along samples at these times; `None` if a window has too few samples or is
+    /// Places windows along samples at these times; `None` if a window has too few samples or is
     /// longer than the record.
     fn new(time_s: &[f64], samples: usize) -> Option<Self> {
         let mut steps: Vec<f64> = time_s
@@ -120,19 +120,19 @@ impl Windows {
     }
 }
 
-/// Row frequencies, evenly in ln(omega).
+/// Row frequencies, evenly spaced in ln(omega).
 struct FrequencyRows {
-    /// First row \[rad/s\].
+    /// Frequency of the first row \[rad/s\].
     lowest: f64,
-    /// Last row \[rad/s\].
+    /// Frequency of the last row \[rad/s\].
     highest: f64,
-    /// Ratio between neighbouring rows.
+    /// Ratio between the frequencies of neighbouring rows.
     ratio: f64,
 }
 
 impl FrequencyRows {
-    /// Lays rows from two periods a window to `highest` \[rad/s\]; `None` if these are less than an
-    /// octave apart.
+    /// Spaces rows from the frequency with two periods in a window to `highest` \[rad/s\]; `None`
+    /// if these are less than an octave apart.
     fn new(windows: &Windows, highest: f64) -> Option<Self> {
         let lowest = 2.0 * TAU / windows.seconds;
         let highest = highest.min(HIGHEST_OF_RATE * TAU / (2.0 * windows.step_s));
@@ -147,7 +147,7 @@ impl FrequencyRows {
         })
     }
 
-    /// Returns a window's power by row.
+    /// Returns the power of a window in each row.
     fn powers(&self, spectrum: &Spectrum) -> Vec<f64> {
         let mut powers = Vec::with_capacity(Spectrogram::ROWS);
         for row in 0..Spectrogram::ROWS {
@@ -157,7 +157,8 @@ impl FrequencyRows {
         powers
     }
 
-    /// Returns the greatest power within half a row of `omega`, or of the next line above.
+    /// Returns the maximum power of the lines within half a row of `omega`; of the next line above
+    /// if there are none.
     fn power_at(&self, spectrum: &Spectrum, omega: f64) -> f64 {
         let lines = &spectrum.omega;
         let half_row = self.ratio.sqrt();
@@ -174,7 +175,7 @@ impl FrequencyRows {
     }
 }
 
-/// Converts powers to levels below the greatest power \[dB\].
+/// Converts powers to levels \[dB\] relative to the maximum power.
 fn levels(powers: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let greatest = powers
         .iter()
@@ -187,7 +188,7 @@ fn levels(powers: &[Vec<f64>]) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Returns a power's level below `greatest` \[dB\].
+/// Returns the level \[dB\] of a power relative to `greatest`.
 fn level(power: f64, greatest: f64) -> f64 {
     let ratio = (power / greatest).max(f64::MIN_POSITIVE);
     (10.0 * ratio.log10()).max(Spectrogram::FLOOR)
@@ -240,8 +241,8 @@ mod tests {
                 .max_by(|a, b| levels[*a].total_cmp(&levels[*b]))
                 .unwrap();
             let omega = found.omega[0] * ratio.powi(ridge as i32);
-            // Within a 15 s window's resolution, whose lines are 0.42 rad/s apart, and half
-            // the sweep's change within it.
+            // Tolerance: the resolution of a window of 15 s, whose lines are 0.42 rad/s apart, plus
+            // half the change of the sweep within it.
             assert!(
                 (omega - (2.0 + 0.1 * time)).abs() < 0.42 + 0.75,
                 "{time} s: {omega}"

@@ -22,18 +22,18 @@ pub enum TimeBase {
     Topics,
 }
 
-/// Longest plausible step in a manoeuvre \[s\].
+/// Maximum plausible step in a manoeuvre \[s\].
 pub(super) const LONGEST_STEP_S: f64 = 1.5;
-/// Shortest plausible step in a flight recorder \[s\].
+/// Minimum plausible step in a flight recorder \[s\].
 const SHORTEST_STEP_S: f64 = 5e-5;
-/// Shortest step accepted for a guessed unit \[s\].
+/// Minimum step accepted for a guessed unit \[s\].
 const SHORTEST_GUESSED_STEP_S: f64 = 2e-4;
 const SECONDS_A_DAY: f64 = 86_400.0;
 
-/// Likelihood that a column holds the time; the smallest rank is the likeliest.
+/// Rank of a column as the time column; the smallest rank is the most likely.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct TimeRank {
-    /// A column that mostly repeats or decreases is a time by name only.
+    /// Whether the column mostly repeats or decreases; such a column is a time by name only.
     mostly_falls: bool,
     by_name: u8,
     column: usize,
@@ -89,7 +89,7 @@ impl TimeBase {
         }
     }
 
-    /// Returns a stamp column as time base.
+    /// Returns a time base from a stamp column.
     pub(super) fn from_column(table: &RecordTable, column: usize) -> Self {
         TimeBase::Column {
             column,
@@ -126,7 +126,7 @@ fn finite_product(stamp: f64, seconds: f64) -> f64 {
     }
 }
 
-/// A stamp column's unit.
+/// Unit of a stamp column.
 struct StampUnit {
     name: &'static str,
     seconds: f64,
@@ -135,11 +135,11 @@ struct StampUnit {
 }
 
 impl StampUnit {
-    /// Units shorter than a second; steps too short for milliseconds are microseconds, and so on.
+    /// Units shorter than a second, tried in this order until the median step is plausible.
     const SHORT: [(&str, f64); 3] = [("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
 
-    /// Determines the unit: the file's, else the last word in the column's name (`time_ms`), else a
-    /// unit that makes the median step plausible, else the second.
+    /// Determines the unit: the one in the file, else the last word in the column's name
+    /// (`time_ms`), else a unit that makes the median step plausible, else the second.
     fn new(stamps: &RecordColumn) -> Self {
         if let Some(unit) = stamps.unit.as_deref().and_then(Self::from_name) {
             return unit;
@@ -162,7 +162,7 @@ impl StampUnit {
         Self::seconds(" (the file does not say the unit)".to_owned())
     }
 
-    /// Returns a time unit by its name, in its usual spelling.
+    /// Returns a time unit, in its usual spelling, from its name.
     fn from_name(name: &str) -> Option<Self> {
         let unit = PhysicalUnit::of(name)?;
         if unit.dimension != Dimension::Time {
@@ -175,7 +175,7 @@ impl StampUnit {
         })
     }
 
-    /// Returns a unit chosen because `step` seconds are implausible.
+    /// Returns a unit that was chosen because a step of `step` seconds is implausible.
     fn from_steps(name: &'static str, seconds: f64, step: f64) -> Self {
         let fault = if step > 1.0 { "long" } else { "short" };
         let step = telling(step, 3);
@@ -293,7 +293,7 @@ mod tests {
         for (name, unit, step, expected) in [
             ("t", Some("ms"), 20.0, 1e-3),
             ("time_ms", None, 20.0, 1e-3),
-            // As the name says; the checks refuse such steps.
+            // The name determines the unit; the checks reject such steps.
             ("time_s", None, 20.0, 1.0),
             ("t", None, 0.02, 1.0),
             ("t", None, 20.0, 1e-3),

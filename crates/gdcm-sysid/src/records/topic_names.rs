@@ -9,7 +9,7 @@ const SEPARATORS: [char; 4] = ['_', '-', '.', ' '];
 /// File extensions. An ending with digits only is not an extension: "motor.1".
 const EXTENSIONS: [&str; 7] = ["csv", "txt", "tsv", "dat", "mat", "npz", "json"];
 
-/// Returns the common key for a log's topics: their file, or else their folder.
+/// Returns the common key of a log's topics: their file, or else their folder.
 pub(super) fn log_key(source: &RecordSource) -> String {
     if source.variable.is_some() {
         return source.file.clone();
@@ -51,14 +51,14 @@ fn topic_name(source: &RecordSource, is_one_file: bool) -> String {
     }
 }
 
-/// Returns the log of each topic: "log_7" for "log_7_rates" beside "log_8_rates"; empty without a
+/// Returns the log of each topic: "log_7" for "log_7_rates" next to "log_8_rates"; empty without a
 /// log.
 ///
 /// ```text
-/// 1  a topic begins at the first separator after which another name is the same;
+/// 1  a topic begins at the first separator after which two names agree;
 ///    the text before it is the log
 /// 2  several topics confirm a log
-/// 3  a topic without a confirmed log belongs to the longest confirmed log that its name begins with
+/// 3  a topic without a confirmed log belongs to the longest confirmed log that begins its name
 /// ```
 pub(super) fn logs_of_topics(names: &[String]) -> Vec<String> {
     let logs = logs_by_shared_endings(names);
@@ -99,7 +99,7 @@ fn is_confirmed(log: &str, logs: &[String]) -> bool {
     !log.is_empty() && logs.iter().filter(|other| *other == log).count() > 1
 }
 
-/// Returns the longest of `logs` with which a name begins, as a whole word.
+/// Returns the longest name in `logs` with which a name begins, as whole words.
 fn longest_log_of(name: &str, logs: &[&String]) -> String {
     let mut longest = "";
     for log in logs {
@@ -113,7 +113,7 @@ fn longest_log_of(name: &str, logs: &[&String]) -> String {
     longest.to_owned()
 }
 
-/// Returns the byte count of the names' common prefix, up to and with its last separator:
+/// Returns the length in bytes of the common prefix of the names, including its last separator:
 /// "log_3_2024_" for "log_3_2024_q" and "log_3_2024_M".
 pub(super) fn common_prefix(names: &[String]) -> usize {
     let Some((first, rest)) = names.split_first() else {

@@ -1,8 +1,8 @@
-//! Tables that are topics in one record: a file or struct per topic.
+//! Tables that are topics of one record: a file or struct per topic.
 //!
-//! A table with a column for every channel is a record. Tables that lack some channels may have all
-//! of them together: these are a log's topics, each with separate stamps. A table's name
-//! names its columns.
+//! A table with a column for every channel is a record. Tables that each lack some channels but
+//! together have all of them are the topics of a log, each with separate stamps. The name of a
+//! table becomes part of the names of its columns.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,13 +15,13 @@ use super::record_table::{RecordColumn, RecordSource, RecordTable, TopicClock, s
 use super::time_base::{TimeBase, median_step};
 use super::topic_names::{are_from_one_file, common_prefix, log_key, logs_of_topics, topic_names};
 
-/// Uninformative names for a topic's only column beside its stamps.
+/// Uninformative names of a topic's only column next to its stamps.
 const PLAIN: [&str; 8] = [
     "value", "values", "data", "signal", "signals", "x", "y", "val",
 ];
 
 impl RecordTable {
-    /// Name for the record that all topics in a file or folder form together.
+    /// Name of the record that all topics in a file or folder form together.
     pub const TOPICS: &'static str = "its topics";
 
     /// Returns the record that topics form under this name: all of them as [`Self::TOPICS`], or
@@ -52,7 +52,7 @@ fn join_topics_of_log(tables: &[RecordTable], log: &str) -> RecordTable {
     joined
 }
 
-/// Combines a record's topics side by side; tables without a time are left out and reported.
+/// Combines the topics of a record side by side; tables without a time are omitted and reported.
 fn join_topics(tables: &[RecordTable]) -> RecordTable {
     let source = common_source(tables);
     let mut joined = RecordTable {
@@ -89,7 +89,7 @@ fn join_topics(tables: &[RecordTable]) -> RecordTable {
     joined
 }
 
-/// Returns the topics' file, or their folder, as their record's source.
+/// Returns the file or folder of the topics, as the source of their record.
 fn common_source(tables: &[RecordTable]) -> RecordSource {
     let mut source = RecordSource {
         variable: Some(RecordTable::TOPICS.to_owned()),
@@ -119,7 +119,7 @@ fn common_file(tables: &[RecordTable]) -> &str {
     }
 }
 
-/// Returns the file's name without its extension, or the folder's name.
+/// Returns the name of the file without its extension, or the name of the folder.
 fn common_name(tables: &[RecordTable]) -> &str {
     let file = common_file(tables);
     let mut name = file.rsplit('/').next().unwrap_or_default();
@@ -170,15 +170,15 @@ struct TopicJoiner<'r> {
     tables: &'r [RecordTable],
     channels: &'r RecordChannels,
     time: &'r TimeWish,
-    /// Whether each table is in a joined record.
+    /// Whether each table is part of a joined record.
     is_joined: Vec<bool>,
-    /// Joined records, by their first topic's index.
+    /// Joined records, by the index of their first topic.
     joined: BTreeMap<usize, RecordTable>,
 }
 
 impl TopicJoiner<'_> {
-    /// Returns the tables that lack a channel, by file or folder; single tables are left
-    /// out.
+    /// Returns the tables that lack a channel, by file or folder; groups of a single table are
+    /// omitted.
     fn groups_of_topics(&self) -> Vec<Vec<usize>> {
         let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
         for (index, table) in self.tables.iter().enumerate() {
@@ -206,7 +206,7 @@ impl TopicJoiner<'_> {
         })
     }
 
-    /// Joins a group to one record, or else each log to a record.
+    /// Joins a group to one record, or else the topics of each log to a record.
     fn join_group(&mut self, group: &[usize]) {
         let topics = self.tables_at(group);
         if self.keep_if_complete(group, join_topics(&topics)) {
@@ -232,7 +232,7 @@ impl TopicJoiner<'_> {
         tables
     }
 
-    /// Keeps a group's record if it has all channels; returns whether it has.
+    /// Keeps the record of a group if it has all channels; returns whether it was kept.
     fn keep_if_complete(&mut self, group: &[usize], joined: RecordTable) -> bool {
         if joined.columns.is_empty() || self.lacks_channels(&joined) {
             return false;
@@ -245,8 +245,8 @@ impl TopicJoiner<'_> {
     }
 }
 
-/// Returns the seconds per stamp unit, by column name: topics in one log share
-/// the unit, and only fast topics reveal it by their steps.
+/// Returns the seconds per stamp unit, by column name. The topics of a log share the unit, which
+/// only the short steps of fast topics reveal.
 fn seconds_by_name(tables: &[RecordTable]) -> BTreeMap<String, f64> {
     struct Fastest {
         step: f64,
@@ -309,7 +309,7 @@ fn topic_columns(
     Some(columns)
 }
 
-/// Returns the name for a topic's column: "acc.1" for "value_1", the topic itself for a single
+/// Returns the name of a topic's column: "acc.1" for "value_1", the name of the topic for a single
 /// "value", else "acc.x".
 fn column_name(topic: &str, column: &str, is_single: bool) -> String {
     if let Some((stem, number)) = column.rsplit_once('_')

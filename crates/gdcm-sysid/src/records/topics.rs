@@ -1,36 +1,36 @@
-//! Topics with their own clocks, brought to a common uniform clock (M14.11).
+//! Topics with their own clocks, resampled to a common uniform clock (M14.11).
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
 use gdcm_model::statistics::median;
 
-/// Steps longer than this many median steps are gaps: 3 missing samples are bridged (M14.1).
+/// Maximum step without a gap, in median steps: 3 missing samples are bridged (M14.1).
 const LONGEST_STEP: f64 = 4.5;
 /// Share of repeated samples above which a channel is held.
 const HELD: f64 = 0.5;
-/// Fewest samples in a topic.
+/// Minimum number of samples in a topic.
 const LEAST_SAMPLES: usize = 3;
-/// Kernel half length, in half periods at its cut-off.
+/// Half-length of the kernel, in half periods of its cut-off.
 const HALF_TAPS: f64 = 12.0;
-/// Tolerance for a time beyond a run's stamps, over the time itself.
+/// Relative tolerance of a time beyond the stamps of a run.
 const ROUNDING: f64 = 1e-9;
-/// Highest line used over the band end (M14.2).
+/// Highest line used, over the band end (M14.2).
 const HIGHEST_LINE: f64 = 4.0 / 3.0;
-/// Fewest samples in a period of the highest line, for a topic.
+/// Minimum number of samples of a topic in a period of the highest line.
 const NEEDED: f64 = 2.5;
-/// The same for the common clock.
+/// Minimum number of samples of the common clock in a period of the highest line.
 const LEAST_ON_CLOCK: f64 = 4.0;
-/// Most samples in a period of the highest line, for the common clock.
+/// Maximum number of samples of the common clock in a period of the highest line.
 const MOST_ON_CLOCK: f64 = 20.0;
 /// Cut-off over the highest line.
 const CUT_OFF: f64 = 5.0;
-/// Highest cut-off over half the slowest rate.
+/// Maximum cut-off, over half the slowest rate.
 const CUT_OFF_OF_RATE: f64 = 0.8;
-/// Ten million samples are a day at 100 Hz; more samples come from a wrong stamp.
+/// Maximum number of samples, a day at 100 Hz; more samples come from a wrong stamp.
 const MOST_SAMPLES: f64 = 1e7;
 
-/// A channel's samples with their own stamps.
+/// Samples of a channel with their own stamps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Topic {
     /// Name for display.
@@ -39,7 +39,7 @@ pub struct Topic {
     time_s: Vec<f64>,
     /// Value at each stamp, finite.
     values: Vec<f64>,
-    /// The samples between two gaps; not empty.
+    /// Index ranges of samples without gaps; never empty.
     runs: Vec<Range<usize>>,
     /// Sample rate without gaps \[Hz\].
     pub rate_hz: f64,
@@ -48,7 +48,7 @@ pub struct Topic {
 impl Topic {
     /// Keeps the samples with increasing stamps and a finite value.
     ///
-    /// A held command acts until the next comes: its stamps are moved half that time later
+    /// A held command acts until the next sample: its stamps are moved later by half this time
     /// (M14.1).
     ///
     /// # Errors
@@ -127,17 +127,17 @@ impl Topic {
 
 /// Moves each stamp later by half the time to the next, at most by half `longest_s`.
 fn delay_by_half_a_hold(times: &mut [f64], longest_s: f64) {
-    // In place from the front: each stamp needs the next unmoved.
+    // From front to back, because each stamp needs the next one unchanged.
     for k in 0..times.len() - 1 {
         times[k] += 0.5 * (times[k + 1] - times[k]).min(longest_s);
     }
-    // The last hold lasts as long as the hold before.
+    // The last hold is assumed to last as long as the one before.
     if let [.., before, last] = times {
         *last += (*last - *before).min(longest_s);
     }
 }
 
-/// Returns the samples between gaps longer than `longest_s`.
+/// Returns the index ranges of the samples between gaps longer than `longest_s`.
 fn runs(times: &[f64], longest_s: f64) -> Vec<Range<usize>> {
     let mut runs = Vec::new();
     let mut start = 0;
@@ -151,7 +151,7 @@ fn runs(times: &[f64], longest_s: f64) -> Vec<Range<usize>> {
     runs
 }
 
-/// Counts the samples in a second, without gaps; 0 if every run has a single sample.
+/// Counts the samples per second, without gaps; 0 if every run has a single sample.
 fn rate_hz(times: &[f64], runs: &[Range<usize>]) -> f64 {
     let mut steps = 0;
     let mut length_s = 0.0;
@@ -166,7 +166,7 @@ fn rate_hz(times: &[f64], runs: &[Range<usize>]) -> f64 {
     }
 }
 
-/// Whether a command is held: more than half its samples repeat the sample before.
+/// Whether a command is held: more than half of its samples repeat the preceding sample.
 pub fn is_held(values: &[f64]) -> bool {
     let same = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
     same as f64 > HELD * values.len() as f64
@@ -180,7 +180,7 @@ pub fn is_held(values: &[f64]) -> bool {
 /// Δ_k  = half the distance between the neighbours of t_k; at an end, the distance to its neighbour
 /// ```
 ///
-/// Constants stay as they are, and so does a sample without another near it. Stamps increase;
+/// Constants do not change, nor does a sample without a neighbour in the kernel. Stamps increase;
 /// `cutoff` is wc \[rad/s\].
 fn low_passed(time_s: &[f64], values: &[f64], t: f64, cutoff: f64) -> f64 {
     let half = HALF_TAPS * PI / cutoff;
@@ -203,7 +203,7 @@ fn low_passed(time_s: &[f64], values: &[f64], t: f64, cutoff: f64) -> f64 {
     }
 }
 
-/// Returns `Δ_k` \[s\], the time that sample `k` stands for; 1 for a single sample.
+/// Returns `Δ_k` \[s\], the duration that sample `k` represents; 1 for a single sample.
 fn sample_width(time_s: &[f64], k: usize) -> f64 {
     let last = time_s.len() - 1;
     if last == 0 {
@@ -217,24 +217,24 @@ fn sample_width(time_s: &[f64], k: usize) -> f64 {
     }
 }
 
-/// The uniform clock that topics are brought to.
+/// The uniform clock to which topics are resampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommonClock {
     /// First sample \[s\].
     pub start_s: f64,
     /// Sample rate \[Hz\].
     pub rate_hz: f64,
-    /// Sample count.
+    /// Number of samples.
     pub samples: usize,
-    /// Low-pass cut-off for every channel \[rad/s\].
+    /// Low-pass cut-off of every channel \[rad/s\].
     pub cutoff: f64,
 }
 
 impl CommonClock {
     /// Chooses the common clock (M14.11).
     ///
-    /// `band_end` is the upper band end \[rad/s\], by default as far as the topics reach; `rate_hz`
-    /// is a requested rate \[Hz\].
+    /// `band_end` is the upper band end \[rad/s\], by default the end for which the slowest rate
+    /// gives 20 samples in a period of the highest line; `rate_hz` is a requested rate \[Hz\].
     ///
     /// ```text
     /// whi = 4/3 ω2
@@ -281,7 +281,7 @@ impl CommonClock {
         })
     }
 
-    /// Returns its sample times \[s\].
+    /// Returns the sample times of the clock \[s\].
     pub fn times_s(&self) -> Vec<f64> {
         (0..self.samples)
             .map(|k| self.start_s + k as f64 / self.rate_hz)
@@ -306,7 +306,7 @@ impl CommonClock {
     }
 }
 
-/// Refuses topics that are too slow for the band; names the slowest.
+/// Returns an error if a topic is too slow for the band; it names the slowest.
 fn check_rates(topics: &[Topic], band_end: f64) -> Result<(), TopicError> {
     let slowest = topics.iter().min_by(|a, b| a.rate_hz.total_cmp(&b.rate_hz));
     match slowest {
@@ -315,7 +315,7 @@ fn check_rates(topics: &[Topic], band_end: f64) -> Result<(), TopicError> {
     }
 }
 
-/// Refuses a rate that is too low for the band.
+/// Returns an error for a rate that is too low for the band.
 fn check_rate(topic: &str, rate_hz: f64, band_end: f64) -> Result<(), TopicError> {
     let highest_hz = HIGHEST_LINE * band_end / TAU;
     let needed_hz = NEEDED * highest_hz;
@@ -331,7 +331,7 @@ fn check_rate(topic: &str, rate_hz: f64, band_end: f64) -> Result<(), TopicError
     Ok(())
 }
 
-/// Returns the time that all topics share, from its start to its end \[s\].
+/// Returns first and last time of the interval that all topics share \[s\].
 fn common_span_s(topics: &[Topic]) -> Result<[f64; 2], TopicError> {
     let latest = topics
         .iter()
@@ -358,7 +358,7 @@ fn common_span_s(topics: &[Topic]) -> Result<[f64; 2], TopicError> {
     Ok([start_s, end_s])
 }
 
-/// Why topics cannot be brought to a common clock.
+/// Why topics cannot be resampled to a common clock.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TopicError {
     #[error("{topic} has {samples} samples with a stamp; at least 3 are needed")]
@@ -376,7 +376,7 @@ pub enum TopicError {
         needed_hz: f64,
         /// Upper band end \[rad/s\].
         band_end: f64,
-        /// Greatest possible band end \[rad/s\].
+        /// Maximum possible band end \[rad/s\].
         possible: f64,
     },
     /// Topics share no time.
@@ -392,7 +392,7 @@ pub enum TopicError {
         second: String,
         second_start_s: f64,
     },
-    /// A stamp is so far off that the record would exceed the memory.
+    /// The record would be too large: a stamp is wrong, or the requested rate is too high.
     #[error(
         "the joined record would have {0:.0} samples: a stamp is wrong, or the requested rate is too high"
     )]
@@ -404,7 +404,7 @@ mod tests {
     use super::*;
     use crate::identification::known_answers_tests::{number, numbers};
 
-    /// Stamps `step k` with jitter from a linear congruence, as in the known answer.
+    /// Stamps `step k` with jitter from a linear congruential generator, as in the known answer.
     fn shaken(count: usize, step: f64, shake: f64) -> Vec<f64> {
         let mut state = 5_u32;
         let mut stamps = Vec::with_capacity(count);
@@ -495,7 +495,7 @@ mod tests {
         assert!(is_held(&[1.0, 1.0, 1.0, 2.0, 2.0, 2.0]) && !is_held(&[1.0, 2.0, 2.0, 3.0]));
     }
 
-    /// A constant topic from one time to another \[s\].
+    /// A constant topic between two times \[s\].
     fn topic(name: &str, rate: f64, from: f64, to: f64) -> Topic {
         let stamps: Vec<f64> = (0..((to - from) * rate) as usize)
             .map(|k| from + k as f64 / rate)

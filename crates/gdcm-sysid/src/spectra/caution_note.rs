@@ -2,7 +2,7 @@
 
 use gdcm_model::simulation::Signal;
 
-/// A caution as files hold it.
+/// A caution as stored in files.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CautionNote {
     /// Stable code, for programs.
@@ -11,11 +11,11 @@ pub struct CautionNote {
     pub records: Vec<String>,
     /// Name of the affected channel.
     pub channel: Option<String>,
-    /// Names of output and input in the affected response.
+    /// Names of the output and the input of the affected response.
     pub pair: Option<[String; 2]>,
     /// Affected frequencies \[rad/s\].
     pub band_rad_s: Option<[f64; 2]>,
-    /// The full sentence.
+    /// The full text.
     pub text: String,
 }
 
@@ -56,7 +56,7 @@ impl CautionNote {
         }
     }
 
-    /// Returns a label with at most four words for a mark in the window.
+    /// Returns a label of at most four words for a mark in the window.
     #[must_use]
     pub fn mark(&self) -> &'static str {
         match self.code {

@@ -1,50 +1,53 @@
-//! Channels at their limit, logged in coarse steps or as stairs (M14.1, M14.18).
+//! Channels at their limit, in coarse steps or with stairs (M14.1, M14.18).
 //!
 //! ```text
 //! flat: consecutive |dx| <= 1e-3 mean |dx|
 //! run: a stretch of flat samples, or a single sample
-//! at its limit: sample share in runs from max(5, 3 q) up whose mean lies in the outer 5 % of
-//!     the range, q the 90 % quantile for the flat runs elsewhere; a caution above 0.5 %, or 10 %
-//!     where flat runs elsewhere hold 20 % of all samples
-//! coarse: the least step between two values is over half the standard deviation
+//! at its limit: share of the samples in runs of at least max(5, 3 q) samples whose mean lies in
+//!     the outer 5 % of the range, with the 90 % quantile q of the flat runs elsewhere; a caution
+//!     above 0.5 %, or above 10 % where flat runs elsewhere hold 20 % of all samples
+//! coarse: the smallest step between two values is over half the standard deviation
 //! ```
 
 use gdcm_model::simulation::{FlightRecord, Signal};
 use gdcm_model::statistics::{median, quantile};
 
-/// Step over the mean step up to which two samples are flat.
+/// Maximum step between two samples of a flat run, over the mean step.
 const FLAT: f64 = 1e-3;
-/// Shortest run at a limit, in samples.
+/// Minimum length of a run at a limit, in samples.
 const SHORTEST: f64 = 5.0;
-/// Shortest run at a limit over the usual run elsewhere.
+/// Minimum length of a run at a limit, over the usual length of flat runs elsewhere.
 const OVER_USUAL: f64 = 3.0;
-/// Usual quantile for the runs elsewhere.
+/// Quantile that gives the usual length of the flat runs elsewhere.
 const USUAL: f64 = 0.9;
-/// Share of the range at each end in which a limit lies.
+/// Share of the range, at each end, that belongs to a limit.
 const OUTER: f64 = 0.05;
-/// Greatest acceptable sample share at a limit for a smooth channel.
+/// Maximum acceptable share of samples at a limit in a smooth channel.
 const MOST_AT_LIMIT: f64 = 0.005;
-/// The same for a coarse channel or stairs.
+/// Maximum acceptable share of samples at a limit in a coarse channel or one with stairs.
 const MOST_AT_LIMIT_HELD: f64 = 0.1;
-/// Sample share in flat runs away from the limits above which a channel counts as held.
+/// A channel counts as held if flat runs away from the limits hold more than this share of its
+/// samples.
 const HELD_SHARE: f64 = 0.2;
-/// Least step between values over the standard deviation above which a channel is coarse.
+/// A channel is coarse if its smallest step between values exceeds this share of the standard
+/// deviation.
 pub(crate) const COARSE: f64 = 0.5;
-/// Share of equal consecutive samples, above which a moving channel is a stair (M14.1).
+/// A moving channel has stairs if more than this share of its consecutive samples are equal
+/// (M14.1).
 const STAIR_SHARE: f64 = 0.5;
-/// Equal samples for longer than this are a channel at rest, and no stair \[s\].
+/// Maximum duration of a stair \[s\]; a channel with equal samples for longer is at rest.
 const REST_S: f64 = 1.0;
-/// Fewest moving samples from which stairs are recognised.
+/// Minimum number of moving samples for recognising stairs.
 const LEAST_MOVING: usize = 50;
 
-/// A channel's value with its stamp.
+/// Value of a channel with its stamp.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     pub(crate) time_s: f64,
     pub(crate) value: f64,
 }
 
-/// Returns a channel's samples with finite stamp and value.
+/// Returns the samples of a channel that have a finite stamp and a finite value.
 pub(crate) fn finite_samples(record: &FlightRecord, signal: &Signal) -> Vec<Sample> {
     let values = record.channel(signal);
     let mut samples = Vec::new();
@@ -66,17 +69,17 @@ pub(crate) fn finite_values(record: &FlightRecord, signal: &Signal) -> Vec<f64> 
         .collect()
 }
 
-/// How often a channel is at its limit.
+/// Share of samples at which a channel is at its limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clipping {
-    /// Share of the samples.
+    /// Share of the samples at a limit.
     pub(crate) share: f64,
-    /// Greatest acceptable share.
+    /// Maximum acceptable share.
     pub(crate) most: f64,
 }
 
 impl Clipping {
-    /// Measures how often a channel is at its limit.
+    /// Measures the share of the samples at a limit.
     pub(crate) fn measure(samples: &[f64]) -> Self {
         let steps = samples.windows(2).map(|pair| (pair[1] - pair[0]).abs());
         let flat = FLAT * steps.sum::<f64>() / samples.len().saturating_sub(1).max(1) as f64;
@@ -115,7 +118,7 @@ impl Clipping {
     }
 }
 
-/// The usual flat run; 1 without any.
+/// Returns the usual length of flat runs; 1 if there are none.
 fn usual_length(runs: &[usize]) -> f64 {
     if runs.is_empty() {
         return 1.0;
@@ -128,7 +131,7 @@ fn share_of(count: usize, samples: &[f64]) -> f64 {
     count as f64 / samples.len().max(1) as f64
 }
 
-/// Least and greatest value.
+/// Minimum and maximum of a channel.
 pub(crate) struct Range {
     pub(crate) least: f64,
     pub(crate) greatest: f64,
@@ -148,12 +151,13 @@ impl Range {
     }
 }
 
-/// Whether a channel has so few distinct values that standing still is nothing unusual.
+/// Whether a channel has so few distinct values that equal consecutive samples are normal.
 pub(crate) fn is_coarse(values: &[f64]) -> bool {
     coarseness(values).is_some_and(|steps| steps > COARSE)
 }
 
-/// Returns the least step between two values over the standard deviation; `None` if nothing moves.
+/// Returns the smallest step between two values over the standard deviation; `None` if the channel
+/// is constant.
 pub(crate) fn coarseness(values: &[f64]) -> Option<f64> {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;

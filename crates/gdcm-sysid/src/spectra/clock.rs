@@ -1,4 +1,4 @@
-//! A record's time stamps, and the uniform grid behind them (M14.1).
+//! Time stamps of a record, and their uniform grid (M14.1).
 
 use gdcm_model::simulation::FlightRecord;
 use gdcm_model::statistics::quantile;
@@ -6,32 +6,33 @@ use gdcm_model::statistics::quantile;
 use super::gaps::{Cause, Gap, Treatment};
 use super::preparation_settings::PreparationError;
 
-/// Deviation from the multiples of the sample time above which stamps are uneven \[%\] (M14.1).
+/// Maximum deviation of even stamps from multiples of the sample time \[%\] (M14.1).
 const UNEVEN_PERCENT: f64 = 20.0;
-/// Quantile that counts among the deviations: a single late stamp is no jitter.
+/// Quantile of the deviations that is compared with the limit: a single late stamp is no jitter.
 const COUNTED: f64 = 0.95;
 
-/// A record's stamps.
+/// Stamps of a record.
 pub(crate) struct Clock {
     /// First stamp \[s\].
     pub start_s: f64,
-    /// Median stamp difference \[s\]; 0 for fewer than two.
+    /// Median difference of the stamps \[s\]; 0 for fewer than two stamps.
     pub sample_time_s: f64,
-    /// 95th percentile for the differences' deviations from multiples of the sample time \[%\].
+    /// 95th percentile of the deviations of stamp differences from multiples of the sample time
+    /// \[%\].
     pub jitter_percent: f64,
     /// Rows with a stamp.
     pub rows: Vec<usize>,
-    /// Their stamps \[s\], counted from the first.
+    /// Stamps of these rows \[s\], relative to the first stamp.
     pub times: Vec<f64>,
-    /// Samples further apart than this \[s\] have a gap between them that is not bridged.
+    /// Maximum distance of two samples \[s\] without a gap, or with a gap that is bridged.
     pub longest_step_s: f64,
 }
 
 /// Grid points `k dt` between two gaps.
 pub(crate) struct GridStretch {
-    /// First `k`; whole.
+    /// First `k`; an integer.
     pub first: f64,
-    /// Point count.
+    /// Number of points.
     pub points: usize,
 }
 
@@ -66,7 +67,7 @@ impl Clock {
 
     /// Whether the stamps are more than 20 % off the multiples of the sample time.
     pub fn is_uneven(&self) -> bool {
-        // Rounded stamps may lie just at the limit.
+        // Rounded stamps may be just at the limit.
         self.jitter_percent > UNEVEN_PERCENT * (1.0 + 1e-6)
     }
 
@@ -86,7 +87,7 @@ impl Clock {
                 continue;
             }
             if to > from {
-                // Less than a millionth of a sample is rounding.
+                // A deviation of less than a millionth of a sample is a rounding error.
                 let last = (self.times[to] / self.sample_time_s + 1e-6).floor();
                 let first = (self.times[from] / self.sample_time_s).ceil();
                 grid.push(GridStretch {
@@ -123,14 +124,14 @@ impl Clock {
     }
 }
 
-/// Refuses stamps that do not increase.
+/// Returns an error for stamps that do not increase.
 fn check_increasing(
     record: &FlightRecord,
     rows: &[usize],
     times: &[f64],
 ) -> Result<(), PreparationError> {
     for k in 1..times.len() {
-        // Huge stamps may differ and still round to the same time from the first stamp.
+        // The times relative to the first stamp may be equal although the large stamps differ.
         let step = times[k] - times[k - 1];
         if !(step > 0.0 && step.is_finite()) {
             return Err(PreparationError::TimeNotIncreasing {
@@ -144,7 +145,7 @@ fn check_increasing(
     Ok(())
 }
 
-/// Returns a quantile; 0 without values, as for a single stamp.
+/// Returns a quantile; 0 if there are no values, as for a single stamp.
 fn quantile_or_zero(mut values: Vec<f64>, share: f64) -> f64 {
     if values.is_empty() {
         0.0

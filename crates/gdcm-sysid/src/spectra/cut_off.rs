@@ -1,16 +1,16 @@
-//! The cut-off for the zero-phase low-pass before the Laguerre projections (M14.1).
+//! Cut-off of the zero-phase low-pass before the Laguerre projections (M14.1).
 
 use gdcm_model::executor::{Executor, each};
 use gdcm_model::simulation::{LowPass, Segment};
 
 use super::spectrum::spectra;
 
-/// Cut-off over the highest line used, without vibration (M14.1).
+/// Cut-off without vibration, over the highest line used (M14.1).
 const USUAL: f64 = 5.0;
-/// Cut-off over the highest line used, if an output vibrates (M14.1).
+/// Cut-off if an output vibrates, over the highest line used (M14.1).
 const VIBRATING: f64 = 2.0;
-/// Share of its variance above `VIBRATING` times the highest line used, from which an output
-/// vibrates.
+/// An output vibrates if more than this share of its variance lies above `VIBRATING` times the
+/// highest line used.
 const VIBRATION_SHARE: f64 = 0.3;
 
 /// The cut-off frequency, and the outputs that lowered it.
@@ -18,14 +18,14 @@ const VIBRATION_SHARE: f64 = 0.3;
 pub struct CutOff {
     /// \[rad/s\].
     pub omega: f64,
-    /// Vibrating outputs, counted from 0, with their variance share above twice the highest
-    /// line used.
+    /// Vibrating outputs, counted from 0, each with the share of its variance above twice the
+    /// highest line used.
     pub vibrating: Vec<(usize, f64)>,
 }
 
 impl CutOff {
     /// Chooses the cut-off for `segments` and lines up to `highest` \[rad/s\]: 5 `highest`, or 2
-    /// `highest` if more than 30 % of an output's variance lies above that (M14.1).
+    /// `highest` if more than 30 % of the variance of an output lies above 2 `highest` (M14.1).
     #[must_use]
     pub fn choose(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Self {
         let outputs = segments

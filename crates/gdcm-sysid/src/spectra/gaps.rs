@@ -4,7 +4,7 @@ use std::fmt;
 
 use gdcm_model::simulation::Signal;
 
-/// Joins the names of `signals`: `P, Q and R`.
+/// Joins the names of signals: `P, Q and R`.
 pub(crate) fn names(signals: &[Signal]) -> String {
     let names: Vec<&str> = signals.iter().map(|signal| signal.name.as_str()).collect();
     listed(&names)
@@ -19,7 +19,7 @@ pub(crate) fn listed<S: AsRef<str> + std::borrow::Borrow<str>>(words: &[S]) -> S
     }
 }
 
-/// A gap's cause.
+/// Cause of a gap.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cause {
     /// Rows have no time stamp.
@@ -30,20 +30,20 @@ pub enum Cause {
     SamplesMissing(Vec<Signal>),
     /// Outputs stood still while others moved.
     Frozen(Vec<Signal>),
-    /// The rest between two gaps is shorter than the least segment; its length \[s\].
+    /// The part between two gaps is shorter than the minimum segment; its length \[s\].
     SegmentTooShort(f64),
 }
 
 /// How a gap is treated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Treatment {
-    /// By straight lines.
+    /// Replaced by straight lines.
     Bridged,
     CutOut,
 }
 
 impl Treatment {
-    /// Short gaps are bridged, others cut out.
+    /// Returns the treatment: short gaps are bridged, others cut out.
     pub(crate) fn for_gap(is_short: bool) -> Self {
         if is_short {
             Self::Bridged
@@ -53,12 +53,12 @@ impl Treatment {
     }
 }
 
-/// A gap in a record: from the last good sample to the next.
+/// A gap in a record, between the last valid sample before it and the next after it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gap {
-    /// On the record's clock \[s\].
+    /// Start on the clock of the record \[s\].
     pub start_s: f64,
-    /// On the record's clock \[s\].
+    /// End on the clock of the record \[s\].
     pub end_s: f64,
     pub cause: Cause,
     pub treatment: Treatment,

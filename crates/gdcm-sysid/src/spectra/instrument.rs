@@ -1,5 +1,5 @@
-//! The response seen through a recorded reference that drove the loop from outside: feedback cannot
-//! bias it (M14.15).
+//! The response measured through a recorded reference that drove the loop from outside, and is
+//! therefore not biased by feedback (M14.15).
 //!
 //! ```text
 //! 1  [Y; U] = (Gamma0 + Gamma1 x + Gamma2 x^2) R + transient + N: local polynomials at every line
@@ -7,9 +7,9 @@
 //! 2  G = Gamma_y Gamma_u^+ (relative tolerance 1e-3),   Cv = Re([I, -G] Cov N [I, -G]')
 //! 3  the cost (M14.4) with U = Gamma_u R, Y = Gamma_y R, Gamma linear between points, on the lines
 //!    with leverage R S R' < 0.5
-//! 4  bands: this model's standard deviations from the lines as logged, over
+//! 4  bands: standard deviations of this model from the lines as logged, over
 //!    sqrt(coherence between input and R)
-//! 5  only where the coherence between an input and R is 0.6: elsewhere the reference did not excite
+//! 5  valid where the coherence between an input and R is at least 0.6: elsewhere R does not excite
 //! ```
 //!
 //! The leverage excludes the ends of a chirp's band, where its smooth spectrum and the
@@ -26,27 +26,27 @@ use super::local_polynomial::{LocalFit, LocalPolynomialError, condition, local_f
 use super::response_estimate::{EstimatePoint, ResponseEstimate};
 use super::spectrum::{LineRange, Spectrum};
 
-/// Window half width over its centre.
+/// Half-width of a window over its centre.
 const HALF_WIDTH: f64 = 0.15;
-/// Singular values that count in `Gamma_u`, over the largest.
+/// Minimum singular value of `Gamma_u` that counts, over the largest.
 const TOLERANCE: f64 = 1e-3;
-/// Leverage from which a line is left out.
+/// Lines with at least this leverage are left out.
 const LEVERAGE: f64 = 0.5;
-/// Coherence below which a band is not widened further: nothing is known there anyway.
+/// Minimum coherence for widening a band: below it, the widening does not increase any further.
 const LEAST_COHERENCE: f64 = 0.01;
 
-/// Inputs and outputs as seen through the reference at a frequency.
+/// Response of inputs and outputs to the reference at a frequency.
 struct InstrumentPoint {
-    /// `Gamma0`, outputs then inputs x references.
+    /// `Gamma0`, (outputs, then inputs) x references.
     gamma: DMatrix<Complex<f64>>,
     /// `S`, references x references.
     spread: DMatrix<Complex<f64>>,
     estimate: EstimatePoint,
 }
 
-/// The records as seen through the reference.
+/// The records as measured through the reference.
 pub(crate) struct Instrument {
-    /// `Gamma_u R` and `Gamma_y R`, on the lines that count.
+    /// `Gamma_u R` and `Gamma_y R`, on the lines with small leverage.
     pub(crate) spectra: Vec<Spectrum>,
     /// `G`, with the coherence between each input and the reference as partial coherence.
     pub(crate) measured: ResponseEstimate,
@@ -54,7 +54,7 @@ pub(crate) struct Instrument {
 
 impl Instrument {
     /// Measures the response from lines whose inputs are the references and whose outputs are the
-    /// model's outputs, then its inputs.
+    /// outputs of the model, followed by its inputs.
     pub(crate) fn new(
         lines: &[Spectrum],
         used: LineRange,
@@ -93,7 +93,7 @@ impl Instrument {
 }
 
 impl InstrumentPoint {
-    /// Divides the outputs by the inputs as seen through the reference (step 2).
+    /// Divides the responses of the outputs to the reference by those of the inputs (step 2).
     fn new(fit: &LocalFit, outputs: usize) -> Self {
         let gamma = fit.response();
         let inputs = gamma.nrows() - outputs;
@@ -108,7 +108,7 @@ impl InstrumentPoint {
         let noise = (&left * fit.covariance() * left.adjoint()).map(|value| value.re);
         let spread = fit.spread();
         let coherence = fit.coherence();
-        // var G = Cv times the spread mapped from R to the inputs.
+        // var G = Cv times the spread transformed from R to the inputs.
         let input_spread = inverse.adjoint() * &spread * &inverse;
         let estimate = EstimatePoint {
             omega: fit.window.omega,
@@ -138,9 +138,9 @@ impl InstrumentPoint {
 }
 
 impl ResponseEstimate {
-    /// Widens bands from the lines as logged where the reference shows little: the standard
-    /// deviations are divided by the root coherence between each input and the reference
-    /// (M14.15).
+    /// Widens bands from the lines as logged where the reference excites little: the standard
+    /// deviations are divided by the square root of the coherence between each input and the
+    /// reference (M14.15).
     pub(crate) fn widened(&self, bands: &ModelBands) -> Option<ModelBands> {
         let omegas: Vec<f64> = self.points.iter().map(|point| point.omega).collect();
         let neighbours: Vec<Neighbours> = bands
@@ -156,7 +156,8 @@ impl ResponseEstimate {
         .ok()
     }
 
-    /// Divides standard deviations by the root coherence, interpolated at `neighbours`.
+    /// Divides standard deviations by the square root of the coherence, interpolated at
+    /// `neighbours`.
     fn divided_by_coherence(
         &self,
         table: &PairTable<Vec<f64>>,
@@ -175,8 +176,8 @@ impl ResponseEstimate {
     }
 }
 
-/// Returns the lines as seen through the reference, without those that determine themselves
-/// (step 3).
+/// Returns the lines as measured through the reference, without those of high leverage, which
+/// determine their own estimate (step 3).
 fn through_reference(lines: &Spectrum, points: &[InstrumentPoint], outputs: usize) -> Spectrum {
     let omegas: Vec<f64> = points.iter().map(|point| point.estimate.omega).collect();
     let mut omega = Vec::new();

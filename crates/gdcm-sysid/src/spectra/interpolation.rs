@@ -1,6 +1,6 @@
-//! Linear interpolation between ascending numbers.
+//! Linear interpolation between ascending values.
 
-/// A number's two neighbours in an ascending list, and the second's share.
+/// The two neighbours of a value in an ascending list, with the weight of the second.
 pub(crate) struct Neighbours {
     pub(crate) before: usize,
     pub(crate) after: usize,
@@ -9,7 +9,7 @@ pub(crate) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Finds the neighbours for `x` in `ascending`; beyond an end the end counts.
+    /// Finds the neighbours of `x` in `ascending`; beyond an end, the value at the end applies.
     pub(crate) fn find(ascending: &[f64], x: f64) -> Self {
         let after = ascending
             .partition_point(|at| *at <= x)

@@ -1,4 +1,4 @@
-//! The local polynomial method: the frequency response straight from the lines, without a model.
+//! The local polynomial method: the frequency response from the spectral lines, without a model.
 
 use std::ops::Range;
 
@@ -9,22 +9,21 @@ use gdcm_model::executor::{Executor, each};
 use super::response_estimate::{EstimatePoint, ResponseEstimate, TERMS};
 use super::spectrum::Spectrum;
 
-/// Terms if all lines together are too few for three: 1, x.
+/// Number of terms if there are too few lines for three: 1, x.
 const FEWER_TERMS: usize = 2;
-/// Least half width for a window \[rad/s\] (M14.2).
+/// Minimum half-width of a window \[rad/s\] (M14.2).
 const LEAST_HALF_WIDTH: f64 = 0.45;
-/// Window half width over its centre (M14.2).
+/// Half-width of a window over its centre (M14.2).
 const HALF_WIDTH_SHARE: f64 = 0.2;
 /// First factor by which a window with too few lines is widened (M14.12).
 const FIRST_WIDENING: f64 = 1.2;
 /// Factor for each further widening (M14.12).
 const FURTHER_WIDENING: f64 = 1.05;
-/// Fewest lines in a window beyond unknowns and outputs, with three terms (M14.12).
+/// Minimum number of lines in a window beyond unknowns and outputs, with three terms (M14.12).
 const SPARE_LINES: usize = 6;
-/// The same with two terms.
+/// Minimum number of lines in a window beyond unknowns and outputs, with two terms.
 const SPARE_LINES_FEWER_TERMS: usize = 4;
-/// Ridge height over column length; it bounds the estimate if inputs are copies of
-/// each other.
+/// Ridge relative to the column length; it bounds the estimate if one input is a copy of another.
 const RIDGE: f64 = 1e-9;
 
 /// Why the frequency response cannot be measured.
@@ -33,7 +32,7 @@ pub enum LocalPolynomialError {
     /// No lines, inputs or outputs.
     #[error("there are no spectral lines for a frequency response")]
     Nothing,
-    /// Record number, counted from 0.
+    /// Index of the record, counted from 0.
     #[error("record {} differs from the first in its number of channels", .0 + 1)]
     ChannelsDiffer(usize),
     /// A line or a frequency is not finite, or a frequency is not greater than 0.
@@ -44,7 +43,7 @@ pub enum LocalPolynomialError {
         "the records have {lines} spectral lines in the band where {needed} are needed: log longer, or leave out channels"
     )]
     TooFewLines {
-        /// Over all records.
+        /// Number of lines in all records.
         lines: usize,
         needed: usize,
     },
@@ -61,8 +60,8 @@ pub enum LocalPolynomialError {
 /// Y = (G0 + G1 x + G2 x^2) U + (t0 + t1 x + t2 x^2)_r + V
 ///
 /// 1  h = max(0.45, 0.2 omega), times 1.2 once and then times 1.05 until the window holds
-///    3 inputs + 3 records + outputs + 6 lines; records with fewer than four lines there do not
-///    count; if all lines are too few, the terms in x^2 are left out
+///    3 inputs + 3 records + outputs + 6 lines; records with fewer than four lines there are
+///    omitted; if all lines together are too few, so are the terms in x^2
 /// 2  for each record A = [U, x U, x^2 U] and B = Y, less their projection on [1, x, x^2]
 /// 3  [A B] = Q R, all records stacked;    R = [R11 R12; 0 R22]
 /// 4  G0 = first columns of R11^-1 R12,    Cv = Re(R22^H R22) / freedom
@@ -71,7 +70,7 @@ pub enum LocalPolynomialError {
 /// ```
 ///
 /// # Errors
-/// No lines, differing channels, values that are not finite, records too short for a window.
+/// No lines, channels that differ, values that are not finite, records too short for a window.
 pub fn local_polynomial(
     spectra: &[Spectrum],
     omegas: &[f64],
@@ -100,7 +99,7 @@ pub(crate) fn local_fits(
     .collect()
 }
 
-/// Refuses lines and frequencies from which nothing can be estimated.
+/// Returns an error for lines and frequencies that do not permit an estimate.
 fn check_lines(spectra: &[Spectrum], omegas: &[f64]) -> Result<(), LocalPolynomialError> {
     let first = spectra.first().ok_or(LocalPolynomialError::Nothing)?;
     let inputs = first.inputs.nrows();
@@ -131,13 +130,13 @@ pub(crate) struct Window {
     pub(crate) omega: f64,
     /// \[rad/s\].
     pub(crate) half_width: f64,
-    /// Polynomial terms.
+    /// Number of polynomial terms.
     terms: usize,
-    /// Each spectrum's lines inside; empty if too few.
+    /// Range of the lines of each spectrum in the window; empty if these are too few.
     lines: Vec<Range<usize>>,
-    /// Spectral lines inside, over all spectra that count.
+    /// Number of spectral lines in the window, over all spectra with enough lines.
     count: usize,
-    /// Columns that the records' transients take.
+    /// Number of columns of the transients of the records.
     transients: usize,
 }
 
@@ -169,7 +168,7 @@ impl Window {
         loop {
             let window = Self::with_half_width(spectra, omega, half_width, terms);
             let needed = terms * inputs + window.transients + outputs + spare;
-            // At least one record has to count.
+            // At least one record must have enough lines.
             if window.transients > 0 && window.count >= needed {
                 return Ok(window);
             }
@@ -218,8 +217,8 @@ fn farthest_line(spectra: &[Spectrum], omega: f64) -> f64 {
     farthest
 }
 
-/// Returns a spectrum's lines within `half_width` of `omega`, or none if they are no more than
-/// the terms.
+/// Returns the range of a spectrum's lines within `half_width` of `omega`; empty if there are no
+/// more lines than terms.
 fn lines_inside(spectrum: &Spectrum, omega: f64, half_width: f64, terms: usize) -> Range<usize> {
     let from = spectrum.omega.partition_point(|&w| w < omega - half_width);
     let to = spectrum
@@ -240,9 +239,9 @@ pub(crate) struct LocalFit {
     r: DMatrix<Complex<f64>>,
     inputs: usize,
     outputs: usize,
-    /// Summed line power, by output.
+    /// Summed line power of each output.
     power: DVector<f64>,
-    /// Lines less unknowns.
+    /// Number of lines less the number of unknowns.
     pub(crate) freedom: usize,
 }
 
@@ -266,12 +265,12 @@ impl LocalFit {
         self.window.terms * self.inputs
     }
 
-    /// Returns the mean line power, by output.
+    /// Returns the mean line power of each output.
     pub(crate) fn power(&self) -> DVector<f64> {
         &self.power / self.window.count as f64
     }
 
-    /// Returns a line's `Cov V`, outputs x outputs.
+    /// Returns `Cov V` of a line, outputs x outputs.
     pub(crate) fn covariance(&self) -> DMatrix<Complex<f64>> {
         let residual = self.r.view(
             (self.unknowns(), self.unknowns()),
@@ -299,19 +298,19 @@ impl LocalFit {
         theta.rows(0, self.inputs).transpose()
     }
 
-    /// Returns the block in `(A'A)^-1` that belongs to `G0`, inputs x inputs.
+    /// Returns the block of `(A'A)^-1` that belongs to `G0`, inputs x inputs.
     pub(crate) fn spread(&self) -> DMatrix<Complex<f64>> {
         let unknowns = self.unknowns();
         let inverse = self.solve(&DMatrix::identity(unknowns, unknowns));
         inverse.rows(0, self.inputs) * inverse.rows(0, self.inputs).adjoint()
     }
 
-    /// Returns the squared norms of the factor's output columns from row `from` on.
+    /// Returns the squared norms of the output columns of the factor, from row `from` on.
     fn squares(&self, from: usize) -> Vec<f64> {
         squares_below(&self.r, self.unknowns(), self.outputs, from)
     }
 
-    /// Returns the multiple coherence, by output.
+    /// Returns the multiple coherence of each output.
     pub(crate) fn coherence(&self) -> Vec<f64> {
         let residual = self.squares(self.unknowns());
         let total = self.squares(0);
@@ -322,8 +321,8 @@ impl LocalFit {
             .collect()
     }
 
-    /// Returns each output's `|V|^2` with input `i` left out: the triangular factor without the
-    /// input's columns, made triangular again.
+    /// Returns `|V|^2` of each output with input `i` left out, from the triangular factor without
+    /// the columns of this input, made triangular again.
     fn residual_without(&self, i: usize) -> Vec<f64> {
         let unknowns = self.unknowns();
         let kept: Vec<usize> = (0..unknowns + self.outputs)
@@ -347,7 +346,7 @@ impl LocalFit {
         coherence
     }
 
-    /// Returns the estimate at the window's centre; see [`local_polynomial`].
+    /// Returns the estimate at the centre of the window; see [`local_polynomial`].
     fn estimate(&self) -> EstimatePoint {
         let inputs = self.inputs;
         let outputs = self.outputs;
@@ -368,7 +367,7 @@ impl LocalFit {
     }
 }
 
-/// Returns the squared norms below row `from` for `count` columns from `first` on.
+/// Returns the squared norms of `count` columns from `first` on, from row `from` down.
 fn squares_below(
     factor: &DMatrix<Complex<f64>>,
     first: usize,
@@ -391,9 +390,9 @@ fn explained(residual: f64, total: f64) -> f64 {
 
 /// The linear regression in a window.
 struct Regression {
-    /// All records' rows `[A B]` less the transients, with the ridge below.
+    /// Rows `[A B]` of all records less the transients, with the ridge below.
     rows: DMatrix<Complex<f64>>,
-    /// Summed `|Y|^2`, by output.
+    /// Sum of `|Y|^2` of each output.
     power: DVector<f64>,
 }
 
@@ -441,7 +440,7 @@ impl Regression {
         }
     }
 
-    /// Subtracts the projection of a record's rows on its polynomial transient.
+    /// Subtracts from the rows of a record their projection on its polynomial transient.
     fn remove_transient(&mut self, top: usize, x: &[f64], terms: usize) {
         let powers = DMatrix::from_fn(x.len(), terms, |line, power| x[line].powi(power as i32));
         let transient = powers.qr().q().map(Complex::from);
@@ -450,7 +449,7 @@ impl Regression {
         record_rows -= explained;
     }
 
-    /// Adds a ridge in proportion to the column lengths in `A`.
+    /// Adds a ridge proportional to the lengths of the columns of `A`.
     fn add_ridge(&mut self, top: usize, unknowns: usize) {
         for column in 0..unknowns {
             let length = self.rows.column(column).norm();
@@ -460,7 +459,7 @@ impl Regression {
     }
 }
 
-/// Returns the greatest over the least singular value, squared.
+/// Returns the square of the ratio of the largest to the smallest singular value.
 pub(crate) fn condition(matrix: DMatrix<Complex<f64>>) -> f64 {
     let singular = matrix.singular_values();
     let greatest = singular.max();

@@ -19,19 +19,19 @@ pub struct RecordUse {
     pub record: String,
     /// Median sample time \[s\], 0 for fewer than two stamps.
     pub sample_time_s: f64,
-    /// Time from the first stamp to the last \[s\].
+    /// Time between the first and the last stamp \[s\].
     pub logged_s: f64,
     /// Total segment length \[s\].
     pub used_s: f64,
-    /// By starting time.
+    /// Gaps, by starting time.
     pub gaps: Vec<Gap>,
-    /// Inputs at their limit, with the share in the record \[%\]. No caution: the position of a
-    /// saturated actuator is the signal.
+    /// Inputs at their limit, each with its share of the samples \[%\]. This is no caution: the
+    /// position of a saturated actuator is the signal.
     pub inputs_at_limit: Vec<(Signal, f64)>,
 }
 
 impl RecordUse {
-    /// Returns sentences about the record that are no cautions.
+    /// Returns sentences about the record that are facts and not cautions.
     pub fn facts(&self) -> impl Iterator<Item = String> {
         self.inputs_at_limit.iter().map(|(signal, percent)| {
             format!(
@@ -41,7 +41,7 @@ impl RecordUse {
         })
     }
 
-    /// Returns first and last time \[s\] for each part between the parts cut out.
+    /// Returns the first and the last time \[s\] of each part between the parts cut out.
     pub fn spans(&self, record: &FlightRecord) -> Vec<[f64; 2]> {
         let mut stamps = record
             .time_s
@@ -66,12 +66,12 @@ impl RecordUse {
     }
 }
 
-/// Prepared flight records.
+/// Flight records cut into gap-free segments on a uniform time grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prepared {
-    /// By record and time; not empty.
+    /// Segments, by record and time; not empty.
     pub segments: Vec<Segment>,
-    /// In record order.
+    /// Use of each record, in record order.
     pub records: Vec<RecordUse>,
     pub cautions: Vec<RecordCaution>,
 }
@@ -81,14 +81,14 @@ pub struct Prepared {
 /// ```text
 /// for each record
 /// 1  dt = median stamp difference; stamps more than 20 % off the multiples of dt are
-///    refused unless allowed
+///    an error unless allowed
 /// 2  for each channel the samples that count: finite, not frozen; fresh if the sensor is slow
-/// 3  its value at t: the straight line at t + shift between two samples that are no further apart
-///    than (bridge + 1.5) dt
+/// 3  value of a channel at t: the straight line at t + shift between two samples that are at most
+///    (bridge + 1.5) dt apart
 /// 4  segments = runs of the grid t_0 + k dt where every channel has a value, for at least 10 s
 /// ```
 ///
-/// No mean or trend is taken off, and nothing is filtered.
+/// No mean or trend is removed, and nothing is filtered.
 ///
 /// # Errors
 /// Invalid settings, records that do not fit them, time that does not increase or is uneven,
@@ -143,7 +143,7 @@ pub fn prepare(
 
 /// Cuts a record into segments for a comparison with a model in time, as [`prepare`] does.
 ///
-/// Unlike there, a channel may be constant.
+/// Unlike in [`prepare`], a channel may be constant.
 ///
 /// # Errors
 /// Invalid settings, a record that does not fit them, time that does not increase or is
@@ -167,7 +167,7 @@ pub fn segments_of(
     Ok(segments)
 }
 
-/// Whether a channel is constant within each segment, but for rounding.
+/// Whether a channel is constant within each segment, apart from rounding.
 fn is_constant(segments: &[Segment], signal: &Signal) -> bool {
     segments.iter().all(|segment| {
         let samples = segment.channel(signal);
@@ -180,7 +180,7 @@ struct PreparedRecord {
     segments: Vec<Segment>,
     used: RecordUse,
     cautions: Vec<RecordCaution>,
-    /// Longest run without a gap \[s\], long enough or not.
+    /// Longest run without a gap \[s\], even if it is too short for a segment.
     longest_s: f64,
 }
 
@@ -203,7 +203,7 @@ fn prepare_record(
         let samples = run.rows.len() / tracks.len();
         let length_s = clock.sample_time_s * samples as f64;
         longest_s = longest_s.max(length_s);
-        // A small tolerance, so that 500 times 0.02 s are 10 s.
+        // A small tolerance, so that 500 times 0.02 s count as 10 s.
         if length_s >= preparation.least_segment_s * (1.0 - 1e-9) {
             segments.push(run.into_segment(number, start_s, clock.sample_time_s, preparation));
         } else {
@@ -243,7 +243,7 @@ fn prepare_record(
     })
 }
 
-/// Refuses uneven sample times, or reports them if they may be interpolated.
+/// Returns an error for uneven sample times, or a caution if they may be interpolated.
 fn check_jitter(
     record: &FlightRecord,
     clock: &Clock,
@@ -267,7 +267,7 @@ fn check_jitter(
     }
 }
 
-/// Refuses a record whose channels or lengths do not fit.
+/// Returns an error for a record whose channels or lengths do not match.
 fn check_shape(record: &FlightRecord, preparation: &Preparation) -> Result<(), PreparationError> {
     for role in [ChannelSide::Input, ChannelSide::Output] {
         let found = role.of(&record.inputs, &record.outputs).ncols();
@@ -297,9 +297,9 @@ fn check_shape(record: &FlightRecord, preparation: &Preparation) -> Result<(), P
 
 /// Consecutive grid points at which every channel has a value.
 struct Run {
-    /// First grid index; whole.
+    /// First grid index; an integer.
     first: f64,
-    /// Samples, row after row: inputs, then outputs.
+    /// Samples row by row: inputs, then outputs.
     rows: Vec<f64>,
 }
 
@@ -325,7 +325,7 @@ impl Run {
     }
 }
 
-/// Finds a record's runs on the grid `k dt`, counted from its first stamp.
+/// Finds the runs of a record on the grid `k dt`, relative to its first stamp.
 fn runs(clock: &Clock, tracks: &[Track]) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     let mut readers: Vec<_> = tracks.iter().map(Track::reader).collect();

@@ -5,18 +5,18 @@ use gdcm_model::simulation::Signal;
 
 use super::gaps::names;
 
-/// Longest plausible channel delay or hold \[s\].
+/// Maximum plausible delay or hold of a channel \[s\].
 const LONGEST_SHIFT_S: f64 = 10.0;
-/// Longest gap that may be bridged, in samples.
+/// Maximum gap that may be bridged, in samples.
 const LONGEST_BRIDGE: usize = 1000;
 
-/// The meaning behind stairs in a channel that is logged more often than it changes (M14.1).
+/// Meaning of stairs in a channel that is logged more often than it changes (M14.1).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Hold {
     /// A continuous signal; stairs raise a caution.
     #[default]
     None,
-    /// The stairs act on the aircraft, or are the sensor's resolution: the samples are right.
+    /// The stairs act on the aircraft, or are the resolution of the sensor: the samples are right.
     Acts,
     /// A command held for `hold_s` \[s\] and logged when it begins: it acts `hold_s / 2` later.
     Command { hold_s: f64 },
@@ -27,19 +27,20 @@ pub enum Hold {
     FreshSamples,
 }
 
-/// How a channel is prepared.
+/// Preparation of a channel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChannelPreparation {
     pub name: String,
-    /// Known sensor or bus delay \[s\], to be taken out.
+    /// Known sensor or bus delay to remove \[s\].
     pub delay_s: f64,
     pub hold: Hold,
-    /// Greatest plausible modulus in its unit; above it the unit is in doubt.
+    /// Maximum plausible modulus in the channel's unit; a larger value raises a doubt about the
+    /// unit.
     pub limit: Option<f64>,
 }
 
 impl ChannelPreparation {
-    /// A channel that is used as it is.
+    /// Returns a channel that is used as logged.
     #[must_use]
     pub fn named(name: impl Into<String>) -> Self {
         Self {
@@ -48,7 +49,7 @@ impl ChannelPreparation {
         }
     }
 
-    /// Returns the time \[s\] by which a sample is logged after the moment that it belongs to.
+    /// Returns the delay \[s\] of a stamp after the time at which the channel had the value.
     pub(crate) fn shift_s(&self) -> f64 {
         match self.hold {
             Hold::Command { hold_s } => self.delay_s - 0.5 * hold_s,
@@ -57,7 +58,7 @@ impl ChannelPreparation {
         }
     }
 
-    /// Returns the hold \[s\]; 0 without hold.
+    /// Returns the hold \[s\]; 0 if there is none.
     fn hold_s(&self) -> f64 {
         match self.hold {
             Hold::Command { hold_s } | Hold::SlowSensor { hold_s } => hold_s,
@@ -66,25 +67,26 @@ impl ChannelPreparation {
     }
 }
 
-/// How flight records are prepared.
+/// Preparation of flight records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preparation {
-    /// In column order.
+    /// Inputs, in column order.
     pub inputs: Vec<ChannelPreparation>,
-    /// In column order.
+    /// Outputs, in column order.
     pub outputs: Vec<ChannelPreparation>,
     /// Whether a record with uneven sample times may be interpolated.
     pub resample: bool,
-    /// Whether an output that stands still while others move is kept, and no gap.
+    /// Whether samples are kept in which an output is constant while others move; otherwise they
+    /// are a gap.
     pub keep_frozen: bool,
-    /// Longest gap, in samples, that is bridged by a straight line; longer gaps split the record.
+    /// Maximum gap, in samples, that is bridged by a straight line; longer gaps split the record.
     pub longest_bridge: usize,
-    /// Least segment length \[s\].
+    /// Minimum segment length \[s\].
     pub least_segment_s: f64,
 }
 
 impl Preparation {
-    /// The defaults: every channel as it is, gaps up to 3 samples bridged, segments from 10 s up.
+    /// The defaults: every channel as logged, gaps up to 3 samples bridged, segments from 10 s on.
     #[must_use]
     pub fn of(inputs: &[&str], outputs: &[&str]) -> Self {
         Self {
@@ -127,7 +129,7 @@ impl Preparation {
             .get(signal.index)
     }
 
-    /// Returns a channel's settings for a change.
+    /// Returns a channel's settings for editing.
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
         signal
             .role
@@ -135,7 +137,7 @@ impl Preparation {
             .get_mut(signal.index)
     }
 
-    /// Refuses invalid settings.
+    /// Returns an error for invalid settings.
     pub(crate) fn check(&self) -> Result<(), PreparationError> {
         for role in [ChannelSide::Input, ChannelSide::Output] {
             if role.of(&self.inputs, &self.outputs).is_empty() {
@@ -173,7 +175,7 @@ pub enum PreparationError {
     NoRecords,
     #[error("no {0} is given: identification needs at least one input and one output")]
     NoChannels(ChannelSide),
-    /// A record has other channels than the ones named.
+    /// The channels of a record differ from the named ones.
     #[error("record {record} has {found} {role}s, not {named}")]
     ChannelsDiffer {
         record: String,
@@ -181,7 +183,7 @@ pub enum PreparationError {
         found: usize,
         named: usize,
     },
-    /// A record's columns differ in length.
+    /// The columns of a record differ in length.
     #[error(
         "record {record} has {stamps} time stamps, {inputs} input samples and {outputs} output samples"
     )]
@@ -206,7 +208,7 @@ pub enum PreparationError {
     )]
     TimeNotIncreasing {
         record: String,
-        /// Later stamp's row, counted from 0.
+        /// Row of the later stamp, counted from 0.
         row: usize,
         previous_s: f64,
         time_s: f64,
@@ -216,7 +218,7 @@ pub enum PreparationError {
     )]
     UnevenSampling {
         record: String,
-        /// 95th percentile for the deviation from whole multiples of the median sample time \[%\].
+        /// 95th percentile of the deviations from multiples of the median sample time \[%\].
         percent: f64,
     },
     /// No segment is long enough.
@@ -225,7 +227,7 @@ pub enum PreparationError {
          Log longer records, fill the gaps, or leave out the channel with gaps"
     )]
     NothingLeft { longest_s: f64, least_s: f64 },
-    /// Channels that never move.
+    /// Channels that are constant.
     #[error("{} never moved in any record: leave {} out", names(.0), if .0.len() == 1 { "it" } else { "them" })]
     Constant(Vec<Signal>),
 }

@@ -14,9 +14,9 @@ use super::channel_quality::{
 use super::gaps::{Cause, Gap, names};
 use super::preparation_settings::{ChannelPreparation, Hold, Preparation};
 
-/// Correlation beyond which two inputs are moved together.
+/// Correlation above which two inputs count as moved together.
 const TOGETHER: f64 = 0.99;
-/// Correlation beyond which an output copies an input or another output.
+/// Correlation above which an output counts as a copy of an input or of another output.
 const COPY: f64 = 0.9999;
 
 /// A doubt about the flight records, or a change made to them.
@@ -28,10 +28,10 @@ pub enum RecordCaution {
     )]
     Resampled {
         record: String,
-        /// 95th percentile for the deviation from multiples of the sample time \[%\].
+        /// 95th percentile of the deviations from multiples of the sample time \[%\].
         percent: f64,
     },
-    /// The rest between two gaps is too short.
+    /// The part between two gaps is too short.
     #[error("{record}: {length_s:.1} s from {start_s:.2} s were left out, too short between gaps")]
     SegmentDropped {
         record: String,
@@ -40,7 +40,7 @@ pub enum RecordCaution {
     },
     #[error("{0}: no part could be used")]
     RecordUnused(String),
-    /// Most consecutive samples are equal while the channel moves.
+    /// More than half of the consecutive samples are equal while the channel moves.
     #[error(
         "{signal}: {percent:.0} % of consecutive samples are equal, it changes every {:.0} ms. State the cause: {}or a signal \
          that really moves in steps (nothing done, as now)",
@@ -57,9 +57,9 @@ pub enum RecordCaution {
     #[error("{signal} reaches {greatest:.3}, beyond {limit}: check its unit")]
     UnlikelyUnit {
         signal: Signal,
-        /// Greatest modulus.
+        /// Maximum modulus of the samples.
         greatest: f64,
-        /// Greatest plausible modulus.
+        /// Maximum plausible modulus.
         limit: f64,
     },
     #[error(
@@ -78,12 +78,12 @@ pub enum RecordCaution {
         if *records > 1 { "these records" } else { "the record" }
     )]
     AtLimit {
-        /// Worst record's name.
+        /// Name of the worst record.
         record: String,
         signal: Signal,
         /// Share of the samples \[%\].
         percent: f64,
-        /// Affected records.
+        /// Number of affected records.
         records: usize,
     },
     /// Outputs stood still while others moved.
@@ -94,7 +94,7 @@ pub enum RecordCaution {
     Stuck {
         record: String,
         signals: Vec<Signal>,
-        /// Total time \[s\].
+        /// Total duration \[s\].
         seconds: f64,
     },
     /// An output is logged in coarse steps.
@@ -112,12 +112,12 @@ pub enum RecordCaution {
     )]
     Copy {
         copy: Signal,
-        /// The original.
+        /// The channel that is copied.
         of: Signal,
     },
 }
 
-/// Lists the possible causes for stairs.
+/// Lists the possible causes of stairs.
 fn hold_choices(role: ChannelSide, hold_ms: f64) -> String {
     let half = 0.5 * hold_ms;
     let command = match role {
@@ -129,7 +129,7 @@ fn hold_choices(role: ChannelSide, hold_ms: f64) -> String {
     format!("{command}a slow sensor (only fresh samples kept, or moved {half:.0} ms earlier), ")
 }
 
-/// Examines the channels in the records as logged, and in the segments made from them.
+/// Examines the channels of the records as logged, and of the segments made from them.
 pub(crate) fn channel_cautions(
     records: &[FlightRecord],
     segments: &[Segment],
@@ -148,7 +148,7 @@ pub(crate) fn channel_cautions(
     cautions
 }
 
-/// Doubts a channel's unit if it exceeds its plausible limit.
+/// Reports an implausible unit if a channel exceeds its plausible limit.
 fn unit_caution(
     signal: &Signal,
     channel: &ChannelPreparation,
@@ -179,7 +179,7 @@ fn stairs_caution(
     if channel.hold != Hold::None {
         return None;
     }
-    // A coarse output's stairs are its steps.
+    // The stairs of a coarse output are its coarse steps.
     if signal.role == ChannelSide::Output && is_coarse(&values_of_all(records, signal)) {
         return None;
     }
@@ -222,7 +222,7 @@ fn coarse_caution(signal: &Signal, records: &[FlightRecord]) -> Option<RecordCau
     }
 }
 
-/// Returns a channel's finite values in all records.
+/// Returns the finite values of a channel in all records.
 fn values_of_all(records: &[FlightRecord], signal: &Signal) -> Vec<f64> {
     records
         .iter()
@@ -267,7 +267,7 @@ fn correlation_cautions(segments: &[Segment], preparation: &Preparation) -> Vec<
     cautions
 }
 
-/// Reports the outputs that were stuck in a record, from its gaps.
+/// Reports the outputs that were constant in a record while others moved, from its gaps.
 pub(crate) fn stuck_caution(record: &str, gaps: &[Gap]) -> Option<RecordCaution> {
     let mut stuck = BTreeSet::new();
     let mut seconds = 0.0;
@@ -287,7 +287,7 @@ pub(crate) fn stuck_caution(record: &str, gaps: &[Gap]) -> Option<RecordCaution>
     })
 }
 
-/// Returns a record's inputs at their limit, with the sample share \[%\].
+/// Returns the inputs of a record at their limit, each with its share of the samples \[%\].
 pub(crate) fn inputs_at_limit(
     record: &FlightRecord,
     preparation: &Preparation,
@@ -303,7 +303,7 @@ pub(crate) fn inputs_at_limit(
 }
 
 impl RecordCaution {
-    /// Returns the code and the subject, without the sentence.
+    /// Returns the note with code and subject, but without the text.
     pub(crate) fn note(&self) -> CautionNote {
         match self {
             Self::Resampled { record, .. } => CautionNote::new("resampled").with_record(record),

@@ -1,4 +1,4 @@
-//! The frequency response measured without a model, and how far it can be trusted (M14.2).
+//! The frequency response measured without a model, and its reliability (M14.2).
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -8,17 +8,16 @@ use gdcm_model::statistics::median;
 
 use super::scales::Scales;
 
-/// Local polynomial terms: 1, x, x^2.
+/// Number of terms of a local polynomial: 1, x, x^2.
 pub(crate) const TERMS: usize = 3;
-/// An input with a median partial coherence below this was not swept, or only together with another
-/// (M14.2).
+/// Minimum median partial coherence of an input that was swept by itself (M14.2).
 const LEAST_PARTIAL_COHERENCE: f64 = 0.3;
-/// Inputs with a spectral matrix above this condition number were moved together (M14.2).
+/// Maximum condition number of the spectral matrix of inputs that were moved independently (M14.2).
 const GREATEST_CONDITION: f64 = 1e3;
-/// Partial coherence from which a point is trusted (M14.2).
+/// Minimum partial coherence of a trusted point (M14.2).
 pub const TRUSTED_COHERENCE: f64 = 0.6;
-/// Share of the band, in logarithm, that shows nothing at an end if the band is too wide there
-/// (M14.10).
+/// The band is too wide at an end if at least this share of it, in logarithm, shows no response
+/// there (M14.10).
 const END: f64 = 0.2;
 
 /// The measured response at a frequency.
@@ -28,38 +27,38 @@ pub struct EstimatePoint {
     pub omega: f64,
     /// `G0`, outputs x inputs.
     pub response: DMatrix<Complex<f64>>,
-    /// `E |error of G0|^2`, outputs x inputs. Real and imaginary part have a half
-    /// each, so `sqrt(variance / 2) / |G0|` is the standard deviation in log modulus \[Np\] and
+    /// `E |error of G0|^2`, outputs x inputs. Real and imaginary part have one half each, so
+    /// `sqrt(variance / 2) / |G0|` is the standard deviation of the log modulus \[Np\] and of the
     /// phase \[rad\].
     pub variance: DMatrix<f64>,
-    /// `Cv`, noise covariance of a line, real part, outputs x outputs.
+    /// `Cv`, the noise covariance of a line, real part, outputs x outputs.
     pub noise: DMatrix<f64>,
-    /// Mean line power around this frequency, by output.
+    /// Mean line power of each output around this frequency.
     pub power: DVector<f64>,
-    /// Multiple coherence, by output: the power share that all inputs explain, 0 to 1.
+    /// Multiple coherence of each output: the share of its power that all inputs explain, 0 to 1.
     pub coherence: DVector<f64>,
-    /// Partial coherence, outputs x inputs: the share, 0 to 1, of the power left by the other
-    /// inputs that this input explains.
+    /// Partial coherence, outputs x inputs: this input explains this share, 0 to 1, of the power
+    /// that the other inputs leave unexplained.
     pub partial_coherence: DMatrix<f64>,
-    /// Condition number of the inputs' spectral matrix `S_uu`, in scaled units.
+    /// Condition number of the spectral matrix `S_uu` of the inputs, in scaled units.
     pub condition: f64,
-    /// `h`, window half width \[rad/s\].
+    /// `h`, half-width of the window \[rad/s\].
     pub half_width: f64,
-    /// Spectral lines less unknowns: degrees of freedom in `noise`.
+    /// Degrees of freedom of `noise`: the number of spectral lines less the number of unknowns.
     pub freedom: usize,
 }
 
 impl EstimatePoint {
-    /// Returns the standard deviation in `ln G0`: in log modulus \[Np\] and
-    /// in phase \[rad\] alike.
+    /// Returns the standard deviation of `ln G0`, which applies to the log modulus \[Np\] and to
+    /// the phase \[rad\].
     pub fn sd(&self, pair: (usize, usize)) -> f64 {
         (0.5 * self.variance[pair]).sqrt() / self.response[pair].norm()
     }
 
-    /// Returns the partial coherence between an input and the output that it moves most, less the
-    /// share that as many noise columns would explain: `1 - (1 - c) (freedom + 3) / freedom`.
+    /// Returns the maximum partial coherence of an input over the outputs, less the share that as
+    /// many columns of noise would explain: `1 - (1 - c) (freedom + 3) / freedom`.
     ///
-    /// Without the correction the greatest among many outputs is never small by chance.
+    /// Without this correction, the maximum over many outputs is never small by chance.
     fn greatest_coherence(&self, input: usize) -> f64 {
         let columns = TERMS as f64;
         let freedom = self.freedom.max(1) as f64;
@@ -71,7 +70,7 @@ impl EstimatePoint {
         (1.0 - (1.0 - greatest) * (freedom + columns) / freedom).max(0.0)
     }
 
-    /// Whether some input moves some output visibly.
+    /// Whether an input is coherent with an output.
     fn is_shown(&self) -> bool {
         (0..self.response.ncols()).any(|input| self.greatest_coherence(input) >= TRUSTED_COHERENCE)
     }
@@ -92,19 +91,19 @@ impl EstimatePoint {
     }
 }
 
-/// How well each input was moved by itself.
+/// Independent excitation of each input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Excitation {
-    /// For each input, the median partial coherence over frequency with the output that it
-    /// moves most, 0 to 1.
+    /// For each input, the median over frequency of its maximum partial coherence over the outputs,
+    /// 0 to 1.
     pub partial_coherence: Vec<f64>,
-    /// Median condition number over frequency of the inputs' spectral matrix.
+    /// Median over frequency of the condition number of the spectral matrix of the inputs.
     pub condition: f64,
 }
 
 impl Excitation {
-    /// Returns the inputs, counted from 0, with a median partial coherence below 0.3: their columns
-    /// are not identified.
+    /// Returns the inputs, counted from 0, with a median partial coherence below 0.3: the responses
+    /// to them are not identified.
     pub fn not_identified(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.partial_coherence.len())
             .filter(|&i| self.partial_coherence[i] < LEAST_PARTIAL_COHERENCE)
@@ -120,13 +119,13 @@ impl Excitation {
 /// The measured response `G[output, input]` over frequency, by the local polynomial method (M14.2).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseEstimate {
-    /// By ascending frequency, not empty.
+    /// Points, by ascending frequency; not empty.
     pub points: Vec<EstimatePoint>,
 }
 
 impl ResponseEstimate {
-    /// Returns the part of a band \[rad/s\] that the records show, if its lower or upper fifth (in
-    /// logarithm) shows nothing: no input is coherent with any output there.
+    /// Returns the part of a band \[rad/s\] in which the records show a response, if its lower or
+    /// upper fifth (in logarithm) shows none: no input is coherent with any output there.
     #[must_use]
     pub fn shown_band(&self, band: [f64; 2]) -> Option<[f64; 2]> {
         let mut shown = self
@@ -172,7 +171,7 @@ impl ResponseEstimate {
         .ok()
     }
 
-    /// Tabulates every response's value over frequency. `points` is not empty.
+    /// Tabulates a value of every response over frequency. `points` must not be empty.
     fn table(&self, value: fn(&EstimatePoint, (usize, usize)) -> f64) -> PairTable<Vec<f64>> {
         let (outputs, inputs) = self.points[0].response.shape();
         PairTable::from_fn(outputs, inputs, |pair: Pair| {
@@ -183,10 +182,10 @@ impl ResponseEstimate {
         })
     }
 
-    /// Computes how well each input was moved by itself.
+    /// Computes the independent excitation of each input.
     ///
-    /// A coupled response may be weak although its input was moved well: for each input and
-    /// frequency the output with the greatest partial coherence counts.
+    /// A coupled response may be weak although its input was moved enough: the maximum partial
+    /// coherence over the outputs counts at each frequency.
     #[must_use]
     pub fn excitation(&self) -> Excitation {
         let inputs = self

@@ -1,24 +1,25 @@
-//! Channel scales: the rms about the mean (M14.1).
+//! Scales of the channels: the rms about the mean (M14.1).
 
 use nalgebra::DMatrix;
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::Segment;
 
-/// A channel with an rms below this share of its greatest modulus is constant but for rounding.
+/// Minimum rms of a channel over its maximum modulus; below it, the channel is constant apart from
+/// rounding.
 const CONSTANT: f64 = 1e-12;
 
-/// Every channel's scale, in file units: its rms about each segment's mean,
-/// over all segments (M14.1).
+/// Scale of every channel, in file units: its rms about the mean of each segment, over all segments
+/// (M14.1).
 ///
 /// ```text
 /// s_c = sqrt( sum_r sum_n (x_c[n] - mean_r x_c)^2 / sum_r N_r )
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scales {
-    /// Greater than 0.
+    /// Scales of the inputs, greater than 0.
     pub inputs: Vec<f64>,
-    /// Greater than 0.
+    /// Scales of the outputs, greater than 0.
     pub outputs: Vec<f64>,
 }
 
@@ -27,10 +28,10 @@ pub struct Scales {
 pub enum ScalingError {
     #[error("there are no flight records")]
     NoSegments,
-    /// Segment number, counted from 0.
+    /// Index of the segment, counted from 0.
     #[error("piece {} of the flight records differs from the first in its number of channels", .0 + 1)]
     ChannelsDiffer(usize),
-    /// A sample or its square is not finite; number of the segment, counted from 0.
+    /// A sample or its square is not finite; index of the segment, counted from 0.
     #[error("piece {} of the flight records has values that are not finite or too large", .0 + 1)]
     NotFinite(usize),
     /// The channel is constant in every segment.
@@ -42,7 +43,7 @@ impl Scales {
     /// Computes the channel scales for `segments`.
     ///
     /// # Errors
-    /// No segments, differing channel counts, values that are not finite, a constant channel.
+    /// No segments, channel counts that differ, values that are not finite, or a constant channel.
     pub fn from_segments(segments: &[Segment]) -> Result<Self, ScalingError> {
         let first = segments.first().ok_or(ScalingError::NoSegments)?;
         for (number, segment) in segments.iter().enumerate() {
@@ -58,7 +59,7 @@ impl Scales {
         })
     }
 
-    /// Divides every channel by its scale. Channels without a scale stay as they are.
+    /// Divides every channel by its scale. Channels without a scale are unchanged.
     #[must_use]
     pub fn scaled(&self, segment: &Segment) -> Segment {
         let mut scaled = segment.clone();
@@ -67,7 +68,7 @@ impl Scales {
         scaled
     }
 
-    /// Returns the factors, outputs x inputs, that bring a scaled response to file units.
+    /// Returns the factors, outputs x inputs, that convert a scaled response to file units.
     #[must_use]
     pub fn response_factors(&self) -> DMatrix<f64> {
         DMatrix::from_fn(self.outputs.len(), self.inputs.len(), |o, i| {
@@ -82,12 +83,12 @@ fn divide_columns(samples: &mut DMatrix<f64>, scales: &[f64]) {
     }
 }
 
-/// A segment's inputs or outputs.
+/// Returns the inputs or the outputs of a segment.
 fn samples_of_side(segment: &Segment, role: ChannelSide) -> &DMatrix<f64> {
     role.of(&segment.inputs, &segment.outputs)
 }
 
-/// Computes each channel's rms about its mean in each segment, over all segments.
+/// Computes the rms of each channel about its mean in each segment, over all segments.
 fn rms_of_side(segments: &[Segment], role: ChannelSide) -> Result<Vec<f64>, ScalingError> {
     let channels = segments
         .first()

@@ -1,4 +1,4 @@
-//! A segment's spectral lines: its Fourier transform without a window (M14.2).
+//! Spectral lines of a segment: its Fourier transform without a window (M14.2).
 
 use std::f64::consts::TAU;
 
@@ -8,20 +8,22 @@ use gdcm_model::executor::{Executor, each};
 use gdcm_model::simulation::Segment;
 use gdcm_numerics::{FourierPlanner, FourierTransform};
 
-/// A segment's lines are used from its second up: the first holds its drift (M14.12).
+/// Minimum frequency of the used lines of a segment, in units of its first line, which contains the
+/// drift: they start with the second (M14.12).
 const FIRST_LINE: f64 = 1.5;
 
-/// A segment's lines (M14.2): columns are lines, rows are channels.
+/// Spectral lines of a segment (M14.2): columns are lines, rows are channels.
 ///
 /// ```text
 /// U(omega_k) = dt / sqrt(T) sum_n u[n] e^(-j omega_k n dt)
 /// omega_k = 2 pi k / T,   T = N dt,   k >= 1
 /// ```
 ///
-/// There is no window. The mean is taken off for accuracy only: lines from k = 1 do not hold it.
+/// There is no window. The mean is removed only for accuracy: the lines from k = 1 on do not
+/// contain it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
-    /// Record number, counted from 0.
+    /// Index of the record, counted from 0.
     pub record: usize,
     /// `T` \[s\].
     pub duration_s: f64,
@@ -49,7 +51,7 @@ impl Spectrum {
     }
 }
 
-/// The range in which lines are used.
+/// The frequency range of the lines used.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LineRange {
     /// \[rad/s\].
@@ -59,9 +61,10 @@ pub(crate) struct LineRange {
 }
 
 impl LineRange {
-    /// Transforms the segments and keeps the lines in the range, from each segment's second on.
+    /// Transforms the segments and keeps the lines in the range, from the second line of each
+    /// segment on.
     ///
-    /// Segments without a line in the range are left out.
+    /// Segments without a line in the range are omitted.
     pub(crate) fn spectra(self, segments: &[Segment], executor: &dyn Executor) -> Vec<Spectrum> {
         let mut used = Vec::new();
         for spectrum in spectra(segments, self.highest, executor) {
@@ -75,7 +78,7 @@ impl LineRange {
     }
 }
 
-/// Computes every segment's lines up to `highest` \[rad/s\] and below half the sampling
+/// Computes the lines of every segment up to `highest` \[rad/s\] and below half the sampling
 /// frequency, in segment order.
 #[must_use]
 pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
@@ -89,7 +92,7 @@ pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> V
     })
 }
 
-/// Computes a segment's lines up to `highest`; `plan` is a transform for its length.
+/// Computes the lines of a segment up to `highest`; `plan` is a transform of its length.
 fn spectrum(segment: &Segment, highest: f64, plan: &FourierTransform) -> Spectrum {
     let duration_s = segment.sample_time_s * segment.inputs.nrows() as f64;
     let below_nyquist = segment.inputs.nrows().saturating_sub(1) / 2;
@@ -107,7 +110,7 @@ fn spectrum(segment: &Segment, highest: f64, plan: &FourierTransform) -> Spectru
     }
 }
 
-/// Computes lines 1 to `lines` for each column in `samples`, times `factor`; rows are channels.
+/// Computes the lines 1 to `lines` of each column of `samples`, times `factor`; rows are channels.
 fn transform(
     samples: &DMatrix<f64>,
     lines: usize,

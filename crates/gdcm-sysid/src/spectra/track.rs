@@ -1,4 +1,4 @@
-//! Each channel's valid samples, and the straight lines between them (M14.1).
+//! Valid samples of each channel, and the straight lines between them (M14.1).
 
 use std::collections::BTreeMap;
 
@@ -11,20 +11,20 @@ use super::clock::Clock;
 use super::gaps::{Cause, Gap, Treatment};
 use super::preparation_settings::{ChannelPreparation, Hold, Preparation};
 
-/// An output that is constant for less than this is not frozen \[s\].
+/// Minimum duration of a frozen run \[s\].
 const FROZEN_S: f64 = 1.0;
-/// An output is frozen if it is constant for this many times as long as usual.
+/// Minimum length of a frozen run, over the usual length of runs with equal samples.
 const UNUSUAL: f64 = 5.0;
-/// Usual quantile for runs with equal samples.
+/// Quantile that gives the usual length of runs with equal samples.
 const USUAL: f64 = 0.95;
-/// Fewest runs with equal samples in an output that moves.
+/// Minimum number of runs with equal samples in an output that moves.
 const RUNS_OF_A_MOVING: usize = 10;
-/// Fewest equal samples at the least or the greatest value that are a run at a limit.
+/// Minimum number of equal samples at the minimum or the maximum that form a run at a limit.
 const RUN_AT_A_LIMIT: usize = 5;
-/// Tolerance for a time beyond the last sample, over the sample time.
+/// Tolerance of a time beyond the last sample, relative to the sample time.
 const ROUNDING: f64 = 1e-6;
 
-/// Consecutive places `from..to` among a clock's stamps.
+/// Consecutive indices `from..to` of a clock's stamps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Places {
     from: usize,
@@ -32,8 +32,8 @@ struct Places {
 }
 
 impl Places {
-    /// Returns the gap between the samples before and after the places, or from or to the end of
-    /// the record, on the clock counted from its first stamp.
+    /// Returns the interval between the samples before and after the indices, or up to an end of
+    /// the record, relative to its first stamp.
     fn surrounding(self, clock: &Clock) -> Interval {
         Interval {
             start_s: clock.times[self.from.saturating_sub(1)],
@@ -47,7 +47,7 @@ struct Interval {
     end_s: f64,
 }
 
-/// A gap in a channel. Gaps are listed in the order of these fields.
+/// A gap in a channel. Gaps are sorted by these fields, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct ChannelGap {
     places: Places,
@@ -55,16 +55,16 @@ struct ChannelGap {
     treatment: Treatment,
 }
 
-/// All channels' valid samples in a record.
+/// Valid samples of all channels in a record.
 pub(crate) struct Tracks {
-    /// Inputs first.
+    /// Tracks of the inputs, then of the outputs.
     pub tracks: Vec<Track>,
-    /// Channels with the same gap share it.
+    /// Gaps of the record; channels with the same gap share it.
     pub gaps: Vec<Gap>,
 }
 
 impl Tracks {
-    /// Finds each channel's valid samples in `record`.
+    /// Finds the valid samples of each channel in `record`.
     pub fn new(record: &FlightRecord, clock: &Clock, preparation: &Preparation) -> Self {
         let columns: Vec<Column> = preparation
             .channels()
@@ -108,13 +108,13 @@ impl Tracks {
     }
 }
 
-/// A channel's valid samples, on the record's clock counted from its first stamp.
+/// Valid samples of a channel, at times relative to the first stamp of the record.
 pub(crate) struct Track {
     times: Vec<f64>,
     values: Vec<f64>,
-    /// Stamp delay \[s\].
+    /// Delay of the stamps \[s\].
     shift_s: f64,
-    /// Samples further apart than this \[s\] have a gap between them that is not bridged.
+    /// Maximum distance of two samples \[s\] without a gap, or with a gap that is bridged.
     longest_step_s: f64,
     rounding_s: f64,
 }
@@ -141,14 +141,14 @@ impl Track {
         }
     }
 
-    /// Decides whether a gap is bridged; a gap at a record's end is not.
+    /// Returns the treatment of a gap; a gap at an end of the record is cut out.
     fn treatment(&self, clock: &Clock, places: Places) -> Treatment {
         let interval = places.surrounding(clock);
         let is_inside = places.from > 0 && places.to < clock.times.len();
         Treatment::for_gap(is_inside && interval.end_s - interval.start_s <= self.longest_step_s)
     }
 
-    /// Returns a reader for ascending times.
+    /// Returns a reader, which must be called with ascending times.
     pub fn reader(&self) -> Reader<'_> {
         Reader {
             track: self,
@@ -160,12 +160,12 @@ impl Track {
 /// Reads a track at ascending times.
 pub(crate) struct Reader<'a> {
     track: &'a Track,
-    /// First sample after the last reading.
+    /// Index of the first sample after the last time read.
     next: usize,
 }
 
 impl Reader<'_> {
-    /// Returns the channel at `t` \[s\]; `None` in a gap and beyond the ends.
+    /// Returns the value of the channel at `t` \[s\]; `None` in a gap and beyond the ends.
     pub fn at(&mut self, t: f64) -> Option<f64> {
         let Track { times, values, .. } = self.track;
         let t = t + self.track.shift_s;
@@ -190,7 +190,7 @@ impl Reader<'_> {
     }
 }
 
-/// Reads all channels at `t` \[s\] into `row`. Returns whether each has a value.
+/// Reads all channels at `t` \[s\] into `row`; returns whether every channel has a value.
 pub(crate) fn read_row(readers: &mut [Reader<'_>], t: f64, row: &mut [f64]) -> bool {
     let mut is_complete = true;
     for (reader, value) in readers.iter_mut().zip(row) {
@@ -205,11 +205,11 @@ pub(crate) fn read_row(readers: &mut [Reader<'_>], t: f64, row: &mut [f64]) -> b
     is_complete
 }
 
-/// Keeps in `places` a slow sensor's fresh samples, and returns its sample time \[s\].
+/// Keeps in `places` the fresh samples of a slow sensor, and returns its sample time \[s\].
 ///
-/// A sample is fresh if it differs from the sample before, or if the sensor's sample time (the
-/// median time between changes) has passed since the last fresh sample: equal readings are
-/// readings.
+/// A sample is fresh if it differs from the preceding sample, or if the sample time of the sensor
+/// (the median time between changes) has passed since the last fresh sample: a sensor may read the
+/// same value twice.
 fn keep_fresh_samples(column: &Column, clock: &Clock, places: &mut Vec<usize>) -> f64 {
     let mut changes = Vec::new();
     for pair in places.windows(2) {
@@ -235,7 +235,7 @@ fn keep_fresh_samples(column: &Column, clock: &Clock, places: &mut Vec<usize>) -
     held_s
 }
 
-/// A channel at the clock's stamps.
+/// Values of a channel at the stamps of the clock.
 struct Column {
     signal: Signal,
     values: Vec<f64>,
@@ -250,7 +250,7 @@ impl Column {
         }
     }
 
-    /// Returns whether each place has a finite value outside the frozen runs.
+    /// Returns, for each index, whether the value is finite and outside the frozen runs.
     fn valid_places(&self, frozen: &[Places]) -> Vec<bool> {
         let mut is_valid: Vec<bool> = self.values.iter().map(|value| value.is_finite()).collect();
         for run in frozen {
@@ -259,7 +259,7 @@ impl Column {
         is_valid
     }
 
-    /// Whether it changes at half the steps or more between two places, both included.
+    /// Whether the channel changes in at least half the steps between two indices, both included.
     fn moves_between(&self, first: usize, last: usize) -> bool {
         let samples: Vec<f64> = self.values[first..=last]
             .iter()
@@ -270,20 +270,20 @@ impl Column {
         samples.len() > 1 && 2 * changes >= samples.len() - 1
     }
 
-    /// Whether another channel than this moves between two places.
+    /// Whether another channel moves between two indices.
     fn others_move(&self, columns: &[Column], first: usize, last: usize) -> bool {
         columns
             .iter()
             .any(|other| other.signal != self.signal && other.moves_between(first, last))
     }
 
-    /// Finds the places at which the channel is frozen: it repeats the value before them.
+    /// Finds the runs in which the channel is frozen: it repeats the value before them.
     ///
-    /// A run with exactly equal samples is frozen if it lasts more than 1 s, and more than five
-    /// times the run that 95 % do not reach (which spares slow sensors), in a channel that
-    /// moves at other times and while another channel changes at every second sample or more often.
-    /// Only outputs freeze: a constant input is held. A coarse output stands still by itself, and
-    /// an output that returns to its least or greatest value is at its limit.
+    /// A run of exactly equal samples is frozen if it lasts more than 1 s, and more than five times
+    /// as long as 95 % of the runs (which spares slow sensors), in a channel that moves at other
+    /// times, and while another channel changes in at least half the steps. Only outputs can be
+    /// frozen: a constant input is held. A coarse output often repeats its value, and an output
+    /// that returns to its minimum or maximum is at its limit.
     fn frozen_runs(&self, clock: &Clock, columns: &[Column]) -> Vec<Places> {
         let places: Vec<usize> = (0..self.values.len())
             .filter(|&k| self.values[k].is_finite())
@@ -319,7 +319,7 @@ impl Column {
         frozen
     }
 
-    /// Whether a value is an end of the range to which the channel returns for several samples.
+    /// Whether a value is an end of the range, and several runs of equal samples have this value.
     fn is_limit(&self, value: f64, range: &Range, equal: &[&[usize]]) -> bool {
         if value != range.least && value != range.greatest {
             return false;
@@ -332,14 +332,14 @@ impl Column {
     }
 }
 
-/// A run without valid samples.
+/// A run of invalid samples.
 struct InvalidRun {
     places: Places,
-    /// Whether it is partly frozen.
+    /// Whether some of the samples are frozen.
     is_frozen: bool,
 }
 
-/// Finds the runs without valid samples.
+/// Finds the runs of invalid samples.
 fn invalid_runs(is_valid: &[bool], frozen: &[Places]) -> Vec<InvalidRun> {
     let mut runs = Vec::new();
     let mut from = 0;

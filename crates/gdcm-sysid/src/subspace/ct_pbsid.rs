@@ -1,4 +1,4 @@
-//! CT-PBSID: models of all orders from the data matrix's triangular factor (M14.3).
+//! CT-PBSID: models of all orders from the triangular factor of the data matrix (M14.3).
 //!
 //! ```text
 //! Z0 = [z_0 ... z_{p-1}], Z1 = [z_1 ... z_p], U = u~_p, Y = y~_p, columns of R
@@ -19,23 +19,23 @@ use gdcm_model::dataset::StateSpace;
 use super::laguerre::continuous;
 use super::triangular_factor::{TriangularFactor, least_squares, ridge_solution};
 
-/// Dimensions for a data matrix and its map to the future.
+/// Dimensions of a data matrix and of its map to the future.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SubspaceShape {
     pub(crate) inputs: usize,
     pub(crate) outputs: usize,
     /// Past window p.
     pub(crate) past: usize,
-    /// Most block rows in the map to the future, `f_max`.
+    /// Maximum number of block rows in the map to the future, `f_max`.
     pub(crate) longest_future: usize,
 }
 
-/// The states that a Laguerre pole and a past window propose, for every order.
+/// States for all orders, proposed with a Laguerre pole and a past window.
 #[derive(Clone, Debug)]
 pub(crate) struct Subspace {
     pole: f64,
     inputs: usize,
-    /// `R`, its leading (p + 1) q columns and rows.
+    /// The leading (p + 1) q columns and rows of `R`.
     factor: DMatrix<f64>,
     /// `Gamma K`.
     map: DMatrix<f64>,
@@ -47,7 +47,7 @@ pub(crate) struct Subspace {
 
 impl Subspace {
     /// Computes the states (steps 1 to 3) from the triangular factor at a Laguerre pole \[rad/s\];
-    /// `ridge` is over unit columns.
+    /// `ridge` is relative to columns of unit length.
     ///
     /// Returns `None` if the regressors depend on each other or an iteration does not converge.
     pub(crate) fn new(
@@ -100,8 +100,8 @@ impl Subspace {
         })
     }
 
-    /// Computes an order's continuous-time model (step 4); `None` if the data do not hold so
-    /// many states.
+    /// Computes the continuous-time model of an order (step 4); `None` if the data do not contain
+    /// so many states.
     pub(crate) fn model(&self, order: usize) -> Option<StateSpace> {
         let inputs = self.inputs;
         let width = self.map.ncols();
@@ -184,7 +184,7 @@ mod tests {
         let mut factor = TriangularFactor::empty(rows.ncols());
         factor.append(&rows);
         let subspace = Subspace::new(&factor, projections.pole, shape, 0.0).unwrap();
-        // Independent numpy code; the tolerances are stated in its file.
+        // Independent numpy code; its file states the tolerances.
         for (found, expected) in subspace
             .singular_values
             .iter()

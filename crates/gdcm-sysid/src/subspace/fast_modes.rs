@@ -1,4 +1,4 @@
-//! A model without its modes far above the band, their static part kept.
+//! Removal of the modes far above the band, with their static part kept.
 //!
 //! ```text
 //! 1  A = Q T Q^H, T upper triangular; neighbours on its diagonal are exchanged until the slow ones
@@ -16,10 +16,10 @@ use nalgebra::{Complex, DMatrix, DVector, Dyn, SymmetricEigen};
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::response::schur_form::SchurForm;
 
-/// Removes the modes with `|lambda| > limit` \[rad/s\]; the result equals the model at omega = 0.
+/// Removes the modes with `|lambda| > limit` \[rad/s\]; the response at omega = 0 does not change.
 ///
-/// Returns `None` if an iteration does not converge, fast and slow modes cannot be separated, or
-/// none is slow.
+/// Returns `None` if an iteration does not converge, if fast and slow modes cannot be separated, or
+/// if no mode is slow.
 pub(crate) fn without_fast_modes(model: &StateSpace, limit: f64) -> Option<StateSpace> {
     let a = model.a();
     let b = model.b();
@@ -123,7 +123,7 @@ mod tests {
                 .count()
         );
         assert!((0..9).all(|at| (form.t[(at, at)].re > 0.0) == (at < count)));
-        // A few dozen rotations, each backward stable.
+        // A few dozen rotations, each of them backward stable.
         assert!(
             (&form.q * &form.t * form.q.adjoint() - a.map(Complex::from)).norm() < 1e-13 * a.norm()
         );
@@ -136,7 +136,7 @@ mod tests {
         let slow = without_fast_modes(&model, number(&known["wmax"])).unwrap();
         assert_eq!(slow.order() as f64, number(&known["order"]));
         for (omega, expected) in numbers(&known["w"]).into_iter().zip(response(&known["H"])) {
-            // Independent numpy code; the tolerance is stated in its file.
+            // Independent numpy code; its file states the tolerance.
             assert!((response_at(&slow, omega) - expected).camax() < 1e-9);
         }
     }

@@ -22,18 +22,18 @@ use gdcm_model::simulation::Segment;
 
 use super::triangular_factor::TriangularFactor;
 
-/// Largest segment share that is lost to the unfinished projections at its end.
+/// Maximum share of a segment that is lost to the incomplete projections at its end.
 const LARGEST_END: f64 = 0.3;
-/// Parts whose rows are factored side by side. Two keep two cores busy with three poles; merging a
-/// further part costs as much as a 6 s segment.
+/// Number of parts whose rows are factored in parallel. Two parts keep two cores busy with three
+/// poles; merging a further part costs as much as a segment of 6 s.
 const PARTS: usize = 2;
 
 /// The filters for a Laguerre pole at a sample time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LaguerreBank {
-    /// First filter's gain.
+    /// Gain of the first filter.
     gain: f64,
-    /// Every filter's negative pole, and the all-pass filters' zero.
+    /// Negative pole of every filter, and zero of the all-pass filters.
     alpha: f64,
 }
 
@@ -47,7 +47,7 @@ impl LaguerreBank {
         }
     }
 
-    /// Computes the projections at every sample for a signal that ends near 0 (steps 3 to 5), a
+    /// Computes the projections at every sample of a signal that ends near 0 (steps 3 to 5), with a
     /// column for each k = 0 ... `past`.
     pub(crate) fn projections(self, signal: &[f64], past: usize) -> DMatrix<f64> {
         let samples = signal.len();
@@ -83,7 +83,7 @@ impl LaguerreBank {
     }
 }
 
-/// Settings for the data matrix in CT-PBSID (M14.3).
+/// Settings of the data matrix in CT-PBSID (M14.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Projections {
     /// Laguerre pole `a` \[rad/s\].
@@ -95,7 +95,7 @@ pub(crate) struct Projections {
 }
 
 impl Projections {
-    /// Computes a segment's rows, with its trim and drift.
+    /// Computes the rows of a segment, including its trim and drift.
     ///
     /// ```text
     /// row t_i = [z_0(t_i) | z_1(t_i) | ... | z_p(t_i)]
@@ -125,7 +125,7 @@ impl Projections {
         rows
     }
 
-    /// Returns the samples at which a segment's rows are taken.
+    /// Returns the indices of the samples at which the rows of a segment are taken.
     fn instants(&self, segment: &Segment) -> Vec<usize> {
         let samples = segment.inputs.nrows();
         let duration = samples as f64 * segment.sample_time_s;
@@ -135,10 +135,10 @@ impl Projections {
         (0..last).step_by(step).collect()
     }
 
-    /// Computes the data matrix's triangular factor for all segments.
+    /// Computes the triangular factor of the data matrix of all segments.
     ///
-    /// Trim and drift are projected out of each segment first. The result is the same to the last
-    /// bit for any thread count: threads do not decide which segments are factored together.
+    /// Trim and drift are projected out of each segment first. The result is bit for bit the same
+    /// with any number of threads: they do not decide which segments are factored together.
     pub(crate) fn factor(&self, segments: &[Segment], executor: &dyn Executor) -> TriangularFactor {
         let parts = segments.chunks(segments.len().div_ceil(PARTS).max(1));
         let factors = each(executor, parts, |part| self.factor_part(part));
@@ -152,7 +152,7 @@ impl Projections {
         factor
     }
 
-    /// Computes the data matrix's triangular factor for some segments.
+    /// Computes the triangular factor of the data matrix of some segments.
     fn factor_part(&self, segments: &[Segment]) -> TriangularFactor {
         let channels = segments.first().map_or(0, |segment| {
             segment.inputs.ncols() + segment.outputs.ncols()
@@ -167,7 +167,7 @@ impl Projections {
     }
 }
 
-/// Subtracts from every column its projection on `[1, i]`: trim and drift vanish exactly.
+/// Subtracts the projection on `[1, i]` from every column: trim and drift vanish exactly.
 fn remove_trend(rows: &mut DMatrix<f64>) {
     let count = rows.nrows();
     let middle = (count.max(1) - 1) as f64 / 2.0;
@@ -183,8 +183,8 @@ fn remove_trend(rows: &mut DMatrix<f64>) {
     }
 }
 
-/// Returns the continuous-time model behind the law for Laguerre projections with the pole `pole`
-/// \[rad/s\]; `None` if `Ao` has the eigenvalue -1.
+/// Returns the continuous-time model that corresponds to the model `law` of the Laguerre
+/// projections with the pole `pole` \[rad/s\]; `None` if `Ao` has the eigenvalue -1.
 ///
 /// ```text
 /// xi_{k+1} = Ao xi_k + Bo u~_k + Ko e~_k,   y~_k = Co xi_k + Do u~_k + e~_k,   k = 0, 1, ...
@@ -225,7 +225,7 @@ mod tests {
             let projections = bank.projections(signals.column(channel).as_slice(), count - 1);
             for (sample, expected) in known["expected"].as_array().unwrap().iter().enumerate() {
                 for k in 0..count {
-                    // Independent numpy code; the tolerance is stated in its file.
+                    // Independent numpy code; its file states the tolerance.
                     assert!(
                         (projections[(sample, k)] - number(&expected[k][channel])).abs() < 1e-12
                     );
@@ -246,7 +246,7 @@ mod tests {
             (model.c(), "C"),
             (model.d(), "D"),
         ] {
-            // Independent numpy code; the tolerance is stated in its file.
+            // Independent numpy code; its file states the tolerance.
             assert!((found - matrix(&known[name])).amax() < 1e-12, "{name}");
         }
     }

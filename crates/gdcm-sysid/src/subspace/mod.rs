@@ -2,7 +2,7 @@
 //!
 //! | stage | files |
 //! |---|---|
-//! | orders and past windows that the records can carry (M14.13) | `search_extent` |
+//! | orders and past windows that the amount of data allows (M14.13) | `search_extent` |
 //! | Laguerre projections and their triangular factor | `laguerre`, `triangular_factor` |
 //! | states and models | `ct_pbsid` |
 //! | modes far above the band | `fast_modes` |

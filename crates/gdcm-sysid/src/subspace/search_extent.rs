@@ -1,31 +1,32 @@
-//! Orders and past windows that the records can carry (M14.13).
+//! Orders and past windows that the amount of data allows (M14.13).
 
 use std::ops::RangeInclusive;
 
-/// Orders that are all tried.
+/// Low orders, which are all tried.
 const LOW_ORDERS: RangeInclusive<usize> = 1..=8;
-/// Even orders that are tried beyond.
+/// Range of the higher orders, of which the even ones are tried.
 const HIGH_ORDERS: RangeInclusive<usize> = 10..=24;
-/// Channels up to which odd orders above 3 are tried.
+/// Maximum number of channels for which odd orders above 3 are tried.
 const ODD_ORDERS: usize = 6;
-/// Past windows for any channel count.
+/// Past windows to try for any number of channels.
 const PASTS: [usize; 4] = [8, 10, 12, 16];
-/// Further past window for few channels.
+/// Further past window to try for few channels.
 const LONG_PAST: usize = 24;
-/// Channels up to which the further past window is tried.
+/// Maximum number of channels for which `LONG_PAST` is tried.
 const LONG_PAST_CHANNELS: usize = 4;
-/// Shortest past window.
+/// Minimum past window.
 const LEAST_PAST: usize = 3;
-/// Least ratio between rows and columns in a data matrix.
+/// Minimum ratio of rows to columns in a data matrix.
 const LEAST_ROWS: f64 = 2.0;
-/// The same if no past window has so many.
+/// Minimum ratio of rows to columns if no past window reaches `LEAST_ROWS`.
 const LEAST_ROWS_SHORT: f64 = 1.5;
 /// Time between instants times the upper band end \[rad\].
 pub(crate) const SPACING: f64 = 1.2;
-/// Fewest real values in the lines for each unknown in a model (M14.13).
+/// Minimum number of real values in the lines for each parameter of a model (M14.13).
 pub(crate) const FIGURES_AN_UNKNOWN: usize = 5;
 
-/// Counts the parameters that matter in a model with this order: `n (m + l) + m l`.
+/// Counts the parameters of a model with this order, without those that only change the state
+/// basis: `n (m + l) + m l`.
 ///
 /// Changes in the state basis do not count.
 pub(crate) fn parameters_of_order(order: usize, inputs: usize, outputs: usize) -> usize {
@@ -37,7 +38,7 @@ pub(crate) fn parameters_of_order(order: usize, inputs: usize, outputs: usize) -
 pub(crate) struct Extent {
     pub(crate) inputs: usize,
     pub(crate) outputs: usize,
-    /// Real values in all lines less the records' transients.
+    /// Number of real values in all lines, less the unknowns of the transients.
     pub(crate) figures: usize,
     /// Record length times the upper band end \[rad\].
     pub(crate) radians: f64,
@@ -48,12 +49,12 @@ impl Extent {
         self.inputs + self.outputs
     }
 
-    /// Returns the most block rows in the map to the future: enough for 30 states.
+    /// Returns the maximum number of block rows in the map to the future: enough for 30 states.
     pub(crate) fn longest_future(self) -> usize {
         30_usize.div_ceil(self.outputs.max(1)).max(12)
     }
 
-    /// Returns the past windows that the records can carry.
+    /// Returns the past windows that the amount of data allows.
     pub(crate) fn pasts(self) -> Vec<usize> {
         let rows = self.radians / SPACING;
         let mut pasts = PASTS.to_vec();
@@ -71,7 +72,7 @@ impl Extent {
         pasts
     }
 
-    /// Returns the orders that the records can carry, with past windows up to `longest_past`.
+    /// Returns the orders that the amount of data allows, with past windows up to `longest_past`.
     pub(crate) fn orders(self, longest_past: usize) -> Vec<usize> {
         let most = longest_past.min(self.longest_future()) * self.outputs;
         let tries_odd = self.channels() <= ODD_ORDERS;
@@ -82,7 +83,7 @@ impl Extent {
             .collect()
     }
 
-    /// Whether there are enough real values for an order's parameters.
+    /// Whether there are enough real values for the parameters of an order.
     fn carries(self, order: usize) -> bool {
         let parameters = parameters_of_order(order, self.inputs, self.outputs);
         FIGURES_AN_UNKNOWN * parameters <= self.figures
@@ -95,7 +96,7 @@ mod tests {
 
     #[test]
     fn one_axis_of_thirty_seconds_carries_orders_to_14_and_all_past_windows() {
-        // 74 lines of one output: known answer of independent code (identification-real.json,
+        // 74 lines of one output: value from independent code (identification-real.json,
         // short_siso).
         let extent = Extent {
             inputs: 1,
@@ -119,15 +120,15 @@ mod tests {
             extent.orders(8),
             [1, 2, 3, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24]
         );
-        // 600 rows of 20 channels: 1.5 (p + 1) 20 of them for p = 19, two for p = 14.
+        // 600 rows and 20 channels: the ratio of rows to columns is 1.5 for p = 19 and 2 for p =
+        // 14.
         assert_eq!(extent.pasts(), [8, 10, 12]);
         let short = Extent {
             radians: 20.0 * 12.0,
             ..extent
         };
         assert_eq!(short.pasts(), [5]);
-        // 340 rows: two for each column would take 360 of p = 8, and one and a half are there up
-        // to p = 10.
+        // 340 rows: a ratio of 2 would need 360 rows for p = 8; a ratio of 1.5 allows p up to 10.
         let between = Extent {
             radians: 34.0 * 12.0,
             ..extent

@@ -1,29 +1,30 @@
-//! Stabilisation diagram: poles that stay in place while the order rises (M14.3).
+//! Stabilisation diagram: poles that change little while the order rises (M14.3).
 
 use nalgebra::Complex;
 
-/// Relative distance up to which a pole is stable between orders.
+/// Maximum relative distance between orders of a stable pole.
 const STABLE: f64 = 0.05;
 
-/// The poles of an order's model.
+/// Poles of the model of an order.
 pub(crate) struct PolesOfOrder {
     pub(crate) order: usize,
     /// \[rad/s\].
     pub(crate) poles: Vec<Complex<f64>>,
 }
 
-/// An unrefined model's pole, for the stabilisation diagram.
+/// A pole of an unrefined model, for the stabilisation diagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilisationPoint {
     /// Model order.
     pub order: usize,
-    /// Pole \[rad/s\] with a non-negative imaginary part: the upper pole in a pair.
+    /// Pole \[rad/s\]; of a complex pair, the pole with positive imaginary part.
     pub pole: Complex<f64>,
-    /// Whether the model with two states less has a pole within 5 %, relative to its modulus.
+    /// Whether the model whose order is lower by two has a pole within 5 %, relative to the
+    /// modulus.
     pub stable: bool,
 }
 
-/// Finds the poles that stay in place while the order rises; `orders` are ascending.
+/// Finds the poles that change little while the order rises; `orders` are ascending.
 pub(crate) fn stabilisation(orders: &[PolesOfOrder]) -> Vec<StabilisationPoint> {
     let mut points = Vec::new();
     for own in orders {

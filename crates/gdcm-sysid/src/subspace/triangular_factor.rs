@@ -11,24 +11,25 @@
 //!
 //! Nothing is squared. Householder QR in the compact form of R. Schreiber & C. Van Loan, "A
 //! storage-efficient WY representation for products of Householder transformations", SIAM J. Sci.
-//! Stat. Comput. 10, 1989. Each reflector's upper part is a single entry because R is already
+//! Stat. Comput. 10, 1989. The upper part of each reflector is a single entry because R is already
 //! triangular (J. Demmel, L. Grigori, M. Hoemmen & J. Langou, "Communication-optimal parallel and
 //! sequential QR and LU factorizations", SIAM J. Sci. Comput. 34, 2012).
 
 use nalgebra::{DMatrix, DMatrixView, DVector};
 
-/// Columns in a panel.
+/// Number of columns in a panel.
 const PANEL: usize = 16;
-/// Rows that are added at once: a row block and the panel fit a processor's second cache.
+/// Maximum number of rows appended at once: a row block and the panel fit in the second-level cache
+/// of a processor.
 const ROWS: usize = 256;
 
-/// `R` of `A = Q R` for the rows of `A` seen so far: square and upper triangular, row signs
-/// arbitrary.
+/// `R` of `A = Q R` for the appended rows of `A`: square and upper triangular, with arbitrary row
+/// signs.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TriangularFactor(DMatrix<f64>);
 
 impl TriangularFactor {
-    /// The factor without rows.
+    /// Creates the factor of a matrix with no rows yet.
     pub(crate) fn empty(columns: usize) -> Self {
         Self(DMatrix::zeros(columns, columns))
     }
@@ -38,7 +39,7 @@ impl TriangularFactor {
         &self.0
     }
 
-    /// Adds further rows.
+    /// Appends rows to `A`.
     pub(crate) fn append(&mut self, rows: &DMatrix<f64>) {
         for first in (0..rows.nrows()).step_by(ROWS) {
             let count = ROWS.min(rows.nrows() - first);
@@ -69,7 +70,7 @@ impl TriangularFactor {
         }
     }
 
-    /// Reflects the columns of a panel (steps 1 and 2). Leaves the vectors of the reflectors in the
+    /// Reflects the columns of a panel (steps 1 and 2). Stores the vectors of the reflectors in the
     /// columns of `rows`, and returns `T`.
     fn reflect_panel(
         &mut self,
@@ -108,8 +109,8 @@ impl TriangularFactor {
 
 /// Computes `X = argmin |A X - Y|^2 + ridge |N X|^2` from the triangular factor of `[A Y]`.
 ///
-/// `A` has `regressors` columns, and `N` holds their lengths. Returns `None` if they depend on each
-/// other.
+/// `A` has `regressors` columns, and `N` holds their lengths. Returns `None` if the columns depend
+/// on each other.
 pub(crate) fn ridge_solution(
     factor: DMatrixView<'_, f64>,
     regressors: usize,
@@ -155,7 +156,7 @@ pub(crate) fn ridge_solution(
 }
 
 /// Computes `X = argmin |A X - Y|^2` by a triangular factor with scaled columns; `None` if the
-/// columns in `A` depend on each other.
+/// columns of `A` depend on each other.
 pub(crate) fn least_squares(a: &DMatrix<f64>, y: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let mut both = DMatrix::zeros(a.nrows(), a.ncols() + y.ncols());
     both.columns_mut(0, a.ncols()).copy_from(a);
@@ -189,8 +190,8 @@ mod tests {
             } else {
                 1.0
             };
-            // Orthogonal transformations: the error is a few roundings of the norm of the matrix,
-            // 100.
+            // Orthogonal transformations: the error is a few rounding errors of the norm of the
+            // matrix, which is 100.
             assert!((found * sign - expected).norm() < 1e-11, "row {row}");
         }
     }

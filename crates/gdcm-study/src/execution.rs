@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use gdcm_model::executor::{Executor, Sequential, each};
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 
-/// Runs an analysis's pieces, checks for cancellation between two of them, and reports progress.
+/// Runs the pieces of work of an analysis, checks for cancellation between them, and reports
+/// progress.
 pub struct Execution<'a> {
     executor: &'a dyn Executor,
     progress: &'a dyn Progress,
@@ -15,7 +16,7 @@ pub struct Execution<'a> {
 }
 
 impl<'a> Execution<'a> {
-    /// Creates an analysis's execution with `total` steps.
+    /// Creates the execution of an analysis with `total` steps.
     pub fn new(executor: &'a dyn Executor, progress: &'a dyn Progress, total: usize) -> Self {
         Self {
             executor,
@@ -35,12 +36,12 @@ impl<'a> Execution<'a> {
         self.progress
     }
 
-    /// Returns the pieces' executor.
+    /// Returns the executor of the pieces of work.
     pub(crate) fn executor(&self) -> &'a dyn Executor {
         self.executor
     }
 
-    /// Counts `count` more steps as done, and reports every hundredth of the total.
+    /// Counts `count` more steps as done; progress is reported about every hundredth of the total.
     pub(crate) fn step(&self, count: usize) {
         let before = self.done.fetch_add(count, Ordering::Relaxed);
         let hundredth = |done: usize| 100 * done / self.total.max(1);
@@ -49,7 +50,7 @@ impl<'a> Execution<'a> {
         }
     }
 
-    /// Evaluates `work(0), work(1), ...`, in any order; each is `steps` steps.
+    /// Evaluates `work(0), work(1), ...`, in any order; each counts as `steps` steps.
     pub(crate) fn each<T: Send>(
         &self,
         count: usize,

@@ -4,14 +4,14 @@
 //! and why?
 //!
 //! A [`Study`] contains a dataset and all decisions ([`decisions`]); an [`Engine`] computes its
-//! [`Analysis`] in [`stages`], each cached while its inputs stay the same. The [`results`] are typed
-//! facts with numbers; [`jobs`] are computations beside the live answer. Pieces of work run through
-//! an [`execution`]; large values are passed to jobs as [`shared`].
+//! [`Analysis`] in [`stages`], each cached while its inputs stay the same. The [`results`] are
+//! typed facts with numbers; [`jobs`] are longer computations beside the interactive analysis.
+//! Pieces of work run through an [`execution`]; large values are passed to jobs as [`shared`].
 //!
 //! # Example
 //!
-//! A helicopter with one response, `q = g / (s + 1)` times the stick, whose measured response is a
-//! fifth larger than that of its physics model:
+//! A helicopter with one response, `q = g / (s + 1)` times the stick. The gain of the measured
+//! response is larger by a fifth than that of the physics model:
 //!
 //! ```
 //! use gdcm_model::dataset::condition::FlightState;

@@ -13,7 +13,7 @@ use gdcm_model::dataset::{
     Band, Channel, Condition, ConditionId, Dataset, Dynamics, Model, Pair, PairTable, StateSpace,
 };
 
-/// Returns the reference dataset, source of the known answers.
+/// Returns the reference dataset, for which the expected values are stored.
 pub(crate) fn reference_dataset() -> Dataset {
     dataset_of(include_bytes!(
         "../../../tests/data/reference/example-dataset.json.gz"

@@ -3,7 +3,7 @@
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// A shared value compared by identity: two of them are compared without reading their contents.
+/// A shared value compared by identity: its content is never read for a comparison.
 #[derive(Debug)]
 pub struct Shared<T: ?Sized>(Arc<T>);
 

@@ -1,5 +1,5 @@
-//! Sentences about assessments: what a correction gains, where it comes from, and why a condition
-//! or a response is left out (M12).
+//! Sentences about assessments: effect of a correction, its origin, and why a condition or response
+//! is left out (M12).
 
 use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_model::units::{number, signed};
@@ -9,7 +9,7 @@ use gdcm_study::{Analysis, AssessedCorrection, AssessmentTable};
 
 use crate::caution::{failure_text, undefined_text};
 
-/// Returns an assessed correction's origin in words.
+/// Returns the origin of an assessed correction in words.
 pub(crate) fn correction_source(correction: AssessedCorrection, airspeed_kt: f64) -> String {
     let at = format!("at {} kt", number(airspeed_kt));
     match correction {
@@ -61,9 +61,9 @@ pub fn summary_text(summary: &AssessmentSummary, dataset: &Dataset) -> String {
     )
 }
 
-/// Compares the schedule on the held-out conditions with the conditions in its fit: "held out (3,
-/// 8): better in 9 of 10 responses, mean ΔJ −12.3; the others: better in 40 of 45 responses, mean
-/// ΔJ −15.0". `None` where no condition is held out.
+/// Compares the assessment of the held-out conditions with that of the conditions in the fit: "held
+/// out (3, 8): better in 9 of 10 responses, mean ΔJ −12.3; the others: better in 40 of 45
+/// responses, mean ΔJ −15.0". `None` where no condition is held out.
 pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option<String> {
     let study = &analysis.study;
     let held_out: Vec<String> = study
@@ -84,7 +84,7 @@ pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option
     ))
 }
 
-/// Describes how J changes over the selected conditions' on-axis responses.
+/// Describes the change in J over the on-axis responses of the selected conditions.
 fn change_words(
     analysis: &Analysis,
     table: &AssessmentTable,

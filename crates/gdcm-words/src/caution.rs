@@ -5,14 +5,14 @@ use gdcm_model::units::number;
 use gdcm_study::results::analysis::ConditionFailure;
 use gdcm_study::results::caution::{Caution, NotFinite, USUAL_GAINS, Undefined};
 
-/// The computable gains in words.
+/// Range of computable gains in words.
 const GAIN_RANGE: &str = "gains are computed with from 1e-50 to 1e50";
 
-/// What "numerically nothing" means (M6a).
+/// Meaning of "numerically nothing" (M6a).
 const NOTHING: &str =
     "over the band less than 1e-6 of the greatest response of its output and of its input";
 
-/// How many models or responses are listed by name.
+/// Maximum number of models or responses that are listed by name.
 const LISTED: usize = 3;
 
 /// Returns why a condition has no result, with the cautions that explain it.
@@ -207,7 +207,7 @@ fn first_names(names: &[String]) -> String {
     }
 }
 
-/// Joins counts: "31 of PED → P, 12 of COL → Q, and some of 5 more".
+/// Lists numbers of omitted frequencies: "31 of PED → P, 12 of COL → Q, and some of 5 more".
 fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> String) -> String {
     let mut parts: Vec<String> = left_out
         .iter()
@@ -221,7 +221,7 @@ fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> Strin
     parts.join(", ")
 }
 
-/// Formats a gain with three decimals; very small and very large gains with an exponent.
+/// Formats a gain: three decimals, or an exponent below 1e-3 and from 1e4.
 fn gain_words(gain: f64) -> String {
     if (1e-3..1e4).contains(&gain) {
         format!("{gain:.3}")

@@ -1,4 +1,4 @@
-//! Remarks on a condition's result, identical in the window and in a terminal.
+//! Remarks on the result of a condition, identical in the window and in a terminal.
 
 use gdcm_method::correction::sensitivity::{kkt_residual, sensitivities};
 use gdcm_method::schedule::Schedule;
@@ -14,12 +14,12 @@ use crate::leads::lead_remarks;
 use crate::missed_targets::missed_target_texts;
 use crate::remark::{Remark, Repeated};
 
-/// Increase in J up to which a constrained response does not count as worse; with leads every
-/// increase counts (M15.6).
+/// Maximum increase in J of a constrained response that is not reported as worse; with leads every
+/// increase is reported (M15.6).
 const NEGLIGIBLE_INCREASE: f64 = 0.5;
 
-/// Collects the remarks: which constrained gains and delays were matched, which were not and why,
-/// and the cautions about condition and schedule.
+/// Collects the remarks on a result: which constrained gains and delays were matched; which were
+/// not, and why; and the cautions about the condition and the schedule.
 pub fn remarks(
     study: &Study,
     result: &ConditionAnalysis,
@@ -67,8 +67,8 @@ fn schedule_remarks(study: &Study, result: &ConditionAnalysis, schedule: &Schedu
     remarks
 }
 
-/// Reports suspected sign and unit differences first, before other causes are considered; then the
-/// reversed channels.
+/// Reports suspected sign and unit differences first, because they can be mistaken for other
+/// effects; then the reversed channels.
 fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let mut remarks = Vec::new();
     for doubt in &result.doubts {
@@ -139,8 +139,8 @@ fn agreement_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         .collect()
 }
 
-/// Reports that coherence weights are used, where they exclude nothing; exclusions are reported by
-/// a caution (M4a).
+/// Reports that coherence weights are used and exclude no frequency. Excluded frequencies are
+/// reported by a caution instead (M4a).
 fn coherence_remark(result: &ConditionAnalysis) -> Option<Remark> {
     let has_exclusions = result
         .cautions
@@ -285,10 +285,10 @@ fn needed_lead_remark(study: &Study, result: &ConditionAnalysis, held: usize) ->
     Some(Remark::caution("needs-lead", text).repeated(Repeated::NeedsLead(needed)))
 }
 
-/// Lists the solution's details: other minima, the error that each missed delay causes at the
-/// band's top, and what constraints and active bounds cost.
+/// Lists the details of the solution: other minima, the error at the upper end of the band due to
+/// each missed delay, and the sensitivity to constraints and active bounds.
 pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
-    /// A constraint that costs a smaller share than this is negligible.
+    /// Maximum relative sensitivity of the objective that is not listed.
     const NOTABLE: f64 = 1e-3;
     let (inputs, outputs) = study.dataset.names_of_channels();
     let mut details = vec![result.gains.proof.outcome.words()];

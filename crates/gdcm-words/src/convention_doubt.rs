@@ -6,10 +6,10 @@ use gdcm_model::dataset::Dataset;
 use gdcm_model::number_format::rounded_to_three_digits;
 use gdcm_study::results::convention_doubt::{Convention, ConventionDoubt};
 
-/// Tolerance for a factor to match a known one, as a ratio.
+/// Maximum ratio between a factor and a listed conversion factor at which they match.
 const NEAR_FACTOR: f64 = 1.08;
 
-/// Known conversion factors between units, with their names.
+/// Conversion factors between common units, with the names of the units.
 const KNOWN_FACTORS: [(f64, &str); 6] = [
     (9.806_65, "g and m/s²"),
     (32.174, "g and ft/s²"),
@@ -19,7 +19,7 @@ const KNOWN_FACTORS: [(f64, &str); 6] = [
     (1000.0, "a unit and its thousandth"),
 ];
 
-/// Describes a suspected difference in sign or unit, and how to settle it.
+/// Describes a suspected difference in sign or unit, and how to resolve it.
 pub fn doubt_text(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
     let channel = doubt.channel.name_in(dataset);
     let pairs: Vec<String> = doubt
@@ -65,8 +65,8 @@ fn conditions_text(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
     }
 }
 
-/// Names the units with nearly this conversion factor: ", near 57.3: radians and degrees"; empty
-/// where none is near.
+/// Names the units with about this conversion factor: ", near 57.3: radians and degrees"; empty if
+/// no listed factor matches.
 fn known_units_text(factor: f64) -> String {
     for (known, units) in KNOWN_FACTORS {
         if is_near(factor, known) {

@@ -1,5 +1,5 @@
-//! Sentences and tables about couplings: a diagnosis first, then the benefit, then the cost (M16.4),
-//! and the same figures as tables (M16.5).
+//! Sentences and tables about couplings: diagnosis, benefit and cost (M16.4), and the values as
+//! tables (M16.5).
 
 use std::collections::BTreeMap;
 
@@ -20,13 +20,13 @@ use gdcm_study::{Analysis, CouplingCorrection};
 use crate::remark::{Remark, RemarkKind};
 use crate::table::Table;
 
-/// How many entries are reported from each matrix, largest first.
+/// Maximum number of entries that are reported from each matrix, largest first.
 const MOST_REPORTED: usize = 3;
-/// Shares below this are negligible.
+/// Minimum share that is reported.
 const NOTHING: f64 = 0.005;
 
-/// Returns the remarks on an analysis's couplings: why there are none, or their meaning, benefit
-/// and cost, as far as requested.
+/// Returns the remarks on the couplings of an analysis: why there are none; or their meaning,
+/// benefit and cost, if they were assessed.
 pub fn analysis_coupling_remarks(analysis: &Analysis) -> Vec<Remark> {
     match (analysis.asked_couplings(), &analysis.coupling_assessment) {
         (Err(why), _) => vec![no_couplings(&why)],
@@ -35,8 +35,8 @@ pub fn analysis_coupling_remarks(analysis: &Analysis) -> Vec<Remark> {
     }
 }
 
-/// Returns the remark that a study requests couplings and has none, so that all results are without
-/// them.
+/// Returns the remark that requested couplings are unavailable, so that all results are without
+/// couplings.
 pub fn no_couplings(why: &str) -> Remark {
     Remark::trouble(
         "no-couplings",
@@ -44,7 +44,7 @@ pub fn no_couplings(why: &str) -> Remark {
     )
 }
 
-/// Returns all remarks: the diagnosis, what couplings gain, and the cautions.
+/// Returns all remarks: diagnosis, benefit, cost, and cautions.
 pub fn coupling_remarks(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     let mut remarks: Vec<Remark> = diagnosis(assessment, dataset)
         .into_iter()
@@ -90,7 +90,7 @@ fn diagnosis(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<String>
     words
 }
 
-/// Names the deciding costs' source.
+/// Names the origin of the J by which the benefit is judged.
 fn cost_source(assessment: &CouplingsAssessment) -> &'static str {
     if assessment.costs.left_out.is_some() {
         "conditions left out"
@@ -99,7 +99,8 @@ fn cost_source(assessment: &CouplingsAssessment) -> &'static str {
     }
 }
 
-/// Judges from the conditions left out whether couplings are worthwhile.
+/// Judges whether couplings are worthwhile: from J of conditions left out, or under the schedule
+/// where none was left out.
 fn verdict(assessment: &CouplingsAssessment) -> Vec<Remark> {
     let cost = assessment.deciding_cost();
     let (Some(with), Some(without)) = (cost.with.others, cost.without.others) else {
@@ -133,8 +134,8 @@ fn verdict(assessment: &CouplingsAssessment) -> Vec<Remark> {
     remarks
 }
 
-/// Returns the offer to a study without these couplings; `None` where they are not worthwhile, or
-/// no condition was left out.
+/// Returns the hint that recommends these couplings to a study that does not use them; `None` where
+/// they are not worthwhile, or no condition was left out of the fit.
 pub fn coupling_offer(assessment: &CouplingsAssessment) -> Option<String> {
     let cost = assessment
         .costs
@@ -148,8 +149,8 @@ pub fn coupling_offer(assessment: &CouplingsAssessment) -> Option<String> {
     ))
 }
 
-/// Describes the couplings' effect above the band, the pole shifts in it, and the error bars'
-/// meaning.
+/// Describes the effect of the couplings above the band, the pole shifts in the band, and the
+/// meaning of the error bars.
 fn price(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     let mut remarks = Vec::new();
     if let Some(text) = above_band_words(assessment, dataset) {
@@ -186,7 +187,7 @@ fn above_band_words(assessment: &CouplingsAssessment, dataset: &Dataset) -> Opti
     ))
 }
 
-/// Describes the pole in the band that moves farthest.
+/// Describes the pole in the band with the largest shift.
 fn farthest_pole_words(assessment: &CouplingsAssessment) -> Option<String> {
     let band = assessment.band.min()..=assessment.band.max();
     let mut farthest: Option<(ConditionId, &PoleShift, f64)> = None;
@@ -216,7 +217,7 @@ fn farthest_pole_words(assessment: &CouplingsAssessment) -> Option<String> {
     }
 }
 
-/// Returns the cautions to read before the couplings are used.
+/// Returns the cautions that are important before couplings are used.
 pub fn coupling_cautions(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Remark> {
     let mut remarks = unstable_pole_remarks(assessment);
     if let Some(text) = ringing_words(assessment) {
@@ -271,8 +272,8 @@ fn not_fed_back_words(dataset: &Dataset, outputs: &[usize]) -> Option<String> {
     ))
 }
 
-/// Lists the conditions without known poles, then the models that the couplings cannot be applied
-/// to.
+/// Lists the conditions whose poles are unknown, then the models to which the couplings cannot be
+/// applied.
 fn unknown_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     let mut remarks = Vec::new();
     for (id, condition) in &assessment.conditions {
@@ -292,7 +293,7 @@ fn unknown_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     remarks
 }
 
-/// Lists the representatives' newly unstable poles, then the other kept models'.
+/// Lists the newly unstable poles of the representatives, then those of the other kept models.
 fn unstable_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     let mut remarks = Vec::new();
     for is_representative in [true, false] {
@@ -328,7 +329,7 @@ fn unstable_pole_remarks(assessment: &CouplingsAssessment) -> Vec<Remark> {
     remarks
 }
 
-/// Reports how many conditions can be left out, where some cannot.
+/// Reports how many conditions can be left out, unless all can.
 fn partly_left_out_words(assessment: &CouplingsAssessment) -> Option<String> {
     let all = assessment.fitted.problem.conditions.len();
     let known = assessment.left_out_fits.len();
@@ -341,7 +342,7 @@ fn partly_left_out_words(assessment: &CouplingsAssessment) -> Option<String> {
     ))
 }
 
-/// Reports the loop's smallest stability margin, where it is close to ringing.
+/// Reports the minimum stability margin of the loop, where it is close to ringing.
 fn ringing_words(assessment: &CouplingsAssessment) -> Option<String> {
     let margins = assessment
         .conditions
@@ -414,7 +415,7 @@ fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare) -> String {
     let input = &dataset.inputs()[feedback.input];
     let output = &dataset.outputs()[feedback.output];
     let meaning = feedback_meaning(dataset, feedback);
-    // A share is meaningful only between channels with the same unit.
+    // A share is dimensionless only between channels with the same unit.
     let moved = &dataset.inputs()[feedback.moved];
     let share = if moved.unit == input.unit {
         format!("{} % of {}", percent(feedback.share), moved.name)
@@ -439,7 +440,7 @@ fn feedback_words(dataset: &Dataset, feedback: &FeedbackShare) -> String {
     )
 }
 
-/// Names a feedback entry's physical meaning, by its output's unit.
+/// Names the physical meaning of a feedback entry, from the unit of its output.
 fn feedback_meaning(dataset: &Dataset, feedback: &FeedbackShare) -> &'static str {
     let is_on_axis = |output: usize| dataset.on_axis()[Pair::new(output, feedback.input)];
     if !is_on_axis(feedback.output) {
@@ -587,8 +588,9 @@ fn cost_cells(name: &str, cost: CouplingCost) -> [String; 5] {
     ]
 }
 
-/// Tabulates the mixing at the mean airspeed, and the feedback where there is one: each input (row)
-/// with its shares from inputs and outputs. An entry within its error bar is in brackets.
+/// Tabulates the mixing at the mean airspeed, and the feedback if there is any: one row for each
+/// input, with its shares from inputs and outputs. An entry that does not exceed its error bar is
+/// in brackets.
 pub fn coupling_matrix_tables(assessment: &CouplingsAssessment, dataset: &Dataset) -> Vec<Table> {
     let airspeed_kt = assessment.mean_airspeed_kt();
     let (inputs, outputs) = dataset.names_of_channels();
@@ -642,7 +644,7 @@ fn matrix_table(
     table
 }
 
-/// Formats an entry: "0.047 ± 0.011", in brackets where it is within its error bar.
+/// Formats an entry: "0.047 ± 0.011"; in brackets if it does not exceed its error bar.
 fn entry_words(entry: &CouplingEntry) -> String {
     let mut text = with_minus_sign(&telling(entry.value, 3));
     if let Some(half_width) = entry.half_width
@@ -657,7 +659,7 @@ fn entry_words(entry: &CouplingEntry) -> String {
     }
 }
 
-/// Tabulates each physics representative's poles before and after, largest shift first.
+/// Tabulates the poles of each physics representative before and after, largest shift first.
 pub fn pole_table(assessment: &CouplingsAssessment) -> Table {
     let columns = [
         "condition",

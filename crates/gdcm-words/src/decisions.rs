@@ -14,11 +14,11 @@ use gdcm_study::decisions::setting::SETTINGS;
 /// One changed decision.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecisionDifference {
-    /// What the decision is about: "α of the gains", "LON → Q", "nominal (condition 10)".
+    /// Subject of the decision: "α of the gains", "LON → Q", "nominal (condition 10)".
     pub what: String,
-    /// Decision before: "1", "held", "rejected".
+    /// The decision before: "1", "held", "rejected".
     pub before: String,
-    /// Decision after.
+    /// The decision after.
     pub after: String,
 }
 
@@ -38,7 +38,7 @@ impl fmt::Display for DecisionDifference {
     }
 }
 
-/// Words for a decision that is made or not.
+/// Words for the two states of a decision.
 struct YesNo {
     yes: &'static str,
     no: &'static str,
@@ -50,8 +50,8 @@ impl YesNo {
     }
 }
 
-/// Lists every decision in which `after` differs from `before`, a study with the same dataset:
-/// settings, responses, then condition by condition. Variants are not compared.
+/// Lists the decisions in which `after` differs from `before`: settings, responses, then condition
+/// by condition. Both studies have the same dataset. Variants are not compared.
 pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
     let mut differences = setting_differences(before, after);
     let held = YesNo {
@@ -206,7 +206,7 @@ fn representative_words(choice: &BundleChoice) -> String {
     }
 }
 
-/// Describes a difference between a dataset and the dataset that a study was made with.
+/// Describes a difference between a dataset and the dataset with which a study was made.
 pub fn dataset_difference_text(difference: &Difference) -> String {
     match difference {
         Difference::AnotherFile { expected, found } => format!(

@@ -1,5 +1,5 @@
-//! Sentences about lead filters: the lead that each response wants, the filters, and the checks
-//! before their use (M15).
+//! Sentences about lead filters: the lead that each response needs, the filters, and the checks
+//! before they are used (M15).
 
 use gdcm_method::correction::{Channel, LeadPrice};
 use gdcm_method::uncertainty::Scalar;
@@ -13,17 +13,17 @@ use gdcm_study::{ConditionAnalysis, PhaseCorrection, Study};
 use crate::missed_targets::missed_target_texts;
 use crate::remark::{Remark, RemarkKind, Repeated};
 
-/// Where both figures for D differ by more \[s\], they do not describe a delay.
+/// Maximum difference \[s\] between the two values of D at which they describe a delay.
 const APART_S: f64 = 0.02;
-/// Signed delays below this \[s\] need no correction.
+/// Minimum absolute signed delay \[s\] that needs a correction.
 const NOTHING_S: f64 = 2e-3;
-/// Gain increase below this \[dB\] is not reported.
+/// Minimum gain increase \[dB\] that is reported.
 const NOTHING_DB: f64 = 0.05;
 
-/// Describes the responses and the channels with lead: "P from LAT wants 65 ms of lead over the
-/// band: 24 on P, 41 on LAT"; "LAT: as if a servo of 17 rad/s were replaced by one of 36 rad/s;
-/// +12.4 dB above the band". With `uncertainty` the wanted lead has its error bar: "65 ± 4 ms"
-/// (M13).
+/// Describes the lead of responses and channels: "P from LAT wants 65 ms of lead over the band: 24
+/// on P, 41 on LAT"; "LAT: as if a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB
+/// above the band". If `uncertainty` is given, the lead of a response has its error bar: "65 ± 4
+/// ms" (M13).
 pub fn lead_words(
     study: &Study,
     result: &ConditionAnalysis,
@@ -60,7 +60,7 @@ pub fn lead_words(
     words
 }
 
-/// Describes the lead or delay that a response wants, and its two channels' parts.
+/// Describes the lead or delay that a response needs, and the parts of its two channels.
 fn wanted_lead_words(
     study: &Study,
     result: &ConditionAnalysis,
@@ -97,12 +97,12 @@ fn wanted_lead_words(
     Some(text)
 }
 
-/// Formats a delay's size in milliseconds.
+/// Formats the absolute value of a delay in milliseconds.
 fn whole_ms(tau_s: f64) -> String {
     telling(s_to_ms(tau_s.abs()), 0)
 }
 
-/// Formats the band delay's error bar \[ms\]: " ± 4".
+/// Formats the half-width of the band delay's error bar \[ms\]: " ± 4".
 fn half_width_words(
     result: &ConditionAnalysis,
     uncertainty: Option<&Uncertainty>,
@@ -115,7 +115,8 @@ fn half_width_words(
     Some(format!(" ± {}", telling(s_to_ms(half_width_s), 0)))
 }
 
-/// Describes how many states the leads add, and up to which frequency the corrected model is valid.
+/// Describes the number of states that the leads add, and the frequency up to which the corrected
+/// model is valid.
 pub fn lead_limit_words(result: &ConditionAnalysis) -> Option<String> {
     let leads = &result.compensated.as_ref()?.leads;
     let limit = number(LeadPrice::of(leads)?.limit_rad_s);
@@ -140,7 +141,7 @@ pub fn servo_words(filter: LeadFilter) -> String {
     )
 }
 
-/// Returns the cautions about leads in words, where they are requested (M15.6).
+/// Returns the cautions about leads in words; empty where leads are not requested (M15.6).
 pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     if result.compensated.is_none() {
         return Vec::new();
@@ -152,8 +153,8 @@ pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
         .collect()
 }
 
-/// Returns the remarks on leads and on the checks before their use; for a study without leads,
-/// whether they would help.
+/// Returns the remarks on leads and on the checks before they are used. For a study without leads,
+/// they only report whether leads would help.
 pub(crate) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let mut remarks: Vec<Remark> = common_lead(result).into_iter().collect();
     if study.settings.phase == PhaseCorrection::Lead {
@@ -165,7 +166,7 @@ pub(crate) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Rem
     remarks
 }
 
-/// Reports J over the constrained responses without and with leads, where leads would help.
+/// Reports J over the constrained responses without and with leads, where leads are recommended.
 fn offered_leads(result: &ConditionAnalysis) -> Option<Remark> {
     let offer = result.offer?;
     let without = telling(offer.without, 0);
@@ -182,7 +183,7 @@ fn offered_leads(result: &ConditionAnalysis) -> Option<Remark> {
     })
 }
 
-/// Reports that all constrained responses want about the same lead, and what to check first.
+/// Reports that all constrained responses need about the same lead, and what to check first.
 fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     let mut wanted_s: Vec<f64> = result
         .held()
@@ -208,8 +209,8 @@ fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     Some(Remark::caution("common-lead", text).repeated(Repeated::CommonLead(lead_ms)))
 }
 
-/// Reports whether every constrained response gets the lead it wants; otherwise which does not, and
-/// why.
+/// Reports whether every constrained response gets the lead that it needs; if not, which does not
+/// and why.
 fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let delays = &result.delays;
     let is_negligible = delays
@@ -237,7 +238,7 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         .collect()
 }
 
-/// Reports the gain increase within the band by first-order filters, which the gains compensate.
+/// Reports the gain increase of the lead filters within the band; the channel gains compensate it.
 fn raised_gain(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let compensated = result.compensated.as_ref()?;
     let rises = result.held().marked().filter_map(|pair| {
@@ -257,8 +258,8 @@ fn raised_gain(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     Some(Remark::caution("gain-raised", text).repeated(Repeated::RaisedGain(most_db, pair)))
 }
 
-/// Reports the constrained responses whose two figures for D are far apart, except those with a
-/// suspected sign: half a turn is no zero and no mode.
+/// Reports the constrained responses whose two values of D are far apart, which indicates a zero or
+/// a mode. Responses with a suspected sign difference are excepted: half a turn has another cause.
 fn not_of_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let delta = &result.comparison.delta;
     let mut apart = Vec::new();

@@ -1,15 +1,15 @@
 //! The Gain-Delay Correction Method: results as sentences and tables.
 //!
-//! **Question answered:** how does the program say what it found?
+//! **Question answered:** how does the program describe its results?
 //!
-//! The crates below return typed facts with numbers; this crate turns them into English for the
-//! terminal, the window, the report and the exported files. Nothing is computed here but the
-//! numbers in a sentence.
+//! The crates below return typed facts with numbers. This crate formulates them in English for the
+//! terminal, the window, the report and the exported files. It computes nothing except the numbers
+//! in its sentences.
 //!
 //! Sentences: [`remark`] and [`condition_remarks`], with [`leads`] and [`missed_targets`], for a
 //! condition; [`caution`], [`convention_doubt`] and [`channel_time_skew`] for suspected faults;
 //! [`couplings`], [`assessment`], [`schedule`], [`uncertainty`] for a study; [`decisions`] for its
-//! decisions. Tables: [`table`], [`requirements`], [`time_histories`]. Explained figures:
+//! decisions. Tables: [`table`], [`requirements`], [`time_histories`]. Explained results:
 //! [`derivation`].
 //!
 //! # Example

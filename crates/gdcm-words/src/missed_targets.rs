@@ -3,8 +3,8 @@
 use gdcm_method::correction::Solution;
 use gdcm_study::Study;
 
-/// Describes what constrained responses achieve that miss their targets, in a single text; then
-/// each conflict that causes it.
+/// Describes the constrained responses that miss their targets, in a single text; then each
+/// conflict among constraints that causes it.
 pub fn missed_target_texts(study: &Study, solution: &Solution) -> Vec<String> {
     let (inputs, outputs) = study.dataset.names_of_channels();
     let band_top = study.settings.band.max();

@@ -1,4 +1,4 @@
-//! Remarks: sentences about a result with their weight and the decisions that they offer.
+//! Remarks: sentences about a result, with their kind and suggested decisions.
 
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::Pair;
@@ -24,17 +24,17 @@ pub struct Remark {
     pub kind: RemarkKind,
     /// One or two sentences.
     pub text: String,
-    /// The response to consider ignoring in the objective.
+    /// The response that the user may exclude from the objective, if suggested.
     pub ignore: Option<Pair>,
-    /// The phase correction to consider instead.
+    /// The phase correction that the user may choose instead, if suggested.
     pub phase: Option<PhaseCorrection>,
-    /// The channel whose sign can be reversed, or restored (`None` as the role), at once.
+    /// The channel whose sign the user may reverse, or restore if the role is `None`.
     pub turn: Option<(Channel, Option<SignRole>)>,
-    /// Content for one common table, where many conditions have the remark.
+    /// Content for a common table, if many conditions have the remark.
     pub repeated: Option<Repeated>,
 }
 
-/// A remark that most conditions share, with its numbers, so that many of them form a table.
+/// Content of a remark that many conditions have; such remarks are collected in a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Repeated {
     /// Constrained responses need lead, with each response's lead \[ms\].
@@ -43,14 +43,14 @@ pub enum Repeated {
     CommonLead(String),
     /// Constrained responses are farther from flight than without a correction.
     Farther(Vec<Pair>),
-    /// Greatest gain increase within the band by the lead filters \[dB\], and its response.
+    /// Maximum gain increase within the band by the lead filters \[dB\], and its response.
     RaisedGain(String, Pair),
     /// Mean J over the constrained responses without leads, and with them.
     LeadsOffered([String; 2]),
 }
 
 impl Remark {
-    /// Creates a remark without an offer.
+    /// Creates a remark without a suggested decision.
     pub fn new(code: &'static str, kind: RemarkKind, text: String) -> Self {
         Self {
             code,
@@ -63,7 +63,7 @@ impl Remark {
         }
     }
 
-    /// Creates a remark that a request was fulfilled.
+    /// Creates the remark that a request was fulfilled.
     pub fn good(code: &'static str, text: impl Into<String>) -> Self {
         Self::new(code, RemarkKind::Good, text.into())
     }
@@ -73,7 +73,7 @@ impl Remark {
         Self::new(code, RemarkKind::Caution, text.into())
     }
 
-    /// Creates a remark that a request could not be fulfilled.
+    /// Creates the remark that a request could not be fulfilled.
     pub fn trouble(code: &'static str, text: impl Into<String>) -> Self {
         Self::new(code, RemarkKind::Trouble, text.into())
     }

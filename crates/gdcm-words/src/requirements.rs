@@ -4,8 +4,8 @@
 //! ```text
 //! bandwidth     100 (omega_BW / omega_BW of the identified model - 1) [%]
 //! phase delay   tau_p - tau_p of the identified model [ms]
-//! records       share of time inside each tolerance that is not of an integral [%]
-//! modes         those beyond their tolerance, of those that have one and are determined
+//! records       share of time inside each tolerance, except those of integrated outputs [%]
+//! modes         number beyond their tolerance, and number of determined modes with a tolerance
 //! ```
 
 use gdcm_method::requirements::{BandwidthRule, ModeVerdict, NamedBy};
@@ -22,7 +22,7 @@ use gdcm_study::results::time_histories::TimeHistories;
 use crate::table::Table;
 use crate::time_histories::{cost_cells, cost_heads, output_weights_text, percent_rounded_down};
 
-/// A modulus's heading.
+/// Heading of the modulus.
 const MODULUS: &str = "|\u{3bb}| [rad/s]";
 
 /// Tabulates every on-axis bandwidth and phase delay, with cautions.
@@ -57,7 +57,7 @@ pub fn bandwidth_table(requirements: &Requirements, dataset: &Dataset) -> Table 
     table
 }
 
-/// Returns the cautions about a bandwidth, or why it has no number.
+/// Returns the cautions about a bandwidth, or why it has no value.
 fn bandwidth_remark(finding: &BandwidthFinding) -> String {
     let mut words = Vec::new();
     let absent = finding
@@ -88,8 +88,8 @@ fn bandwidth_remark(finding: &BandwidthFinding) -> String {
     words.join("; ")
 }
 
-/// Tabulates a condition's modes: identified, physics, and physics with the study's couplings where
-/// there are any.
+/// Tabulates the modes of a condition: identified, physics, and physics with the study's couplings,
+/// if any.
 pub fn mode_table(requirements: &Requirements, condition: ConditionId) -> Table {
     let modes: Vec<&ModeFinding> = requirements
         .modes
@@ -152,7 +152,7 @@ fn mode_row(mode: &ModeFinding) -> Vec<String> {
     cells
 }
 
-/// Formats a mode's modulus, damping ratio and period; dashes where there is none.
+/// Formats the modulus, damping ratio and period of a mode; dashes for missing values.
 fn mode_cells(mode: Option<&ModeNumbers>) -> [String; 3] {
     [
         decimals_or_dash(
@@ -229,8 +229,8 @@ fn summary_cells(finding: &SummaryFinding) -> Vec<String> {
     ]
 }
 
-/// Adds the identified models, the others' reference, about which time histories alone say
-/// anything.
+/// Adds the identified models. They are the reference of the other models: only their time
+/// histories have results.
 fn add_identified_rows(table: &mut Table, histories: &TimeHistories) {
     let role = RequirementRole::Identified;
     for finding in &histories.records {
@@ -250,8 +250,8 @@ fn add_identified_rows(table: &mut Table, histories: &TimeHistories) {
     }
 }
 
-/// Returns the summary in a row of [`summary_table`]; `None` for the identified model, the others'
-/// reference.
+/// Returns the summary of a row of [`summary_table`]; `None` for the identified model, which is the
+/// reference of the others.
 pub fn summary_of_row<'a>(
     requirements: &'a Requirements,
     row: &[String],
@@ -265,17 +265,17 @@ pub fn summary_of_row<'a>(
         .find(|finding| finding.condition.to_string() == *condition && finding.role.name() == role)
 }
 
-/// Every condition's corrected model against the identified model.
+/// Comparison of every condition's corrected model with the identified model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementsOverview {
-    /// A row for each requirement with its limit, a column for each condition; a dash where there
-    /// is no number.
+    /// One row for each requirement, with its limit; one column for each condition; a dash where
+    /// there is no value.
     pub table: Table,
     /// Whether a cell is beyond its limit, row by row.
     outside: Vec<Vec<bool>>,
 }
 
-/// Columns that identify a row's requirement.
+/// Columns that describe the requirement of a row.
 const HEADS: [&str; 3] = ["requirement", "unit", "limit"];
 
 /// A requirement in the overview, with its unit and its limit.
@@ -285,18 +285,18 @@ struct OverviewRow {
     limit: String,
 }
 
-/// A cell's value, and whether it is beyond its limit.
+/// Value of a cell, and whether it is outside its limit.
 struct Judged {
     text: String,
     is_outside: bool,
 }
 
 impl RequirementsOverview {
-    /// How many columns precede the first condition.
+    /// Number of columns before the first condition.
     pub const HEADS: usize = HEADS.len();
 
     /// Compares every condition's corrected model with the identified model; with flight records,
-    /// also their shares inside.
+    /// also the shares of time inside tolerances.
     pub fn new(
         requirements: &Requirements,
         dataset: &Dataset,
@@ -384,7 +384,7 @@ impl RequirementsOverview {
         });
     }
 
-    /// Adds the share inside each measured quantity's tolerance, except integrals.
+    /// Adds the share of time inside each tolerance, except those of integrated outputs.
     fn add_histories(
         &mut self,
         histories: &TimeHistories,
@@ -432,7 +432,7 @@ impl RequirementsOverview {
         self.outside.push(outside);
     }
 
-    /// Returns whether a cell is beyond its limit.
+    /// Returns whether the value of a cell is outside its limit.
     pub fn is_outside(&self, row: usize, column: usize) -> bool {
         self.outside
             .get(row)
@@ -450,8 +450,8 @@ fn has_bandwidth(requirements: &Requirements, pair: Pair) -> bool {
     })
 }
 
-/// Counts the corrected model's modes beyond their tolerance; `None` where no mode with a tolerance
-/// is determined.
+/// Counts the modes of the corrected model beyond their tolerance; `None` where no mode with a
+/// tolerance is determined.
 fn modes_outside(requirements: &Requirements, id: ConditionId) -> Option<Judged> {
     let mut within = 0;
     let mut outside = 0;
@@ -459,8 +459,8 @@ fn modes_outside(requirements: &Requirements, id: ConditionId) -> Option<Judged>
         if mode.condition != id {
             continue;
         }
-        // Gains and delays move no pole: without couplings the corrected model has the physics
-        // model's poles.
+        // Gains and delays move no pole: without couplings, the corrected model has the poles of
+        // the physics model.
         match mode.corrected_verdict.unwrap_or(mode.verdict) {
             ModeVerdict::Within => within += 1,
             ModeVerdict::Outside => outside += 1,
@@ -481,7 +481,7 @@ fn plus_minus(value: f64) -> String {
     format!("\u{b1}{}", rounded(value))
 }
 
-/// Formats a limit without floating-point noise from its unit.
+/// Formats a limit without the floating-point noise of its unit conversion.
 fn rounded(value: f64) -> String {
     number((1e6 * value).round() / 1e6)
 }

@@ -1,4 +1,4 @@
-//! Tables to read, copy and save, with the same text in every format.
+//! Tables for display, copying and saving, with the same content in every format.
 
 use gdcm_model::units::without_sign_of_zero;
 
@@ -6,9 +6,9 @@ use gdcm_model::units::without_sign_of_zero;
 /// table is self-contained.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
-    /// Title in words.
+    /// Title of the table.
     pub title: String,
-    /// Each column's heading, with its unit.
+    /// Headings of the columns, with units.
     pub columns: Vec<String>,
     /// The rows, with one cell for each column; a cell without a value is empty.
     pub rows: Vec<Vec<String>>,
@@ -27,8 +27,8 @@ impl Table {
         }
     }
 
-    /// Adds a row; cells beyond the last column are dropped, missing cells are empty, and zeros
-    /// have no sign.
+    /// Adds a row. Cells beyond the last column are dropped, missing cells are empty, and the sign
+    /// of zeros is removed.
     pub fn row(&mut self, cells: impl IntoIterator<Item = impl Into<String>>) {
         let mut cells: Vec<String> = cells
             .into_iter()
@@ -64,7 +64,7 @@ impl Table {
         text
     }
 
-    /// Returns a column's width in characters, with its heading.
+    /// Returns the width of a column in characters, including its heading.
     fn width(&self, column: usize) -> usize {
         std::iter::once(&self.columns)
             .chain(&self.rows)
@@ -73,7 +73,7 @@ impl Table {
             .unwrap_or(0)
     }
 
-    /// Returns whether a column has nonempty cells, and all are numbers.
+    /// Returns whether a column has nonempty cells, all of which are numbers.
     pub fn has_numbers(&self, column: usize) -> bool {
         let cells: Vec<&str> = self
             .rows
@@ -85,18 +85,18 @@ impl Table {
     }
 }
 
-/// A table's column formatted as text.
+/// A column of a table formatted as text.
 struct TextColumn {
     /// Width in characters.
     width: usize,
-    /// Whether its cells are right-aligned.
+    /// Whether the cells are right-aligned.
     is_numeric: bool,
 }
 
 impl TextColumn {
-    /// Pads a cell to the column's width.
+    /// Pads a cell to the width of the column.
     fn aligned(&self, cell: &str) -> String {
-        // Not by a format string's width, which is limited to 65535.
+        // A width in a format string is limited to 65535.
         let padding = " ".repeat(self.width - cell.chars().count());
         if self.is_numeric {
             format!("{padding}{cell}")
@@ -106,7 +106,7 @@ impl TextColumn {
     }
 }
 
-/// Returns the cell, with a zero's sign removed.
+/// Returns the cell; if it is a zero, without its sign.
 fn unsigned_zero(cell: String) -> String {
     let unsigned = without_sign_of_zero(&cell);
     if unsigned.len() == cell.len() {
@@ -116,8 +116,8 @@ fn unsigned_zero(cell: String) -> String {
     }
 }
 
-/// Returns whether a text is a number, with any minus sign and an optional unit, or the dash for a
-/// missing value.
+/// Returns whether a text is a number, with optional minus sign and unit, or the dash for a missing
+/// value.
 fn is_number(cell: &str) -> bool {
     let mut words = cell.split(' ');
     let number = words

@@ -1,4 +1,4 @@
-//! Time histories within tolerances, as tables (M17.2).
+//! Comparisons of time histories within tolerances, as tables (M17.2).
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,8 @@ use gdcm_study::results::time_histories::{HistoryFinding, TimeHistories, Toleran
 
 use crate::table::Table;
 
-/// Tabulates the share inside each tolerance over each condition's records, model by model.
+/// Tabulates the share of time inside each tolerance over the records of each condition, for every
+/// model.
 pub fn share_table(histories: &TimeHistories) -> Table {
     let mut columns = ["condition", "records", "quantity"]
         .map(str::to_owned)
@@ -46,7 +47,7 @@ pub(crate) fn cost_heads(histories: &TimeHistories) -> Vec<String> {
     heads
 }
 
-/// Formats a model's `J_rms`, and Theil's coefficient for every output.
+/// Formats `J_rms` of a model, and Theil's coefficient for every output.
 pub(crate) fn cost_cells(
     histories: &TimeHistories,
     condition: ConditionId,
@@ -87,9 +88,9 @@ pub fn history_cost_table(histories: &TimeHistories) -> Table {
     table
 }
 
-/// Tabulates a condition's records against every tolerance: each model's largest excess, and its
-/// time. Rows where every model is inside throughout, and off-axis has the correct trend, are
-/// omitted and counted.
+/// Tabulates the records of a condition for every tolerance: largest excess of each model, and its
+/// time. Rows in which every model stays inside, with the correct trend off-axis, are omitted and
+/// counted.
 pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table {
     let mut columns = ["record", "quantity"].map(str::to_owned).to_vec();
     columns.extend(RequirementRole::ALL.map(|role| format!("{}: inside [%]", role.name())));
@@ -100,7 +101,7 @@ pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table 
         .filter(|finding| finding.condition == condition)
         .collect();
     let mut all = 0;
-    // Two records may have the same name: the roles ascend within each record.
+    // Two records may have the same name; a new record starts where the role does not increase.
     for models in findings.chunk_by(|a, b| a.record == b.record && a.role < b.role) {
         let held_out = if models[0].held_out {
             " (held out)"
@@ -136,7 +137,7 @@ pub fn record_table(histories: &TimeHistories, condition: ConditionId) -> Table 
     table
 }
 
-/// Returns the finding about a role's model in a tolerance row.
+/// Returns the result of the model in a role, for a tolerance row.
 fn finding_of_role<'a>(
     models: &[&'a HistoryFinding],
     role: RequirementRole,
@@ -153,7 +154,7 @@ fn is_exceptional(finding: &ToleranceFinding) -> bool {
     finding.largest_excess > 0.0 || finding.trend == Some(Trend::Opposite)
 }
 
-/// Describes the outputs' weights in `J_rms`, and the outputs excluded from it.
+/// Describes the weights of the outputs in `J_rms`, and the outputs excluded from it.
 pub fn output_weights_text(histories: &TimeHistories) -> String {
     let mut excluded: BTreeSet<&str> = BTreeSet::new();
     for finding in &histories.records {
@@ -167,8 +168,8 @@ pub fn output_weights_text(histories: &TimeHistories) -> String {
     format!("deg, deg/s, ft/s and ft/s\u{b2} weighing the same{without}")
 }
 
-/// Formats a result: "85.2; 0.84 deg/s at 12.3 s; opposite trend": share inside, largest excess,
-/// and an incorrect trend.
+/// Formats a result: share of time inside, largest excess, and an incorrect trend: "85.2; 0.84
+/// deg/s at 12.3 s; opposite trend".
 fn excess_words(finding: &ToleranceFinding) -> String {
     let mut words = vec![percent_rounded_down(Some(finding.share_inside))];
     if finding.largest_excess > 0.0 {
@@ -185,8 +186,8 @@ fn excess_words(finding: &ToleranceFinding) -> String {
     words.join("; ")
 }
 
-/// Tabulates a record: share inside, largest excess and its time, for each quantity and model;
-/// off-axis, also whether the trend is correct.
+/// Tabulates a record: share of time inside, largest excess and its time, for each quantity and
+/// model; off-axis also whether the trend is correct.
 pub fn record_history_table(history: &RecordHistory) -> Table {
     let columns = [
         "quantity",
@@ -237,7 +238,7 @@ pub fn record_history_table(history: &RecordHistory) -> Table {
     table
 }
 
-/// Formats a share in percent, rounded down: 100 means the whole.
+/// Formats a share in percent, rounded down: 100 is reached only by the whole.
 pub(crate) fn percent_rounded_down(share: Option<f64>) -> String {
     decimals_or_dash(share.map(|share| (1e3 * share).floor() / 10.0), 1)
 }

@@ -1,4 +1,4 @@
-//! Sentences and tables about the figures' uncertainty (M13).
+//! Sentences and tables about the uncertainty of results (M13).
 
 use gdcm_method::uncertainty::{Scalar, VarianceDecomposition};
 use gdcm_model::dataset::Dataset;
@@ -8,7 +8,7 @@ use gdcm_study::results::uncertainty::{AirspeedDifference, SecondVariableTest, U
 
 use crate::table::Table;
 
-/// Placeholder for a missing figure.
+/// Placeholder for a missing value.
 const NONE: &str = "–";
 
 /// Returns the verdict on a difference at equal airspeed, at a confidence level.
@@ -87,7 +87,7 @@ fn need(test: &SecondVariableTest) -> &'static str {
     if test.needed { "needed" } else { "not needed" }
 }
 
-/// Formats a figure with fixed decimals, or the placeholder.
+/// Formats a value with this number of decimals, or the placeholder.
 fn cell(figure: Option<f64>, decimals: usize) -> String {
     match figure {
         Some(figure) => format!("{figure:.decimals$}"),
@@ -95,7 +95,7 @@ fn cell(figure: Option<f64>, decimals: usize) -> String {
     }
 }
 
-/// Formats a logarithm's standard deviation in percent.
+/// Formats the standard deviation of a logarithm in percent.
 fn percent(deviation: Option<f64>) -> String {
     cell(deviation.map(|deviation| 100.0 * deviation), 1)
 }
@@ -108,8 +108,8 @@ fn probability(p: Option<f64>) -> String {
     }
 }
 
-/// Tabulates how net gains differ at equal airspeed, largest in relation to the expected difference
-/// first, with each row's difference.
+/// Tabulates the differences in net gain at equal airspeed, in descending order of their ratio to
+/// the expected difference; returns the difference of each row too.
 pub fn difference_table(
     dataset: &Dataset,
     uncertainty: &Uncertainty,
@@ -179,7 +179,7 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
     table
 }
 
-/// Tabulates each on-axis net gain's scatter components.
+/// Tabulates the scatter components of each on-axis net gain.
 pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
     let columns = [
         "response",
@@ -216,7 +216,7 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
     table
 }
 
-/// Formats the unexplained component's interval: "1.2 to 5.6".
+/// Formats the interval of the unexplained component: "1.2 to 5.6".
 fn interval(decomposition: &VarianceDecomposition, level: f64) -> String {
     match decomposition.unexplained_interval(level) {
         Some([low, high]) => format!("{} to {}", percent(Some(low)), percent(Some(high))),

@@ -7,15 +7,15 @@ use gdcm_sysid::identification::Identification;
 
 use super::edit_refusal::EditRefusal;
 
-/// Selection of an identification's models.
+/// Which models of an identification are adopted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OfferedModels {
-    /// The refined model, its neighbours in order, and the models without each record (M14, section
-    /// 5).
+    /// Whether to adopt the refined model, the models of neighbouring orders, and those fitted
+    /// without one record each (M14, section 5).
     pub refined: bool,
-    /// CT-PBSID without refinement.
+    /// Whether to adopt the CT-PBSID model without refinement.
     pub unrefined: bool,
-    /// The measured response itself, with its coherence (M4a).
+    /// Whether to adopt the measured response itself, with its coherence (M4a).
     pub measured: bool,
 }
 
@@ -40,7 +40,7 @@ impl OfferedModels {
     };
 }
 
-/// Models identified from flight records, and the records.
+/// Models identified from flight records, with these records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AdoptedModels {
     pub models: Vec<Model>,
@@ -48,8 +48,7 @@ pub struct AdoptedModels {
 }
 
 impl AdoptedModels {
-    /// Returns the selectable models of an identification from `records`, the recommended model
-    /// first.
+    /// Returns the chosen models of an identification from `records`, the recommended model first.
     pub fn of(
         found: &Identification,
         offered: OfferedModels,
@@ -78,8 +77,8 @@ impl AdoptedModels {
         Self { models, records }
     }
 
-    /// Returns the dataset with these models as the identified bundle of a condition, and these
-    /// records added to the condition's.
+    /// Returns the dataset in which these models are the identified bundle of a condition; these
+    /// records are added to the records of the condition.
     ///
     /// # Errors
     /// [`EditRefusal::NoCondition`], and [`EditRefusal::Models`] where the models do not fit the
@@ -88,8 +87,8 @@ impl AdoptedModels {
         let before = dataset
             .condition(id)
             .ok_or(EditRefusal::NoCondition { condition: id })?;
-        // A condition without identified models is valid, but an empty set of models replaces
-        // nothing.
+        // A condition may have no identified models, but an empty list of models must not replace
+        // the existing bundle.
         if self.models.is_empty() {
             let error = ConditionError::EmptyBundle(BundleKind::Identified);
             return Err(refused(id, &error));

@@ -1,6 +1,6 @@
-//! Models of a study that differ from those in its dataset's file: identified models adopted into a
-//! condition, and channels with reversed sign. The study applies the changes when it adopts the
-//! models, so that no other code depends on them.
+//! Models of a study that differ from those in the file of its dataset: adopted models, and
+//! channels with reversed sign. The dataset of the study contains these changes, so that no other
+//! code needs to apply them.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -20,13 +20,13 @@ impl Study {
         self.file.as_ref().unwrap_or(&self.dataset)
     }
 
-    /// Returns the models adopted instead of the ones in the file, condition by condition.
+    /// Returns the adopted models, condition by condition.
     pub fn taken_models(&self) -> impl Iterator<Item = (ConditionId, &Arc<AdoptedModels>)> {
         self.taken.iter().map(|(id, models)| (*id, models))
     }
 
-    /// Adopts models into all of these conditions, or into none. Decisions about removed models are
-    /// dropped.
+    /// Adopts models into all of these conditions, or into none if one is refused. Decisions about
+    /// removed models are dropped.
     pub(crate) fn take_models(
         &mut self,
         taken: &[(ConditionId, Arc<AdoptedModels>)],
@@ -36,14 +36,14 @@ impl Study {
         self.rebuild(models, self.signs.clone())
     }
 
-    /// Restores the file's models in a condition.
+    /// Restores the models of the file in a condition.
     pub(crate) fn return_models(&mut self, condition: ConditionId) -> Result<(), EditRefusal> {
         let mut models = self.taken.clone();
         models.remove(&condition);
         self.rebuild(models, self.signs.clone())
     }
 
-    /// Reverses the sign of a channel's models, or restores it.
+    /// Reverses the sign of a channel in the models, or restores it.
     pub(crate) fn set_sign(
         &mut self,
         channel: Channel,
@@ -58,7 +58,7 @@ impl Study {
         self.rebuild(self.taken.clone(), signs)
     }
 
-    /// Returns the file's dataset with these models in its conditions, then with reversed signs.
+    /// Applies these adopted models and then the reversed signs to the dataset of the file.
     fn rebuild(
         &mut self,
         models: BTreeMap<ConditionId, Arc<AdoptedModels>>,

@@ -11,8 +11,8 @@ use gdcm_model::dataset::BundleKind;
 pub struct BundleChoice {
     /// Names of the rejected models.
     pub rejected: BTreeSet<String>,
-    /// Reasons of rejections, in the engineer's words, where given; studies of older programs have
-    /// none.
+    /// Reasons of rejections, in the engineer's words, where given; studies saved by earlier
+    /// versions have none.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub reasons: BTreeMap<String, String>,
     /// Name of the model that represents the bundle instead of the medoid; never a rejected model.
@@ -33,8 +33,8 @@ pub struct ConditionChoice {
     pub physics: BundleChoice,
     pub identified: BundleChoice,
     pub scheduled: bool,
-    /// Whether the condition is held out: analysed and assessed, but kept out of the schedule, to
-    /// validate it.
+    /// Whether the condition is held out: it is analysed and assessed, but not used in the fit of
+    /// the schedule, so that it can validate the schedule.
     pub held_out: bool,
 }
 
@@ -58,7 +58,7 @@ impl ConditionChoice {
         }
     }
 
-    /// Returns the choices that an analysis depends on: without the reasons of rejections.
+    /// Returns the choices on which an analysis depends: all except the reasons of rejections.
     pub(crate) fn without_reasons(&self) -> Self {
         let mut choice = self.clone();
         choice.physics.reasons.clear();
@@ -66,7 +66,7 @@ impl ConditionChoice {
         choice
     }
 
-    /// Returns the choices that the comparison of the models depends on.
+    /// Returns the choices on which the comparison of the models depends.
     pub(crate) fn of_models(&self) -> Self {
         Self {
             scheduled: true,
@@ -75,7 +75,7 @@ impl ConditionChoice {
         }
     }
 
-    /// Returns whether the condition is used in the schedule: chosen for it, and not held out.
+    /// Returns whether the condition is used in the fit of the schedule: chosen, and not held out.
     pub fn is_in_schedule(&self) -> bool {
         self.scheduled && !self.held_out
     }
@@ -85,7 +85,7 @@ impl ConditionChoice {
         kind.pick(&self.physics, &self.identified)
     }
 
-    /// Returns the choices in a bundle, mutable.
+    /// Returns the choices in a bundle, for changes.
     pub fn bundle_mut(&mut self, kind: BundleKind) -> &mut BundleChoice {
         kind.pick(&mut self.physics, &mut self.identified)
     }

@@ -6,31 +6,32 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
 
-/// A difference between a dataset and the dataset that a study was made with, or a decision that
-/// does not apply to it.
+/// A difference between a dataset and the dataset with which a study was made, or a decision that
+/// does not apply to the dataset.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Difference {
-    /// The file has changed, and the study has no inventory of the file that it was saved with.
+    /// The file has changed since the study was saved, and the study has no inventory of its former
+    /// content.
     AnotherFile {
-        /// SHA-256 of the file when the study was saved.
+        /// SHA-256 of the file at the time the study was saved.
         expected: String,
-        /// SHA-256 of the present file.
+        /// SHA-256 of the file now.
         found: String,
     },
     ConditionAdded(ConditionId),
     ConditionRemoved(ConditionId),
-    /// A condition has another airspeed.
+    /// The airspeed of a condition has changed.
     AirspeedChanged {
         condition: ConditionId,
-        /// The airspeed before \[kt\].
+        /// Former airspeed \[kt\].
         before_kt: f64,
-        /// The airspeed now \[kt\].
+        /// Present airspeed \[kt\].
         now_kt: f64,
     },
     /// A bundle has a new model.
     ModelAdded(ModelId),
     ModelRemoved(ModelId),
-    /// A model has changed numbers, bands or trim.
+    /// The matrices, bands or trim of a model have changed.
     ModelChanged(ModelId),
     /// A decision no longer applies.
     NotApplied {
@@ -40,8 +41,8 @@ pub enum Difference {
     },
 }
 
-/// Content of a dataset, small enough for a study file: a study compares it with the present
-/// dataset to report changes.
+/// Inventory of a dataset, small enough to be stored in a study file. It is compared with the
+/// present dataset to report changes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inventory(pub Vec<ConditionInventory>);
 
@@ -64,7 +65,7 @@ impl Inventory {
             .collect()
     }
 
-    /// Lists the differences between this inventory's dataset and `dataset`.
+    /// Lists the differences between the dataset of this inventory and `dataset`.
     pub fn differences(&self, dataset: &Dataset) -> Vec<Difference> {
         let inventory_now = Inventory::of(dataset);
         let before = self.by_id();
@@ -82,7 +83,7 @@ impl Inventory {
     }
 }
 
-/// A condition's models: name, and fingerprint of the numbers, the bands and the trim.
+/// Models of a condition: for each name, a fingerprint of matrices, bands and trim.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConditionInventory {
     pub id: ConditionId,
@@ -113,7 +114,7 @@ impl ConditionInventory {
         kind.pick(&self.physics, &self.identified)
     }
 
-    /// Lists the differences of airspeed and models.
+    /// Lists the differences in airspeed and models.
     fn differences(&self, now: &Self) -> Vec<Difference> {
         let mut differences = Vec::new();
         if self.airspeed_kt != now.airspeed_kt {

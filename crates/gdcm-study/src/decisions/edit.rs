@@ -1,4 +1,4 @@
-//! Every decision about a study, and the only code that applies decisions.
+//! All kinds of decisions about a study, and the only code that applies them.
 
 use std::sync::Arc;
 
@@ -43,8 +43,8 @@ pub enum Edit {
         condition: ConditionId,
         scheduled: bool,
     },
-    /// Holds a condition out of the schedule, to validate the schedule with it, or includes it
-    /// again.
+    /// Excludes a condition from the fit of the schedule, so that it can validate the schedule, or
+    /// includes it again.
     SetHeldOut {
         condition: ConditionId,
         held_out: bool,
@@ -55,23 +55,23 @@ pub enum Edit {
     Hold(Pair, bool),
     /// Fits a response, or ignores it in the objective.
     Fit(Pair, bool),
-    /// Changes a setting of the whole study ([`Setting::to`]).
+    /// Changes a setting ([`Setting::to`]).
     Set(&'static Setting, Value),
-    /// Reverses the sign of a channel's models, or restores it: a decision about the data, common
-    /// to all variants.
+    /// Reverses the sign of a channel in the models, or restores it. As a decision about the data,
+    /// it is common to all variants.
     SetSign {
         channel: Channel,
-        /// The models to reverse; `None` restores all.
+        /// The models in which the sign is reversed; `None` restores the sign in all.
         of: Option<SignRole>,
     },
-    /// Adopts models identified from flight records, instead of the identified models of
+    /// Adopts models identified from flight records in place of the identified bundles of
     /// conditions.
     TakeModels(Vec<(ConditionId, Arc<AdoptedModels>)>),
     ReturnModels {
         condition: ConditionId,
     },
-    /// Changes the requirement settings: label of the change, and the complete settings. A decision
-    /// of the study, common to all variants.
+    /// Changes the requirement settings, which are common to all variants: label of the change, and
+    /// the complete settings.
     SetRequirements(&'static str, Arc<RequirementSettings>),
     /// Stores the present decisions under a name.
     KeepVariant {
@@ -90,11 +90,11 @@ pub enum Edit {
     },
 }
 
-/// Greatest length of a rejection's reason, in characters.
+/// Maximum length of the reason of a rejection, in characters.
 pub const LONGEST_REASON: usize = 1000;
 
 impl Setting {
-    /// Returns the decision that sets this value.
+    /// Returns the decision that changes this setting to `value`.
     pub fn to(&'static self, value: impl Into<Value>) -> Edit {
         Edit::Set(self, value.into())
     }
@@ -166,8 +166,8 @@ impl Edit {
         }
     }
 
-    /// Returns whether two consecutive decisions form one undo step: two positions of the same
-    /// slider.
+    /// Returns whether two consecutive decisions form one undo step, as two positions of the same
+    /// slider do.
     pub fn continues(&self, earlier: &Edit) -> bool {
         match (self, earlier) {
             (Edit::Set(later, _), Edit::Set(earlier, _)) => later == earlier,
@@ -218,14 +218,15 @@ impl Study {
         Ok(())
     }
 
-    /// Returns a condition's choices, mutable.
+    /// Returns the choices in a condition, for changes.
     fn choice_mut(&mut self, id: ConditionId) -> Result<&mut ConditionChoice, EditRefusal> {
         self.choices
             .get_mut(&id)
             .ok_or(EditRefusal::NoCondition { condition: id })
     }
 
-    /// Returns the choices about a model's bundle, mutable; refuses a model that does not exist.
+    /// Returns the choices in the bundle of a model, for changes; refuses a model that does not
+    /// exist.
     fn bundle_choice_mut(&mut self, id: &ModelId) -> Result<&mut BundleChoice, EditRefusal> {
         let Some(condition) = self.dataset.condition(id.condition) else {
             return Err(EditRefusal::NoCondition {

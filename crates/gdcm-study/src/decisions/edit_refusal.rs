@@ -50,7 +50,7 @@ pub enum EditRefusal {
         expected: String,
         found: f64,
     },
-    /// The two ends of the band are invalid.
+    /// The limits of the band are invalid.
     #[error(transparent)]
     Band(#[from] BandError),
     #[error("{setting}: this is not one of its values")]
@@ -69,7 +69,7 @@ pub enum EditRefusal {
     NoResponse { pair: Pair },
 }
 
-/// Checks a text's length in characters.
+/// Checks the length of a text, in characters.
 pub(crate) fn check_length(what: &'static str, text: &str, most: usize) -> Result<(), EditRefusal> {
     let found = text.chars().count();
     if found > most {

@@ -3,7 +3,7 @@
 use super::edit::Edit;
 use super::study::Study;
 
-/// Most steps; a snapshot takes a few kilobytes, because the models are shared.
+/// Maximum number of undo steps; a snapshot takes a few kilobytes, because models are shared.
 const MOST_STEPS: usize = 500;
 
 /// One decision that can be undone or redone.
@@ -14,18 +14,18 @@ struct Step<B> {
     beside: B,
 }
 
-/// Undo history: whole studies, each with the decision's label between it and the next.
+/// Undo history: snapshots of the study, with the labels of the decisions between them.
 ///
-/// `B` is state outside the study that a step changes: its value on the other side of the step,
-/// which undo and redo exchange for the present value. Decisions about the study alone use
-/// `B::default()`, which changes nothing.
+/// `B` is state outside the study that a step changes as well. A step stores its value before the
+/// decision; undo and redo exchange the stored value and the present value. Decisions that only
+/// change the study use `B::default()`.
 #[derive(Clone, Debug)]
 pub struct History<B = ()> {
     past: Vec<Step<B>>,
     future: Vec<Step<B>>,
     /// Redo steps removed by the last decision.
     lost: Vec<Step<B>>,
-    /// The last decision, while the next may still continue it (a slider being dragged).
+    /// The last decision, as long as the next decision may continue it (a slider being dragged).
     open: Option<Edit>,
 }
 
@@ -41,7 +41,7 @@ impl<B> Default for History<B> {
 }
 
 impl<B: Default> History<B> {
-    /// Stores `before`, the study that `edit` is about to change (or has just changed).
+    /// Stores `before`, the study before the change by `edit`, which may already be applied.
     ///
     /// A decision that continues the last one (see [`Edit::continues`]) adds no step until
     /// [`History::seal`].
@@ -59,8 +59,8 @@ impl<B: Default> History<B> {
         self.open = Some(edit.clone());
     }
 
-    /// Stores a decision that leaves the study unchanged: `before` is the previous value of the
-    /// state outside the study.
+    /// Stores a decision that leaves the study unchanged; `before` is the former value of the state
+    /// outside the study.
     pub fn record_beside(&mut self, study: Study, label: String, before: B) {
         self.lost = std::mem::take(&mut self.future);
         self.push(Step {
@@ -71,7 +71,7 @@ impl<B: Default> History<B> {
         self.open = None;
     }
 
-    /// Stores `before`, the study with the dataset before a reload.
+    /// Stores `before`, the study with the dataset as it was before a reload.
     pub fn record_reload(&mut self, before: Study, label: String) {
         self.future.clear();
         self.push(Step {
@@ -89,13 +89,13 @@ impl<B: Default> History<B> {
         self.past.push(step);
     }
 
-    /// Closes the present decision, for example when a slider is released.
+    /// Closes the last decision: no later decision continues it.
     pub fn seal(&mut self) {
         self.open = None;
     }
 
-    /// Returns the study before the last decision, given the present study; `exchange` restores the
-    /// state outside the study, and returns its present value.
+    /// Returns the study before the last decision. `now` is the present study; `exchange` restores
+    /// the state outside the study, and returns the value that it had.
     pub fn undo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
         let step = self.past.pop()?;
         self.open = None;
@@ -107,8 +107,8 @@ impl<B: Default> History<B> {
         Some(step.study)
     }
 
-    /// Returns the study before the last decision if that was `edit`, and removes the decision: it
-    /// cannot be redone, and the redo steps that it removed are available again.
+    /// Returns the study before the last decision if that was `edit`. The decision is removed
+    /// without a redo step, and the redo steps that it had removed are available again.
     pub fn forget(&mut self, edit: &Edit) -> Option<Study> {
         if self.open.as_ref() != Some(edit) {
             return None;
@@ -119,8 +119,8 @@ impl<B: Default> History<B> {
         Some(step.study)
     }
 
-    /// Returns the study after the last undone decision, given the present study; `exchange` as in
-    /// [`History::undo`].
+    /// Returns the study after the last undone decision. `now` is the present study; `exchange` is
+    /// as in [`History::undo`].
     pub fn redo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
         let step = self.future.pop()?;
         self.open = None;

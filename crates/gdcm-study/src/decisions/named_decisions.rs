@@ -1,5 +1,5 @@
-//! Decisions by the names of channels, conditions and models, carried over from one dataset to
-//! another.
+//! Decisions with channels, conditions and models by name, so that they can be carried over from
+//! one dataset to another.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use super::settings::{ResponseNames, Settings};
 use super::signs::TurnedChannel;
 use super::study::{Study, Variant};
 
-/// Every decision of a study by the names of channels, conditions and models, independent of the
+/// All decisions of a study, with channels, conditions and models by name: independent of the
 /// dataset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decisions {
@@ -50,7 +50,7 @@ impl Decisions {
     }
 
     /// Returns the study of `dataset` with every decision that applies to it, and a list of the
-    /// other decisions.
+    /// decisions that do not apply.
     pub fn applied_to(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
         let mut carried = CarriedDecisions {
             study: Study::new(dataset),
@@ -74,7 +74,7 @@ impl Decisions {
     }
 }
 
-/// A study that takes decisions over from another dataset.
+/// A study to which the decisions of another dataset are applied.
 struct CarriedDecisions {
     study: Study,
     /// The decisions that do not apply.
@@ -96,7 +96,7 @@ impl CarriedDecisions {
         }
     }
 
-    /// Takes the requirement settings; those for channels that the dataset lacks are kept and
+    /// Adopts the requirement settings. Settings for channels that the dataset lacks are kept, and
     /// reported.
     fn take_requirements(&mut self, requirements: &Arc<RequirementSettings>) {
         self.study.requirements = Arc::clone(requirements);
@@ -109,7 +109,7 @@ impl CarriedDecisions {
         self.study.settings = settings.with_responses(|verb, names| self.marked(verb, names));
     }
 
-    /// Returns the listed responses as a table.
+    /// Returns the listed responses as a table; reports those that the dataset lacks.
     fn marked(&mut self, verb: &str, names: &ResponseNames) -> PairTable<bool> {
         let mut table = self.study.settings.constrained.map(|_, _| false);
         for (output, input) in &names.0 {
@@ -137,7 +137,7 @@ impl CarriedDecisions {
         }
     }
 
-    /// Applies every choice as an edit, so that no choice comes in that an edit would refuse.
+    /// Applies every choice as an edit, so that invalid choices are refused.
     fn take_choice(&mut self, condition: ConditionId, choice: &ConditionChoice) {
         if !choice.scheduled {
             self.apply(&Edit::SetScheduled {
@@ -195,8 +195,8 @@ impl CarriedDecisions {
 }
 
 impl Study {
-    /// Returns this study for another state of its dataset, with every decision that still applies,
-    /// and all differences.
+    /// Returns this study for a changed version of its dataset, with every decision that still
+    /// applies; and all differences.
     pub fn reconciled(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
         let mut differences = Inventory::of(self.file_dataset()).differences(&dataset);
         let (study, not_applied) = Decisions::of(self).applied_to(dataset);

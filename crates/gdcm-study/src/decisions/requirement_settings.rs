@@ -11,7 +11,7 @@ use gdcm_model::units::number;
 
 use super::settings::is_default;
 
-/// Requirement settings; an omitted part has its default.
+/// Requirement settings; a part that is missing in a file has its default value.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RequirementSettings {
@@ -20,29 +20,29 @@ pub struct RequirementSettings {
     pub attitude_command: BTreeSet<String>,
     #[serde(skip_serializing_if = "is_default")]
     pub levels: LevelBoundaries,
-    /// Tolerances of time histories about the measured ones.
+    /// Tolerances of simulated time histories about the measured ones.
     #[serde(skip_serializing_if = "is_default")]
     pub tolerances: ToleranceTable,
-    /// Tolerances of modes about the identified ones.
+    /// Tolerances of the modes of the physics models about the identified ones.
     #[serde(skip_serializing_if = "is_default")]
     pub mode_tolerances: ModeToleranceTable,
-    /// Limits beyond which the overview marks a corrected model as far from the identified one.
+    /// Limits beyond which the overview marks a corrected model as inadequate.
     #[serde(skip_serializing_if = "is_default")]
     pub overview: OverviewLimits,
-    /// Test input of the models where no flight record is shown.
+    /// Test input for displayed responses where no flight record is displayed.
     #[serde(skip_serializing_if = "is_default")]
     pub test: TestInput,
 }
 
-/// Limits beyond which the overview marks a corrected model as far from the identified one. The
-/// limits are the program's own, from no standard.
+/// Limits of the difference between a corrected and the identified model, beyond which the overview
+/// marks the corrected model. They are chosen by this program, not by a standard.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct OverviewLimits {
-    /// Relative difference of the bandwidth from the identified one.
+    /// Maximum relative difference of the bandwidth from that of the identified model.
     pub bandwidth: f64,
     pub phase_delay_s: f64,
-    /// Least share of time inside a tolerance, 0 to 1.
+    /// Minimum share of time inside a tolerance, 0 to 1.
     pub share_inside: f64,
 }
 
@@ -56,7 +56,7 @@ impl Default for OverviewLimits {
     }
 }
 
-/// An invalid limit of the overview: not above zero.
+/// Error: a limit of the overview is not positive.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("limits of the overview: expected {name} above zero, found {}", number(*found))]
 pub struct OverviewLimitsError {
@@ -68,7 +68,7 @@ impl OverviewLimits {
     /// Checks the limits and returns them.
     ///
     /// # Errors
-    /// [`OverviewLimitsError`] where a limit is not a number above zero.
+    /// [`OverviewLimitsError`] where a limit is not a positive number.
     pub fn checked(self) -> Result<Self, OverviewLimitsError> {
         let Self {
             bandwidth,
@@ -91,7 +91,7 @@ impl OverviewLimits {
 }
 
 impl RequirementSettings {
-    /// Returns the command type of an axis, by its output's name.
+    /// Returns the command type of an axis; `output` is the name of its output.
     pub fn command_of(&self, output: &str) -> CommandType {
         if self.attitude_command.contains(output) {
             CommandType::Attitude
@@ -100,7 +100,7 @@ impl RequirementSettings {
         }
     }
 
-    /// Describes the settings with outputs that the dataset does not have.
+    /// Describes the settings for outputs that the dataset does not have.
     pub fn without_channel(&self, dataset: &Dataset) -> Vec<String> {
         let (_, outputs) = dataset.names_of_channels();
         let mut texts = Vec::new();

@@ -1,6 +1,6 @@
-//! The settings table, with name, key in files, command-line option, allowed values and window
-//! control. Undo, compared decisions, refusals, the report, the command line and the window read
-//! it.
+//! Table of the settings, with name, key in files, command-line option, allowed values and window
+//! control. It is used by undo, comparison of decisions, refusals, the report, the command line and
+//! the window.
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};
@@ -17,7 +17,7 @@ use super::settings::{
 };
 use super::study::Study;
 
-/// Returns a row with name, key and option, and defaults for the rest.
+/// Returns a row with name, key, option, help and kind, and defaults for the rest.
 const fn row([name, key, option]: [&'static str; 3], help: &'static str, kind: Kind) -> Setting {
     let control = Control {
         place: Place::Elsewhere,
@@ -51,7 +51,7 @@ impl Setting {
         }
     }
 
-    /// Sets the option's value without an argument.
+    /// Sets the value of the option when it is given without an argument.
     const fn bare(self, word: &'static str) -> Self {
         Self {
             bare: Some(word),
@@ -59,7 +59,7 @@ impl Setting {
         }
     }
 
-    /// Sets the control's place, caption and accessible name.
+    /// Sets the place, caption and accessible name of the control.
     const fn at(self, place: Place, caption: &'static str, label: &'static str) -> Self {
         Self {
             control: Control {
@@ -72,7 +72,7 @@ impl Setting {
         }
     }
 
-    /// Sets the number's drag step and decimals in the control.
+    /// Sets the step for dragging, and the decimals, of the control.
     const fn digits(self, step: f64, digits: Digits) -> Self {
         Self {
             control: Control {
@@ -161,7 +161,7 @@ pub static PHASE: Setting = row(
 )
 .at(Place::Top, "Phase", "Phase correction");
 
-/// The D that the delays are fitted to.
+/// The D to which the delays are fitted.
 pub static DELAY_FROM: Setting = row(
     ["delay estimate", "delay_from", "--delay-from"],
     "Which D the delays are fitted to: the median of phase over frequency, or a straight line over the band",
@@ -177,7 +177,7 @@ pub static DELAY_FROM: Setting = row(
 .at(Place::Beside, "Delay estimate", "Delay estimate")
 .where_it(|study| study.settings.phase == PhaseCorrection::Delay);
 
-/// The lead filters' order.
+/// Order of the lead filters.
 pub static LEAD_ORDER: Setting = row(
     ["order of the lead filters", "lead.order", "--lead-order"],
     "Order of every lead filter (M15.3)",
@@ -205,7 +205,7 @@ fn has_leads(study: &Study) -> bool {
     study.settings.phase == PhaseCorrection::Lead
 }
 
-/// The lead filters' `n`: their lag time constant is `1 / (n omega_B)` (M15.3).
+/// Parameter `n` of the lead filters: their lag time constant is `1 / (n omega_B)` (M15.3).
 pub static LEAD_POLE: Setting = row(
     ["n of the lead filters", "lead.n", "--lead-n"],
     "Lag of every lead filter: 1/(n ω_B), ω_B the top of the band; smaller: less noise, and more lead in reach",
@@ -215,7 +215,7 @@ pub static LEAD_POLE: Setting = row(
 .digits(0.05, Digits::Significant)
 .where_it(has_leads);
 
-/// A lead filter's greatest gain at high frequency, 0 to 40 dB.
+/// Maximum gain of a lead filter at high frequency, as a factor; its range is 0 to 40 dB.
 pub static LEAD_LIMIT: Setting = row(
     ["R_max of the lead filters", "lead.r_max", "--lead-r-max"],
     "Greatest gain of one channel's filter far above the band (10 is 20 dB): it bounds the lead of a channel",
@@ -265,7 +265,7 @@ pub static BAND: Setting = row(
 .unit("rad/s", "rad/s", 1.0)
 .at(Place::Line, "Band", "Band");
 
-/// Frequency count in the band.
+/// Number of frequencies in the band.
 pub static POINTS: Setting = row(
     ["number of frequencies", "points", "--points"],
     "Number of logarithmically spaced frequencies in the band",
@@ -278,7 +278,7 @@ pub static POINTS: Setting = row(
 .at(Place::Line, "Points", "Frequencies in the band")
 .digits(1.0, Digits::Decimals(0));
 
-/// Quantile that sets the bounds, at most the median.
+/// Quantile from which the bounds are computed, at most the median.
 pub static QUANTILE: Setting = row(
     ["bound quantile", "quantile", "--quantile"],
     "Bounds are this quantile, and its complement, of |H_ref|/|H_sim| and of Δφ/ω",
@@ -326,7 +326,7 @@ pub static DELAY_UPPER: Setting = row(
 .at(Place::Line, "Delay bound", "Upper delay bound")
 .digits(0.2, Digits::Decimals(1));
 
-/// A loop mismatch up to this counts as agreement \[dB\].
+/// Maximum mismatch around a loop \[dB\] up to which constrained gains count as consistent.
 pub static AGREEMENT: Setting = row(
     ["loop tolerance", "agreement_db", "--agreement"],
     "A loop of held gains that disagrees by no more than this [dB] counts as agreeing",
@@ -389,7 +389,7 @@ pub static GAIN_OBJECTIVE: Setting = row(
 )
 .at(Place::Beside, "", "Objective of the gains");
 
-/// The models that G is computed from.
+/// The models from which G is computed.
 pub static GAIN_SOURCE: Setting = row(
     ["source of G", "gain_from", "--gain-from"],
     "What G is taken from: the two representatives, or the mean over all pairs of kept models",
@@ -412,7 +412,7 @@ pub static GAIN_SOURCE: Setting = row(
 )
 .at(Place::Line, "G from", "Source of G");
 
-/// Level for all error bars, intervals and tests.
+/// Confidence level of all error bars, intervals and tests.
 pub static LEVEL: Setting = row(
     ["confidence level", "error_bars.level", "--level"],
     "Level of every error bar, interval and test",
@@ -426,7 +426,8 @@ pub static LEVEL: Setting = row(
 .at(Place::Line, "Confidence level", "Confidence level")
 .digits(0.5, Digits::Decimals(1));
 
-/// The most degrees that a condition's identification part borrows.
+/// Maximum degrees of freedom that the identification part of a condition's error bar borrows from
+/// the other conditions.
 pub static POOLING: Setting = row(
     ["pooling (degrees of freedom borrowed)", "error_bars.prior_degrees", "--pooling"],
     "Degrees of freedom that a condition's identification part borrows from the other conditions at most; 0 trusts the condition \
@@ -436,7 +437,7 @@ pub static POOLING: Setting = row(
 .at(Place::Beside, "pooling", "Pooling (degrees of freedom borrowed)")
 .digits(0.1, Digits::Significant);
 
-/// Least coherence at a frequency with weight.
+/// Minimum coherence of the frequencies that count.
 pub static COHERENCE: Setting = row(
     ["coherence threshold", "coherence_threshold", "--coherence"],
     "Least coherence γ² of measured responses that is used: off, on, or the least (on is 0.6); off: every frequency counts alike",
@@ -451,7 +452,7 @@ pub static COHERENCE: Setting = row(
 .at(Place::Line, "Coherence", "Least coherence")
 .where_it(|study| study.settings.coherence_threshold.is_some() || study.dataset.has_coherence());
 
-/// Averages that measured responses are taken to have where they do not state it.
+/// Number of averages assumed for measured responses that do not state it.
 pub static AVERAGES: Setting = row(
     [
         "averages of measured responses",
@@ -468,7 +469,7 @@ pub static AVERAGES: Setting = row(
     },
 );
 
-/// Window length that measured responses are taken to have where they do not state it \[s\].
+/// Window length assumed for measured responses that do not state it \[s\].
 pub static WINDOW: Setting = row(
     [
         "windows of measured responses",
@@ -486,7 +487,7 @@ pub static WINDOW: Setting = row(
 )
 .unit("seconds", "s", 1.0);
 
-/// Whether windows are taken to overlap by half where measured responses do not state it.
+/// Whether windows are assumed to overlap by half for measured responses that do not state it.
 pub static HALF_OVERLAP: Setting = row(
     [
         "windows overlap",
@@ -501,7 +502,7 @@ pub static HALF_OVERLAP: Setting = row(
     },
 );
 
-/// The schedule's form.
+/// Form of the schedule.
 pub static SCHEDULE: Setting = row(
     ["schedule", "schedule.kind", "--degree"],
     "Degree of the schedule's polynomial in airspeed, 0 to 3, or a lookup table",
@@ -523,7 +524,7 @@ pub static SCHEDULE: Setting = row(
 )
 .at(Place::Top, "Schedule", "Schedule");
 
-/// Quantity regressed on airspeed.
+/// Quantity scheduled with airspeed.
 pub static SCHEDULED_QUANTITY: Setting = row(
     ["scheduled quantity", "schedule.of", "--schedule-of"],
     "What is regressed on airspeed",
@@ -564,7 +565,7 @@ pub static SCHEDULE_DELAYS: Setting = row(
 .at(Place::Line, "Over airspeed", "Schedule of delays")
 .where_it(|study| !has_leads(study));
 
-/// Degree for the signed delays' polynomial.
+/// Degree of the polynomials for the signed delays.
 pub static TAU_DEGREE: Setting = row(
     ["degree of the signed delays", "schedule.tau_degree", "--tau-degree"],
     "Degree of the polynomial of signed delays in airspeed; 0: lags of servos and sensors do not depend on it (M15.5)",
@@ -586,7 +587,7 @@ pub static TAU_DEGREE: Setting = row(
 .at(Place::Line, "Over airspeed", "Schedule of the signed delays")
 .where_it(has_leads);
 
-/// Greatest step between consecutive airspeeds that count as equal \[kt\].
+/// Maximum difference between consecutive airspeeds that count as equal \[kt\].
 pub static AIRSPEED_TOLERANCE: Setting = row(
     [
         "airspeed tolerance",

@@ -1,4 +1,4 @@
-//! Rows in the settings table, and their operations: setting, checking, formatting and parsing a
+//! Rows of the settings table, and operations on them: setting, checking, formatting and parsing a
 //! value.
 
 use gdcm_method::correction::delta::GainSource;
@@ -19,33 +19,33 @@ use super::study::Study;
 pub struct Setting {
     /// Name in running text: "α of the gains".
     pub name: &'static str,
-    /// Key in files; a dot separates a nested object's key: "lead.n".
+    /// Key in files; a dot separates the keys of nested objects: "lead.n".
     pub key: &'static str,
     /// Command-line option: "--alpha".
     pub option: &'static str,
-    /// The option's value without an argument; `None` where an argument is required.
+    /// Value of the option without an argument; `None` where an argument is required.
     pub bare: Option<&'static str>,
     /// Description in one sentence.
     pub help: &'static str,
     pub unit: Unit,
-    /// The value's type and range.
+    /// Type and range of the value.
     pub kind: Kind,
-    /// Its control in the window.
+    /// Control in the window.
     pub control: Control,
 }
 
-/// A setting's unit in files and on a command line, and the displayed unit.
+/// Unit of a setting in files and on a command line, and its displayed unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Unit {
     /// Unit in files.
     pub file: &'static str,
     /// Displayed unit.
     pub shown: &'static str,
-    /// How many displayed units make a file unit.
+    /// Factor from the file unit to the displayed unit.
     pub scale: f64,
 }
 
-/// A setting's type and range, with access to its field in [`Settings`].
+/// Type and range of a setting, with access to its field in [`Settings`].
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
     Number {
@@ -57,9 +57,9 @@ pub enum Kind {
     /// A number within a range, or no value.
     Optional {
         range: [f64; 2],
-        /// The words for no value: on a command line, and in a sentence.
+        /// The words for no value: on the command line, and in a sentence.
         nothing: [&'static str; 2],
-        /// The number for the word "on", where that is accepted.
+        /// The number that "on" stands for; `None` where "on" is not accepted.
         on: Option<f64>,
         get: fn(&Settings) -> Option<f64>,
         set: fn(&mut Settings, Option<f64>),
@@ -67,7 +67,8 @@ pub enum Kind {
     /// A lower and an upper number within a range, or no value.
     Range {
         range: [f64; 2],
-        /// The words for no value, where that is allowed.
+        /// The words for no value: on the command line, and in a sentence; `None` where a value is
+        /// required.
         nothing: Option<[&'static str; 2]>,
         ends: [&'static str; 2],
         get: fn(&Settings) -> Option<[f64; 2]>,
@@ -80,7 +81,7 @@ pub enum Kind {
         set: fn(&mut Settings, bool),
     },
     Choice {
-        /// For each choice: its word on the command line, its label in the window, and its meaning.
+        /// For each choice: word on the command line, label in the window, meaning.
         words: &'static [[&'static str; 3]],
         get: fn(&Settings) -> usize,
         set: fn(&mut Settings, usize),
@@ -93,10 +94,10 @@ pub struct Control {
     pub place: Place,
     pub caption: &'static str,
     pub label: &'static str,
-    /// Change in the displayed value for each dragged point.
+    /// Change in the displayed value for each point of dragging.
     pub step: f64,
     pub digits: Digits,
-    /// Whether the setting has an effect.
+    /// Whether the setting has an effect in a study.
     pub applies: fn(&Study) -> bool,
 }
 
@@ -105,13 +106,13 @@ pub struct Control {
 pub enum Digits {
     /// Three significant digits.
     Significant,
-    /// Fixed decimals.
+    /// This number of decimals.
     Decimals(usize),
-    /// A gain: three decimals, two where the third is zero.
+    /// A gain: three decimals, or two where the third is zero.
     Gain,
 }
 
-/// Where a setting's control is.
+/// Place of the control of a setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// Above the settings table, with a slider.
@@ -120,9 +121,9 @@ pub enum Place {
     Top,
     /// On its own line.
     Line,
-    /// On the previous setting's line.
+    /// On the line of the previous setting.
     Beside,
-    /// In its subject's view.
+    /// In the view of its subject.
     Elsewhere,
 }
 
@@ -131,7 +132,7 @@ pub enum Place {
 pub enum Value {
     /// A number in the file unit.
     Number(f64),
-    /// No value, where that is allowed.
+    /// No value, for settings that allow it.
     Nothing,
     Range([f64; 2]),
     Flag(bool),
@@ -140,7 +141,7 @@ pub enum Value {
 
 /// A type whose values are a setting's choices.
 pub trait Choice: Copy + PartialEq + 'static {
-    /// All values, ordered as the setting's words.
+    /// All values, in the order of [`Kind::Choice`]'s words.
     const ALL: &'static [Self];
 
     /// Returns its index among all values.
@@ -278,7 +279,7 @@ impl Setting {
         Ok(())
     }
 
-    /// Refuses a value that the setting does not allow.
+    /// Checks a value, and refuses one that the setting does not allow.
     pub fn check(&self, value: Value) -> Result<(), EditRefusal> {
         match (self.kind, value) {
             (Kind::Number { range, whole, .. }, Value::Number(found)) => {
@@ -289,7 +290,7 @@ impl Setting {
             }
             (Kind::Range { range, nothing, .. }, Value::Range(ends)) => {
                 if nothing.is_none() {
-                    // The band, which must have a value, describes its own range.
+                    // The band must have a value; [`Band::new`] describes its range in the refusal.
                     Band::new(ends[0], ends[1])?;
                     return Ok(());
                 }
@@ -378,7 +379,7 @@ impl Setting {
         }
     }
 
-    /// Returns the option argument's syntax: "none|delay|lead", "off|on|NUMBER".
+    /// Returns the syntax of the option's argument: "none|delay|lead", "off|on|NUMBER".
     pub fn syntax(&self) -> String {
         match self.kind {
             Kind::Number { .. } => "NUMBER".to_owned(),
@@ -392,10 +393,10 @@ impl Setting {
         }
     }
 
-    /// Parses the value from the command line; a flag is set by its presence.
+    /// Parses the value from the command line; a flag without argument is set.
     ///
     /// # Errors
-    /// Expected and found value.
+    /// The expected values and the text found.
     pub fn read(&self, said: &[&str]) -> Result<Value, String> {
         match (self.kind, said) {
             (Kind::Flag { .. }, _) => Ok(Value::Flag(true)),
@@ -445,7 +446,7 @@ fn read_whole(text: &str, range: [f64; 2]) -> Result<f64, String> {
     ))
 }
 
-/// Parses a number, the word for no value, or "on" where that stands for a number.
+/// Parses a number, the word for no value, or "on" if it stands for a number.
 fn read_optional(text: &str, nothing: &str, on: Option<f64>) -> Result<Value, String> {
     if text == nothing {
         return Ok(Value::Nothing);
@@ -471,7 +472,7 @@ fn read_choice(text: &str, words: &[[&str; 3]]) -> Result<Value, String> {
     Err(format!("expected {others} or {last}, found {text}"))
 }
 
-/// Returns the choices' words on the command line.
+/// Returns the words of the choices on the command line.
 fn option_words<'a>(words: &[[&'a str; 3]]) -> Vec<&'a str> {
     words.iter().map(|[option, ..]| *option).collect()
 }

@@ -16,26 +16,27 @@ use gdcm_model::dataset::limits::MOST_PAIRS;
 use gdcm_model::dataset::{Band, Dataset, PairTable};
 use gdcm_model::whole_number::whole;
 
-/// By default, a loop mismatch up to this counts as agreement \[dB\].
+/// Default of the maximum mismatch around a loop that counts as consistent \[dB\].
 const DEFAULT_AGREEMENT_DB: f64 = 0.05;
 
-/// By default, a frequency with less coherence has no weight (M4a).
+/// Default of the minimum coherence (M4a).
 pub const DEFAULT_COHERENCE: f64 = 0.6;
 
 /// Phase correction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PhaseCorrection {
-    /// No phase correction: gains alone.
+    /// No phase correction: gains only.
     None,
     /// By delays (the paper, M9).
     #[default]
     Delay,
-    /// By one signed delay for each channel: a delay, or a lead filter where it is negative (M15).
+    /// By one signed delay for each channel, which a lead filter realises where it is negative
+    /// (M15).
     Lead,
 }
 
-/// How the physics models' couplings and modes are corrected, before their channels are (M16).
+/// Correction of the physics models' couplings and modes, before that of the channels (M16).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CouplingCorrection {
@@ -69,7 +70,7 @@ impl CouplingCorrection {
     }
 }
 
-/// The D that the delays are fitted to. Leads are always fitted to the band delay (M15.5).
+/// The D to which the delays are fitted. Leads are always fitted to the band delay (M15.5).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DelayFrom {
@@ -89,7 +90,7 @@ impl fmt::Display for DelayFrom {
     }
 }
 
-/// Responses by their channels' names, output first, as stored in files.
+/// Responses by the names of their channels, output first, as stored in files.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<(String, String)>")]
 pub struct ResponseNames(pub Vec<(String, String)>);
@@ -108,21 +109,22 @@ impl TryFrom<Vec<(String, String)>> for ResponseNames {
     }
 }
 
-/// Every setting that changes a result, common to all conditions of a study. `R` represents the
-/// marked responses: a table of the dataset's responses, or their names in files. A setting absent
-/// from an older file has its initial default.
+/// All settings that change a result, common to all conditions of a study. `R` is the type of a set
+/// of responses: a table over the dataset, or names in files. A setting that an older file does not
+/// contain has the default of its field, which may differ from its value in a new study
+/// ([`Settings::of`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings<R = PairTable<bool>> {
     #[serde(rename = "band_rad_s")]
     pub band: Band,
-    /// How many logarithmically spaced frequencies the band has, both ends included (M2).
+    /// Number of logarithmically spaced frequencies in the band, both ends included (M2).
     #[serde(deserialize_with = "whole")]
     pub points: usize,
     /// Regularisation weight for the output gains, eq. (7).
     pub alpha_gain: f64,
     /// Regularisation weight for the output delays, eq. (11), or for all signed delays (M15.4).
     pub alpha_delay: f64,
-    /// Quantile that sets the bounds, and its complement (M7).
+    /// Quantile from which the bounds are computed, together with its complement (M7).
     pub quantile: f64,
     /// The responses constrained exactly; initially the on-axis pairs.
     pub constrained: R,
@@ -130,8 +132,8 @@ pub struct Settings<R = PairTable<bool>> {
     pub ignored: R,
     /// Average over frequency in J: the median (the paper) or the mean (Tischler) (M4).
     pub cost_average: CostAverage,
-    /// Least coherence at a frequency with weight, where the reference is measured with coherence,
-    /// which then weights J, G and D too; `None`: coherence is not used (M4a).
+    /// Minimum coherence \[-\] of the frequencies that count, if the reference carries coherence;
+    /// coherence then also weights J, G and D. `None` ignores coherence (M4a).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coherence_threshold: Option<f64>,
     /// The gain objective.
@@ -143,7 +145,7 @@ pub struct Settings<R = PairTable<bool>> {
     /// Phase correction (M9, M15).
     #[serde(default)]
     pub phase: PhaseCorrection,
-    /// The D that the delays are fitted to (M15.2).
+    /// The D to which the delays are fitted (M15.2).
     #[serde(default)]
     pub delay_from: DelayFrom,
     /// Parameters common to all lead filters (M15.3).
@@ -152,18 +154,18 @@ pub struct Settings<R = PairTable<bool>> {
     /// How couplings and modes are corrected (M16).
     #[serde(default, skip_serializing_if = "is_default")]
     pub couplings: CouplingCorrection,
-    /// Mismatch \[dB\] up to which constrained gains around a loop count as agreeing: each gain is
-    /// then constrained at the nearest consistent value.
+    /// Maximum mismatch \[dB\] of constrained gains around a loop up to which they count as
+    /// consistent: each is then constrained at the nearest consistent value.
     #[serde(default = "default_agreement_db")]
     pub agreement_db: f64,
-    /// How channel gains are scheduled with airspeed (M11).
+    /// How channel gains depend on airspeed (M11).
     #[serde(default)]
     pub schedule: ScheduleSettings,
-    /// Whether the schedule has delays too (M11). Older programs' files have `schedule.delays`
-    /// alone ([`Settings::complete_delay_scheduling`]).
+    /// Whether the schedule has delays too (M11). Files of earlier versions only contain
+    /// `schedule.delays` ([`Settings::complete_delay_scheduling`]).
     #[serde(default = "never_scheduled")]
     pub schedule_delays: DelayScheduling,
-    /// The models that G is computed from.
+    /// The models from which G is computed.
     #[serde(default, rename = "gain_from")]
     pub gain_source: GainSource,
     /// Options for error bars (M13).
@@ -184,8 +186,8 @@ pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 }
 
 impl<R> Settings<R> {
-    /// Returns the same settings with the marked responses represented otherwise; `of` receives the
-    /// verb, "hold" or "ignore".
+    /// Returns the same settings with another type for sets of responses. `of` converts a set; its
+    /// first argument is "hold" or "ignore".
     pub fn with_responses<Q>(&self, mut of: impl FnMut(&'static str, &R) -> Q) -> Settings<Q> {
         Settings {
             band: self.band,
@@ -212,15 +214,15 @@ impl<R> Settings<R> {
         }
     }
 
-    /// Sets whether the schedule has delays, together with the flag that older programs read
-    /// instead.
+    /// Sets whether the schedule has delays, and the corresponding flag for earlier versions of the
+    /// program.
     pub fn set_delay_scheduling(&mut self, scheduling: DelayScheduling) {
         self.schedule_delays = scheduling;
         self.schedule.delays = scheduling == DelayScheduling::Always;
     }
 
-    /// Adopts `schedule.delays` from a file without the newer setting: `true` is always, `false`
-    /// never.
+    /// Adopts `schedule.delays` from a file that lacks the newer setting: `true` becomes always,
+    /// `false` becomes never.
     pub fn complete_delay_scheduling(&mut self) {
         if self.schedule_delays == DelayScheduling::Never {
             self.set_delay_scheduling(self.schedule.delays.into());
@@ -274,9 +276,9 @@ impl Settings {
         self.ignored.map(|_, ignored| !ignored)
     }
 
-    /// Describes the models that G is computed from; and that the setting has no effect where the
-    /// gains are based on the difference left after leads, which involves the representatives alone
-    /// (M15.5).
+    /// Describes the models from which G is computed. With leads the setting has no effect, because
+    /// the gains are then fitted to the representatives' difference after the leads (M15.5); the
+    /// description says so.
     pub fn gain_source_words(&self) -> String {
         let words = self.gain_source.words();
         if self.gain_source == GainSource::MeanOfPairs && self.phase == PhaseCorrection::Lead {

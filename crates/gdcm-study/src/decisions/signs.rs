@@ -13,13 +13,13 @@ use gdcm_model::dataset::{BundleKind, Condition, Dataset, Dynamics, Model, Pair,
 
 use super::edit_refusal::EditRefusal;
 
-/// The models whose sign of a channel is reversed.
+/// The models in which the sign of a channel is reversed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SignRole {
-    /// The identified bundles' models.
+    /// Models of the identified bundles.
     Identified,
-    /// The physics bundles' models.
+    /// Models of the physics bundles.
     Physics,
     All,
 }
@@ -28,7 +28,7 @@ impl SignRole {
     /// Every role.
     pub const EACH: [Self; 3] = [Self::Identified, Self::Physics, Self::All];
 
-    /// Returns the word in files and options.
+    /// Returns the word used in files and command-line options.
     pub fn word(self) -> &'static str {
         match self {
             Self::Identified => "identified",
@@ -37,7 +37,7 @@ impl SignRole {
         }
     }
 
-    /// Returns the models in words.
+    /// Returns a description of the models.
     pub fn models(self) -> &'static str {
         match self {
             Self::Identified => "the identified models",
@@ -46,7 +46,7 @@ impl SignRole {
         }
     }
 
-    /// Returns whether the sign is reversed in a bundle's models.
+    /// Returns whether the sign is reversed in the models of a bundle.
     pub fn covers(self, kind: BundleKind) -> bool {
         self == Self::All || self == kind.pick(Self::Physics, Self::Identified)
     }
@@ -64,7 +64,7 @@ pub struct TurnedChannel {
 }
 
 impl TurnedChannel {
-    /// Returns the channel in a dataset, where it exists.
+    /// Returns the channel in a dataset; `None` where it does not exist.
     pub fn find(&self, dataset: &Dataset) -> Option<Channel> {
         let channels = match self.side {
             ChannelSide::Input => dataset.inputs(),
@@ -80,8 +80,8 @@ impl TurnedChannel {
     }
 }
 
-/// Returns the dataset with the signs of these channels reversed: for an output its rows of C and
-/// D, for an input its columns of B and D, for measured responses every response of the channel.
+/// Returns the dataset with the signs of these channels reversed: rows of C and D for an output,
+/// columns of B and D for an input; for measured responses, every response of the channel.
 pub(crate) fn turned(dataset: &Arc<Dataset>, signs: &Signs) -> Result<Arc<Dataset>, EditRefusal> {
     let mut turned = Arc::clone(dataset);
     if signs.is_empty() {
@@ -125,7 +125,7 @@ fn turned_models(
     Ok(models)
 }
 
-/// The channels' signs in a bundle's models.
+/// Signs of the channels in the models of a bundle.
 struct BundleSigns<'a> {
     signs: &'a Signs,
     kind: BundleKind,
@@ -140,7 +140,7 @@ impl BundleSigns<'_> {
         }
     }
 
-    /// Returns the product of the signs of a response's two channels.
+    /// Returns the product of the signs of the two channels of a response.
     fn pair_sign(&self, pair: Pair) -> f64 {
         let [output, input] = Channel::of(pair);
         self.sign(output) * self.sign(input)

@@ -11,28 +11,28 @@ use super::requirement_settings::RequirementSettings;
 use super::settings::Settings;
 use super::signs::Signs;
 
-/// A study: a dataset, and every decision about it. The unit of saving and of undo.
+/// A dataset with all decisions about it; the unit of saving and of undo.
 #[derive(Clone, Debug)]
 pub struct Study {
     pub dataset: Arc<Dataset>,
     /// Every setting that changes a result.
     pub settings: Settings,
     pub choices: BTreeMap<ConditionId, ConditionChoice>,
-    /// Alternative decisions about the dataset, stored under their names, in the order of storage.
-    /// No analysis depends on them.
+    /// Alternative decisions about the dataset, stored under names, in order of creation. No
+    /// analysis depends on them.
     pub variants: Vec<Arc<Variant>>,
     /// The channels with reversed sign; `dataset` already contains the reversal.
     pub signs: Signs,
     /// Requirement settings. No correction depends on them.
     pub requirements: Arc<RequirementSettings>,
-    /// Models adopted instead of the ones in the dataset's file; `dataset` contains them.
+    /// Models adopted instead of those in the file; `dataset` contains them.
     pub(crate) taken: BTreeMap<ConditionId, Arc<AdoptedModels>>,
-    /// The dataset as in its file, where models are adopted or reversed.
+    /// The dataset as in its file; `None` if no models are adopted and no signs reversed.
     pub(crate) file: Option<Arc<Dataset>>,
 }
 
 impl PartialEq for Study {
-    /// Compares decisions first: the numbers of two datasets are compared only where they are not
+    /// Compares the decisions first. The contents of the datasets are only compared if they are not
     /// the same object.
     fn eq(&self, other: &Self) -> bool {
         let decisions = (
@@ -72,8 +72,8 @@ impl Study {
         }
     }
 
-    /// Returns the choices in a condition; empty choices for a condition that the dataset does not
-    /// have.
+    /// Returns the choices in a condition; empty choices if the dataset does not have the
+    /// condition.
     pub fn choice(&self, condition: ConditionId) -> &ConditionChoice {
         static NONE: LazyLock<ConditionChoice> = LazyLock::new(ConditionChoice::default);
         self.choices.get(&condition).unwrap_or(&NONE)
@@ -87,7 +87,7 @@ impl Study {
             .contains(&id.name)
     }
 
-    /// Returns the reason of a model's rejection, where given.
+    /// Returns the reason for the rejection of a model, where given.
     pub fn reason(&self, id: &ModelId) -> Option<&str> {
         self.choice(id.condition)
             .bundle(id.bundle)
@@ -96,8 +96,7 @@ impl Study {
             .map(String::as_str)
     }
 
-    /// Returns the names of the rejected models of a condition in file order, the physics bundle
-    /// first.
+    /// Returns the names of the rejected models of a condition in file order, physics bundle first.
     pub fn rejected_names(&self, condition: ConditionId) -> Vec<&str> {
         let of = |kind| {
             let rejected = &self.choice(condition).bundle(kind).rejected;
@@ -114,7 +113,7 @@ impl Study {
     }
 }
 
-/// All decisions of a study at one time, stored under a name.
+/// All decisions of a study at a certain time, stored under a name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variant {
     /// The name, unique in its study.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::edit_refusal::{EditRefusal, check_length};
 use super::study::{Study, Variant};
 
-/// Greatest length of a variant's name, in characters.
+/// Maximum length of the name of a variant, in characters.
 pub const LONGEST_VARIANT_NAME: usize = 60;
 
 impl Study {
@@ -17,8 +17,8 @@ impl Study {
             .map(Arc::as_ref)
     }
 
-    /// Returns the study with the decisions of one of its variants instead of the present ones, and
-    /// without variants: the study analysed for comparisons.
+    /// Returns the study with the decisions of a variant instead of the present ones, and without
+    /// variants. It is analysed for comparisons.
     pub fn of_variant(&self, name: &str) -> Option<Study> {
         let Variant {
             settings, choices, ..

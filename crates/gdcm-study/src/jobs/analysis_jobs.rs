@@ -21,7 +21,8 @@ use crate::stages::coupling_costs::with_couplings;
 use crate::stages::engine::Engine;
 use crate::stages::optima::solved;
 
-/// Equation (7)'s complete proof for a condition, where the live answer's budget was too small.
+/// Complete proof of eq. (7) for a condition, where the budget of the interactive analysis was too
+/// small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProofJob {
     pub problem: Arc<Problem>,
@@ -36,15 +37,15 @@ impl Job for ProofJob {
     }
 }
 
-/// What constraining or releasing each response in a condition costs.
+/// Cost of constraining or releasing each response of a condition.
 #[derive(Clone, Debug)]
 pub struct TogglesJob {
     pub condition: ConditionAnalysis,
 }
 
 impl TogglesJob {
-    /// Returns whether the costs apply to this result: they depend on its two problems, and on the
-    /// reference objectives.
+    /// Returns whether the costs apply to this result. They depend on its two problems and on the
+    /// optimal objectives, to which each changed problem is compared.
     pub fn is_of(&self, condition: &ConditionAnalysis) -> bool {
         let a = &self.condition;
         let b = condition;
@@ -67,7 +68,7 @@ impl Job for TogglesJob {
     type Output = Option<Toggles>;
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        // A limited proof: the table is a hint, not a result.
+        // A limited proof is enough: the table serves as a hint, not as a result.
         let budget = ProofBudget {
             work: 4_000_000,
             ..ProofBudget::default()
@@ -91,7 +92,7 @@ impl Job for TogglesJob {
     }
 }
 
-/// What every single toggle in a condition costs.
+/// Cost of every single toggle in a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Toggles {
     pub gains: Vec<Toggle>,
@@ -106,14 +107,14 @@ impl Toggles {
     }
 }
 
-/// A variant's analysis ([`Study::of_variant`]), beside the live answer.
+/// Analysis of a variant ([`Study::of_variant`]), beside the interactive analysis.
 #[derive(Clone, Debug)]
 pub struct VariantJob {
     pub study: Study,
 }
 
 impl PartialEq for VariantJob {
-    /// Compares the dataset and the decisions; rejections' reasons are ignored.
+    /// Compares the dataset and the decisions, but not the reasons of rejections.
     fn eq(&self, other: &Self) -> bool {
         let a = &self.study;
         let b = &other.study;
@@ -126,8 +127,8 @@ impl PartialEq for VariantJob {
 }
 
 impl Job for VariantJob {
-    /// An engine that caches the results common to variants: responses and distances, which depend
-    /// on no decision but the band.
+    /// An engine that caches the responses and distances: the band is the only decision that they
+    /// depend on, so that most variants share them.
     type Tools = Engine;
     type Output = Arc<Analysis>;
 
@@ -136,7 +137,7 @@ impl Job for VariantJob {
     }
 }
 
-/// An analysis's error bars, and the conclusions from them.
+/// Error bars of an analysis, and the conclusions drawn from them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UncertaintyJob {
     pub analysis: Shared<Analysis>,
@@ -152,7 +153,7 @@ impl Job for UncertaintyJob {
     }
 }
 
-/// Job for an assessment of hundreds of conditions, which may take longer than a frame.
+/// Assessment of hundreds of conditions, which may take longer than a frame of the window.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentJob {
     pub analysis: Shared<Analysis>,
@@ -173,10 +174,10 @@ impl Job for AssessmentJob {
     }
 }
 
-/// Job that assesses couplings for a study, beside the live answer.
+/// Job that assesses couplings for a study, beside the interactive analysis.
 #[derive(Clone, Debug)]
 pub struct CouplingsJob {
-    /// The study; its own choice about couplings is ignored.
+    /// The study; its own coupling setting is ignored.
     pub study: Study,
     pub couplings: CouplingCorrection,
 }

@@ -1,4 +1,4 @@
-//! Answers of the models of the example to test inputs.
+//! Responses of the models of the example to test inputs.
 
 use std::sync::Arc;
 
@@ -39,7 +39,7 @@ fn every_model_answers_in_proportion_to_the_size_of_the_test() {
     for ((role, small), (_, large)) in one.models.iter().zip(&three.models) {
         let small = small.as_ref().unwrap();
         let large = large.as_ref().unwrap();
-        // Linear models; rounding of a thousand steps.
+        // The models are linear; the tolerance covers the rounding of a thousand steps.
         assert!(
             (3.0 * small - large).amax() <= 1e-9 * large.amax(),
             "{role:?}"

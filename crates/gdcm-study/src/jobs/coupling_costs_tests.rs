@@ -198,8 +198,8 @@ fn aircraft(outputs: usize, inputs: usize, response: impl Fn(Pair) -> bool) -> S
     StateSpace::new(a, b, c, DMatrix::zeros(outputs, inputs)).unwrap()
 }
 
-/// Builds a study of such aircraft, whose flight models add a little mixing and feedback; gains
-/// alone correct the channels.
+/// Builds a study of such aircraft: the flight models add a little mixing and feedback, and the
+/// channels are corrected by gains only.
 fn small_study(
     outputs: usize,
     inputs: usize,
@@ -314,7 +314,7 @@ fn a_response_that_nobody_has_is_left_alone_and_the_couplings_of_the_others_come
     let study = small_study(2, 2, 3, |pair| pair != Pair::new(0, 1));
     let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
     let matrices = analysis.fitted_couplings().unwrap().matrices();
-    // The ridge shifts entries by a thousandth.
+    // The ridge term shifts entries by a thousandth.
     assert!(
         (matrices.normalised_mixing(60.0)[(1, 0)] - 0.08).abs() < 1e-3,
         "{matrices:?}"

@@ -42,7 +42,7 @@ pub(crate) struct Example {
     pub(crate) analysis: Analysis,
 }
 
-/// The reference dataset, source of the known answers.
+/// The reference dataset, for which `mixing.json` contains the expected values.
 pub(crate) static EXAMPLE: LazyLock<Example> = LazyLock::new(|| Example::of(reference_dataset()));
 pub(crate) static FEEDBACK: LazyLock<CouplingFit> =
     LazyLock::new(|| fit(&EXAMPLE.problem(CouplingKind::MixingAndFeedback)));
@@ -146,7 +146,7 @@ impl Example {
         )
     }
 
-    /// Returns the least singular value of `I - K H` from `low` to `high` \[rad/s\] over the
+    /// Returns the minimum singular value of `I - K H` from `low` to `high` \[rad/s\] over the
     /// physics representatives.
     fn least_margin(&self, matrices: &CouplingMatrices, (low, high): (f64, f64)) -> LoopMargin {
         let grid = FrequencyGrid::logarithmic(Band::beyond(low, high).unwrap(), 60);
@@ -313,9 +313,9 @@ fn the_example_with_mixing_and_feedback_agrees() {
     the_example_agrees(&FEEDBACK, "feedback");
 }
 
-/// The embedded example, whose identified models are the program's own: near the figures of M16.4
-/// and M16.5, which come from other identified models (least singular values of 0.87 in the band
-/// and 0.96 above; two more slow divergences).
+/// The identified models of the embedded example come from this program. Its results are close to
+/// those of M16.4 and M16.5, which were computed with other identified models (minimum singular
+/// value 0.87 in the band and 0.96 above; two additional slow divergences).
 #[test]
 fn the_embedded_example_reads_as_what_was_put_in() {
     let example = Example::of(dataset_of(include_bytes!(
@@ -391,7 +391,7 @@ fn the_bars_of_the_example_tell_its_largest_entries_from_nothing() {
     assert!(fed.len() == 24 && fed.windows(2).all(|of| of[0].share >= of[1].share));
 }
 
-/// Executor that starts with the last piece of work.
+/// Executor that runs the pieces of work in reverse order.
 struct Backwards;
 
 impl Executor for Backwards {

@@ -23,7 +23,7 @@ use crate::stages::engine::Engine;
 pub struct CurvesJob {
     pub dataset: Shared<Dataset>,
     pub condition: ConditionId,
-    /// Band, and how many frequencies it has.
+    /// Band, and number of frequencies in it.
     pub grid: (Band, usize),
 }
 
@@ -53,19 +53,19 @@ impl Job for ModesJob {
     }
 }
 
-/// Selected models' responses, from any condition, on a grid.
+/// Responses of selected models from any conditions, on a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossJob {
     pub dataset: Shared<Dataset>,
     /// The models; models that the dataset does not have are skipped.
     pub models: Vec<ModelId>,
-    /// The couplings put on those models; `None` for models without couplings.
+    /// The couplings applied to those models; `None` for models without couplings.
     pub couplings: Option<Arc<FittedCouplings>>,
-    /// Band, and how many frequencies it has.
+    /// Band, and number of frequencies in it.
     pub grid: (Band, usize),
 }
 
-/// Responses from several conditions' models.
+/// Responses of models from several conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossCurves {
     pub grid: FrequencyGrid,
@@ -120,7 +120,7 @@ impl Job for AcrossJob {
     }
 }
 
-/// Each condition's model in the overlay of conditions.
+/// Role of the model that represents each condition in the overlay of conditions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AcrossRole {
     /// The physics model at the condition's own trim.
@@ -153,8 +153,8 @@ impl AcrossRole {
         }
     }
 
-    /// Returns the model with this role in a condition; `None` where the role needs a result and
-    /// there is none.
+    /// Returns the model with this role in a condition; `None` where the role needs a result that
+    /// does not exist.
     pub fn model(self, condition: &Condition, analysis: Option<&Analysis>) -> Option<ModelId> {
         let id = condition.id();
         let kind = match self {
@@ -169,8 +169,8 @@ impl AcrossRole {
         Some(ModelId::new(id, kind, result.representative_name(kind)))
     }
 
-    /// Returns the correction applied to its response before drawing; `None` where the response has
-    /// no correction.
+    /// Returns the correction applied to the response of the model before drawing; `None` where the
+    /// correction has no positive net gain, or there is no result.
     pub fn correction(
         self,
         condition: ConditionId,
@@ -197,7 +197,7 @@ pub struct ConditionModes {
 }
 
 impl ConditionModes {
-    /// Computes every model's modes, model by model; each is a step.
+    /// Computes the modes of every model in turn; each model is a step.
     ///
     /// # Errors
     /// [`Cancelled`] between two models, where `progress` requests it.
@@ -220,8 +220,8 @@ impl ConditionModes {
         kind.pick(&self.physics, &self.identified)
     }
 
-    /// Follows each mode from the model with index `reference` through its bundle. A model without
-    /// modes leaves gaps.
+    /// Follows each mode through the models of a bundle, starting from the model with index
+    /// `reference`. Models without modes leave gaps.
     pub fn tracks(&self, kind: BundleKind, reference: usize) -> Vec<ModeTrack> {
         let modes = self
             .bundle(kind)

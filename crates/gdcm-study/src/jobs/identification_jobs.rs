@@ -24,7 +24,7 @@ pub enum NothingToIdentify {
     AllHeldOut,
 }
 
-/// Records, and an identification's options.
+/// Flight records, and the options of their identification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IdentificationRequest {
     /// The records, in the channels' units.
@@ -33,8 +33,8 @@ pub struct IdentificationRequest {
 }
 
 impl IdentificationRequest {
-    /// Builds the request from those `records` that are used, with the records held out whose guess
-    /// says so.
+    /// Builds the request from the `records` in use; those whose guess has `held_out` set are
+    /// excluded from the identification and used for validation.
     ///
     /// # Errors
     /// No record is used, or all are held out.
@@ -82,7 +82,7 @@ impl IdentificationRequest {
     }
 }
 
-/// News from a running identification.
+/// Intermediate results of a running identification.
 #[derive(Clone, Debug, Default)]
 pub struct IdentificationNews {
     /// Description of the present step.
@@ -98,7 +98,7 @@ pub struct IdentificationNews {
 pub struct IdentifyJob {
     pub condition: ConditionId,
     pub request: IdentificationRequest,
-    /// News during the run; not part of the request.
+    /// Intermediate results during the run; not part of the request.
     news: Arc<Mutex<IdentificationNews>>,
 }
 
@@ -112,7 +112,7 @@ impl IdentifyJob {
         }
     }
 
-    /// Returns the news so far.
+    /// Returns the intermediate results so far.
     pub fn news(&self) -> IdentificationNews {
         locked(&self.news).clone()
     }
@@ -124,12 +124,12 @@ impl PartialEq for IdentifyJob {
     }
 }
 
-/// Locks the news; a panic under the lock leaves them intact.
+/// Locks the intermediate results; a panic under the lock leaves them intact.
 fn locked(news: &Mutex<IdentificationNews>) -> MutexGuard<'_, IdentificationNews> {
     news.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Stores the news, and forwards other progress.
+/// Stores intermediate results, and forwards other progress.
 struct NewsProgress<'a> {
     progress: &'a dyn Progress,
     news: &'a Mutex<IdentificationNews>,
@@ -154,7 +154,7 @@ impl Progress for NewsProgress<'_> {
 }
 
 impl Job for IdentifyJob {
-    /// Runs the pieces.
+    /// Executor of the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Result<Arc<Identification>, IdentificationError>;
 
@@ -183,15 +183,15 @@ impl Job for IdentifyJob {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationJob {
     pub record: Shared<FlightRecord>,
-    /// How its channels are prepared.
+    /// How the channels of the record are prepared.
     pub preparation: Preparation,
     pub model: StateSpace,
 }
 
 impl Job for SimulationJob {
-    /// Runs the pieces.
+    /// Executor of the pieces of work.
     type Tools = Box<dyn Executor>;
-    /// Error: the reason in words.
+    /// The error is the reason in words.
     type Output = Result<Arc<Validation>, String>;
 
     fn run(

@@ -1,8 +1,8 @@
-//! Long computations beside the live answer.
+//! Long computations beside the interactive analysis.
 
 use gdcm_model::progress::{Cancelled, Progress};
 
-/// A long computation with progress and cancellation, run beside the live answer.
+/// A long computation with progress and cancellation, run beside the interactive analysis.
 ///
 /// Two jobs are equal where they have the same output: a running job is cancelled only when no
 /// equal job is requested any more.
@@ -22,8 +22,8 @@ pub trait Job: Clone + PartialEq + Send + 'static {
         progress: &dyn Progress,
     ) -> Result<Self::Output, Cancelled>;
 
-    /// Returns whether this job, `done` of `total` steps complete, should continue although `newer`
-    /// is requested instead: `newer` is faster once this job is complete.
+    /// Returns whether this job, with `done` of `total` steps complete, should run to its end
+    /// although `newer` is requested instead, because `newer` is then faster.
     fn serves(&self, _newer: &Self, _done: usize, _total: usize) -> bool {
         false
     }

@@ -1,4 +1,4 @@
-//! Jobs for requirements: findings without records, time histories, single models' answers.
+//! Jobs for requirements: findings without records, time histories, responses of single models.
 
 use std::sync::Arc;
 
@@ -21,11 +21,11 @@ use crate::results::time_histories::{
 use crate::results::uncertainty::Uncertainty;
 use crate::shared::Shared;
 
-/// Requirements on an analysis's models, with error bars where they are known.
+/// Requirements on the models of an analysis, with error bars if they were computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementsJob {
     pub analysis: Shared<Analysis>,
-    /// Its values' error bars.
+    /// Error bars of the values in the analysis.
     pub uncertainty: Option<Shared<Uncertainty>>,
     /// Requirement settings, on which the analysis does not depend.
     pub settings: Arc<RequirementSettings>,
@@ -33,7 +33,7 @@ pub struct RequirementsJob {
 }
 
 impl Job for RequirementsJob {
-    /// Runs the pieces.
+    /// Executor of the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Arc<Requirements>;
 
@@ -52,7 +52,7 @@ impl Job for RequirementsJob {
     }
 }
 
-/// Compares records with an analysis's models.
+/// Comparison of flight records with the models of an analysis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeHistoriesJob {
     pub analysis: Shared<Analysis>,
@@ -61,7 +61,7 @@ pub struct TimeHistoriesJob {
 }
 
 impl Job for TimeHistoriesJob {
-    /// Runs the pieces.
+    /// Executor of the pieces of work.
     type Tools = Box<dyn Executor>;
     type Output = Arc<TimeHistories>;
 
@@ -78,21 +78,22 @@ impl Job for TimeHistoriesJob {
     }
 }
 
-/// Compares a condition's record with the study's tolerances.
+/// Comparison of a flight record with the models of its condition, within the tolerances of the
+/// study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordHistoryJob {
     pub analysis: Shared<Analysis>,
     pub condition: ConditionId,
     pub record: HistoryRecord,
-    /// How its channels are prepared.
+    /// How the channels of the record are prepared.
     pub preparation: Preparation,
     pub tolerances: ToleranceTable,
 }
 
 impl Job for RecordHistoryJob {
-    /// Runs the pieces.
+    /// Executor of the pieces of work.
     type Tools = Box<dyn Executor>;
-    /// Error: the reason in words.
+    /// The error is the reason in words.
     type Output = Result<Arc<RecordHistory>, String>;
 
     fn run(
@@ -114,20 +115,20 @@ impl Job for RecordHistoryJob {
     }
 }
 
-/// Simulates a condition's models with the study's test input.
+/// Simulation of the models of a condition with the test input of the study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestAnswersJob {
     pub analysis: Shared<Analysis>,
     pub condition: ConditionId,
     pub input: usize,
-    /// The input's shape.
+    /// Test input: shape, amplitude and duration.
     pub test: TestInput,
 }
 
 impl Job for TestAnswersJob {
-    /// Runs the pieces.
+    /// Executor of the pieces of work.
     type Tools = Box<dyn Executor>;
-    /// Error: the reason in words.
+    /// The error is the reason in words.
     type Output = Result<Arc<TestAnswers>, String>;
 
     fn run(

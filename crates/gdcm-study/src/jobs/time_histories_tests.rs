@@ -236,7 +236,7 @@ fn a_corrected_model_answers_with_the_couplings_of_the_study() {
     let correction = result.correction.on(pair).unwrap();
     for (k, omega) in grid.omega().iter().enumerate() {
         let expected = coupled.curve(pair)[k] * correction.at(*omega);
-        // Lag error in the band of a Pade approximant for delays of tens of ms.
+        // Allows for the phase error in the band of a Pade approximant for delays of tens of ms.
         assert!(
             (answered.curve(pair)[k] - expected).norm() < 1e-4 * expected.norm(),
             "{omega}"
@@ -304,7 +304,7 @@ fn the_models_of_a_condition_are_compared_in_the_same_windows() {
     let slow = analysis
         .role_model(result, RequirementRole::Physics)
         .unwrap();
-    // A mode that grows e-fold in 1 s is compared over 3 s.
+    // A mode that grows by a factor of e in 1 s is compared over 3 s.
     let fast = StateSpace::new(
         slow.a() + DMatrix::from_diagonal_element(slow.order(), slow.order(), 1.0 - fastest(&slow)),
         slow.b().clone(),
@@ -327,8 +327,8 @@ fn the_models_of_a_condition_are_compared_in_the_same_windows() {
             .collect()
     };
     assert_eq!(windows(&slow), windows(&fast));
-    // A model that diverges too fast to be compared at all does not shorten the windows of
-    // others.
+    // A model that diverges too fast to be compared does not shorten the windows of the other
+    // models.
     let hopeless = StateSpace::new(
         slow.a() + DMatrix::from_diagonal_element(slow.order(), slow.order(), 100.0),
         slow.b().clone(),
@@ -339,7 +339,7 @@ fn the_models_of_a_condition_are_compared_in_the_same_windows() {
     assert_eq!(common_windows([&slow, &hopeless], &segments), alone);
 }
 
-/// Returns the greatest real part of the poles \[rad/s\].
+/// Returns the maximum real part of the poles \[rad/s\].
 fn fastest(model: &StateSpace) -> f64 {
     model
         .a()

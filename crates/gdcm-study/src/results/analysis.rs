@@ -1,4 +1,4 @@
-//! A study's whole result.
+//! The complete result of a study.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ use crate::decisions::study::Study;
 /// Each condition's result, or why it has none.
 pub(crate) type Outcomes = BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>;
 
-/// The nominal model's J by response, before and after the scheduled correction (M12), or why the
+/// J of the nominal model by response, before and after the scheduled correction (M12), or why the
 /// condition is left out.
 pub type Assessed = Result<PairTable<Option<CostChange>>, NotAssessed>;
 
@@ -58,24 +58,25 @@ pub struct Analysis {
     pub omega: Arc<[f64]>,
     /// Each condition's result, or why it has none.
     pub conditions: BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>,
-    /// Couplings put on every physics model, or why there are none; `None` where none are requested
-    /// (M16).
+    /// Couplings applied to every physics model, or why there are none; `None` where none are
+    /// requested (M16).
     pub couplings: Option<Result<Arc<FittedCouplings>, CouplingError>>,
-    /// The couplings' benefit and cost, once assessed
+    /// Benefit and cost of the couplings, once assessed
     /// ([`Engine::assess_couplings`](crate::stages::engine::Engine::assess_couplings)).
     pub coupling_assessment: Option<Arc<CouplingsAssessment>>,
-    /// Channels with an apparent sign or unit difference between the two sides; reported first.
+    /// Channels with an apparent sign or unit difference between the physics and the identified
+    /// models; reported first.
     pub doubts: Vec<ConventionDoubt>,
-    /// Schedule for the chosen conditions.
+    /// Schedule fitted to the chosen conditions.
     pub schedule: Result<Schedule, ScheduleError>,
     pub assessment: BTreeMap<ConditionId, Assessed>,
-    /// The figures' uncertainty, once computed
+    /// Uncertainty of the values, once computed
     /// ([`Engine::uncertainty`](crate::stages::engine::Engine::uncertainty)).
     pub uncertainty: Option<Arc<Uncertainty>>,
 }
 
 impl Analysis {
-    /// Returns a condition's result, where there is one.
+    /// Returns the result of a condition; `None` where it has none.
     pub fn condition(&self, id: ConditionId) -> Option<&ConditionAnalysis> {
         self.conditions.get(&id)?.as_ref().ok()
     }
@@ -95,7 +96,7 @@ impl Analysis {
         analysis
     }
 
-    /// Returns the couplings put on every physics model, where there are any.
+    /// Returns the couplings applied to every physics model; `None` where there are none.
     pub fn fitted_couplings(&self) -> Option<&Arc<FittedCouplings>> {
         self.couplings.as_ref()?.as_ref().ok()
     }
@@ -120,9 +121,9 @@ impl Analysis {
 /// A condition's result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionAnalysis {
-    /// The analysed condition; its models define the order of the figures below.
+    /// The analysed condition; the order of its models applies to all results below.
     pub condition: Arc<Condition>,
-    /// The bundles' distances and discontinuity ratios.
+    /// Distances within the bundles, and discontinuity ratios.
     pub figures: Arc<BundleMetrics>,
     /// Changes due to the couplings; `None` without couplings.
     pub coupled: Option<CoupledCondition>,
@@ -137,10 +138,10 @@ pub struct ConditionAnalysis {
     pub gains: Arc<Solution>,
     /// Optimal delays, eq. (11), or signed delays, M15.4.
     pub delays: Arc<Solution>,
-    /// Difference left after the leads, where leads are requested (M15.5).
+    /// Difference that remains after the leads, where leads are requested (M15.5).
     pub compensated: Option<Arc<LeadCompensated>>,
-    /// What leads would gain, where all constrained responses want lead and leads are not
-    /// requested.
+    /// Benefit of leads, where all constrained responses need lead and leads are not requested;
+    /// `None` where J would not fall by at least a tenth.
     pub offer: Option<LeadOffer>,
     /// Gains and delays as one correction.
     pub correction: ChannelCorrection,
@@ -152,7 +153,8 @@ pub struct ConditionAnalysis {
 }
 
 impl ConditionAnalysis {
-    /// Returns the models' comparison before the couplings, where there are any.
+    /// Returns the comparison of the models without couplings; the comparison itself where there
+    /// are none.
     pub fn before_couplings(&self) -> &Comparison {
         match &self.coupled {
             Some(coupled) => &coupled.before,
@@ -160,7 +162,7 @@ impl ConditionAnalysis {
         }
     }
 
-    /// Returns the constrained responses that are defined.
+    /// Returns the constrained responses for which G and D are defined.
     pub fn held(&self) -> &PairTable<bool> {
         &self.gain_problem.constrained
     }
@@ -183,7 +185,7 @@ impl ConditionAnalysis {
         *asked == delta.band_delay_s && *asked != delta.delay_s
     }
 
-    /// Returns the scalar behind [`Self::wanted_delay_s`], to look up its error bar (M13).
+    /// Returns the key of the error bar (M13) that belongs to [`Self::wanted_delay_s`].
     pub fn wanted_delay(&self, pair: Pair) -> Scalar {
         if self.delay_problem.delta[pair] == self.comparison.delta.delay_s[pair] {
             Scalar::Delay(pair)
@@ -197,9 +199,9 @@ impl ConditionAnalysis {
         self.gain_problem.bounds
     }
 
-    /// Returns every channel's least and greatest delay \[s\]; leads are negative (M15.4).
+    /// Returns the minimum and maximum delay of every channel \[s\]; leads are negative (M15.4).
     pub fn delay_bounds_s(&self) -> [f64; 2] {
-        // Adding zero turns minus zero into zero.
+        // Adding zero turns -0.0 into 0.0.
         [
             self.delay_problem.bounds.lower + 0.0,
             self.delay_problem.bounds.upper,
@@ -211,7 +213,7 @@ impl ConditionAnalysis {
         self.delay_problem.bounds.upper
     }
 
-    /// Returns the physics models suggested as outliers, including rejected models.
+    /// Returns the names of the physics models suggested as outliers, including rejected models.
     pub fn suggested(&self) -> Vec<String> {
         let suggested = self
             .figures
@@ -226,7 +228,7 @@ impl ConditionAnalysis {
             .collect()
     }
 
-    /// Returns a bundle's representative, with its models' scores ordered as in
+    /// Returns the representative of a bundle, with the scores of all models in the order of
     /// [`ConditionAnalysis::condition`].
     pub fn representative(&self, kind: BundleKind) -> &Representative {
         kind.pick(&self.comparison.physics, &self.comparison.identified)
@@ -272,7 +274,7 @@ pub enum ConditionFailure {
     NothingToCompare {
         physics: String,
         identified: String,
-        /// Known facts about the models' responses.
+        /// Cautions about the responses of the models, which explain the failure.
         cautions: Vec<Caution>,
     },
     /// Every kept model is set aside (M5b).

@@ -6,11 +6,11 @@ use gdcm_model::dataset::ConditionId;
 use super::analysis::{Analysis, ConditionAnalysis};
 use super::requirement_role::RequirementRole;
 
-/// One condition with the models and results for its requirements.
+/// One condition with the models and results from which its requirements are computed.
 pub(crate) struct AskedCondition<'a> {
     pub(crate) analysis: &'a Analysis,
     pub(crate) result: &'a ConditionAnalysis,
-    /// The schedule at the condition's airspeed, where there is a schedule.
+    /// The schedule evaluated at the airspeed of the condition, where there is a schedule.
     pub(crate) scheduled: Option<ChannelCorrection>,
 }
 

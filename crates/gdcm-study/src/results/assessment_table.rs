@@ -1,5 +1,5 @@
-//! What a correction gains, response by response and condition by condition, for the chosen model
-//! and correction (M12, Figures 8 to 19).
+//! Changes in J due to a correction, by response and condition, for the chosen model and correction
+//! (M12, Figures 8 to 19).
 
 use gdcm_method::correction::ChannelCorrection;
 use gdcm_method::fidelity::CostAverage;
@@ -29,9 +29,9 @@ pub enum AssessedCorrection {
     /// The schedule at the condition's airspeed (the paper).
     #[default]
     Scheduled,
-    /// The schedule without its signed delays' lead filters (M15).
+    /// The schedule without the lead filters of its signed delays (M15).
     ScheduledWithoutLeads,
-    /// The other conditions' schedule at the condition's airspeed: a prediction for a flight not
+    /// The schedule fitted without this condition, at its airspeed: a prediction for a flight not
     /// used in the fit.
     ScheduleOfOthers,
     /// The condition's own optimum.
@@ -95,20 +95,21 @@ pub struct AssessedCondition {
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
     pub model: String,
-    /// J before and after against the identified representative, response by response.
+    /// J against the identified representative before and after the correction, response by
+    /// response.
     pub changes: PairTable<Option<CostChange>>,
     /// Why a response has no J.
     pub missing: Vec<(Pair, MissingCost)>,
 }
 
-/// Why a response has no J before and after a correction.
+/// Why a response has no J before and after the correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MissingCost {
-    /// The correction has no positive net gain for it.
+    /// The net gain of the correction in this response is not positive.
     NetGainNotPositive,
-    /// The representatives cannot be compared in it.
+    /// The representatives cannot be compared in this response.
     Undefined(Undefined),
-    /// The nominal model has no usable response.
+    /// The nominal model has no usable response for this pair.
     NominalUndefined,
 }
 
@@ -138,12 +139,12 @@ pub struct AssessmentTable {
     pub left_out: Vec<LeftOut>,
 }
 
-/// An assessment's summary: how many responses come closer, and which moves farthest away.
+/// Summary of an assessment: number of responses with a lower J, and the largest increase in J.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentSummary {
-    /// How many responses have a lower J.
+    /// Number of responses with a lower J.
     pub better: usize,
-    /// How many responses are compared, counted in each condition.
+    /// Number of compared responses, summed over the conditions.
     pub compared: usize,
     /// The response whose J rises most, and by how much.
     pub worst: Option<(ConditionId, Pair, f64)>,
@@ -159,8 +160,8 @@ impl AssessmentTable {
         }
     }
 
-    /// Assesses an analysis from its stored mismatches: two averages over frequency for each
-    /// response.
+    /// Assesses all conditions of an analysis. The stored mismatches are used: each response costs
+    /// only two averages over frequency.
     pub fn of(analysis: &Analysis, choice: AssessmentChoice) -> Self {
         let mut table = Self::new(choice);
         for id in analysis.study.dataset.ids() {
@@ -177,7 +178,7 @@ impl AssessmentTable {
         }
     }
 
-    /// Returns a response's J before and after in a condition.
+    /// Returns J of a response in a condition before and after the correction.
     pub fn change(&self, condition: ConditionId, pair: Pair) -> Option<CostChange> {
         self.conditions
             .iter()
@@ -185,7 +186,7 @@ impl AssessmentTable {
             .changes[pair]
     }
 
-    /// Summarises the marked responses' assessment.
+    /// Summarises the assessment over the marked responses.
     pub fn summary(&self, marked: &PairTable<bool>) -> AssessmentSummary {
         let mut summary = AssessmentSummary {
             better: 0,
@@ -262,7 +263,7 @@ pub fn assessed(
     })
 }
 
-/// Computes a model's J before and after a correction, response by response.
+/// Computes J of a model before and after a correction, response by response.
 fn changes(
     analysis: &Analysis,
     models: &ModelMismatch,
@@ -270,7 +271,7 @@ fn changes(
     average: CostAverage,
 ) -> PairTable<Option<CostChange>> {
     let omega = &analysis.omega;
-    // J before the correction is stored for the study's own average.
+    // J before the correction is stored only for the average chosen in the study.
     let is_stored = average == analysis.study.settings.cost_average;
     let corrected = corrected_cost(&models.mismatch, correction, omega, average);
     corrected.map(|pair, corrected| {

@@ -1,4 +1,4 @@
-//! Cautions about results that are available nevertheless.
+//! Cautions about results that are nevertheless available.
 
 use std::fmt;
 
@@ -8,26 +8,28 @@ use gdcm_model::dataset::{BundleKind, Condition, Dynamics, Pair};
 use gdcm_model::response::PolarResponse;
 use gdcm_model::response::large_entry::LargeEntry;
 
-/// Range of usual G; beyond it, suspect a change of units or a meaningless response's sign.
+/// Usual range of G; a value outside it suggests different units, or a response without physical
+/// meaning.
 pub const USUAL_GAINS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
 /// A caution attached to a result.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Caution {
-    /// A constrained response has no G and no D in this condition, and is not constrained there.
+    /// A constrained response without G and D in this condition; there it is not constrained.
     HeldButUndefined { pair: Pair, why: Undefined },
     /// No outliers can be suggested.
     NoSuggestions(DiscontinuityError),
     /// A model is excluded from distances, suggestions and representatives (M5b).
     SetAside {
         model: BundleModel,
-        /// The measuring responses that it lacks and another model of its bundle has.
+        /// The measuring responses that the model lacks and another model of its bundle has.
         lacks: Vec<Pair>,
         /// The missing responses that are zero wherever they have values.
         zero: Vec<Pair>,
-        /// Why other responses are not finite; the rest is zero somewhere in the band.
+        /// Why some of the missing responses are not finite, if any; the others are zero somewhere
+        /// in the band.
         why: Option<NotFinite>,
-        /// Whether it was pinned, without effect.
+        /// Whether the model was pinned; the pin has no effect.
         pinned: bool,
     },
     NotFinite {
@@ -41,8 +43,8 @@ pub enum Caution {
         model: BundleModel,
         responses: Vec<Pair>,
     },
-    /// Two models differ in some responses by a factor that cannot be a gain: beyond 1e50 or 1e-50
-    /// (M6).
+    /// Two models differ in some responses by a factor outside the computable range: above 1e50 or
+    /// below 1e-50 (M6).
     GainsOutOfRange {
         physics: String,
         identified: String,
@@ -53,10 +55,10 @@ pub enum Caution {
         model: BundleModel,
         responses: Vec<Pair>,
     },
-    /// Frequencies of the identified representative's responses have no weight, because it was not
-    /// measured there (M4a).
+    /// Frequencies of the identified representative's responses have no weight: their coherence is
+    /// too low, or they lie outside the valid band (M4a).
     NotCoherent {
-        /// Least coherence at a frequency that counts.
+        /// Minimum coherence of the frequencies that count.
         threshold: f64,
         /// Number of responses weighted by coherence.
         weighed: usize,
@@ -72,12 +74,12 @@ pub enum Caution {
         bundle: BundleKind,
         models: Vec<String>,
     },
-    /// The objective fits a response whose G is far from one.
+    /// The objective fits a response whose G is outside [`USUAL_GAINS`].
     UnusualGain { pair: Pair, gain: f64 },
 }
 
 impl Caution {
-    /// Returns the caution about a fitted G outside the usual range, if it is.
+    /// Returns the caution about a fitted response if its G is outside the usual range.
     pub(crate) fn unusual_gain(pair: Pair, gain: f64) -> Option<Self> {
         if USUAL_GAINS.contains(&gain) {
             None
@@ -117,16 +119,16 @@ impl Caution {
     }
 }
 
-/// A response whose gain, flight over physics, is beyond the computable range.
+/// A response whose gain (flight over physics) is outside the computable range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GainOutOfRange {
     pub pair: Pair,
-    /// The gain farthest from one within the band, as the nearest power of ten.
+    /// Power of ten nearest to the gain that is farthest from 1 in the band.
     pub power_of_ten: i32,
 }
 
 impl GainOutOfRange {
-    /// Returns the out-of-range gains of two models.
+    /// Returns the gains of two models that are outside the computable range.
     pub(crate) fn of_models(physics: &PolarResponse, identified: &PolarResponse) -> Vec<Self> {
         physics
             .curves()
@@ -135,8 +137,8 @@ impl GainOutOfRange {
             .collect()
     }
 
-    /// Returns the out-of-range gain of a response; `None` where a model lacks it, or its gain is
-    /// in range.
+    /// Returns the gain of a response if it is outside the computable range; `None` also where a
+    /// model lacks the response.
     pub(crate) fn of_pair(
         physics: &PolarResponse,
         identified: &PolarResponse,
@@ -191,7 +193,7 @@ pub enum Undefined {
     ZeroSomewhere(BundleKind),
     /// Not finite somewhere in the band in this bundle's representative.
     NotFinite(BundleKind),
-    /// The gain, flight over physics, is about this power of ten: beyond 1e50 or 1e-50.
+    /// The gain (flight over physics) is near this power of ten: above 1e50 or below 1e-50.
     GainOutOfRange(i32),
     /// Numerically zero in this bundle's representative (M6a).
     NumericallyNothing(BundleKind),

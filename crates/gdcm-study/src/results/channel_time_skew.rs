@@ -10,13 +10,13 @@
 //! 2  each output (a row of responses) and input (a column):
 //!       common = median d of all other responses,   s = 1.48 median |d - common| over them
 //!       delay = median d of its own responses - common
-//! 3  late where |delay| > t and |d - common - delay| <= t for each own response, t = max(5 ms, 2.5 s),
-//!    and the delay explains four fifths of sum W (phi + omega common)^2
-//! 4  two channels, each late where the other is early: the channel with the least |common|
+//! 3  late where |delay| > t and |d - common - delay| <= t for each own response, where
+//!    t = max(5 ms, 2.5 s), and the delay explains four fifths of sum W (phi + omega common)^2
+//! 4  of the late channels that explain at least half as much as the best: the smallest |common|
 //! ```
 //!
-//! `common`, the delay that all channels share, cannot be assigned to a channel: the leads report it
-//! (M15, section 6).
+//! `common`, the delay that all channels share, cannot be assigned to a channel; it is reported
+//! with the leads (M15, section 6).
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::{Band, BundleKind, Condition, Dataset, Dynamics, Pair};
@@ -27,17 +27,17 @@ use gdcm_model::statistics::median;
 use gdcm_sysid::identification::{ResponseEstimate, TRUSTED_COHERENCE};
 use gdcm_sysid::spectra::response_estimate::EstimatePoint;
 
-/// Least share of the points in the band at which a response must be coherent.
+/// Minimum share of the frequencies in the band at which a response must be coherent.
 const LEAST_SHOWN: f64 = 0.5;
 /// Lower bound on the standard deviation of a physics model's phase \[rad\].
 const PHYSICS_SD: f64 = 3.0 * std::f64::consts::PI / 180.0;
-/// Least delay that is reported \[s\].
+/// Minimum delay that is reported \[s\].
 const LEAST_S: f64 = 5e-3;
-/// Delays beyond this multiple of the other responses' scatter are significant.
+/// Minimum significant delay, as a multiple of the scatter of the other responses.
 const STANDS_OUT: f64 = 2.5;
-/// Ratio of the standard deviation to the median modulus for a normal distribution.
+/// Ratio of the standard deviation to the median absolute deviation of a normal distribution.
 const SD_OVER_MEDIAN: f64 = 1.4826;
-/// Greatest share of the squared phase that a delay may leave unexplained.
+/// Maximum share of the squared phase that a delay may leave unexplained.
 const MOST_LEFT: f64 = 0.2;
 
 /// A channel that appears to be logged late, or early, in all records.
@@ -51,8 +51,8 @@ pub struct ChannelTimeSkew {
 }
 
 impl ChannelTimeSkew {
-    /// Finds the channel whose delay explains the lag of a measured response in a band \[rad/s\]
-    /// against a physics model; `None` where no delay is significant.
+    /// Finds the channel whose delay explains the lag of the measured responses in a band \[rad/s\]
+    /// relative to a physics model; `None` where no delay is significant.
     pub fn find(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Option<Self> {
         let lags = response_lags(measured, band, physics)?;
         let (outputs, inputs) = measured.points.first()?.response.shape();
@@ -74,7 +74,7 @@ impl ChannelTimeSkew {
             .map(|suspect| suspect.channel)
     }
 
-    /// Finds the channel against the nominal physics model of a condition.
+    /// Works as [`ChannelTimeSkew::find`], with the nominal physics model of a condition.
     pub fn of_condition(
         measured: &ResponseEstimate,
         band: [f64; 2],
@@ -85,7 +85,7 @@ impl ChannelTimeSkew {
         Self::find(measured, band, &nominal.dynamics)
     }
 
-    /// Returns a dataset's channel.
+    /// Returns the channel in a dataset; `None` where it does not exist.
     pub fn signal(&self, dataset: &Dataset) -> Option<Signal> {
         let channels = match self.role {
             ChannelSide::Input => dataset.inputs(),
@@ -109,7 +109,7 @@ struct PhasePoint {
     weight: f64,
 }
 
-/// Lag of a response against that of a physics model.
+/// Lag of a measured response relative to a physics model.
 struct Lag {
     pair: Pair,
     delay_s: f64,
@@ -117,7 +117,7 @@ struct Lag {
 }
 
 impl Lag {
-    /// Fits a response's delay; `None` where it is coherent at too few points.
+    /// Fits the delay of a response; `None` where it is coherent at too few frequencies.
     fn fit(points: &[&EstimatePoint], physics: &FrequencyResponse, pair: Pair) -> Option<Self> {
         let at = (pair.output, pair.input);
         let mut angles = Vec::new();
@@ -213,12 +213,12 @@ struct Suspect {
     channel: ChannelTimeSkew,
     /// Median delay of the other responses \[s\].
     common_s: f64,
-    /// Squared phase explained by its delay.
+    /// Decrease in the squared phase due to the delay of the channel.
     explained: f64,
 }
 
 impl Suspect {
-    /// Tests a channel with this many responses for a delay.
+    /// Tests whether a channel with this number of responses has a significant delay.
     fn test(lags: &[Lag], role: ChannelSide, index: usize, responses: usize) -> Option<Self> {
         let (own, others): (Vec<&Lag>, Vec<&Lag>) = lags.iter().partition(|lag| match role {
             ChannelSide::Output => lag.pair.output == index,
@@ -244,7 +244,7 @@ impl Suspect {
         if !is_significant {
             return None;
         }
-        // The responses to an input that is logged late are early.
+        // If an input is logged late, the responses to it appear early.
         let delay_s = match role {
             ChannelSide::Output => late_s,
             ChannelSide::Input => -late_s,

@@ -1,5 +1,6 @@
-//! What a condition's models differ in: distances within each bundle, the two representatives and
-//! their differences, which do not depend on constraints, alpha or bounds.
+//! Differences between the models of a condition: distances within each bundle, the two
+//! representatives, and the differences between these. None depends on constraints, alpha or
+//! bounds.
 
 use gdcm_method::correction::delta::Delta;
 use gdcm_method::fidelity::distance::{BundleDistance, DiscontinuityError, Representative};
@@ -8,16 +9,16 @@ use gdcm_model::dataset::{BundleKind, PairTable};
 
 use super::caution::{Caution, Undefined};
 
-/// How two models differ in every response that both have.
+/// Difference between two models in every response that both have.
 pub type Mismatches = PairTable<Option<Mismatch>>;
 
-/// Distances within each bundle and the physics bundle's discontinuity ratios, independent from
+/// Distances within each bundle, and discontinuity ratios of the physics bundle; independent of
 /// rejections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BundleMetrics {
     pub physics: BundleDistance,
     pub identified: BundleDistance,
-    /// The physics models' discontinuity ratios, or why there are none.
+    /// Discontinuity ratios of the physics models, or why there are none.
     pub discontinuity: Result<Discontinuity, DiscontinuityError>,
 }
 
@@ -28,12 +29,12 @@ impl BundleMetrics {
     }
 }
 
-/// Mismatch between a physics model and the identified representative, with the resulting J.
+/// Mismatch between a physics model and the identified representative, and the resulting J.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelMismatch {
-    /// How the models differ in every response that both have.
+    /// Difference between the models in every response that both have.
     pub mismatch: Mismatches,
-    /// The uncorrected physics model's J.
+    /// J of the uncorrected physics model.
     pub cost: PairTable<Option<Cost>>,
 }
 
@@ -48,8 +49,8 @@ pub struct Comparison {
     pub nominal: ModelMismatch,
     /// The representatives' G and D.
     pub delta: Delta,
-    /// Why a response has no G and no D, where it has none.
+    /// Why G and D of a response are undefined; `None` where they are defined.
     pub undefined: PairTable<Option<Undefined>>,
-    /// Cautions about the models, whatever the constraints.
+    /// Cautions about the models, independent of the constraints.
     pub cautions: Vec<Caution>,
 }

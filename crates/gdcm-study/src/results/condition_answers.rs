@@ -1,5 +1,6 @@
-//! Time responses of a condition's models for plots (M17.2): to a flight record's inputs, with the
-//! tolerance corridors about flight, and to a test input, with no record to compare with.
+//! Time responses of the models of a condition for plots (M17.2): to the inputs of a flight record,
+//! with tolerance corridors about the measured outputs; and to a test input, for which there is no
+//! measurement.
 
 use nalgebra::DMatrix;
 
@@ -16,29 +17,29 @@ use super::requirement_role::RequirementRole;
 use super::time_histories::HistoryRecord;
 use crate::shared::Shared;
 
-/// Time shown, as a multiple of the test input's duration.
+/// Displayed time, as a multiple of the duration of the test input.
 const SHOWN: f64 = 5.0;
-/// Least time shown \[s\].
+/// Minimum displayed time \[s\].
 const LEAST_SHOWN_S: f64 = 10.0;
-/// Number of sample times in the time shown.
+/// Number of samples in the displayed time.
 const STEPS: usize = 1000;
 
-/// One quantity of a record: measured, and simulated with each model.
+/// A quantity in a flight record: measured, and simulated with each model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QuantityHistory {
     pub tolerance: Tolerance,
-    /// Index of the output that it is computed from.
+    /// Index of the output from which the quantity is computed.
     pub output: usize,
     /// The compared quantity's unit.
     pub unit: String,
-    /// Whether the output is on-axis to the input that moved most; `None` where that input is
-    /// unknown.
+    /// Whether the output is on-axis to the input with the largest variation; `None` where that
+    /// input cannot be determined.
     pub on_axis: Option<bool>,
     /// Result of each model, in the same windows for all models.
     pub models: Vec<(RequirementRole, RecordCheck)>,
 }
 
-/// One record against the tolerances.
+/// Comparison of a record with simulations, within tolerances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordHistory {
     pub condition: ConditionId,
@@ -47,9 +48,9 @@ pub struct RecordHistory {
     pub held_out: bool,
     /// The record, in the units of the dataset's channels.
     pub flight: Shared<FlightRecord>,
-    /// Each applicable table row.
+    /// Result for each applicable row of the tolerance table.
     pub quantities: Vec<QuantityHistory>,
-    /// The quantities that are not compared, with reasons in words.
+    /// The reasons in words why other quantities are not compared.
     pub missing: Vec<String>,
 }
 
@@ -62,7 +63,8 @@ pub(crate) struct ComparedRecord<'a> {
 }
 
 impl RecordHistory {
-    /// Simulates the condition's models with the record, and compares them with the tolerances.
+    /// Simulates the models of the condition with the record, and checks the results against the
+    /// tolerances.
     ///
     /// # Errors
     /// The reason in words why there is no comparison.
@@ -140,7 +142,7 @@ fn quantities(
 pub struct TestAnswers {
     pub condition: ConditionId,
     pub input: usize,
-    /// The input's shape.
+    /// Test input: shape, amplitude and duration.
     pub test: TestInput,
     /// Sample time \[s\]; the first sample is at 0 s.
     pub sample_time_s: f64,

@@ -1,14 +1,14 @@
-//! Apparent sign and unit differences between the two bundles, reported first: before a delay, zero
-//! or mode is blamed for their effect.
+//! Apparent sign and unit differences between the two bundles. They are reported first, because
+//! they can be mistaken for a delay, a zero or a mode.
 
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{ConditionId, Pair};
 
-/// The difference of convention between the two bundles.
+/// Sign or unit convention in which the two bundles apparently differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Convention {
     Sign,
-    /// The unit: ratio of the identified models' values to the physics models' values.
+    /// The unit; the value is the ratio of the identified to the physics models' gains.
     Factor(f64),
 }
 
@@ -21,7 +21,7 @@ pub struct ConventionDoubt {
     pub channel: Channel,
     /// The measuring responses with the difference.
     pub pairs: Vec<Pair>,
-    /// Whether all the channel's responses show it.
+    /// Whether every response of the channel supports the difference, not only `pairs`.
     pub all_responses: bool,
     /// The conditions with the difference, in file order.
     pub conditions: Vec<ConditionId>,

@@ -1,4 +1,4 @@
-//! Physics models with the analysis's couplings, the only source of coupled models for exports
+//! Physics models with the couplings of an analysis: the only source of coupled models for exports
 //! (M16.3).
 
 use std::borrow::Cow;
@@ -18,7 +18,7 @@ impl ConditionAnalysis {
         self.condition.flight_state().airspeed_kt
     }
 
-    /// Returns a physics model's `H~ = (I - H K)^-1 H M~`; the response itself without couplings.
+    /// Returns `H~ = (I - H K)^-1 H M~` for a physics model; `H` itself without couplings.
     #[must_use]
     pub fn coupled_response<'a>(
         &self,
@@ -35,8 +35,8 @@ impl ConditionAnalysis {
         }
     }
 
-    /// Returns how the couplings move the physics representative's poles; empty without couplings,
-    /// or where it has no poles.
+    /// Returns the pole shifts of the physics representative due to the couplings; empty without
+    /// couplings, and where the model has no poles.
     #[must_use]
     pub fn pole_shifts(&self) -> Vec<PoleShift> {
         let representative = self.representative_model(BundleKind::Physics).state_space();
@@ -50,9 +50,9 @@ impl ConditionAnalysis {
             .unwrap_or_default()
     }
 
-    /// Returns a physics model's matrices with the couplings; the model itself without couplings.
-    /// Delays in its own channels, which lie inside the loop, become states: `pade` approximants,
-    /// or whole samples.
+    /// Returns the matrices of a physics model with the couplings; the model itself without
+    /// couplings. Its own input and output delays lie inside the feedback loop and become states:
+    /// `pade` approximants, or delays by whole samples in discrete time.
     ///
     /// # Errors
     /// [`CoupledModelError`] where the loop through the feed-through is singular or
@@ -66,11 +66,12 @@ impl ConditionAnalysis {
         coupled_model(fitted, physics, self.airspeed_kt(), pade)
     }
 
-    /// Returns `M_O H~ M_I`: a physics model with the couplings, then with its channels corrected.
+    /// Returns `M_O H~ M_I`: a physics model with the couplings, and then with the correction of
+    /// its channels.
     ///
     /// # Errors
-    /// As [`ConditionAnalysis::coupled_model`], and where the correction's delays or leads cannot
-    /// become states.
+    /// As for [`ConditionAnalysis::coupled_model`], and where the delays or leads of the correction
+    /// cannot become states.
     pub fn corrected_model(
         &self,
         physics: &StateSpace,
@@ -83,10 +84,10 @@ impl ConditionAnalysis {
 }
 
 impl Analysis {
-    /// Returns `M_O H~ M_I` for a physics model in any condition, also without a result.
+    /// Returns `M_O H~ M_I` for a physics model in any condition, even one without a result.
     ///
     /// # Errors
-    /// As [`ConditionAnalysis::corrected_model`].
+    /// As for [`ConditionAnalysis::corrected_model`].
     pub fn corrected_model(
         &self,
         condition: &Condition,

@@ -1,6 +1,5 @@
-//! What couplings gain and cost: error bars on their entries, J without and with them and with
-//! conditions left out, moved poles, the loop's stability margin, the effect above the band
-//! (M16.4).
+//! Benefit and cost of couplings: error bars on their entries, J without and with them and for
+//! conditions left out, pole shifts, stability margin of the loop, effect above the band (M16.4).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,18 +14,18 @@ use gdcm_model::dataset::{Band, ConditionId, Pair, PairTable};
 use super::fitted_couplings::FittedCouplings;
 use crate::decisions::settings::CouplingCorrection;
 
-/// An assessment's result; without couplings, the fit's error.
+/// Assessment, or the error of the coupling fit.
 pub type AssessedCouplings = Result<Arc<CouplingsAssessment>, CouplingError>;
 
 /// An entry in `M~` or `K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplingEntry {
     pub value: f64,
-    /// Its error bar's half-width; `None` with fewer than three conditions.
+    /// Half-width of the error bar; `None` with fewer than three conditions.
     pub half_width: Option<f64>,
     /// Jackknife standard deviation.
     pub deviation: Option<f64>,
-    /// Whether the value is not distinguishable from the value without coupling.
+    /// Whether the value without coupling lies within the error bar.
     pub is_within_bar: bool,
 }
 
@@ -35,54 +34,57 @@ pub struct CouplingEntry {
 pub struct ConditionCouplings {
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// The physics representative's poles before and after, or why they are unknown.
+    /// Poles of the physics representative before and after, or why they are unknown.
     pub poles: Result<Vec<PoleShift>, String>,
-    /// The least singular value of `I - K H` at [`CouplingsAssessment::omega`].
+    /// Minimum singular value of `I - K H` at each frequency in [`CouplingsAssessment::omega`].
     pub singular_values: Vec<f64>,
-    /// Least singular value from the band's lower end to ten times its top.
+    /// Minimum singular value over the range from the lower end of the band to ten times its upper
+    /// end.
     pub margin: Option<LoopMargin>,
-    /// `20 log10 |H~ - H| / |H|` at ten times the band, response by response.
+    /// `20 log10 |H~ - H| / |H|` at ten times the upper end of the band, response by response.
     pub above_band_db: PairTable<Option<f64>>,
-    /// J when the condition is left out, on-axis and off-axis; `None` where it is in no fit.
+    /// J on-axis and off-axis when the condition is left out; `None` where it is in no fit.
     pub left_out: Option<CouplingCost>,
-    /// Kept physics models with matrices, other than the representative, whose loop cannot be
-    /// closed, with the reason.
+    /// Other kept physics models with matrices in which the feedback loop cannot be closed, with
+    /// the reason.
     pub refused: Vec<(String, String)>,
 }
 
-/// A kept physics model's pole with a positive real part that is absent without the couplings.
+/// A pole with a positive real part in a kept physics model, absent without the couplings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnstablePole {
     pub condition: ConditionId,
     pub model: String,
-    /// Whether it represents its bundle.
+    /// Whether the model represents its bundle.
     pub is_representative: bool,
     /// The pole \[rad/s\].
     pub pole: Complex<f64>,
-    /// Whether its frequency lies in the comparison band.
+    /// Whether the frequency of the pole lies in the comparison band.
     pub is_in_band: bool,
 }
 
-/// What couplings gain and cost (M16.4).
+/// Benefit and cost of couplings (M16.4).
 #[derive(Clone, Debug, PartialEq)]
 pub struct CouplingsAssessment {
     pub couplings: CouplingCorrection,
     pub fitted: Arc<FittedCouplings>,
-    /// The error bars' level.
+    /// Confidence level of the error bars.
     pub level: f64,
     pub band: Band,
     /// The fits without each condition in turn; empty with fewer than three conditions.
     pub left_out_fits: Vec<LeftOutFit>,
     /// J without and with the couplings.
     pub costs: CouplingCosts,
-    /// Frequencies for the singular values \[rad/s\]: from a tenth to ten times the band.
+    /// Frequencies of the singular values \[rad/s\]: from a tenth of the band's lower end to ten
+    /// times its upper end.
     pub omega: Arc<[f64]>,
-    /// Each analysed condition.
+    /// Effect of the couplings on each analysed condition.
     pub conditions: BTreeMap<ConditionId, ConditionCouplings>,
-    /// Every kept physics model's newly unstable poles.
+    /// Newly unstable poles of all kept physics models.
     pub unstable: Vec<UnstablePole>,
-    /// In how many conditions all constrained responses want lead that no channel provides: a
-    /// feedback then acts as a substitute.
+    /// Number of conditions in which leads would help
+    /// ([`ConditionAnalysis::offer`](super::analysis::ConditionAnalysis::offer)) and are not
+    /// requested: feedback then replaces the missing lead.
     pub want_leads: usize,
 }
 
@@ -124,8 +126,8 @@ impl CouplingsAssessment {
         self.unstable.iter().filter(|pole| pole.is_in_band).count()
     }
 
-    /// Returns the decisive costs: with conditions left out, or by the schedule where none is left
-    /// out.
+    /// Returns J without and with couplings, by which their benefit is judged: for conditions left
+    /// out, or under the schedule where none was left out.
     pub fn deciding_cost(&self) -> CouplingCost {
         self.costs.left_out.unwrap_or(self.costs.scheduled)
     }
@@ -134,12 +136,11 @@ impl CouplingsAssessment {
 /// Error bars on a matrix's entries.
 struct MatrixBars<'a> {
     half_widths: &'a DMatrix<f64>,
-    /// Student's quantile: half-width over standard deviation.
+    /// Student's quantile: ratio of half-width to standard deviation.
     quantile: f64,
 }
 
-/// Builds entries from values and their error bars; `is_fixed` marks the values that are not
-/// unknowns.
+/// Builds entries from values and their error bars; `is_fixed` marks values that are not fitted.
 fn entries(
     values: &DMatrix<f64>,
     bars: Option<MatrixBars<'_>>,
@@ -164,8 +165,8 @@ fn entries(
 }
 
 impl ConditionCouplings {
-    /// Returns the marked response that couplings change most above the band, and the change
-    /// \[dB\].
+    /// Returns the marked response with the largest change due to couplings above the band, and
+    /// that change \[dB\].
     pub fn most_changed_above_band(&self, marked: &PairTable<bool>) -> Option<(Pair, f64)> {
         let known = marked
             .marked()
@@ -177,9 +178,9 @@ impl ConditionCouplings {
 /// Mean J on-axis and off-axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct AxisCost {
-    /// Over the on-axis responses; `None` where none can be compared.
+    /// Mean over the on-axis responses; `None` where none can be compared.
     pub on_axis: Option<f64>,
-    /// Over the off-axis responses.
+    /// Mean over the off-axis responses; `None` where none can be compared.
     pub others: Option<f64>,
 }
 
@@ -194,19 +195,20 @@ pub struct CouplingCost {
 /// couplings (M16.4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CouplingCosts {
-    /// Of the uncorrected physics representatives.
+    /// J of the uncorrected physics representatives.
     pub uncorrected: AxisCost,
-    /// Of each condition's own correction.
+    /// J under each condition's own correction.
     pub own: CouplingCost,
-    /// Of the schedule at each condition's airspeed.
+    /// J under the schedule at the airspeed of each condition.
     pub scheduled: CouplingCost,
-    /// Of conditions left out: couplings, channel delays and schedule found without each condition
-    /// in turn; `None` with fewer than three.
+    /// J of each condition when it is left out of the fits of couplings, channel delays and
+    /// schedule; `None` with fewer than three conditions.
     pub left_out: Option<CouplingCost>,
 }
 
 impl CouplingCost {
-    /// Greatest off-axis J, relative to that without couplings, at which couplings are worthwhile.
+    /// Maximum ratio of the off-axis J with couplings to that without, at which couplings are
+    /// worthwhile.
     const WORTH: f64 = 0.9;
 
     /// Returns whether couplings reduce the off-axis J by at least a tenth.

@@ -11,14 +11,15 @@ use super::comparison::Comparison;
 /// A study's couplings.
 #[derive(Clone, Debug)]
 pub struct FittedCouplings {
-    /// Problem of the fit: the representatives of the conditions that are analysed and not held
-    /// out.
+    /// Problem of the fit, built from the representatives of the conditions that are analysed and
+    /// not held out.
     pub problem: CouplingProblem,
     pub fit: CouplingFit,
 }
 
 impl PartialEq for FittedCouplings {
-    /// Two fits with the same numbers have the same effect on every model, whatever their data.
+    /// Two fits with equal matrices have the same effect on every model, whatever data they are
+    /// based on.
     fn eq(&self, other: &Self) -> bool {
         self.fit == other.fit
     }
@@ -42,7 +43,7 @@ impl FittedCouplings {
 /// Changes that the couplings make in a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoupledCondition {
-    /// Comparison of the models without couplings, which selects the representatives.
+    /// Comparison of the models without couplings; the representatives are selected by it.
     pub before: Arc<Comparison>,
     pub fitted: Arc<FittedCouplings>,
 }

@@ -1,5 +1,5 @@
-//! The difference between two representatives that remains after the lead filters (M15.5), and the
-//! benefit of leads for a study without them.
+//! Difference between two representatives after the lead filters (M15.5), and the benefit of leads
+//! for a study that does not use them.
 
 use std::sync::Arc;
 
@@ -13,13 +13,14 @@ use gdcm_model::dataset::PairTable;
 
 use super::comparison::Mismatches;
 
-/// The physics representative with its channels' leads against the identified one: the gains'
-/// basis.
+/// The physics representative with the lead filters of its channels against the identified
+/// representative; the gains are fitted to this difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadCompensated {
     /// The signed delays with their filters.
     pub leads: ChannelLeads,
-    /// Difference of every response that both models have, without the pure delays among the leads.
+    /// Difference in every response that both models have; signed delays without a filter (pure
+    /// delays) are not applied.
     pub mismatch: Mismatches,
     /// G of the compensated representative, `[output, input]`.
     pub gain: PairTable<Option<f64>>,
@@ -43,24 +44,24 @@ impl LeadCompensated {
     }
 }
 
-/// Mean J over the constrained responses, all of which want lead: with the present correction, and
-/// with leads too.
+/// Mean J over the constrained responses, all of which need lead: under the present correction, and
+/// with leads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeadOffer {
-    /// Under the present correction.
+    /// J under the present correction.
     pub without: f64,
-    /// With a lead filter in each channel that wants one, and the same gains, which such filters
-    /// change little.
+    /// J with a lead filter in each channel that needs one; the gains are kept, because such
+    /// filters change them little.
     pub with: f64,
 }
 
 impl LeadOffer {
-    /// Largest J with leads, relative to J without, at which leads are offered.
+    /// Maximum ratio of J with leads to J without, at which leads are recommended.
     const WORTH: f64 = 0.9;
 
-    /// Returns the offer of these leads, where they would reduce J over the constrained responses
-    /// by at least a tenth. `mismatch` contains the constrained responses alone; `now` is J under
-    /// the present correction.
+    /// Returns the two J if these leads would reduce J over the constrained responses by at least a
+    /// tenth. `mismatch` contains the constrained responses only; `now` is J under the present
+    /// correction.
     pub(crate) fn new(
         leads: ChannelLeads,
         mismatch: &Mismatches,

@@ -1,5 +1,5 @@
-//! Results as typed facts: an analysis with its comparisons, cautions, couplings and uncertainty; and
-//! what follows from a finished analysis: assessments, requirements, time histories.
+//! Results as typed facts: an analysis with its comparisons, cautions, couplings and uncertainty;
+//! and results derived from a finished analysis: assessments, requirements, time histories.
 
 pub mod analysis;
 pub mod asked_condition;

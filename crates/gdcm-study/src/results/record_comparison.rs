@@ -1,4 +1,4 @@
-//! Compares a model's responses with a flight record, tolerance by tolerance (M17.2).
+//! Comparison of simulated responses with a flight record, tolerance by tolerance (M17.2).
 
 use serde::Serialize;
 
@@ -8,10 +8,11 @@ use gdcm_model::dataset::{Channel, Dataset, Pair, PairTable, StateSpace};
 use gdcm_model::simulation::{Segment, ValidationSettings};
 use gdcm_sysid::identification::Preparation;
 
-/// Shorter pieces are not compared \[s\]: qualification tests are short steps and doublets.
+/// Minimum length of a compared piece \[s\]: qualification tests are short steps and doublets.
 const LEAST_PIECE_S: f64 = 2.0;
 
-/// Returns a record's preparation for comparison: shorter pieces than for identification.
+/// Returns the preparation of a record for comparison: it admits shorter pieces than identification
+/// does.
 pub(crate) fn comparison_preparation(preparation: &Preparation) -> Preparation {
     Preparation {
         least_segment_s: LEAST_PIECE_S,
@@ -19,8 +20,8 @@ pub(crate) fn comparison_preparation(preparation: &Preparation) -> Preparation {
     }
 }
 
-/// Returns the settings for simulating a condition's models with a record: unfiltered signals, and
-/// the same windows.
+/// Returns the settings for simulating the models of a condition with a record: unfiltered signals,
+/// and the same windows for all models.
 pub(crate) fn common_windows<'m>(
     models: impl IntoIterator<Item = &'m StateSpace>,
     segments: &[Segment],
@@ -28,7 +29,7 @@ pub(crate) fn common_windows<'m>(
     ValidationSettings::unfiltered().common_to(models, segments)
 }
 
-/// Whether an off-axis output has the same trend as in flight.
+/// Trend of a simulated off-axis output relative to flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Trend {
@@ -39,8 +40,8 @@ pub enum Trend {
 }
 
 impl Trend {
-    /// Returns an output's trend off-axis to the input that moved most, from how simulated and
-    /// measured output correlate; `None` on-axis.
+    /// Returns the trend of an output that is off-axis to the input with the largest variation,
+    /// from the correlation of simulated and measured output; `None` on-axis.
     pub fn from_correlation(correlation: Option<f64>, on_axis: Option<bool>) -> Option<Self> {
         let correlation = correlation?;
         if on_axis != Some(false) {
@@ -61,20 +62,20 @@ impl Trend {
     }
 }
 
-/// A tolerance row, with its tolerance in the dataset's unit.
+/// A tolerance row, with its tolerance in the unit of the dataset.
 pub(crate) struct AppliedTolerance<'a> {
     pub(crate) tolerance: &'a Tolerance,
     pub(crate) channel: ChannelTolerance,
 }
 
-/// What the comparisons with all records share.
+/// Data common to the comparisons with all records.
 pub(crate) struct RecordComparison<'a> {
     pub(crate) inputs: &'a [Channel],
     pub(crate) outputs: &'a [Channel],
     on_axis: PairTable<bool>,
     /// The applicable tolerance rows.
     pub(crate) rows: Vec<AppliedTolerance<'a>>,
-    /// Why the other rows are not applicable.
+    /// Why other rows are not applicable.
     pub(crate) not_applied: Vec<ToleranceError>,
 }
 
@@ -97,8 +98,8 @@ impl<'a> RecordComparison<'a> {
         }
     }
 
-    /// Returns the input that varies most over a record's segments; `None` where the inputs cannot
-    /// be compared.
+    /// Returns the input with the largest variation over the segments of a record; `None` where the
+    /// inputs have different units.
     pub(crate) fn moved_input(&self, segments: &[Segment]) -> Option<usize> {
         let (first, others) = self.inputs.split_first()?;
         if others.iter().any(|input| input.unit != first.unit) {
@@ -108,14 +109,14 @@ impl<'a> RecordComparison<'a> {
             .max_by(|a, b| variation(segments, *a).total_cmp(&variation(segments, *b)))
     }
 
-    /// Returns whether an output is on-axis to the input that moved most; `None` where that input
-    /// is unknown.
+    /// Returns whether an output is on-axis to the input `moved`; `None` where that input is not
+    /// determined.
     pub(crate) fn is_on_axis(&self, output: usize, moved: Option<usize>) -> Option<bool> {
         moved.map(|input| self.on_axis[Pair::new(output, input)])
     }
 }
 
-/// Sums an input's squares about its mean, segment by segment.
+/// Returns the sum of an input's squared deviations from its mean in each segment.
 fn variation(segments: &[Segment], input: usize) -> f64 {
     segments
         .iter()

@@ -1,4 +1,4 @@
-//! Errors that the identified representative reports about itself: by its coherence, or by standard
+//! Errors that the identified representative itself reports, by its coherence or its standard
 //! deviations (M13.2).
 
 use gdcm_method::uncertainty::spread::{CoherenceError, ReportedUncertainty};
@@ -9,10 +9,10 @@ use gdcm_model::statistics::median;
 
 use super::analysis::{Analysis, ConditionAnalysis};
 
-/// 1 dB as a natural logarithm.
+/// 1 dB as a difference of natural logarithms.
 pub(crate) const LN_DB: f64 = std::f64::consts::LN_10 / 20.0;
 
-/// A response's error, with its degrees of freedom.
+/// Standard errors of a response, with their degrees of freedom.
 #[derive(Clone, Copy)]
 struct ReportedError {
     error: CoherenceError,
@@ -34,7 +34,8 @@ impl ReportedErrors {
         }
     }
 
-    /// Returns a figure's variance; from coherence where that is known, otherwise from the bands.
+    /// Returns the standard error of a gain or delay: from coherence where available, otherwise
+    /// from the standard deviations of the model.
     pub(crate) fn of_scalar(
         &self,
         result: &ConditionAnalysis,
@@ -70,10 +71,10 @@ impl ReportedErrors {
     }
 }
 
-/// Returns whether the error that the identified representative reports applies to a value: to G, D
-/// and the constrained, matched net gains, which equal G (M13.2). The other net gains and the
-/// channels rely on the models' spread alone: how a single response's error affects them is unknown
-/// without the errors in all responses together.
+/// Returns whether the error reported by the identified representative enters the error bar of a
+/// value. It does for G, D and the net gains that are constrained and matched, which equal G
+/// (M13.2). For other net gains and for channels only the spread of the models counts: the effect
+/// of a single response's error on them is unknown without the joint errors of all responses.
 pub fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -> bool {
     match scalar {
         Scalar::Gain(_) | Scalar::Delay(_) | Scalar::BandDelay(_) => true,
@@ -89,8 +90,8 @@ pub fn reports_error(analysis: &Analysis, result: &ConditionAnalysis) -> bool {
     errors_by_bands(analysis, result).is_some() || errors_by_coherence(analysis, result).is_some()
 }
 
-/// Returns the identified representative's errors from its coherence; `None` where it was measured
-/// without coherence, or coherence is not used.
+/// Returns the errors of the identified representative from its coherence; `None` where coherence
+/// or the number of averages is not available, or coherence is not used.
 fn errors_by_coherence(
     analysis: &Analysis,
     result: &ConditionAnalysis,
@@ -115,8 +116,8 @@ fn errors_by_coherence(
     }))
 }
 
-/// Returns the identified representative's errors from its own bands: medians over the comparison
-/// band. Its deviations are taken as known.
+/// Returns the errors of the identified representative from its own standard deviations: medians
+/// over the comparison band. The standard deviations are treated as exact.
 fn errors_by_bands(
     analysis: &Analysis,
     result: &ConditionAnalysis,

@@ -1,9 +1,9 @@
 //! Bandwidth and phase delay of a condition's models, with intervals (M17.1).
 //!
 //! ```text
-//! physics     the other kept physics models in its place, without correction                       (M13.1)
-//! corrected   each swap of a physics or an identified model, under the correction that it leads to (M13.1)
-//! identified  standard deviations of the response that the model carries, to first order           (M14)
+//! physics     each other kept physics model instead of the representative, uncorrected   (M13.1)
+//! corrected   each swap of a physics or identified model, with the resulting correction  (M13.1)
+//! identified  standard deviations of the response in the model, to first order           (M14)
 //! ```
 
 use std::borrow::Cow;
@@ -42,7 +42,7 @@ pub struct BandwidthFinding {
     pub input: String,
     pub role: RequirementRole,
     pub model: String,
-    /// The bandwidth \[rad/s\].
+    /// Bandwidth \[rad/s\].
     pub omega_bw_rad_s: Option<f64>,
     /// Frequency where the phase is -135 deg \[rad/s\].
     pub omega_phase_rad_s: Option<f64>,
@@ -54,33 +54,33 @@ pub struct BandwidthFinding {
     pub phase_delay_s: Option<f64>,
     /// The margin that determines the bandwidth.
     pub rule: Option<BandwidthRule>,
-    /// Whether the gain margin is reached before the phase margin: the standard warns against it.
+    /// Whether the gain margin is reached before the phase margin; the standard warns of this case.
     pub gain_limited: bool,
-    /// How far the phase deviates at most from a straight line between `omega_180` and `2
-    /// omega_180` \[deg\].
+    /// Maximum deviation of the phase from a straight line between `omega_180` and `2 omega_180`
+    /// \[deg\].
     pub phase_departure_deg: Option<f64>,
-    /// Whether the phase delay is computed from the least-squares line, because the phase is not
+    /// Whether the phase delay is computed from a least-squares line because the phase is not
     /// straight.
     pub phase_delay_of_line: bool,
-    /// The numbers that depend on the response above the band.
+    /// Names of the metrics that depend on the response above the band.
     pub rests_above_band: Vec<&'static str>,
-    /// The numbers that depend on the response below the band.
+    /// Names of the metrics that depend on the response below the band.
     pub rests_below_band: Vec<&'static str>,
-    /// Intervals by the number's name, where known.
+    /// Intervals by the name of the metric, where available.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub interval: BTreeMap<&'static str, [f64; 2]>,
-    /// How many swaps have no value, by the number's name; the interval excludes them.
+    /// Number of swaps without a value, by the name of the metric; the interval excludes them.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub swaps_left_out: BTreeMap<&'static str, usize>,
-    /// Phase \[deg\] at the band's lowest frequency, where it indicates a reversed channel.
+    /// Phase \[deg\] at the lowest frequency of the band, if it indicates a reversed channel.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reversed_phase_deg: Option<f64>,
-    /// Why a number, or every interval ("interval"), is absent, by its name.
+    /// Reasons for absent values by the name of the metric; "interval" for all intervals.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub absent: BTreeMap<&'static str, String>,
 }
 
-/// Names of the numbers that [`metrics`] returns.
+/// Names of the metrics that [`metrics`] returns.
 const METRICS: [&str; 5] = [
     "omega_bw_rad_s",
     "omega_phase_rad_s",
@@ -88,13 +88,13 @@ const METRICS: [&str; 5] = [
     "omega_180_rad_s",
     "phase_delay_s",
 ];
-/// The phase's deviation from a straight line.
+/// Name of the maximum deviation of the phase from a straight line.
 const DEPARTURE: &str = "phase_departure_deg";
 
-/// A response's numbers, where they exist, ordered as in [`METRICS`].
+/// Values of a response's metrics, in the order of [`METRICS`].
 type MetricValues = [Option<f64>; 5];
 
-/// Returns a response's numbers, ordered as in [`METRICS`].
+/// Returns the metrics of a response, in the order of [`METRICS`].
 fn metrics(bandwidth: &Bandwidth) -> [Result<Metric, NoMetric>; 5] {
     [
         bandwidth.omega_bw,
@@ -105,13 +105,13 @@ fn metrics(bandwidth: &Bandwidth) -> [Result<Metric, NoMetric>; 5] {
     ]
 }
 
-/// Returns a response's numbers, ordered as in [`METRICS`].
+/// Returns the values of a response's metrics, in the order of [`METRICS`].
 fn metric_values(bandwidth: &Bandwidth) -> MetricValues {
     metrics(bandwidth).map(|metric| Some(metric.ok()?.value))
 }
 
 impl BandwidthFinding {
-    /// Returns the numbers with their names.
+    /// Returns the metrics with their names.
     pub fn quantities(&self) -> [(&'static str, Option<f64>); 6] {
         let [bandwidth, phase, gain, neutral, delay] = METRICS;
         [
@@ -124,12 +124,12 @@ impl BandwidthFinding {
         ]
     }
 
-    /// Returns whether a number depends on the response above the band.
+    /// Returns whether a metric depends on the response above the band.
     pub fn rests_above(&self, name: &str) -> bool {
         self.rests_above_band.contains(&name)
     }
 
-    /// Stores the numbers computed from a response.
+    /// Stores the metrics of a response.
     fn store(&mut self, bandwidth: &Bandwidth) {
         let [omega_bw, omega_phase, omega_gain, omega_180, phase_delay] = metric_values(bandwidth);
         self.omega_bw_rad_s = omega_bw;
@@ -139,7 +139,7 @@ impl BandwidthFinding {
         self.phase_delay_s = phase_delay;
         self.rule = bandwidth.rule;
         self.gain_limited = bandwidth.is_gain_limited();
-        // Where leads invalidate the phase delay, its line depends on them too.
+        // Where leads invalidate the phase delay, the line behind it is invalid too.
         if let (Some(line), Some(_)) = (bandwidth.phase_line, phase_delay) {
             self.phase_departure_deg = Some(line.departure_deg);
             self.phase_delay_of_line = !line.is_straight();
@@ -182,8 +182,8 @@ impl BandwidthFinding {
     }
 }
 
-/// Computes a condition's on-axis bandwidths, role by role; for responses without a bandwidth, the
-/// reason.
+/// Computes the on-axis bandwidths of a condition for every role; a response without a bandwidth
+/// has the reason instead.
 pub(crate) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFinding> {
     let models = ConditionBandwidths::new(asked);
     let mut findings = Vec::new();
@@ -195,10 +195,10 @@ pub(crate) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFin
     findings
 }
 
-/// A model prepared for its response's evaluation.
+/// A model prepared for the evaluation of its responses.
 struct EvaluatedModel<'a> {
     dynamics: Cow<'a, Dynamics>,
-    /// The uncertainty that the model carries, if any.
+    /// The standard deviations that the model contains, if any.
     bands: Option<&'a ModelBands>,
     sampled: SampledModel,
 }
@@ -214,11 +214,11 @@ impl<'a> EvaluatedModel<'a> {
     }
 }
 
-/// Evaluates a model between the grid frequencies.
+/// How a model is evaluated between the grid frequencies.
 #[derive(Clone, Copy, PartialEq)]
 enum Evaluation {
     Exact,
-    /// By interpolation, for models used only for a number's scatter.
+    /// By interpolation, for models that only contribute to the scatter of a metric.
     Interpolated,
 }
 
@@ -226,7 +226,8 @@ enum Evaluation {
 #[derive(Clone, Copy)]
 struct PairCorrection {
     multiplier: GainDelay,
-    /// Whether it includes a lead filter: above the band the result does not model the aircraft.
+    /// Whether a lead filter is included; the corrected response then does not represent the
+    /// aircraft above the band.
     has_leads: bool,
 }
 
@@ -247,7 +248,7 @@ impl PairCorrection {
         })
     }
 
-    /// Returns the effect for a swap's figures; `None` where a figure is missing.
+    /// Returns the effect of the correction after a swap; `None` where a gain or delay is missing.
     fn from_figures(figures: &Figures, pair: Pair, leads: Option<&ChannelLeads>) -> Option<Self> {
         let gain = figures[Scalar::NetGain(pair)]?.exp();
         let [output, input] = Channel::of(pair);
@@ -274,9 +275,9 @@ struct MeasuredBandwidth {
 /// A condition's models, prepared for bandwidths.
 struct ConditionBandwidths<'a> {
     asked: &'a AskedCondition<'a>,
-    /// The physics representative's index.
+    /// Index of the physics representative.
     physics: usize,
-    /// The physics representative and its substitutes.
+    /// The physics representative and the models that replace it in swaps.
     plain: BTreeMap<usize, EvaluatedModel<'a>>,
     /// The same models with the couplings, where they have matrices; empty without couplings.
     coupled: BTreeMap<usize, EvaluatedModel<'a>>,
@@ -366,7 +367,7 @@ impl<'a> ConditionBandwidths<'a> {
             .map_err(|error| error.to_string())
     }
 
-    /// Returns a physics model as used in a role: with the couplings where it is corrected.
+    /// Returns the physics model for a role: with the couplings, if the role has a correction.
     fn physics_model(
         &self,
         role: RequirementRole,
@@ -403,8 +404,9 @@ impl<'a> ConditionBandwidths<'a> {
                     Evaluation::Exact => &exact,
                     Evaluation::Interpolated => &interpolated,
                 };
-                // Interpolate, among the 400 points of the line for the phase delay, those between
-                // its ends; evaluate ends and crossings with the model itself.
+                // The line for the phase delay has 400 points. Only its end points are evaluated
+                // with the model; the points between them are interpolated. Crossings are evaluated
+                // with the model too.
                 AttitudeResponse::new(response, output, &search_frequencies(band), band)?
                     .sampled_by(&interpolated)
             }
@@ -425,7 +427,7 @@ impl<'a> ConditionBandwidths<'a> {
         })
     }
 
-    /// Adds the numbers' intervals, or why there are none.
+    /// Adds the intervals of the metrics, or why there are none.
     fn add_intervals(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
         let level = self.asked.analysis.study.settings.uncertainty.level;
         let why = match finding.role {
@@ -475,7 +477,7 @@ impl<'a> ConditionBandwidths<'a> {
         }
     }
 
-    /// Computes a response's numbers after each swap in a bundle.
+    /// Computes the metrics of a response after each swap in a bundle.
     fn swapped_values(&self, finding: &BandwidthFinding, bundle: BundleKind) -> Vec<MetricValues> {
         let mut values = Vec::new();
         for swap in self.swaps {
@@ -487,7 +489,7 @@ impl<'a> ConditionBandwidths<'a> {
         values
     }
 
-    /// Computes a response's numbers after a swap; `None` where there is no response.
+    /// Computes the metrics of a response after a swap; `None` where that is impossible.
     fn swapped(&self, swap: &ModelSwap, pair: Pair, role: RequirementRole) -> Option<MetricValues> {
         let correction = match role {
             RequirementRole::Corrected => {

@@ -1,5 +1,5 @@
-//! The physics representative's modes, without and with the study's couplings, against the
-//! identified representative's, where both models' matrices are known (M17.3).
+//! Modes of the physics representative, without and with the study's couplings, compared with those
+//! of the identified representative, where both models have matrices (M17.3).
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use gdcm_model::response::pole_estimate::PoleEstimate;
 
 use super::asked_condition::AskedCondition;
 
-/// Identified poles with their uncertainty, which a dataset does not store.
+/// Poles of identified models with their uncertainty, which a dataset does not store.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KnownPoles(BTreeMap<ConditionId, Vec<PoleEstimate>>);
 
@@ -37,13 +37,13 @@ impl KnownPoles {
     }
 }
 
-/// A model's mode.
+/// A mode of a model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModeNumbers {
     pub model: String,
-    /// Its pole's real part \[rad/s\].
+    /// Real part of the pole \[rad/s\].
     pub pole_real_rad_s: f64,
-    /// Its pole's imaginary part \[rad/s\], not negative.
+    /// Imaginary part of the pole \[rad/s\], not negative.
     pub pole_imaginary_rad_s: f64,
     #[serde(flatten)]
     pub values: ModeValues,
@@ -73,7 +73,7 @@ impl ModeNumbers {
         }
     }
 
-    /// Returns the numbers with their names.
+    /// Returns the values with their names.
     pub fn quantities(&self) -> [(&'static str, Option<f64>); 5] {
         [
             ("pole_real_rad_s", Some(self.pole_real_rad_s)),
@@ -91,25 +91,26 @@ pub struct ModeFinding {
     pub condition: ConditionId,
     /// Its true airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// The mode's number in this condition, from 1, by rising frequency.
+    /// Index of the mode in this condition, counted from 1 in order of increasing frequency.
     pub number: usize,
-    /// Its name; `None` where neither states nor frequency determine it.
+    /// Name of the mode; `None` where neither states nor frequency determine it.
     pub name: Option<ModeName>,
     /// What the name is based on; a name by frequency and damping alone is a guess.
     pub named_by: NamedBy,
     /// Verdict on the physics mode.
     pub verdict: ModeVerdict,
     pub identified: ModeNumbers,
-    /// Its numbers' standard deviations; `None` where the source identification is unknown.
+    /// Standard deviations of the identified values; `None` where the identification is not
+    /// available.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub identified_deviation: Option<ModeValues>,
     /// The physics representative's matching mode, if any.
     pub physics: Option<ModeNumbers>,
-    /// Verdict with the study's couplings; `None` without couplings, because gains and delays move
-    /// no pole.
+    /// Verdict on the physics mode with the study's couplings; `None` without couplings: gains and
+    /// delays move no pole, so that [`Self::verdict`] applies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corrected_verdict: Option<ModeVerdict>,
-    /// The matching mode with the couplings; `None` also without couplings.
+    /// Matching mode with the couplings, if any; `None` also without couplings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corrected: Option<ModeNumbers>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -192,7 +193,7 @@ fn coupled_modes(asked: &AskedCondition<'_>, physics: &Model) -> Result<Option<V
     Ok(Some(modes))
 }
 
-/// Returns a model's modes, or why they are unknown.
+/// Returns the modes of a model, or why they cannot be computed.
 fn known_modes(model: &Model) -> Result<Vec<Mode>, String> {
     if model.state_space().is_none() {
         return Err(format!(

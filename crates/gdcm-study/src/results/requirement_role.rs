@@ -12,7 +12,7 @@ use gdcm_model::dataset::{BundleKind, Model, StateSpace};
 use super::analysis::{Analysis, ConditionAnalysis};
 use super::assessment_table::AssessedCorrection;
 
-/// Role of a model in a condition.
+/// Role of a model in the requirements on a condition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RequirementRole {
@@ -74,9 +74,9 @@ pub enum RoleModelError {
 }
 
 impl Analysis {
-    /// Returns the model of a role of a condition in continuous time, with delays as states: the
-    /// uncorrected physics representative, with the couplings of the study and a correction (`M_O
-    /// H~ M_I`), or the identified representative.
+    /// Returns the model of a role in continuous time, with delays as states: the physics
+    /// representative, uncorrected or with the study's couplings and a correction (`M_O H~ M_I`);
+    /// or the identified representative.
     ///
     /// # Errors
     /// [`RoleModelError`] where the model has no matrices or is discrete-time, there is no

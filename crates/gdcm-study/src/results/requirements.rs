@@ -40,7 +40,7 @@ pub struct SummaryFinding {
 }
 
 impl SummaryFinding {
-    /// Returns the numbers with their names.
+    /// Returns the values with their names.
     pub fn quantities(&self) -> [(&'static str, Option<f64>); 4] {
         [
             ("mean_j_on_axis", self.mean_j_on_axis),
@@ -51,7 +51,7 @@ impl SummaryFinding {
     }
 }
 
-/// A missing answer, in a condition or in all.
+/// A missing result, in one condition or in all.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct MissingFinding {
     /// The condition; `None` for all conditions.
@@ -61,7 +61,7 @@ pub struct MissingFinding {
     pub why: String,
 }
 
-/// A caution about a condition's numbers.
+/// A caution about the results of a condition.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RequirementCaution {
     pub condition: ConditionId,
@@ -87,7 +87,7 @@ pub struct Requirements {
 }
 
 impl Requirements {
-    /// Returns why a condition has no modes to compare; `None` where it has.
+    /// Returns why a condition has no modes to compare; `None` where it has modes.
     pub fn no_modes(&self, condition: ConditionId) -> Option<&str> {
         self.missing
             .iter()
@@ -110,9 +110,9 @@ impl Requirements {
     }
 }
 
-/// Computes the requirements on every condition's models with a result (M17.1, M17.3, M17.4),
-/// without records. Each condition is a step. Intervals use the error bars of the analysis
-/// ([`Analysis::uncertainty`]); whether flight determines a mode is judged from the `known` poles.
+/// Computes the requirements without flight records on every condition with a result (M17.1, M17.3,
+/// M17.4). Each condition is a step. Intervals are based on the error bars of the analysis
+/// ([`Analysis::uncertainty`]), and the `known` poles decide whether flight determines a mode.
 ///
 /// # Errors
 /// [`Cancelled`] where `execution` is cancelled.
@@ -190,7 +190,7 @@ fn condition_requirements(
     found
 }
 
-/// Computes the summary costs of a role's model against the identified representative.
+/// Computes the summary costs of the model in a role against the identified representative.
 fn summary_finding(asked: &AskedCondition<'_>, role: RequirementRole) -> SummaryFinding {
     let study = &asked.analysis.study;
     let correction = asked.correction(role);

@@ -1,4 +1,4 @@
-//! What the schedule loses against the conditions' own corrections: omitted delays, and J.
+//! Losses of the schedule relative to the conditions' own corrections: omitted delays, higher J.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::ScheduleCaution;
@@ -9,18 +9,18 @@ use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
 use super::analysis::{Analysis, ConditionAnalysis};
 use super::comparison::ModelMismatch;
 
-/// Delay \[s\] below which a channel counts as having none: it is displayed as 0.0 ms.
+/// Delay \[s\] below which a channel counts as undelayed: it is displayed as 0.0 ms.
 const NO_DELAY_S: f64 = 5e-5;
 
 /// A channel with a delay in some conditions' own corrections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DelayedChannel {
     pub channel: Channel,
-    /// Its delay in each such condition, the longest first.
+    /// Delay of the channel in each such condition, longest first.
     pub delays: Vec<OwnDelay>,
 }
 
-/// A channel's delay in a condition's own correction.
+/// Delay of a channel in a condition's own correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnDelay {
     pub condition: ConditionId,
@@ -51,8 +51,8 @@ impl Analysis {
         found
     }
 
-    /// Returns the scheduled conditions' delays that the schedule omits; empty where it has delays,
-    /// and where there is no schedule.
+    /// Returns the delays in the scheduled conditions' own corrections that the schedule omits;
+    /// empty where the schedule has delays, and where there is no schedule.
     pub fn unscheduled_delays(&self) -> Vec<DelayedChannel> {
         match &self.schedule {
             Ok(schedule) if !schedule.has_delays() => self.delayed_channels(&self.scheduled()),
@@ -61,8 +61,8 @@ impl Analysis {
     }
 }
 
-/// Returns cautions about conditions where the schedule leads to more than twice the J that their
-/// own correction reaches (M12).
+/// Returns a caution about each condition in which J under the schedule is more than twice J under
+/// its own correction (M12).
 pub(crate) fn schedule_cost_cautions(analysis: &Analysis) -> Vec<ScheduleCaution> {
     let mut cautions = Vec::new();
     for result in analysis
@@ -77,9 +77,9 @@ pub(crate) fn schedule_cost_cautions(analysis: &Analysis) -> Vec<ScheduleCaution
     cautions
 }
 
-/// Returns a condition's J under the schedule and under its own correction, for the nominal model,
-/// or the representative where the nominal model is rejected. `None` without a schedule, or where
-/// no on-axis response can be compared.
+/// Returns J of a condition under the schedule and under its own correction: J of the nominal
+/// model, or of the representative where the nominal model is rejected. `None` without a schedule,
+/// and where no on-axis response can be compared.
 fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<ScheduledCost> {
     let schedule = analysis.schedule.as_ref().ok()?;
     let condition = &result.condition;
@@ -119,7 +119,7 @@ fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<Sch
     })
 }
 
-/// Returns a model's J in a response under a correction.
+/// Returns J of a model in a response under a correction.
 fn cost_of(
     analysis: &Analysis,
     models: &ModelMismatch,

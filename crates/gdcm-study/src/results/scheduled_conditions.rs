@@ -1,4 +1,5 @@
-//! The schedule's conditions, and its alternatives: without a condition, in other forms (M11).
+//! Conditions in the schedule, and alternative schedules: without a condition, in other forms
+//! (M11).
 
 use gdcm_method::schedule::form_comparison::{
     FormComparison, LeadDegreeFit, compare_forms, compare_lead_degrees,
@@ -23,10 +24,10 @@ impl Analysis {
             .collect()
     }
 
-    /// Fits the chosen conditions' schedule without one of them.
+    /// Fits the schedule to the chosen conditions except one.
     ///
     /// # Errors
-    /// [`ScheduleError`] where these conditions have no schedule.
+    /// [`ScheduleError`] where the remaining conditions do not admit a schedule.
     pub fn schedule_without(&self, left_out: ConditionId) -> Result<Schedule, ScheduleError> {
         let mut others = self.study.clone();
         if let Some(choice) = others.choices.get_mut(&left_out) {
@@ -36,8 +37,8 @@ impl Analysis {
         Schedule::of(&scheduled_points(&others, &self.conditions), settings)
     }
 
-    /// Compares the schedule's forms, with lists in the order of [`Analysis::scheduled`] (M11).
-    /// Solves some hundred small least squares problems.
+    /// Compares the forms of the schedule; lists are in the order of [`Analysis::scheduled`] (M11).
+    /// Solves several hundred small least-squares problems.
     ///
     /// # Errors
     /// [`ScheduleError`] where there is no schedule.
@@ -48,8 +49,8 @@ impl Analysis {
         )
     }
 
-    /// Compares the degrees of the scheduled signed delays; `None` where leads are not requested
-    /// (M15.5).
+    /// Compares polynomial degrees for the scheduled signed delays; empty where leads are not
+    /// requested (M15.5).
     pub fn compare_lead_degrees(&self) -> Vec<LeadDegreeFit> {
         compare_lead_degrees(
             &scheduled_points(&self.study, &self.conditions),
@@ -77,8 +78,8 @@ pub(crate) fn scheduled_points<'a>(
         .collect()
 }
 
-/// Returns the schedule settings for these conditions, with the choice about delays resolved for
-/// them (M11).
+/// Returns the settings of the schedule; `DelayScheduling::Automatic` is resolved from the results
+/// of the scheduled conditions (M11).
 pub(crate) fn schedule_settings(study: &Study, outcomes: &Outcomes) -> ScheduleSettings {
     let delays = match study.settings.schedule_delays {
         DelayScheduling::Always => true,

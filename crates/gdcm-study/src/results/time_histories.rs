@@ -1,10 +1,11 @@
-//! Every condition's models, simulated within tolerances about its flight records (M17.2).
+//! Simulations of the models of every condition, compared with flight records within tolerances
+//! (M17.2).
 //!
 //! ```text
-//! 1  a record is prepared as an identification prepares it, with pieces of 2 s and more
-//! 2  each model answers to the flown sticks, in windows of at most 10 s, each from an estimated
-//!    state and offsets (M14, section 6); the windows of all models of a condition are the same, so
-//!    that their manoeuvres begin at the same samples
+//! 1  a record is prepared as for identification, but pieces of 2 s and more are used
+//! 2  each model is simulated with the recorded inputs in windows of at most 10 s, each with
+//!    estimated initial state and offsets (M14, section 6); all models of a condition have the same
+//!    windows, so that the compared manoeuvres begin at the same samples
 //! 3  each row of the tolerance table whose output and unit exist: share inside, largest excess,
 //!    correlation
 //! ```
@@ -35,10 +36,10 @@ use super::requirements::MissingFinding;
 use crate::execution::Execution;
 use crate::shared::Shared;
 
-/// Why a time history is absent.
+/// Name of the missing item in [`MissingFinding`].
 const WHAT: &str = "time histories";
 
-/// A flight record to compare models with.
+/// A flight record with which models are compared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HistoryRecord {
     pub flight: Shared<FlightRecord>,
@@ -77,43 +78,43 @@ impl HistoryRecords {
         }
     }
 
-    /// Returns the step count for [`time_histories_of`]: one to prepare each record, one for each
-    /// model's response to it.
+    /// Returns the step count of [`time_histories_of`]: one step to prepare each record, and one
+    /// for each simulation of a model with it.
     pub fn steps(records: &[Self]) -> usize {
         (1 + RequirementRole::ALL.len()) * records.iter().map(|of| of.records.len()).sum::<usize>()
     }
 }
 
-/// A model's result on a record, for a table row.
+/// Result of a model for a record and a row of the tolerance table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ToleranceFinding {
-    /// The compared quantity's name ("bank angle").
+    /// Name of the compared quantity ("bank angle").
     pub quantity: String,
-    /// The output that it is computed from.
+    /// Output from which the quantity is computed.
     pub output: String,
-    /// Whether that output is integrated from each window's start.
+    /// Whether the output is integrated from the start of each window.
     pub integrated: bool,
-    /// The compared quantity's unit.
+    /// Unit of the compared quantity.
     pub unit: String,
-    /// Share inside, 0 to 1.
+    /// Share of time inside the tolerance, 0 to 1.
     pub share_inside: f64,
-    /// The largest distance beyond the corridor, in `unit`; negative where all samples are inside.
+    /// Maximum distance beyond the corridor, in `unit`; negative where all samples are inside.
     pub largest_excess: f64,
-    /// When the excess is largest, on the record's clock \[s\].
+    /// Time of the largest excess, on the time axis of the record \[s\].
     pub largest_excess_at_s: f64,
-    /// Correlation between simulated and measured signal about their means; `None` where either is
+    /// Correlation of simulated and measured signal about their means; `None` where either is
     /// constant.
     pub correlation: Option<f64>,
-    /// Whether the output is on-axis to the input that moved most; `None` where that input is
-    /// unknown.
+    /// Whether the output is on-axis to the input with the largest variation; `None` where that
+    /// input cannot be determined.
     pub on_axis: Option<bool>,
-    /// For off-axis outputs, the correlation's sign.
+    /// Trend of an off-axis output, from the sign of the correlation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trend: Option<Trend>,
 }
 
 impl ToleranceFinding {
-    /// Returns the numbers with their names.
+    /// Returns the values with their names.
     pub fn quantities(&self) -> [(&'static str, Option<f64>); 4] {
         [
             ("share_inside", Some(self.share_inside)),
@@ -124,7 +125,7 @@ impl ToleranceFinding {
     }
 }
 
-/// A model's result on a record.
+/// Result of a model for a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HistoryFinding {
     pub condition: ConditionId,
@@ -135,42 +136,43 @@ pub struct HistoryFinding {
     pub held_out: bool,
     pub role: RequirementRole,
     pub model: String,
-    /// The input that moved most; `None` where the inputs have different units.
+    /// Input with the largest variation; `None` where the inputs have different units.
     pub moved_input: Option<String>,
-    /// Compared sample count.
+    /// Number of compared samples.
     pub samples: usize,
-    /// How many windows have these samples.
+    /// Number of windows that contain these samples.
     pub windows: usize,
     /// Longest window \[s\].
     pub window_s: f64,
     /// Weighted rms error (M17.4) \[deg, deg/s, ft/s, ft/s^2\]; `None` where no output has such a
     /// unit.
     pub j_rms: Option<f64>,
-    /// Outputs excluded from it, because they are no angle, speed or acceleration.
+    /// Outputs excluded from `j_rms`, because they are no angle, speed or acceleration.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub j_rms_left_out: Vec<String>,
     /// Theil's coefficient by output name, 0 to 1; constant outputs have none.
     pub theil: BTreeMap<String, f64>,
-    /// Each applicable table row.
+    /// Result for each applicable row of the tolerance table.
     pub tolerances: Vec<ToleranceFinding>,
 }
 
-/// Simulations with every condition's records, in the export's format.
+/// Comparisons of simulations with all flight records, in the format of the export.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TimeHistories {
     pub tolerance_table: ToleranceTable,
-    /// Every record with every model simulated.
+    /// One result for each record and simulated model.
     pub records: Vec<HistoryFinding>,
     pub missing: Vec<MissingFinding>,
 }
 
 impl TimeHistories {
-    /// Returns the conditions with records, and how many each has.
+    /// Returns the conditions with records, and the number of records of each.
     pub fn conditions(&self) -> Vec<(ConditionId, usize)> {
         let mut conditions = Vec::new();
         for findings in self.records.chunk_by(|a, b| a.condition == b.condition) {
             let id = findings[0].condition;
-            // A model may be missing; two records may have the same name.
+            // A model may be missing, and two records may have the same name; the maximum over the
+            // roles counts correctly.
             let records = RequirementRole::ALL
                 .map(|role| self.of_role(id, role).count())
                 .into_iter()
@@ -191,7 +193,7 @@ impl TimeHistories {
             .filter(move |finding| finding.condition == condition && finding.role == role)
     }
 
-    /// Returns the share inside a tolerance over all a condition's records, 0 to 1.
+    /// Returns the share of time inside a tolerance over all records of a condition, 0 to 1.
     pub fn share_inside(
         &self,
         condition: ConditionId,
@@ -207,14 +209,14 @@ impl TimeHistories {
         })
     }
 
-    /// Returns `J_rms` over all a condition's records: the root mean square over their samples.
+    /// Returns `J_rms` over all records of a condition: the root mean square over the samples.
     pub fn j_rms(&self, condition: ConditionId, role: RequirementRole) -> Option<f64> {
         self.mean(condition, role, |finding| Some(finding.j_rms?.powi(2)))
             .map(f64::sqrt)
     }
 
-    /// Returns an output's Theil coefficient over all a condition's records: the mean weighted by
-    /// samples.
+    /// Returns the Theil coefficient of an output over all records of a condition: the mean
+    /// weighted by the number of samples.
     pub fn theil(
         &self,
         condition: ConditionId,
@@ -226,7 +228,8 @@ impl TimeHistories {
         })
     }
 
-    /// Averages a quantity over a condition's records that have it, weighted by samples.
+    /// Averages a quantity over those records of a condition that have it, weighted by the number
+    /// of samples.
     fn mean(
         &self,
         condition: ConditionId,
@@ -262,7 +265,7 @@ impl TimeHistories {
         self.applied_rows().map(|row| row.quantity.as_str())
     }
 
-    /// Returns the applied rows without those whose quantity is an integral.
+    /// Returns the applied tolerance rows except those for integrated outputs.
     pub fn measured_quantities(&self) -> impl Iterator<Item = &str> {
         self.quantities().filter(|quantity| {
             let rows = self.tolerance_table.rows();
@@ -297,8 +300,8 @@ struct Simulation<'a> {
     settings: ValidationSettings,
 }
 
-/// Computes time histories of every condition's models, and compares them within `tolerances` about
-/// its `records` (M17.2). The step count is [`HistoryRecords::steps`].
+/// Simulates the models of every condition with its `records`, and compares the results within
+/// `tolerances` (M17.2). The step count is [`HistoryRecords::steps`].
 ///
 /// # Errors
 /// [`Cancelled`] where `execution` is cancelled.
@@ -372,8 +375,8 @@ fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<Missi
     missing
 }
 
-/// Prepares the records where the condition has a result; the reasons for the others go to
-/// `missing`.
+/// Prepares the records of conditions with a result; adds the reason to `missing` where that is
+/// impossible.
 fn prepare_records<'a>(
     analysis: &'a Analysis,
     records: &'a [HistoryRecords],
@@ -415,7 +418,7 @@ fn prepare_records<'a>(
 /// Each condition's models with their roles.
 type RoleModels = BTreeMap<ConditionId, Vec<(RequirementRole, StateSpace)>>;
 
-/// Builds the models wherever a condition has a record.
+/// Builds the models of every condition with a record.
 fn role_models(
     analysis: &Analysis,
     prepared: &[PreparedRecord<'_>],
@@ -431,7 +434,7 @@ fn role_models(
         for role in RequirementRole::ALL {
             match analysis.role_model(record.result, role) {
                 Ok(model) => of_condition.push((role, model)),
-                // Reported once, for the schedule.
+                // The missing schedule is reported once, not for every condition.
                 Err(RoleModelError::NoSchedule(_)) => {}
                 Err(why) => missing.push(missing_history(
                     Some(id),
@@ -444,7 +447,7 @@ fn role_models(
     models
 }
 
-/// Lists every record's simulations with its condition's models, in common windows.
+/// Lists the simulations of every record with the models of its condition, in common windows.
 fn simulations<'a>(
     prepared: &'a [PreparedRecord<'a>],
     models: &'a RoleModels,
@@ -468,7 +471,7 @@ fn simulations<'a>(
 }
 
 /// Simulates a model with a record and compares the response with the tolerances, or returns the
-/// reason in words why there is none.
+/// reason in words why that is impossible.
 fn finding(
     comparison: &RecordComparison<'_>,
     simulation: &Simulation<'_>,
@@ -528,7 +531,7 @@ fn finding(
     })
 }
 
-/// Evaluates a table row over all a record's windows.
+/// Evaluates a row of the tolerance table over all windows of a record.
 fn tolerance_finding(
     comparison: &RecordComparison<'_>,
     row: &AppliedTolerance<'_>,

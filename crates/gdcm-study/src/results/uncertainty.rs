@@ -1,5 +1,5 @@
-//! How uncertain an analysis's figures are, what their scatter over the conditions consists in, and
-//! what follows for the schedule (M13).
+//! Uncertainty of the results of an analysis, components of their scatter over the conditions, and
+//! consequences for the schedule (M13).
 
 use std::collections::BTreeMap;
 
@@ -13,30 +13,30 @@ use gdcm_model::dataset::{ConditionId, Pair, PairTable};
 
 use super::model_swap::ConditionSubstitutions;
 
-/// Airspeeds that differ by no more count as equal \[kt\] (M13.4).
+/// Airspeeds with no larger difference count as equal \[kt\] (M13.4).
 pub(crate) const EQUAL_AIRSPEED_KT: f64 = 1.0;
 
-/// How uncertain an analysis's figures are.
+/// Uncertainty of the results of an analysis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
-    /// Level for all error bars, intervals and tests.
+    /// Confidence level of all error bars, intervals and tests.
     pub level: f64,
-    /// Each analysed condition.
+    /// Error bars of each analysed condition.
     pub conditions: BTreeMap<ConditionId, ConditionUncertainty>,
     /// Differences in on-axis net gain between every two conditions at equal airspeed.
     pub differences: Vec<AirspeedDifference>,
-    /// How many differences there are, where that is too many to compare; none is stored then.
+    /// Number of differences, if it exceeds the maximum; no differences are then computed.
     pub too_many_differences: Option<usize>,
-    /// Scatter components, for each on-axis net gain.
+    /// Scatter components of each on-axis net gain.
     pub scatter: Vec<PairScatter>,
-    /// The schedule's confidence bands, where it schedules `ln k` and has degrees of freedom left.
+    /// Confidence bands of the schedule, where it schedules `ln k` and has degrees of freedom left.
     pub bands: Option<ScheduleBands>,
-    /// Test for a second scheduling variable, for each on-axis response and each variable.
+    /// Test of each second scheduling variable for each on-axis response.
     pub second_variables: Vec<SecondVariableTest>,
 }
 
 impl Uncertainty {
-    /// Returns, for each airspeed, a net gain's largest difference relative to the expected
+    /// Returns, for each airspeed, the largest difference of a net gain relative to the expected
     /// difference; empty where the differences have no spread.
     pub fn greatest_differences(&self, pair: Pair) -> Vec<&AirspeedDifference> {
         let mut greatest: Vec<&AirspeedDifference> = Vec::new();
@@ -58,25 +58,25 @@ impl Uncertainty {
         greatest
     }
 
-    /// Returns a figure's error bar in a condition.
+    /// Returns the error bar of a value in a condition.
     pub fn bar(&self, condition: ConditionId, figure: Scalar) -> Option<&Bar> {
         self.conditions.get(&condition)?.bars[figure].as_ref()
     }
 }
 
-/// How uncertain a condition's figures are.
+/// Uncertainty of the results of a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionUncertainty {
-    /// Error bars, for each figure that exists.
+    /// Error bar of each value that exists.
     pub bars: ScalarTable<Option<Bar>>,
-    /// `(Q84 - Q16) / 2` over the band, for the representatives' `ln |H_ref| / |H_sim|`: the
-    /// mismatch that a single gain leaves.
+    /// Half-width `(Q84 - Q16) / 2` over the band of `ln |H_ref| / |H_sim|` between the
+    /// representatives: the mismatch that remains after a gain correction.
     pub left_in_band: PairTable<Option<f64>>,
-    /// Swaps behind the error bars.
+    /// Swaps from which the error bars are computed.
     pub substitutions: ConditionSubstitutions,
 }
 
-/// An on-axis net gain's scatter components (M13.5).
+/// Scatter components of an on-axis net gain (M13.5).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairScatter {
     pub pair: Pair,
@@ -86,12 +86,12 @@ pub struct PairScatter {
     pub about_schedule: Option<VarianceDecomposition>,
 }
 
-/// Tests whether an on-axis net gain depends on a second variable (M13.7).
+/// Test whether an on-axis net gain depends on a second variable (M13.7).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondVariableTest {
     pub pair: Pair,
     pub variable: SecondVariable,
-    /// Its effect, or why it cannot be determined.
+    /// Effect of the variable, or why it cannot be determined.
     pub effect: Result<SecondVariableEffect, SecondVariableError>,
     /// Probability that the effect is at least as large under the null hypothesis, after Holm's
     /// correction over all responses and variables.
@@ -102,13 +102,13 @@ pub struct SecondVariableTest {
 /// Confidence bands where `ln k` is scheduled (M13.6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduleBands {
-    /// Each scheduled figure's band.
+    /// Confidence band of each scheduled value.
     pub(crate) bands: Vec<(Scalar, ScheduleBand)>,
 }
 
 impl ScheduleBands {
-    /// Returns the half-widths about the scheduled figure, a channel's `ln k` or a net gain's, at
-    /// an airspeed \[kt\].
+    /// Returns the half-widths about a scheduled value (`ln k` of a channel or net gain) at an
+    /// airspeed \[kt\].
     pub fn at(&self, schedule: &Schedule, figure: Scalar, airspeed_kt: f64) -> Option<BandWidths> {
         let (_, band) = self.bands.iter().find(|(scalar, _)| *scalar == figure)?;
         let widths = band.at(&schedule.design_row(airspeed_kt));
@@ -120,23 +120,22 @@ impl ScheduleBands {
     }
 }
 
-/// An on-axis net gain's difference between two conditions at equal airspeed (M13.4).
+/// Difference in on-axis net gain between two conditions at equal airspeed (M13.4).
 #[derive(Clone, Debug, PartialEq)]
 pub struct AirspeedDifference {
     pub pair: Pair,
     pub conditions: [ConditionId; 2],
-    /// The two conditions' mean airspeed \[kt\].
+    /// Mean airspeed of the two conditions \[kt\].
     pub airspeed_kt: f64,
     /// The difference in `ln k_o k_i`.
     pub difference: Difference,
     /// Probability that a difference is at least as large under the null hypothesis, after Holm's
-    /// correction over all displayed differences; `None` where the bundles have no spread.
+    /// correction over all differences; `None` where the bundles have no spread.
     pub p_holm: Option<f64>,
 }
 
 impl AirspeedDifference {
-    /// Returns whether the difference exceeds the expectation from trim and identification
-    /// uncertainty.
+    /// Returns whether the difference is larger than trim and identification uncertainty explain.
     pub fn is_significant(&self, level: f64) -> bool {
         self.p_holm.is_some_and(|p| p < 1.0 - level)
     }

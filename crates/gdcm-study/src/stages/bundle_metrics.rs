@@ -19,7 +19,7 @@ use crate::results::comparison::BundleMetrics;
 
 impl BundleMetrics {
     /// Computes the distances over the responses marked in `measuring`, two steps for each model.
-    /// Measured models are compared with coherence weights where a least coherence is set (M4a).
+    /// Measured models are compared with coherence weights if a minimum coherence is set (M4a).
     ///
     /// # Errors
     /// [`Cancelled`] where `execution` is cancelled.
@@ -66,15 +66,15 @@ impl BundleMetrics {
     }
 }
 
-/// Responses of a bundle in polar form, and the responses in which its models are compared.
+/// Responses of the models of a bundle in polar form, and the responses in which they are compared.
 pub(crate) struct MeasuredBundle {
     polar: Vec<PolarResponse>,
     pub(crate) measured: MeasuredPairs,
 }
 
 impl MeasuredBundle {
-    /// Selects the marked responses of every model, or all responses where no model has a marked
-    /// one; one step for each model.
+    /// Selects the marked responses of every model, or all responses if no model has a marked
+    /// response; one step for each model.
     ///
     /// # Errors
     /// [`Cancelled`] where `execution` is cancelled.
@@ -99,7 +99,7 @@ impl MeasuredBundle {
     }
 }
 
-/// Computes the distances between every two models of a bundle, two steps for each model.
+/// Computes the distances between all pairs of models of a bundle, two steps for each model.
 fn bundle_distance(
     responses: &[Arc<FrequencyResponse>],
     coherence_weights: &[Option<PairTable<CoherenceWeights>>],

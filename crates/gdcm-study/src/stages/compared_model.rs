@@ -11,11 +11,11 @@ use super::condition_responses::ConditionResponses;
 use crate::results::caution::{GainOutOfRange, Undefined};
 use crate::results::comparison::Mismatches;
 
-/// Frequencies of a comparison, and their least coherence.
+/// Frequencies of a comparison, and the minimum coherence.
 #[derive(Clone, Copy)]
 pub struct ComparisonGrid<'a> {
     pub grid: &'a FrequencyGrid,
-    /// Least coherence at a frequency with weight; `None`: coherence is not used (M4a).
+    /// Minimum coherence of the frequencies that count; `None` ignores coherence (M4a).
     pub coherence: Option<f64>,
 }
 
@@ -28,7 +28,7 @@ enum Absence {
 }
 
 impl Absence {
-    /// Classifies a response that is zero, or not finite, at one frequency at least.
+    /// Classifies a response that is zero or not finite at one or more frequencies.
     fn classify(values: &[Complex<f64>]) -> Self {
         let finite: Vec<&Complex<f64>> = values.iter().filter(|value| value.is_finite()).collect();
         if !finite.is_empty() && finite.iter().all(|value| value.norm() == 0.0) {
@@ -44,7 +44,7 @@ impl Absence {
 /// A model prepared for comparison, without its numerically zero responses.
 pub(crate) struct ComparedModel {
     pub(crate) polar: PolarResponse,
-    /// Why the unmodified model lacks a response; `None` where it has it, even if numerically zero.
+    /// Why the model lacks a response; `None` where it has the response, even if numerically zero.
     absent: PairTable<Option<Absence>>,
     /// The numerically zero responses (M6a).
     pub(crate) nothing: PairTable<bool>,
@@ -53,7 +53,7 @@ pub(crate) struct ComparedModel {
 }
 
 impl ComparedModel {
-    /// Prepares a model of a bundle; an identified model with coherence weights where a least
+    /// Prepares a model of a bundle; an identified model with coherence weights if a minimum
     /// coherence is set (M4a).
     pub(crate) fn new(
         condition: &Condition,
@@ -92,7 +92,8 @@ impl ComparedModel {
         )
     }
 
-    /// Counts the frequencies with weight in a response, where coherence is used.
+    /// Counts the frequencies with nonzero weight in a response; `None` where coherence is not
+    /// used.
     pub(crate) fn weighted_frequencies(&self, pair: Pair) -> Option<usize> {
         let weights = self.coherence_weights.as_ref()?;
         Some(weights[pair].weights.len())
@@ -126,7 +127,7 @@ pub(crate) fn why_undefined(
         Some(gain) if identified.weighted_frequencies(pair) != Some(0) => {
             Undefined::GainOutOfRange(gain.power_of_ten)
         }
-        // Both have the response, and no frequency has weight.
+        // Both models have the response, but all its frequencies have weight zero.
         _ => Undefined::NotCoherent,
     }
 }

@@ -23,7 +23,7 @@ use crate::results::analysis::ConditionFailure;
 use crate::results::caution::{BundleModel, Caution, GainOutOfRange, Undefined};
 use crate::results::comparison::{BundleMetrics, Comparison, ModelMismatch};
 
-/// What a condition's comparison depends on.
+/// Inputs of the comparison of a condition's models.
 #[derive(Clone, Copy)]
 pub(crate) struct ComparisonInput<'a> {
     pub(crate) condition: &'a Condition,
@@ -72,7 +72,7 @@ impl ComparisonInput<'_> {
             .ok_or(ConditionFailure::AllSetAside { bundle: kind })
     }
 
-    /// Computes a physics model's mismatch against the identified representative, and its J.
+    /// Computes the mismatch of a physics model against the identified representative, and J.
     fn mismatch(&self, physics: &ComparedModel, identified: &ComparedModel) -> ModelMismatch {
         let mismatch = physics.mismatches(identified);
         let cost = mismatch.map(|_, entry| {
@@ -83,11 +83,12 @@ impl ComparisonInput<'_> {
         ModelMismatch { mismatch, cost }
     }
 
-    /// Returns the caution about gains beyond the computable range between the representatives.
+    /// Returns the caution about gains between the representatives outside the computable range.
     fn out_of_range(&self, compared: &ComparedPair<'_>, delta: &Delta) -> Option<Caution> {
         let mut responses =
             GainOutOfRange::of_models(&compared.physics.polar, &compared.identified.polar);
-        // A gain may be out of range where coherence excludes the response.
+        // If coherence excludes all frequencies with such a gain, G is defined and no caution is
+        // needed.
         responses.retain(|gain| delta.gain[gain.pair].is_none());
         if responses.is_empty() {
             return None;
@@ -101,8 +102,8 @@ impl ComparisonInput<'_> {
         })
     }
 
-    /// Returns the caution about frequencies that coherence excludes from the comparison with the
-    /// identified representative (M4a).
+    /// Returns the caution about the frequencies of the identified representative that coherence
+    /// excludes from the comparison (M4a).
     fn coherence_caution(&self, identified: &ComparedModel, flight: &Model) -> Option<Caution> {
         let Dynamics::Measured(response) = &flight.dynamics else {
             return None;
@@ -176,8 +177,8 @@ struct ComparedPair<'a> {
 }
 
 impl Comparison {
-    /// Selects the representatives among the kept models and compares them, with the identified
-    /// representative's coherence weights where a least coherence is set (M4a).
+    /// Selects the representatives among the kept models and compares them, with the coherence
+    /// weights of the identified representative if a minimum coherence is set (M4a).
     ///
     /// # Errors
     /// [`ConditionFailure`] where a bundle has no model to represent it.
@@ -227,8 +228,8 @@ impl Comparison {
         })
     }
 
-    /// Returns the same comparison, where each G is the mean (of its logarithm) over all pairs
-    /// between a kept physics and a kept identified model that have the response.
+    /// Returns the same comparison with other G: each is the geometric mean over all pairs of a
+    /// kept physics and a kept identified model that have the response.
     pub(crate) fn with_mean_gains(mut self, input: &ComparisonInput<'_>) -> Self {
         let physics = kept_models(input, BundleKind::Physics, &self.physics);
         let identified = kept_models(input, BundleKind::Identified, &self.identified);
@@ -266,7 +267,7 @@ fn kept_models(
     models
 }
 
-/// The gains' geometric mean.
+/// Geometric mean of gains.
 #[derive(Default)]
 struct MeanLogarithm {
     sum: f64,

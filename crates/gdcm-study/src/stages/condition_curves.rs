@@ -19,7 +19,7 @@ pub struct ConditionCurves {
     pub grid: FrequencyGrid,
     pub physics: Vec<Arc<FrequencyResponse>>,
     pub identified: Vec<Arc<FrequencyResponse>>,
-    /// Coupled responses drawn last, with their inputs.
+    /// Coupled responses computed for the most recent requests, with their inputs.
     coupled: Mutex<Vec<CoupledCurve>>,
 }
 
@@ -51,13 +51,14 @@ impl ConditionCurves {
         }
     }
 
-    /// Returns a physics model's `H~` under a result's couplings; `H` without couplings.
+    /// Returns `H~` of a physics model with the couplings of `result`; `H` without couplings.
     pub fn with_couplings(
         &self,
         result: &ConditionAnalysis,
         model: usize,
     ) -> Arc<FrequencyResponse> {
-        /// A result and a variant, each with its representative now and before.
+        /// Maximum number of stored responses: the previous and the present representative, for a
+        /// result and for a variant.
         const KEPT: usize = 4;
         let Some(coupled) = &result.coupled else {
             return Arc::clone(&self.physics[model]);
@@ -86,17 +87,17 @@ impl ConditionCurves {
     }
 }
 
-/// How many frequencies drawn curves have.
+/// Number of frequencies of drawn curves.
 pub const CURVE_POINTS: usize = 500;
 
-/// Returns the band drawn around a comparison band: wider by the factor 1.7 on either side.
+/// Returns the band drawn around a comparison band: it extends by the factor 1.7 on either side.
 pub fn display_band(band: Band) -> Band {
     const MARGIN: f64 = 1.7;
     Band::beyond(band.min() / MARGIN, band.max() * MARGIN).unwrap_or(band)
 }
 
-/// Returns the band for a condition's curves: [`display_band`], and up to ten times the band where
-/// leads are requested, to show their effect above it (M15.6).
+/// Returns the band of the curves of a condition: [`display_band`], extended to ten times the upper
+/// end of the comparison band where leads are requested, to show their effect (M15.6).
 pub fn curves_band(settings: &Settings) -> Band {
     let usual = display_band(settings.band);
     let top = match settings.phase {

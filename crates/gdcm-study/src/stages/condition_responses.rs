@@ -11,11 +11,10 @@ use gdcm_model::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 use crate::execution::{Execution, Memo};
 use crate::results::fitted_couplings::FittedCouplings;
 
-/// What a response depends on besides its model's numbers: the band, and how many frequencies it
-/// has.
+/// Band and number of frequencies, on which a response depends besides the dynamics of its model.
 pub type GridKey = (Band, usize);
 
-/// What a response is for. The last response for each purpose is cached.
+/// Purpose of a response. The last response for each purpose is cached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
     /// Comparing models, in the comparison band.
@@ -44,7 +43,7 @@ pub(crate) struct CoupledResponses {
 }
 
 impl CoupledResponses {
-    /// Creates an empty cache for this many models.
+    /// Creates an empty cache for a bundle with this number of models.
     pub(crate) fn new(couplings: &Arc<FittedCouplings>, airspeed_kt: f64, models: usize) -> Self {
         let made = (0..models).map(|_| OnceLock::new()).collect();
         Self {
@@ -54,7 +53,7 @@ impl CoupledResponses {
         }
     }
 
-    /// Returns `H~` for a model with the response `physics`.
+    /// Returns `H~` of a model with the uncoupled response `physics`.
     fn response(&self, model: usize, physics: &FrequencyResponse) -> Arc<FrequencyResponse> {
         let coupled = self.made[model].get_or_init(|| {
             let matrices = self.couplings.matrices();
@@ -65,8 +64,8 @@ impl CoupledResponses {
 }
 
 impl ConditionResponses {
-    /// Returns a model's response for comparison and correction: `H` if identified, `H~` if
-    /// physics, equal to `H` without couplings (M16.3).
+    /// Returns the response of a model for comparison and correction (M16.3): `H` for an identified
+    /// model, `H~` for a physics model (`H` without couplings).
     pub(crate) fn compared(&self, kind: BundleKind, model: usize) -> Arc<FrequencyResponse> {
         let response = &self.bundle(kind)[model];
         match &self.coupled {
@@ -100,7 +99,7 @@ impl ConditionResponses {
     }
 }
 
-/// A model's last responses, and the model prepared for them.
+/// Last responses of a model, and the model prepared for their computation.
 #[derive(Debug, Default)]
 struct ModelResponses {
     prepared: OnceLock<PreparedModel>,
@@ -109,7 +108,7 @@ struct ModelResponses {
 }
 
 impl ModelResponses {
-    /// Locks the last response; a panic elsewhere cannot leave it incomplete.
+    /// Locks the cache; a panic under the lock cannot leave it incomplete.
     fn last(&self, purpose: Purpose) -> MutexGuard<'_, Memo<GridKey, Arc<FrequencyResponse>>> {
         self.last[purpose as usize]
             .lock()
@@ -131,9 +130,9 @@ impl ModelResponses {
     }
 }
 
-/// All engines' models, keyed by their numbers: a model that stays, or returns under another name
-/// or in another place, keeps its responses. A study's engines that share them
-/// ([`Engine::sharing`](super::engine::Engine::sharing)) compute and store each only once.
+/// Responses of the models in use, keyed by the content of the model: a model keeps its responses
+/// when it is renamed or moved. Engines that share them
+/// ([`Engine::sharing`](super::engine::Engine::sharing)) compute and store each response only once.
 #[derive(Clone, Debug, Default)]
 pub struct KnownModels {
     by_content: Arc<Mutex<HashMap<ContentHash, Weak<ModelResponses>>>>,
@@ -146,7 +145,7 @@ impl KnownModels {
             .unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Removes the models that no condition uses any more.
+    /// Removes the models that no condition uses any longer.
     pub(crate) fn forget_unused(&self) {
         self.by_content()
             .retain(|_, responses| responses.strong_count() > 0);
@@ -179,7 +178,7 @@ struct HashedModel {
 }
 
 impl ConditionModels {
-    /// Collects a condition's models; known models bring their responses.
+    /// Collects the models of a condition; models in `known` keep their cached responses.
     pub(crate) fn new(condition: &Arc<Condition>, known: &KnownModels) -> Self {
         let models = models_of(condition)
             .map(|model| {
@@ -201,7 +200,7 @@ impl ConditionModels {
         &self.condition
     }
 
-    /// Hashes a model's numbers.
+    /// Returns the hash of a model's dynamics.
     pub(crate) fn content(&self, kind: BundleKind, model: usize) -> ContentHash {
         let before = if kind == BundleKind::Physics {
             0
@@ -211,8 +210,8 @@ impl ConditionModels {
         self.models[before + model].content
     }
 
-    /// Returns whether the bundles contain the same models, by name, origin and numbers, in the
-    /// same order.
+    /// Returns whether the bundles contain the same models with the same names, origins and
+    /// dynamics in the same order.
     pub(crate) fn are_the_same_as(&self, other: &Self) -> bool {
         let [own, others] = [self, other].map(|models| {
             let contents: Vec<ContentHash> =
@@ -226,7 +225,7 @@ impl ConditionModels {
                 .all(|(a, b)| a.name == b.name && a.origin == b.origin)
     }
 
-    /// Computes every model's responses, model by model; each is a step.
+    /// Computes the responses of every model in turn; each model is a step.
     pub(crate) fn responses(
         &self,
         purpose: Purpose,
@@ -260,7 +259,7 @@ impl ConditionModels {
         })
     }
 
-    /// Drops the responses computed for drawing.
+    /// Drops the responses that were computed for drawing.
     pub(crate) fn forget_drawn(&self) {
         for model in &self.models {
             *model.responses.last(Purpose::Drawing) = Memo::default();

@@ -1,7 +1,7 @@
-//! The analysis stages of a condition, each cached while its inputs stay the same.
+//! Analysis stages of a condition, each cached while its inputs stay the same.
 //!
 //! ```text
-//! 1  responses of every model                                    (numbers of the model, grid)
+//! 1  responses of every model                                    (dynamics of the model, grid)
 //! 2  distances within each bundle                                (measuring responses, coherence)
 //! 3  representatives, G and D                                    (rejections, pins, averages)
 //! 4  with couplings: responses of the coupled physics models, and stage 3 again
@@ -34,7 +34,8 @@ use crate::results::comparison::{BundleMetrics, Comparison};
 use crate::results::fitted_couplings::{CoupledCondition, FittedCouplings};
 use crate::results::model_swap::ConditionSubstitutions;
 
-/// Proof budget for a swap's gains: as for a live answer, without a search for other minima.
+/// Proof budget for the gains after a swap: that of the interactive analysis, without a search for
+/// other minima.
 pub(crate) const SUBSTITUTION_PROOF: ProofBudget = ProofBudget {
     work: 1_000_000,
     listing: 0,
@@ -76,38 +77,38 @@ struct CoupledKey {
     couplings: Arc<FittedCouplings>,
 }
 
-/// The last result of each stage of a condition.
+/// Last result of each stage of a condition.
 #[derive(Clone, Debug)]
 pub(crate) struct ConditionStages {
     models: ConditionModels,
     metrics: Memo<MetricsKey, Arc<BundleMetrics>>,
-    /// Stages with the physics models without couplings.
+    /// Stages for the physics models without couplings.
     plain: ComparedStages,
     responses: Memo<CoupledKey, CoupledResponses>,
-    /// Stages with the physics models with couplings.
+    /// Stages for the physics models with couplings.
     coupled: ComparedStages,
     swaps: SwapMemo,
 }
 
-/// The last comparison of a condition's representatives, and the optima based on it.
+/// Last comparison of the representatives of a condition, and the optima based on it.
 #[derive(Clone, Debug, Default)]
 struct ComparedStages {
     comparison: Memo<ComparisonKey, Result<Arc<Comparison>, ConditionFailure>>,
     problems: SolvedProblems,
 }
 
-/// Inputs of a condition's comparison and solution.
+/// Inputs of the comparison and the optimisation of a condition.
 struct Measured<'a> {
     run: Run<'a>,
     condition: Arc<Condition>,
-    /// The responses that measure distances and bounds.
+    /// The responses from which distances and bounds are computed.
     measuring: PairTable<bool>,
     responses: ConditionResponses,
     metrics: Arc<BundleMetrics>,
 }
 
 impl ConditionStages {
-    /// Creates the stages with nothing computed yet besides the models' own cached responses.
+    /// Creates stages without results; responses cached with the models are kept.
     pub(crate) fn new(models: ConditionModels) -> Self {
         Self {
             models,
@@ -119,7 +120,7 @@ impl ConditionStages {
         }
     }
 
-    /// Continues with `models`; results are kept where the bundles are the same.
+    /// Replaces the models; results are kept where the bundles are the same.
     pub(crate) fn take(&mut self, models: ConditionModels) {
         if self.models.are_the_same_as(&models) {
             self.models = models;
@@ -128,7 +129,7 @@ impl ConditionStages {
         }
     }
 
-    /// Returns the step count for a condition's analysis: three for each model, plus one.
+    /// Returns the number of steps of the analysis of a condition: three for each model, plus one.
     pub(crate) fn steps(condition: &Condition) -> usize {
         3 * model_count(condition) + 1
     }
@@ -170,8 +171,8 @@ impl ConditionStages {
         })
     }
 
-    /// Returns the condition's contribution to the couplings' fit; `None` where its representatives
-    /// cannot be compared, or have no delays.
+    /// Returns the input of the coupling fit from this condition; `None` where its representatives
+    /// cannot be compared, or it has no optimal delays.
     ///
     /// # Errors
     /// [`Cancelled`] where the run is cancelled.
@@ -213,11 +214,11 @@ impl ConditionStages {
         }))
     }
 
-    /// Completes the condition's analysis, with the couplings on the physics models where there are
-    /// any.
+    /// Completes the analysis of the condition, with the couplings applied to the physics models,
+    /// if any.
     ///
     /// # Errors
-    /// [`Cancelled`] where the run is cancelled; a condition without a result is no error.
+    /// [`Cancelled`] where the run is cancelled. A condition without a result is not an error.
     pub(crate) fn analyze(
         &mut self,
         run: Run<'_>,
@@ -253,9 +254,9 @@ impl ConditionStages {
         })
     }
 
-    /// Computes how the figures of the condition change when other models replace the
-    /// representatives of `analysis` (M13.1); cached results are reused. The couplings stay those
-    /// of the representatives.
+    /// Computes the gains and delays of the condition after other models replace the
+    /// representatives of `analysis` (M13.1); cached results are reused. The couplings are not
+    /// fitted again.
     ///
     /// # Errors
     /// [`Cancelled`] where the run is cancelled.
@@ -292,8 +293,8 @@ impl ConditionStages {
         })
     }
 
-    /// Computes the responses with couplings, where there are any: the only place that applies
-    /// couplings to a physics model for comparison.
+    /// Computes the responses with couplings, if any. Nothing else applies couplings to a physics
+    /// model for comparison.
     fn coupled_responses(
         &mut self,
         run: Run<'_>,
@@ -327,7 +328,7 @@ impl Measured<'_> {
 }
 
 impl ComparedStages {
-    /// Compares the representatives, which are selected among the models without couplings.
+    /// Compares the representatives; they are selected among the models without couplings.
     fn compare(
         &mut self,
         measured: &Measured<'_>,
@@ -361,7 +362,7 @@ impl ComparedStages {
         Ok(comparison)
     }
 
-    /// Compares the representatives, and solves for the delays and gains.
+    /// Compares the representatives, and computes the optimal delays and gains.
     fn compare_and_solve(
         &mut self,
         measured: &Measured<'_>,
@@ -409,7 +410,7 @@ impl ComparedStages {
     }
 }
 
-/// Checks that the representatives can be compared in a response at least.
+/// Checks that the representatives can be compared in one response or more.
 fn check_comparable(
     condition: &Condition,
     comparison: &Comparison,
@@ -426,8 +427,8 @@ fn check_comparable(
     })
 }
 
-/// Collects the cautions about a result: undefined constrained responses, missing suggestions, the
-/// models, unusual gains.
+/// Collects the cautions about a result: undefined constrained responses, unavailable outlier
+/// suggestions, cautions about the models, unusual gains.
 fn result_cautions(
     settings: &Settings,
     comparison: &Comparison,
@@ -451,7 +452,7 @@ fn result_cautions(
     cautions
 }
 
-/// Returns the model count in both bundles.
+/// Returns the number of models in both bundles.
 pub(crate) fn model_count(condition: &Condition) -> usize {
     condition.bundle(BundleKind::Physics).len() + condition.bundle(BundleKind::Identified).len()
 }

@@ -18,15 +18,16 @@ use crate::execution::Execution;
 use crate::results::comparison::Mismatches;
 use crate::results::convention_doubt::{Convention, ConventionDoubt};
 
-/// A phase difference this near to half a turn \[rad\] indicates a reversed sign.
+/// Maximum distance of the phase difference from half a turn \[rad\] that indicates a reversed
+/// sign.
 const NEAR_HALF_A_TURN: f64 = 20.0 / 180.0 * PI;
-/// Scale factors usually stay within this, up or down; beyond it, a unit is suspected.
+/// Maximum usual factor between gains, up or down; a larger factor suggests another unit.
 const USUAL_FACTOR: f64 = 5.0;
-/// Greatest ratio between a single response's factor and the median: models differ by that much
-/// besides a unit.
+/// Maximum ratio between the factor of a single response and the median factor of its channel if a
+/// unit is the cause: models differ by this much for other reasons.
 const MOST_SPREAD: f64 = 2.0;
 
-/// A condition's mismatches.
+/// Mismatches of a condition.
 struct Sample<'a> {
     condition: ConditionId,
     mismatch: &'a Mismatches,
@@ -43,7 +44,7 @@ impl Sample<'_> {
             .filter_map(|(pair, mismatch)| Some((pair, mismatch.as_ref()?)))
     }
 
-    /// Returns which share of a channel's responses the opposite sign would bring nearer.
+    /// Returns the share of a channel's responses that are closer to flight with the opposite sign.
     fn opposed_share(&self, channel: Channel) -> f64 {
         let mut responses = 0;
         let mut opposed = 0;
@@ -63,16 +64,18 @@ impl Sample<'_> {
             .collect()
     }
 
-    /// Returns whether a sign is reversed in this channel rather than in the response's other
-    /// channel: in the channel with more opposed responses; in the output where both are alike.
+    /// Returns whether the reversed sign of a response is attributed to this channel rather than to
+    /// the other channel of the response. The channel with the larger share of opposed responses is
+    /// chosen; the output if the shares are equal.
     fn blames_sign_on(&self, channel: Channel, pair: Pair) -> bool {
         let here = self.opposed_share(channel);
         let there = self.opposed_share(other_channel(channel, pair));
         here > there || (here == there && matches!(channel, Channel::Output(_)))
     }
 
-    /// Returns whether a unit differs in this channel rather than in the response's other channel:
-    /// in the channel whose responses have the nearer factor; in the output where both are alike.
+    /// Returns whether the unusual factor of a response is attributed to a unit of this channel
+    /// rather than of the other channel of the response. The channel whose median factor is nearer
+    /// is chosen; the output if both are equally near.
     fn blames_factor_on(&self, channel: Channel, pair: Pair, ln_gain: f64) -> bool {
         let distance = |channel| (median(&mut self.ln_gains(channel)) - ln_gain).abs();
         let here = distance(channel);
@@ -87,7 +90,7 @@ fn other_channel(channel: Channel, pair: Pair) -> Channel {
     if channel == output { input } else { output }
 }
 
-/// Sums a phase difference's function over frequency, weighted as in J (M4a).
+/// Sums a function of the phase difference over frequency, weighted as in J (M4a).
 fn weighted_sum(mismatch: &Mismatch, function: impl Fn(f64) -> f64) -> f64 {
     let weights = mismatch.weights();
     mismatch
@@ -104,7 +107,7 @@ fn weighted_sum(mismatch: &Mismatch, function: impl Fn(f64) -> f64) -> f64 {
         .sum()
 }
 
-/// Returns whether the phase difference is near half a turn over most frequencies.
+/// Returns whether the phase difference is near half a turn at most frequencies.
 fn is_turned(mismatch: &Mismatch) -> bool {
     let near = weighted_sum(mismatch, |phase| {
         if PI - phase.abs() <= NEAR_HALF_A_TURN {
@@ -116,16 +119,16 @@ fn is_turned(mismatch: &Mismatch) -> bool {
     near > 0.5 * weighted_sum(mismatch, |_| 1.0)
 }
 
-/// Evidence for a channel in a condition.
+/// Evidence of a difference in a channel, from one condition.
 struct Evidence {
     condition: ConditionId,
     /// The responses that show the difference.
     pairs: Vec<Pair>,
-    /// Whether all the channel's responses show it.
+    /// Whether every response of the channel supports the difference, not only `pairs`.
     is_everywhere: bool,
 }
 
-/// Collects the sign and unit differences suspected in each condition; signs first.
+/// Collects the suspected sign and unit differences of all conditions, sign differences first.
 pub(crate) fn convention_doubts(
     conditions: &[(ConditionId, &Mismatches)],
     measuring: &PairTable<bool>,
@@ -197,7 +200,7 @@ fn factor_doubt(
         });
     }
     let factor = median(&mut ln_gains);
-    // A unit is a single factor: responses with different factors differ for another reason.
+    // A unit acts as a single factor: different factors have another cause.
     let is_spread = ln_gains
         .iter()
         .any(|ln_gain| (ln_gain - factor).abs() > MOST_SPREAD.ln());
@@ -207,12 +210,13 @@ fn factor_doubt(
     doubt_from(Convention::Factor(factor.exp()), channel, evidence)
 }
 
-/// Returns whether a factor is beyond the usual limits.
+/// Returns whether a factor exceeds the usual factor, up or down.
 fn is_unusual(ln_gain: f64) -> bool {
     ln_gain.abs() > USUAL_FACTOR.ln()
 }
 
-/// Returns the difference that several conditions' evidence suggests; `None` without evidence.
+/// Returns the difference suggested by the evidence from several conditions; `None` without
+/// evidence.
 fn doubt_from(
     convention: Convention,
     channel: Channel,

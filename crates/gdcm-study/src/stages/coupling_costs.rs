@@ -5,7 +5,7 @@
 //! 1  analysis without couplings, and with them
 //! 2  fit and schedule without each condition in turn: J of the condition left out
 //! 3  J without and with couplings: own corrections, schedule, conditions left out
-//! 4  each condition: moved poles, least singular value of I - K H, change above the band
+//! 4  each condition: moved poles, minimum singular value of I - K H, change above the band
 //! ```
 
 use std::collections::BTreeMap;
@@ -37,11 +37,11 @@ use crate::results::couplings_assessment::{
 };
 use crate::results::fitted_couplings::{CoupledCondition, FittedCouplings};
 
-/// The step's name in progress reports.
+/// Name of the step in progress reports.
 const LEAVING_OUT: &str = "couplings without each condition";
 
-/// How many frequencies the singular values have below the band, and from its lower end to ten
-/// times its top: 2 % apart over the example's band.
+/// Numbers of frequencies of the singular values: below the band, and from its lower end to ten
+/// times its upper end (2 % apart for the band of the example).
 const MARGIN_POINTS: [usize; 2] = [60, 300];
 
 impl Engine {
@@ -155,7 +155,7 @@ pub(crate) fn with_couplings(study: &Study, couplings: CouplingCorrection) -> St
     study
 }
 
-/// A condition left out from fit and schedule.
+/// Results of a condition that is left out of the fit and the schedule.
 struct LeftOutCondition {
     fit: LeftOutFit,
     cost: CouplingCost,
@@ -166,8 +166,8 @@ struct LeftOutCondition {
 }
 
 impl LeftOutCondition {
-    /// Returns `None` where the other conditions give no couplings or schedule, or the condition
-    /// cannot be assessed.
+    /// Returns `None` where couplings or schedule cannot be fitted to the other conditions, or the
+    /// condition cannot be assessed.
     fn new(condition: ConditionId, without: &Analysis, held_out: &Analysis) -> Option<Self> {
         let fit = LeftOutFit {
             condition,
@@ -186,7 +186,7 @@ impl LeftOutCondition {
     }
 }
 
-/// Returns the representative's J before and after a correction.
+/// Returns J of the representative before and after a correction.
 fn changes(
     analysis: &Analysis,
     condition: ConditionId,
@@ -224,7 +224,8 @@ fn coupling_costs(
     }
 }
 
-/// Sums a correction's J over the conditions that can be assessed both without and with couplings.
+/// Sums J under a correction over the conditions that can be assessed both without and with
+/// couplings.
 fn cost_sums<'a>(
     without: &'a Analysis,
     with: &Analysis,
@@ -241,7 +242,8 @@ fn cost_sums<'a>(
     sums
 }
 
-/// Returns the grid from a tenth to ten times the band, with the ends of its lower part included.
+/// Returns the grid from a tenth of the band's lower end to ten times its upper end; the lower end
+/// itself is a grid point.
 fn margin_grid(band: Band) -> FrequencyGrid {
     let [below, above] = MARGIN_POINTS;
     let mut omega = log_spaced(band.min() / ABOVE_BAND, band.min(), below);
@@ -250,13 +252,13 @@ fn margin_grid(band: Band) -> FrequencyGrid {
     FrequencyGrid::at(omega)
 }
 
-/// The couplings' effect on a condition, and the poles that they make unstable.
+/// Effect of the couplings on a condition, and its newly unstable poles.
 struct ConditionEffect {
     couplings: ConditionCouplings,
     unstable: Vec<UnstablePole>,
 }
 
-/// Computes the couplings' effect on a condition.
+/// Computes the effect of the couplings on a condition.
 fn condition_effect(
     study: &Study,
     result: &ConditionAnalysis,
@@ -293,17 +295,18 @@ fn condition_effect(
     })
 }
 
-/// A condition's poles without and with couplings, over its kept physics models.
+/// Poles of a condition's kept physics models, without and with couplings.
 struct ConditionPoles {
-    /// The representative's poles, or why they are unknown.
+    /// Poles of the representative, or why they are unknown.
     representative: Result<Vec<PoleShift>, String>,
-    /// Every kept model's newly unstable poles.
+    /// Newly unstable poles of every kept model.
     unstable: Vec<UnstablePole>,
-    /// Other kept models with matrices whose loop cannot be closed, with the reason.
+    /// Other kept models with matrices in which the feedback loop cannot be closed, with the
+    /// reason.
     refused: Vec<(String, String)>,
 }
 
-/// Computes the kept physics models' poles.
+/// Computes the poles of the kept physics models.
 fn condition_poles(
     study: &Study,
     result: &ConditionAnalysis,
@@ -350,7 +353,7 @@ fn condition_poles(
     Ok(poles)
 }
 
-/// Returns a model's poles without and with couplings, or why they are unknown.
+/// Returns the poles of a model without and with couplings, or why they cannot be computed.
 fn pole_shifts(
     result: &ConditionAnalysis,
     coupled: &CoupledCondition,
@@ -367,7 +370,7 @@ fn pole_shifts(
         .map_err(|error| error.to_string())
 }
 
-/// Sums J over responses.
+/// Sum of J over responses.
 #[derive(Clone, Copy, Default)]
 struct CostSum {
     count: usize,
@@ -384,7 +387,7 @@ impl CostSum {
         self.with += with.corrected.total();
     }
 
-    /// Returns a sum's mean; `None` over no response.
+    /// Returns the mean over the counted responses; `None` if none was counted.
     fn mean(&self, sum: f64) -> Option<f64> {
         if self.count > 0 {
             Some(sum / self.count as f64)
@@ -394,7 +397,7 @@ impl CostSum {
     }
 }
 
-/// Sums J over many conditions' responses.
+/// Sums of J over the responses of several conditions.
 struct CostSums<'a> {
     is_on_axis: &'a PairTable<bool>,
     on_axis: CostSum,
@@ -410,7 +413,7 @@ impl<'a> CostSums<'a> {
         }
     }
 
-    /// Adds a condition's responses that can be compared both without and with couplings.
+    /// Adds the responses of a condition that can be compared both without and with couplings.
     fn add(
         &mut self,
         without: &PairTable<Option<CostChange>>,
@@ -423,7 +426,7 @@ impl<'a> CostSums<'a> {
         }
     }
 
-    /// Returns the sum that a response belongs to.
+    /// Returns the sum for a response: on-axis or off-axis.
     fn sum(&mut self, pair: Pair) -> &mut CostSum {
         if self.is_on_axis[pair] {
             &mut self.on_axis
@@ -432,7 +435,7 @@ impl<'a> CostSums<'a> {
         }
     }
 
-    /// Returns a sum's means.
+    /// Returns the on-axis and the off-axis mean.
     fn means(&self, sum: fn(&CostSum) -> f64) -> AxisCost {
         AxisCost {
             on_axis: self.on_axis.mean(sum(&self.on_axis)),

@@ -26,18 +26,18 @@ use crate::results::fitted_couplings::FittedCouplings;
 /// The requested couplings, or why there are none.
 pub(crate) type CouplingOutcome = Result<Arc<FittedCouplings>, CouplingError>;
 
-/// A condition's contribution to the fit: its representatives, and its channel delays without
+/// Input of the coupling fit from a condition: its representatives, and its channel delays without
 /// couplings.
 pub(crate) struct CouplingSource {
     pub(crate) condition: Arc<Condition>,
     pub(crate) comparison: Arc<Comparison>,
     /// The channels' signed delays \[s\] (M9, M15).
     pub(crate) delays_s: Channels<f64>,
-    /// The representatives' hashes, physics first.
+    /// Hashes of the representatives, physics first.
     pub(crate) contents: [ContentHash; 2],
-    /// The physics representative's response.
+    /// Response of the physics representative.
     pub(crate) physics: Arc<FrequencyResponse>,
-    /// The identified representative's response.
+    /// Response of the identified representative.
     pub(crate) flight: Arc<FrequencyResponse>,
 }
 
@@ -58,28 +58,28 @@ impl CouplingSource {
     }
 }
 
-/// What a fit depends on in a condition.
+/// Dependencies of the fit on a condition.
 #[derive(Clone, Debug, PartialEq)]
 struct ConditionKey {
     id: ConditionId,
     airspeed_kt: f64,
-    /// The representatives' hashes, physics first.
+    /// Hashes of the representatives, physics first.
     contents: [ContentHash; 2],
     usable: PairTable<bool>,
     bands: Option<Arc<ModelBands>>,
 }
 
-/// Averages that measured responses are taken to have where they do not state them.
+/// Number of averages assumed for measured responses that do not state it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Averaging {
     averages: Option<f64>,
-    /// A window's length \[s\].
+    /// Length of a window \[s\].
     window_s: Option<f64>,
     /// Whether the windows overlap by half.
     half_overlap: bool,
 }
 
-/// Everything that a fit depends on: neither the gains' weight nor their bounds.
+/// All dependencies of the fit. The weight and the bounds of the gains are not among them.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CouplingFitKey {
     kind: CouplingKind,
@@ -129,7 +129,7 @@ impl CouplingFitKey {
         }
     }
 
-    /// Builds these sources' problem (M16.1).
+    /// Builds the problem of the fit to these conditions (M16.1).
     fn problem(
         &self,
         study: &Study,
@@ -171,7 +171,7 @@ impl CouplingFitKey {
         }
     }
 
-    /// Fits couplings to these sources, or returns why there are none.
+    /// Fits couplings to these conditions, or returns why there are none.
     pub(crate) fn fit(
         &self,
         study: &Study,
@@ -189,8 +189,8 @@ impl CouplingFitKey {
     }
 }
 
-/// Returns the standard deviation in `ln H` from an identified model's bands, or from its coherence
-/// where that is used (M16.2).
+/// Returns the standard deviation of `ln H` from the standard deviations of an identified model, or
+/// from its coherence if that is used (M16.2).
 fn deviation(study: &Study, identified: &Model, omega: &[f64]) -> Option<PairTable<Vec<f64>>> {
     if let Some(bands) = &identified.bands {
         return Some(response_deviation(bands, omega));

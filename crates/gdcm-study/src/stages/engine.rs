@@ -1,4 +1,4 @@
-//! A study's analysis, stage by stage; each stage is cached while its inputs stay the same.
+//! Analysis of a study, stage by stage; each stage is cached while its inputs stay the same.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -32,11 +32,11 @@ use crate::results::scheduled_conditions::{schedule_settings, scheduled_points};
 use crate::results::time_histories::{HistoryRecords, TimeHistories, time_histories_of};
 use crate::results::uncertainty::Uncertainty;
 
-/// Computes analyses and caches each stage's last result by the numbers in its inputs, whatever
-/// their source: for a dataset in which a single model has changed, one response is computed.
+/// Computes analyses and caches the last result of each stage, keyed by the numerical content of
+/// its inputs: if a single model changes, only its response is recomputed.
 ///
 /// ```text
-/// responses                      (numbers of the model, band, points)
+/// responses                      (dynamics of the model, band, points)
 /// distances                      (measuring responses, coherence)
 /// representatives, G, D          (rejections, pins, average)
 /// couplings, where requested: all later stages use the coupled physics models
@@ -45,8 +45,8 @@ use crate::results::uncertainty::Uncertainty;
 /// assessment
 /// ```
 ///
-/// Conditions and models are independent of one another: the result is the same to the last bit
-/// with any executor.
+/// Conditions and models are independent of one another: the result is bit-for-bit the same with
+/// any executor.
 #[derive(Clone)]
 pub struct Engine {
     executor: Arc<dyn Executor>,
@@ -62,7 +62,7 @@ pub struct Engine {
     curves: Memo<GridKey, Arc<ConditionCurves>>,
 }
 
-/// Proof budget within a live answer; longer proofs run beside it
+/// Proof budget within the interactive analysis; longer proofs run as a separate job
 /// ([`ProofJob`](crate::jobs::analysis_jobs::ProofJob)).
 pub const LIVE_PROOF: ProofBudget = ProofBudget {
     work: 1_000_000,
@@ -109,8 +109,8 @@ impl Engine {
         Self { proofs, ..self }
     }
 
-    /// Shares the responses of models with other engines; for engines that work on the same band
-    /// and points in turn, since only the last response of each model is cached.
+    /// Shares the responses of models with other engines. Only the last response of each model is
+    /// cached: this pays for engines with the same band and number of points.
     pub fn sharing(self, known: &KnownModels) -> Self {
         Self {
             known: known.clone(),
@@ -118,7 +118,7 @@ impl Engine {
         }
     }
 
-    /// Replaces cached gains of the same problem with gains proven elsewhere under a larger budget.
+    /// Replaces cached gains of the same problem by gains that were proven under a larger budget.
     pub fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
         for stages in self.conditions.values_mut() {
             stages.take_gains(problem, solution);
@@ -135,8 +135,8 @@ impl Engine {
         self.analyze_first(study, None, progress)
     }
 
-    /// Works as [`Engine::analyze`], and reports a condition's result before the others are
-    /// started.
+    /// Works as [`Engine::analyze`], but computes the result of one condition first and reports it
+    /// before the other conditions are started.
     pub fn analyze_first(
         &mut self,
         study: &Study,
@@ -182,8 +182,8 @@ impl Engine {
         Ok(analysis)
     }
 
-    /// Computes the uncertainty of each figure of `analysis` (M13). Substitutions whose inputs have
-    /// not changed since the last call are not computed again.
+    /// Computes the uncertainty of the results in `analysis` (M13). Swaps whose inputs have not
+    /// changed since the last call are not computed again.
     pub fn uncertainty(
         &mut self,
         analysis: &Analysis,
@@ -192,7 +192,7 @@ impl Engine {
         let study = &analysis.study;
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
-        // One response and one swap for each model.
+        // One step for the response and one for the swap of each model.
         let total = study
             .dataset
             .conditions()
@@ -234,8 +234,8 @@ impl Engine {
         requirements_of(analysis, known, &execution)
     }
 
-    /// Simulates an analysis's models with `records` and compares them within its study's
-    /// tolerances; see [`time_histories_of`].
+    /// Simulates the models of an analysis with `records`, and compares the results within the
+    /// tolerances of the study; see [`time_histories_of`].
     ///
     /// # Errors
     /// [`Cancelled`] soon after `progress` requests it.
@@ -251,7 +251,7 @@ impl Engine {
         time_histories_of(analysis, records, tolerances, &execution)
     }
 
-    /// Returns the curves of every model of a condition in a band, on this number of frequencies;
+    /// Returns the curves of all models of a condition, on this number of frequencies in a band;
     /// `None` where the condition does not exist.
     pub fn curves(
         &mut self,
@@ -287,7 +287,7 @@ impl Engine {
         Ok(Some(curves))
     }
 
-    /// Switches to this dataset, and keeps all results for the content it shares with the last one.
+    /// Switches to this dataset; results are kept for content that both datasets contain.
     fn take(&mut self, dataset: &Arc<Dataset>) {
         if self
             .dataset
@@ -296,7 +296,8 @@ impl Engine {
         {
             return;
         }
-        // Collect all before dropping any of the last dataset's: a model may have moved.
+        // Collect all models before dropping any of the last dataset: a model may have moved to
+        // another condition.
         let models: Vec<ConditionModels> = dataset
             .conditions()
             .iter()
@@ -321,16 +322,16 @@ impl Engine {
     }
 }
 
-/// The condition whose result is needed before the others.
+/// Condition whose result is needed before the others.
 #[derive(Clone, Copy)]
 pub struct WantedFirst<'a> {
     pub condition: ConditionId,
-    /// Receives its result, which is also part of the whole analysis.
+    /// Receives the result of the condition; it is also part of the whole analysis.
     pub tell: &'a (dyn Fn(&Result<ConditionAnalysis, ConditionFailure>) + Sync),
 }
 
-/// Returns the analysis step count: those of the conditions, plus, for the conditions that
-/// couplings are fitted to, once more for the inputs of the fit and once more for the fit.
+/// Returns the number of steps of an analysis. Conditions to which couplings are fitted count three
+/// times: for the inputs of the fit, for the fit, and for the analysis.
 fn steps(study: &Study) -> usize {
     let has_couplings = study.settings.couplings.kind().is_some();
     let mut steps = 0;
@@ -342,15 +343,15 @@ fn steps(study: &Study) -> usize {
     steps
 }
 
-/// Adds cautions to the schedule, where there is one.
+/// Adds cautions to the schedule, if there is one.
 fn add_schedule_cautions(analysis: &mut Analysis, cautions: Vec<ScheduleCaution>) {
     if let Ok(schedule) = &mut analysis.schedule {
         schedule.cautions.extend(cautions);
     }
 }
 
-/// Fits a study's couplings to the conditions that are analysed and not held out; `None` where
-/// couplings are not requested (M16.1).
+/// Fits couplings to the conditions that are analysed and not held out; `None` where couplings are
+/// not requested (M16.1).
 fn fit_couplings(
     run: Run<'_>,
     kept: &mut Memo<CouplingFitKey, CouplingOutcome>,
@@ -380,12 +381,12 @@ fn fit_couplings(
     let fit = kept.get_or_fail(key, |key| {
         key.fit(study, run.grid, &sources, execution.executor(), &progress)
     })?;
-    // No progress was reported where the fit is cached.
+    // A cached fit reports no progress: its steps are reported here.
     progress.advanced(1, 1);
     Ok(Some(fit))
 }
 
-/// Reports a fit's progress as steps of the analysis.
+/// Reports the progress of a fit as steps of the analysis.
 struct FitProgress<'a> {
     execution: &'a Execution<'a>,
     /// Number of steps of the fit.
@@ -401,13 +402,14 @@ impl Progress for FitProgress<'_> {
 
     fn advanced(&self, done: usize, total: usize) {
         let reached = self.steps * done / total.max(1);
-        // Several threads may report at the same time; progress never goes backwards.
+        // Several threads may report at the same time; `fetch_max` keeps the progress from
+        // decreasing.
         let before = self.reported.fetch_max(reached, Ordering::Relaxed);
         self.execution.step(reached.saturating_sub(before));
     }
 }
 
-/// Analyses all conditions: first the one needed first, on all threads, then the others in
+/// Analyses all conditions: first the one that is needed first, on all threads; then the others in
 /// parallel.
 fn analyze_conditions(
     run: Run<'_>,

@@ -1,7 +1,7 @@
-//! Computes an analysis's uncertainty from its models' swaps (M13).
+//! Uncertainty of an analysis, computed from swaps of its models (M13).
 //!
 //! ```text
-//! 1  error bar of every figure of a condition, from its swaps and reported errors        (M13.2, M13.3)
+//! 1  error bar of every gain and delay, from swaps and reported errors             (M13.2, M13.3)
 //! 2  differences of net gains between conditions at equal airspeed, Holm's correction    (M13.4)
 //! 3  components of the scatter over the scheduled conditions                             (M13.5)
 //! 4  confidence bands of the schedule                                                    (M13.6)
@@ -32,11 +32,11 @@ use crate::results::uncertainty::{
     SecondVariableTest, Uncertainty,
 };
 
-/// Most differences that are compared.
+/// Maximum number of compared differences.
 const MOST_DIFFERENCES: usize = 20_000;
 
 impl Uncertainty {
-    /// Computes the uncertainty from the conditions' swaps.
+    /// Computes the uncertainty from the swaps of the conditions.
     pub(crate) fn new(
         analysis: &Analysis,
         substitutions: &[(ConditionId, ConditionSubstitutions)],
@@ -91,8 +91,8 @@ fn condition_bars(
     conditions
 }
 
-/// Collects a condition's figures with the spread over its swaps and the errors that its identified
-/// representative reports.
+/// Collects the results of a condition with their spread over the swaps, and with the errors that
+/// the identified representative reports.
 fn bar_source<'a>(
     analysis: &Analysis,
     result: &ConditionAnalysis,
@@ -112,7 +112,7 @@ fn bar_source<'a>(
     }
 }
 
-/// Returns `(Q84 - Q16) / 2` of `ln |H_ref| / |H_sim|` over the band.
+/// Returns the half-width `(Q84 - Q16) / 2` of `ln |H_ref| / |H_sim|` over the band.
 fn left_in_band(result: &ConditionAnalysis) -> PairTable<Option<f64>> {
     let mismatches = &result.comparison.representative.mismatch;
     mismatches.map(|_, mismatch| {
@@ -122,7 +122,7 @@ fn left_in_band(result: &ConditionAnalysis) -> PairTable<Option<f64>> {
     })
 }
 
-/// The schedule with its conditions' error bars.
+/// The schedule with the error bars of its conditions.
 struct ScheduleEvidence<'a> {
     /// `None` where there is no schedule, or a scheduled condition has no error bars.
     schedule: Option<&'a Schedule>,
@@ -155,8 +155,8 @@ impl<'a> ScheduleEvidence<'a> {
         }
     }
 
-    /// Returns a figure's error bars in the scheduled conditions; `None` where a condition has
-    /// none.
+    /// Returns the error bars of a value in the scheduled conditions; `None` where one has no error
+    /// bar.
     fn bars(&self, scalar: Scalar) -> Option<Vec<Bar>> {
         self.conditions
             .iter()
@@ -164,7 +164,8 @@ impl<'a> ScheduleEvidence<'a> {
             .collect()
     }
 
-    /// Splits each net gain's scatter, at equal airspeed and about the schedule.
+    /// Splits the scatter of each net gain into components, at equal airspeed and about the
+    /// schedule.
     fn scatter(&self, pairs: &[Pair]) -> Vec<PairScatter> {
         let same_airspeed = self.schedule.and_then(|schedule| {
             let airspeeds_kt = schedule.airspeeds.values_kt.clone();
@@ -211,7 +212,7 @@ impl<'a> ScheduleEvidence<'a> {
         Some(ScheduleBands { bands })
     }
 
-    /// Tests every net gain for every second variable.
+    /// Tests every net gain for dependence on every second variable.
     fn second_variables(&self, pairs: &[Pair], level: f64) -> Vec<SecondVariableTest> {
         let Some(schedule) = self.schedule else {
             return Vec::new();
@@ -248,7 +249,7 @@ impl<'a> ScheduleEvidence<'a> {
     }
 }
 
-/// Applies Holm's correction over all tests, and decides which variables are needed.
+/// Applies Holm's correction over all tests, and decides which second variables are needed.
 fn judge_together(tests: &mut [SecondVariableTest], level: f64) {
     let probabilities: Vec<Option<f64>> = tests
         .iter()
@@ -262,10 +263,10 @@ fn judge_together(tests: &mut [SecondVariableTest], level: f64) {
     }
 }
 
-/// Computes how these net gains differ between every two conditions at equal airspeed.
+/// Computes the differences of these net gains between all pairs of conditions at equal airspeed.
 ///
 /// # Errors
-/// The number of differences, where they are too many to compare.
+/// The number of differences, if it exceeds the maximum.
 fn airspeed_differences(
     dataset: &Dataset,
     conditions: &BTreeMap<ConditionId, ConditionUncertainty>,
@@ -318,7 +319,7 @@ fn airspeed_differences(
     Ok(found)
 }
 
-/// Counts the condition pairs at equal airspeed.
+/// Counts the pairs of conditions at equal airspeed.
 fn pairs_at_equal_airspeed(mut airspeeds_kt: Vec<f64>) -> usize {
     airspeeds_kt.sort_by(f64::total_cmp);
     airspeeds_kt
@@ -330,7 +331,7 @@ fn pairs_at_equal_airspeed(mut airspeeds_kt: Vec<f64>) -> usize {
         .sum()
 }
 
-/// Applies Holm's correction to the known probabilities.
+/// Applies Holm's correction to the available probabilities.
 fn holm_where_known(probabilities: &[Option<f64>]) -> Vec<Option<f64>> {
     let known: Vec<f64> = probabilities.iter().flatten().copied().collect();
     let mut corrected = holm(&known).into_iter();

@@ -1,4 +1,4 @@
-//! The analysis in stages, each kept while its key stays the same; and its assessments that need
+//! Stages of the analysis, each cached while its inputs stay the same; and assessments that need
 //! further analyses.
 
 pub mod bundle_metrics;

@@ -43,8 +43,8 @@ impl BundleCautions<'_> {
         let bundle_model = BundleModel::new(self.condition, self.kind, index);
         let response = &self.responses.bundle(self.kind)[index];
         let zero = response.zero_where_finite();
-        // A response that is zero wherever it has values is absent: a wider measurement would not
-        // add it.
+        // A response that is zero at all measured frequencies is absent: it would not be added by a
+        // wider measurement.
         let mut not_finite = response.not_finite();
         not_finite.retain(|pair| !zero.contains(pair));
         let lacks = self.measured.lacks[index].clone();
@@ -84,7 +84,8 @@ impl BundleCautions<'_> {
         }
     }
 
-    /// Returns the caution about kept models whose channels were assigned by position, if any.
+    /// Returns the caution about kept models whose channels were assigned by position; `None`
+    /// without such models.
     fn channels_by_position(&self) -> Option<Caution> {
         let mut models = Vec::new();
         for model in self.condition.bundle(self.kind) {
@@ -143,8 +144,8 @@ pub fn cautions_of_models(
     Ok(found)
 }
 
-/// Returns the gains beyond the computable range, between the nominal physics model and the first
-/// kept identified model with any.
+/// Returns the gains outside the computable range between the nominal physics model and the first
+/// kept identified model that has any.
 fn gains_out_of_range(
     condition: &Condition,
     responses: &ConditionResponses,

@@ -1,4 +1,4 @@
-//! Swaps: another model in a representative's place (M13.1).
+//! Swaps: another model of the bundle replaces a representative (M13.1).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ struct ModelPair {
 }
 
 impl ModelPair {
-    /// Returns the pair with another model in a bundle's place.
+    /// Returns the pair with the model of one bundle replaced.
     fn with(self, kind: BundleKind, model: usize) -> Self {
         match kind {
             BundleKind::Physics => Self {
@@ -42,7 +42,7 @@ impl ModelPair {
     }
 }
 
-/// What swaps depend on.
+/// Inputs of the swaps of a condition.
 #[derive(Clone, Copy)]
 pub(crate) struct SwapInput<'a> {
     pub(crate) run: Run<'a>,
@@ -51,7 +51,7 @@ pub(crate) struct SwapInput<'a> {
     pub(crate) couplings: Option<&'a Arc<FittedCouplings>>,
 }
 
-/// A model pair's correction, with its G and both D \[s\].
+/// Correction of a pair of models, with G and both D \[s\].
 #[derive(Clone, Debug)]
 pub(crate) struct SwapOptimum {
     pub(crate) correction: ChannelCorrection,
@@ -60,7 +60,7 @@ pub(crate) struct SwapOptimum {
 }
 
 impl SwapOptimum {
-    /// Returns logarithmic gains, and delays \[s\]; `None` where a figure is not defined.
+    /// Returns the gains as logarithms and the delays \[s\]; `None` for undefined values.
     fn figures(&self) -> Figures {
         let correction = &self.correction;
         let delta = &self.delta;
@@ -82,7 +82,7 @@ impl SwapOptimum {
     }
 }
 
-/// Returns the representatives' own figures.
+/// Returns the gains and delays of the representatives themselves.
 pub(crate) fn representative_figures(analysis: &ConditionAnalysis) -> Figures {
     let optimum = SwapOptimum {
         correction: analysis.correction.clone(),
@@ -94,18 +94,19 @@ pub(crate) fn representative_figures(analysis: &ConditionAnalysis) -> Figures {
     optimum.figures()
 }
 
-/// What a swap depends on besides the two models.
+/// Dependencies of a swap, besides the two models.
 #[derive(Clone, Debug, PartialEq)]
 struct SwapKey {
-    /// The analysis's settings, without those that no swap depends on.
+    /// Settings of the analysis, except those that affect no swap.
     settings: Settings,
     measuring: PairTable<bool>,
-    /// The reference for phase branches.
+    /// Representatives: the reference for phase branches.
     representatives: ModelPair,
     couplings: Option<Arc<FittedCouplings>>,
 }
 
-/// The last swaps, by their models: rejecting or restoring a model keeps the others' swaps.
+/// Last swaps, by their models: rejecting or restoring a model does not affect the swaps of the
+/// others.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SwapMemo {
     key: Option<SwapKey>,
@@ -120,13 +121,13 @@ impl SwapInput<'_> {
         }
     }
 
-    /// Returns a bundle's other kept models, in file order, without models set aside (M5b).
-    /// Duplicate models count once, because they add no information; the representative's copies
-    /// count where there are no others.
+    /// Returns the other kept models of a bundle in file order, without models set aside (M5b).
+    /// Identical models count once, because they add no information. A copy of the representative
+    /// counts only if the bundle has no different model.
     fn others(&self, kind: BundleKind) -> Vec<usize> {
         let representative = self.analysis.representative(kind);
         let responses = self.responses.bundle(kind);
-        // Models with the same numbers share their response.
+        // Models with equal dynamics share their response.
         let is_copy = |a: usize, b: usize| Arc::ptr_eq(&responses[a], &responses[b]);
         let mut distinct: Vec<usize> = Vec::new();
         let mut copies = Vec::new();
@@ -148,7 +149,7 @@ impl SwapInput<'_> {
         }
     }
 
-    /// Returns the swaps' dependencies.
+    /// Returns the dependencies of the swaps.
     fn key(&self) -> SwapKey {
         let mut settings = self.run.study.settings.clone();
         settings.schedule = Default::default();
@@ -175,8 +176,8 @@ impl SwapInput<'_> {
 }
 
 impl SwapMemo {
-    /// Completes all swaps; those not cached are computed, each a step, with the correction that
-    /// `optimum` returns for a comparison.
+    /// Completes all swaps. Those that are not cached are computed, one step each; `optimum`
+    /// returns the correction for a comparison.
     ///
     /// # Errors
     /// [`Cancelled`] where the execution is cancelled.
@@ -197,8 +198,8 @@ impl SwapMemo {
             }
         }
         let representatives = input.representatives();
-        // The mean over all pairs is not the representatives' figure: the changes' reference is
-        // computed too.
+        // With the mean over all pairs, the values of the representatives differ from those of the
+        // analysis: the pair of representatives is computed too, as the reference of the changes.
         let is_mean = input.run.study.settings.gain_source == GainSource::MeanOfPairs;
         let mut wanted: Vec<ModelPair> = swaps
             .iter()
@@ -232,8 +233,8 @@ impl SwapMemo {
         })
     }
 
-    /// Computes the figures of the pairs that are not cached; `swaps` counts the pairs that count
-    /// as steps.
+    /// Computes the results of the pairs that are not cached; `swaps` is the number of pairs that
+    /// count as steps.
     fn compute_missing(
         &mut self,
         input: &SwapInput<'_>,
@@ -248,13 +249,13 @@ impl SwapMemo {
         Ok(())
     }
 
-    /// Returns a pair's cached figures.
+    /// Returns the cached results of a pair.
     fn figures(&self, pair: ModelPair) -> Option<Arc<Figures>> {
         self.kept.get(&pair).cloned().flatten()
     }
 }
 
-/// Returns the figures after each swap in a bundle.
+/// Returns the results after each swap in a bundle.
 fn bundle_figures(swaps: &[ModelSwap], bundle: BundleKind) -> Vec<Option<&Figures>> {
     swaps
         .iter()
@@ -263,7 +264,7 @@ fn bundle_figures(swaps: &[ModelSwap], bundle: BundleKind) -> Vec<Option<&Figure
         .collect()
 }
 
-/// Computes each model pair's figures.
+/// Computes the results of each pair of models.
 fn swap_figures(
     input: &SwapInput<'_>,
     pairs: &[ModelPair],
@@ -291,8 +292,8 @@ fn swap_figures(
             let other = input.compared(BundleKind::Identified, pair.identified);
             physics.mismatches(&other)
         };
-        // As with the pair pinned: each phase difference is on the branch nearest to the
-        // representatives' (M13.1).
+        // As for pinned models, each phase difference is on the branch nearest to that of the
+        // representatives (M13.1).
         for (pair, entry) in mismatch.iter_mut() {
             if let Some(median_phase) = median_phases[pair] {
                 *entry = entry
@@ -301,7 +302,7 @@ fn swap_figures(
             }
         }
         let delta = Delta::new(&mismatch, omega);
-        // As for a pinned pair without comparable responses.
+        // No result, as for pinned models without comparable responses.
         if delta.gain.iter().all(|(_, gain)| gain.is_none()) {
             return Ok(None);
         }

@@ -1,9 +1,9 @@
-//! A condition's optimal gains and delays (M8, M9, M15).
+//! Optimal gains and delays of a condition (M8, M9, M15).
 //!
 //! ```text
 //! 1  delays, or signed delays for leads, from D                     eq. (11), M15.4
 //! 2  lead filters of the negative signed delays                     M15.3
-//! 3  gains from the difference left after the leads                 eq. (7), M15.5
+//! 3  gains from the difference that remains after the leads         eq. (7), M15.5
 //! ```
 
 use std::sync::Arc;
@@ -26,10 +26,10 @@ use crate::results::analysis::ConditionFailure;
 use crate::results::comparison::Mismatches;
 use crate::results::lead_compensation::{LeadCompensated, LeadOffer};
 
-/// A problem's outcome.
+/// Solution of a problem, or why there is none.
 pub(crate) type Solved = Result<Arc<Solution>, ProblemError>;
 
-/// Solves a problem, with the proof within a budget.
+/// Solves a problem, and proves optimality within a budget.
 ///
 /// # Errors
 /// [`Cancelled`] where `progress` requests it.
@@ -44,7 +44,7 @@ pub(crate) fn solved(
     }
 }
 
-/// A condition's two optima with their problems.
+/// The two optima of a condition, with their problems.
 pub(crate) struct Optima {
     pub(crate) gain_problem: Arc<Problem>,
     pub(crate) delay_problem: Arc<Problem>,
@@ -99,7 +99,8 @@ impl SolvedProblems {
         }
     }
 
-    /// Solves for the delays, then for the gains on the difference left after the leads (M15.5).
+    /// Computes the delays, and then the gains from the difference that remains after the leads
+    /// (M15.5).
     ///
     /// # Errors
     /// [`NoOptima`] where a problem has no solution, or the run is cancelled.
@@ -128,7 +129,7 @@ impl SolvedProblems {
         })
     }
 
-    /// Solves for the delays, or signed delays.
+    /// Computes the delays or signed delays.
     pub(crate) fn delays(
         &mut self,
         input: &SolveInput<'_>,
@@ -138,8 +139,8 @@ impl SolvedProblems {
             .get_or_fail(Arc::clone(problem), |problem| input.solved(problem))
     }
 
-    /// Estimates what leads would gain, where they are not requested and all constrained responses
-    /// want them. `now` is J under the present correction.
+    /// Estimates the benefit of leads, where they are not requested and all constrained responses
+    /// need them. `now` is J under the present correction.
     pub(crate) fn offer(
         &mut self,
         input: &SolveInput<'_>,
@@ -158,8 +159,8 @@ impl SolvedProblems {
                 lower: design.lower_s(),
                 upper: input.delay_upper_s,
             },
-            // The weight decides on shares, not on the constraints: it is 1 whatever the delays'
-            // weight.
+            // `alpha` only affects how a delay is divided among the channels, not whether
+            // constraints are met: it is 1 here, whatever the study's weight.
             alpha: 1.0,
             ..input.delay_problem(Some(&design))
         };
@@ -167,7 +168,7 @@ impl SolvedProblems {
         let solution = self.offer.get_or_fail(Arc::new(problem), |problem| {
             solved(problem, ProofBudget::default(), progress)
         })?;
-        // An offer that cannot be computed is no offer.
+        // Without a solution, leads are not recommended.
         let Ok(solution) = solution else {
             return Ok(None);
         };
@@ -191,10 +192,10 @@ fn delay_failure(error: &ProblemError) -> ConditionFailure {
     ConditionFailure::Delays(error.clone())
 }
 
-/// What a condition's optimisation problems depend on.
+/// Inputs of a condition's optimisation problems.
 pub(crate) struct SolveInput<'a> {
     run: Run<'a>,
-    /// The responses that measure the bounds.
+    /// Responses from which the bounds are computed.
     measuring: &'a PairTable<bool>,
     mismatch: &'a Mismatches,
     delta: &'a Delta,
@@ -227,12 +228,12 @@ impl<'a> SolveInput<'a> {
         &self.run.study.settings
     }
 
-    /// Solves a problem, with the proof as far as the run's budget allows.
+    /// Solves a problem, and proves optimality within the budget of the run.
     fn solved(&self, problem: &Problem) -> Result<Solved, Cancelled> {
         solved(problem, self.run.proofs, self.run.execution.progress())
     }
 
-    /// Returns whether there are constrained responses, and all want lead.
+    /// Returns whether there are constrained responses, and all need lead.
     fn all_want_lead(&self, held: &PairTable<bool>) -> bool {
         held.marked().next().is_some()
             && held.marked().all(|pair| {
@@ -241,7 +242,7 @@ impl<'a> SolveInput<'a> {
             })
     }
 
-    /// Returns the lead filters' common design, where leads are requested.
+    /// Returns the common design of the lead filters; `None` where leads are not requested.
     pub(crate) fn lead_design(&self) -> Option<Arc<LeadDesign>> {
         if self.settings().phase != PhaseCorrection::Lead {
             return None;
@@ -250,7 +251,7 @@ impl<'a> SolveInput<'a> {
         Some(Arc::new(LeadDesign::new(self.settings().lead, omega)))
     }
 
-    /// Builds the gains' problem, on the difference left after the leads where there are any.
+    /// Builds the problem of the gains, from the difference that remains after the leads, if any.
     fn gain_problem(&self, compensated: Option<&LeadCompensated>) -> Problem {
         let settings = self.settings();
         let (mismatch, gain) = match compensated {
@@ -273,8 +274,8 @@ impl<'a> SolveInput<'a> {
         }
     }
 
-    /// Builds the delay problem for the chosen D, or with signed delays for the band delay; an
-    /// empty problem where the phase is not corrected.
+    /// Builds the problem of the delays for the chosen D, or of signed delays for the band delay.
+    /// Without phase correction nothing is constrained, and the upper bound is zero.
     pub(crate) fn delay_problem(&self, design: Option<&LeadDesign>) -> Problem {
         let settings = self.settings();
         let is_corrected = settings.phase != PhaseCorrection::None;

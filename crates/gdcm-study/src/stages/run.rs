@@ -25,7 +25,7 @@ impl<'a> Run<'a> {
         (self.study.settings.band, self.study.settings.points)
     }
 
-    /// Returns the comparison frequencies and their least coherence.
+    /// Returns the comparison frequencies and the minimum coherence.
     pub(crate) fn comparison_grid(&self) -> ComparisonGrid<'a> {
         ComparisonGrid {
             grid: self.grid,

@@ -9,9 +9,10 @@ use crate::decisions::study::Study;
 use crate::results::analysis::Outcomes;
 use crate::results::scheduled_conditions::in_schedule;
 
-/// Greatest distance \[s\] from the mean of a signed delay that can be scheduled.
+/// Maximum distance \[s\] of a signed delay from the mean over the conditions that a schedule can
+/// reproduce.
 const APART_S: f64 = 0.02;
-/// Signed delays below this \[s\] have no meaningful sign.
+/// Signed delays smaller than this \[s\] have no significant sign.
 const NOTHING_S: f64 = 2e-3;
 
 /// Returns cautions about the channels for which no schedule can reproduce the signed delays of all
@@ -28,8 +29,8 @@ pub(crate) fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<Sch
         .collect()
 }
 
-/// Returns the caution about a channel: the condition farthest from the mean, where it is too far,
-/// or where some conditions want a lead and others a delay.
+/// Returns the caution about a channel, which names the condition farthest from the mean: the
+/// distance is too large, or some conditions need a lead and others a delay.
 fn signed_delay_apart(
     leads: &[(ConditionId, &ChannelLeads)],
     channel: Channel,

@@ -9,8 +9,8 @@ use super::deltas::{delays_ms, gain_ratios};
 use super::sample_words::spread;
 use super::{Context, Derivation};
 
-/// Returns the pooled mismatches in the measuring responses, or in all responses where no measuring
-/// response is defined.
+/// Pools the mismatches of the measuring responses, or of all responses if no measuring response is
+/// defined.
 fn pooled<'a>(
     context: &Context<'a>,
     mismatch: impl Fn(Pair) -> Option<&'a Mismatch>,
@@ -36,7 +36,7 @@ fn percent(share: f64) -> String {
     number((1e6 * share).round() / 1e4)
 }
 
-/// Derives the channel gains' bounds.
+/// Derives the bounds on the channel gains.
 pub(super) fn gain_bounds(context: &Context<'_>) -> Derivation {
     let bounds = context.result.gain_bounds();
     let lower = five_digits(bounds.lower);

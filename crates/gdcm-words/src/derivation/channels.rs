@@ -11,9 +11,9 @@ use crate::leads::servo_words;
 /// An objective as an equation.
 struct Objective {
     equation: &'static str,
-    /// Its value's unit, with a leading space.
+    /// Unit of the displayed value, with a leading space.
     unit: &'static str,
-    /// Factor from the stored value to the unit.
+    /// Factor from the stored to the displayed value.
     scale: f64,
     /// Section in the method's description.
     section: &'static str,
@@ -98,7 +98,7 @@ pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
     }
 }
 
-/// Describes whether a response is constrained, and its delta.
+/// Describes whether a response is constrained, and the delta to which it is constrained.
 fn constraint_words(
     context: &Context<'_>,
     pair: Pair,
@@ -179,7 +179,7 @@ pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivatio
     })
 }
 
-/// Derives the gains' objective.
+/// Derives the objective of the gains.
 pub(super) fn gain_objective(context: &Context<'_>) -> Derivation {
     let optimum = Optimum {
         context,
@@ -189,7 +189,7 @@ pub(super) fn gain_objective(context: &Context<'_>) -> Derivation {
     optimum.objective(&Objective::of_gains(context))
 }
 
-/// Derives the delays' objective.
+/// Derives the objective of the delays.
 pub(super) fn delay_objective(context: &Context<'_>) -> Derivation {
     let problem = &context.result.delay_problem;
     let optimum = Optimum {
@@ -208,8 +208,8 @@ struct Optimum<'a> {
 }
 
 impl Optimum<'_> {
-    /// Lists the constrained responses that tie the channel to others, then its value within the
-    /// bounds; `last` is the value with its name.
+    /// Lists the constrained responses that link the channel to other channels, then its value
+    /// within the bounds; `last` contains the value with its name.
     fn steps(&self, channel: Channel, last: &str) -> Vec<String> {
         let is_gain = self.problem.quantity.is_gain();
         let (unit, scale) = if is_gain { ("", 1.0) } else { (" ms", 1e3) };
@@ -264,7 +264,7 @@ impl Optimum<'_> {
         rests_on
     }
 
-    /// Derives the objective: the fit and the regularisation.
+    /// Derives the objective: fit and regularisation.
     fn objective(&self, objective: &Objective) -> Derivation {
         let Objective { unit, scale, .. } = *objective;
         let value = scale * self.solution.objective;

@@ -1,4 +1,4 @@
-//! An explained figure's condition, with descriptions of its models and choices.
+//! Condition of an explained result, with descriptions of its models and choices.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::Mismatch;
@@ -7,14 +7,14 @@ use gdcm_model::units::six_digits;
 use gdcm_study::decisions::settings::Settings;
 use gdcm_study::{Analysis, ConditionAnalysis};
 
-/// An analysis's condition.
+/// A condition of an analysis.
 pub(super) struct Context<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) result: &'a ConditionAnalysis,
 }
 
 impl<'a> Context<'a> {
-    /// Returns a condition's context, where it has a result.
+    /// Returns the context of a condition; `None` where it has no result.
     pub(super) fn new(analysis: &'a Analysis, condition: ConditionId) -> Option<Self> {
         Some(Self {
             analysis,
@@ -40,12 +40,12 @@ impl<'a> Context<'a> {
         channel.name_in(&self.analysis.study.dataset)
     }
 
-    /// Writes a title: the figure, then the condition: "…, condition 3".
+    /// Writes a title: the name of the result, then the condition: "…, condition 3".
     pub(super) fn title(&self, figure: &str) -> String {
         format!("{figure}, condition {}", self.result.condition.id())
     }
 
-    /// Returns the two representatives' mismatch.
+    /// Returns the mismatch between the two representatives.
     pub(super) fn mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
         self.result
             .comparison
@@ -55,7 +55,7 @@ impl<'a> Context<'a> {
             .as_ref()
     }
 
-    /// Returns the mismatch after the channels' leads, where there are any (M15.5).
+    /// Returns the mismatch after the leads of the channels, if any (M15.5).
     pub(super) fn compensated_mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
         match &self.result.compensated {
             Some(compensated) => compensated.mismatch.get(pair)?.as_ref(),
@@ -89,7 +89,8 @@ impl<'a> Context<'a> {
         )
     }
 
-    /// Describes the two representatives, the band, and the frequencies with weight in a response.
+    /// Describes the two representatives, the band, and the frequencies with nonzero weight in a
+    /// response.
     pub(super) fn models_and_frequencies(&self, mismatch: &Mismatch) -> Vec<String> {
         let mut words = self.models();
         words.push(self.band());
@@ -119,7 +120,8 @@ impl<'a> Context<'a> {
     }
 }
 
-/// Describes how many frequencies have weight, and their weights, where coherence is used.
+/// Describes the weights, and the number of frequencies with nonzero weight; `None` where coherence
+/// is not used.
 pub(super) fn weight_words(mismatch: &Mismatch) -> Option<String> {
     let count = mismatch.weights()?.len();
     Some(format!(

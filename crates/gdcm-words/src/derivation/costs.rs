@@ -13,10 +13,10 @@ use super::sample_words::median_words;
 use super::{Context, Derivation};
 use crate::assessment::correction_source;
 
-/// Most terms that are written out in a sum.
+/// Maximum number of terms that are written out in a sum.
 const MOST_TERMS: usize = 8;
 
-/// The method's section about J.
+/// Section about J in the description of the method.
 const COST_SECTION: &str = "M4, eq. (14) to (19)";
 
 /// Writes a sum: "a + b + c + … (20 terms)".
@@ -103,7 +103,8 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
     })
 }
 
-/// Derives a physics model's discontinuity ratio: its distances over those that the trims explain.
+/// Derives the discontinuity ratio of a physics model: distances to other models over the distances
+/// that the trims explain.
 pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
     const EQUATION: &str = "r_a = median over b of d(a, b) / √(Σ_k w_k (p_ak − p_bk)²); each p \
                             divided by its largest, w_k ≥ 0 by least absolute deviations";
@@ -164,7 +165,7 @@ pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation
     })
 }
 
-/// Returns how the average over frequency is written.
+/// Returns the word for the average over frequency in an equation.
 fn average_word(average: CostAverage) -> &'static str {
     match average {
         CostAverage::Median => "median",
@@ -178,7 +179,7 @@ fn cost_equation(average: CostAverage) -> String {
     format!("J = {per_db} · {word}_ω(ΔdB²) + {per_deg} · {word}_ω(Δφ²), dB and degrees")
 }
 
-/// Writes a mismatch's J as two steps and their sum.
+/// Writes the steps to J of a mismatch: magnitude part, phase part, and their sum.
 fn cost_steps(symbol: &str, cost: Cost, average: CostAverage) -> [String; 3] {
     let word = average_word(average);
     let [per_db, per_deg] = Cost::factors();
@@ -195,7 +196,7 @@ fn cost_steps(symbol: &str, cost: Cost, average: CostAverage) -> [String; 3] {
     ]
 }
 
-/// Writes a correction's net gain and net delay.
+/// Writes the net gain and net delay of a correction.
 fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorrection) -> String {
     let [output, input] = Channel::of(pair).map(|channel| context.channel(channel));
     format!(
@@ -205,7 +206,7 @@ fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorre
     )
 }
 
-/// Derives a response's J before the correction.
+/// Derives J of a response before the correction.
 pub(super) fn cost_before(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let cost = context.result.cost[pair]?.uncorrected;
     let average = context.settings().cost_average;
@@ -222,7 +223,7 @@ pub(super) fn cost_before(context: &Context<'_>, pair: Pair) -> Option<Derivatio
     })
 }
 
-/// Derives a response's J after the condition's own correction.
+/// Derives J of a response under the condition's own correction.
 pub(super) fn cost_after(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let cost = context.result.cost[pair]?.corrected;
     let average = context.settings().cost_average;
@@ -241,7 +242,7 @@ pub(super) fn cost_after(context: &Context<'_>, pair: Pair) -> Option<Derivation
     })
 }
 
-/// Derives how a response's J changes in an assessment.
+/// Derives the change in J of a response in an assessment.
 pub(super) fn change(
     context: &Context<'_>,
     pair: Pair,

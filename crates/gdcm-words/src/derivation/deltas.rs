@@ -18,7 +18,7 @@ pub(super) fn gain_ratios(mismatch: &Mismatch) -> Vec<f64> {
         .collect()
 }
 
-/// Returns `Δφ/ω` \[ms\] at each frequency, on the branch by M6b.
+/// Returns `Δφ/ω` \[ms\] at each frequency, on the phase branch of M6b.
 pub(super) fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
     let phases = mismatch.phase_difference(omega);
     phases
@@ -28,7 +28,7 @@ pub(super) fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Describes the median over the frequencies with weight.
+/// Describes the median over the frequencies with nonzero weight.
 fn weighted_median_words(mismatch: &Mismatch, values: &[f64]) -> String {
     match mismatch.coherence_weights {
         None => median_words(values),
@@ -36,7 +36,7 @@ fn weighted_median_words(mismatch: &Mismatch, values: &[f64]) -> String {
     }
 }
 
-/// Derives a response's delta gain `G`.
+/// Derives the delta gain `G` of a response.
 pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = context.result.wanted_gain(pair)?;
     let mismatch = context.compensated_mismatch(pair)?;
@@ -61,7 +61,7 @@ pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     })
 }
 
-/// Derives a delta gain that is the mean over all pairs between kept models.
+/// Derives a delta gain that is the geometric mean over all pairs of kept models.
 fn mean_gain(context: &Context<'_>, title: String, value: f64) -> Derivation {
     let [physics, identified] = BundleKind::BOTH.map(|kind| {
         let scores = &context.result.representative(kind).scores;
@@ -80,8 +80,8 @@ fn mean_gain(context: &Context<'_>, title: String, value: f64) -> Derivation {
     }
 }
 
-/// Derives a response's delta delay `D`: over the band where that is asked for, otherwise the
-/// median.
+/// Derives the delta delay `D` of a response: the band delay where the delays are fitted to it,
+/// otherwise the median.
 pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = s_to_ms(context.result.wanted_delay_s(pair)?);
     let mismatch = context.mismatch(pair)?;
@@ -115,7 +115,7 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     })
 }
 
-/// Writes the slope as a quotient: a least-squares line through the missing phase.
+/// Writes the least-squares slope of the missing phase as a quotient.
 fn band_delay_words(context: &Context<'_>, mismatch: &Mismatch) -> String {
     let omega = mismatch.omega(context.omega());
     let phase = mismatch.phase_difference(context.omega());

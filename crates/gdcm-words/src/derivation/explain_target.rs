@@ -1,10 +1,10 @@
-//! Figures that can be explained.
+//! Results whose derivation can be displayed.
 
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use gdcm_study::results::assessment_table::AssessmentChoice;
 
-/// An analysis's figure to be explained.
+/// A result of an analysis whose derivation can be displayed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExplainTarget {
     /// A response's delta gain `G`.
@@ -17,16 +17,16 @@ pub enum ExplainTarget {
     Delay(ConditionId, Channel),
     GainBounds(ConditionId),
     DelayBound(ConditionId),
-    /// The uncorrected physics representative's J in a response.
+    /// J of the uncorrected physics representative in a response.
     CostBefore(ConditionId, Pair),
-    /// The physics representative's J in a response, under the condition's own correction.
+    /// J of the physics representative in a response, under the condition's own correction.
     CostAfter(ConditionId, Pair),
-    /// How a response's J changes in an assessment.
+    /// Change in J of a response in an assessment.
     CostChange(ConditionId, Pair, AssessmentChoice),
     DiscontinuityRatio(ModelId),
     Score(ModelId),
     GainObjective(ConditionId),
     DelayObjective(ConditionId),
-    /// A channel's scheduled gain at an airspeed \[kt\].
+    /// Scheduled gain of a channel at an airspeed \[kt\].
     ScheduledGain(Channel, f64),
 }

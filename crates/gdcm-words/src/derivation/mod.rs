@@ -1,5 +1,5 @@
-//! Derives figures: the equation with its symbols explained, the equation with numbers, and the
-//! underlying models and choices.
+//! Derivations of results: the equation with its symbols explained, the equation with numbers, and
+//! the underlying models and choices.
 
 mod bounds;
 mod channels;
@@ -18,32 +18,32 @@ use gdcm_study::Analysis;
 use context::Context;
 pub use explain_target::ExplainTarget;
 
-/// A figure's derivation.
+/// Derivation of a result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derivation {
-    /// The figure's name: "G of LON → Q, condition 3".
+    /// Name of the result: "G of LON → Q, condition 3".
     pub title: String,
-    /// The equation, as in the method's description.
+    /// The equation, as in the description of the method.
     pub equation: String,
-    /// The equation with numbers, step by step; the last step ends in the figure.
+    /// The equation with numbers, step by step; the last step contains the result.
     pub with_numbers: Vec<String>,
     /// The underlying models, band, points and choices.
     pub rests_on: Vec<String>,
-    /// Section in the method's description: "M6, eq. (5)".
+    /// Section in the description of the method: "M6, eq. (5)".
     pub section: &'static str,
-    /// The figure, in the unit that the steps name; for bounds the upper bound.
+    /// The result, in the unit of the steps; for bounds, the upper bound.
     pub value: f64,
 }
 
 impl Derivation {
-    /// Returns the equation's symbols with their meanings, as they appear.
+    /// Returns the symbols of the equation with their meanings, in order of appearance.
     pub fn terms(&self) -> Vec<(&'static str, &'static str)> {
         terms::terms_of(&self.equation)
     }
 }
 
-/// Derives a figure in `analysis`; `None` where it has no such figure. Computes at most a few
-/// medians over frequency.
+/// Derives a result of `analysis`; `None` where it does not exist. Computes at most a few medians
+/// over frequency.
 pub fn derivation(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivation> {
     let mut derivation = derivation_without_bar(analysis, target)?;
     derivation
@@ -55,7 +55,7 @@ pub fn derivation(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivat
 fn derivation_without_bar(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivation> {
     let condition = |id: &ConditionId| Context::new(analysis, *id);
     let response = |id: &ConditionId, pair: &Pair| {
-        // The response may belong to another dataset.
+        // `pair` may come from another dataset.
         analysis.study.dataset.on_axis().get(*pair)?;
         Context::new(analysis, *id)
     };

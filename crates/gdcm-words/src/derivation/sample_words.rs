@@ -2,7 +2,7 @@
 
 use gdcm_model::number_format::five_digits;
 
-/// Describes how many values there are, and their range.
+/// Describes the number of values and their range.
 pub(super) fn spread(values: &[f64]) -> String {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -18,7 +18,7 @@ pub(super) fn spread(values: &[f64]) -> String {
     }
 }
 
-/// Describes how values lead to their median.
+/// Describes values and their median.
 pub(super) fn median_words(values: &[f64]) -> String {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -1,7 +1,6 @@
-//! The equations' symbols with their meanings.
+//! Symbols of the equations with their meanings.
 
-/// Every symbol used in these equations, its meaning, and its unit where it has one
-/// (docs/method.md).
+/// Symbols of the derived equations with meaning, and with unit if there is one (docs/method.md).
 const TERMS: [(&str, &str); 30] = [
     ("G", "gain that the response wants, a ratio"),
     ("D", "delay that the response wants [s]"),
@@ -53,7 +52,7 @@ const TERMS: [(&str, &str); 30] = [
     ("V", "airspeed [kt]"),
 ];
 
-/// Returns an equation's symbols with their meanings, as they appear.
+/// Returns the symbols of an equation with their meanings, in order of appearance.
 pub(super) fn terms_of(equation: &str) -> Vec<(&'static str, &'static str)> {
     let mut found: Vec<(usize, (&str, &str))> = Vec::new();
     for (symbol, meaning) in TERMS {
@@ -65,7 +64,7 @@ pub(super) fn terms_of(equation: &str) -> Vec<(&'static str, &'static str)> {
     found.into_iter().map(|(_, term)| term).collect()
 }
 
-/// Returns a symbol's position in an equation, where it is not a part of another symbol.
+/// Returns the position of a symbol in an equation, except inside a longer symbol.
 fn place_of(symbol: &str, equation: &str) -> Option<usize> {
     for (place, _) in equation.match_indices(symbol) {
         let before = equation[..place].chars().next_back();
@@ -77,7 +76,7 @@ fn place_of(symbol: &str, equation: &str) -> Option<usize> {
     None
 }
 
-/// Returns whether a neighbouring character belongs to a symbol.
+/// Returns whether a neighbouring character is part of the same symbol.
 fn is_symbol_part(neighbour: Option<char>) -> bool {
     neighbour.is_some_and(|c| c.is_alphabetic() || c == '_')
 }

@@ -1,7 +1,8 @@
-//! Plots: each takes a scene and its state from the last frame, and returns the engineer's actions.
+//! Plots: each is drawn from a scene and its state of the last frame, and returns the engineer's
+//! actions.
 //!
 //! Every panel with axes is drawn by [`painter`]. A scene ([`bode_scene`], [`figure_scene`],
-//! [`chart`], [`overview`]) describes its content; the parts below serve all of them:
+//! [`chart`], [`overview`]) describes its content; all scenes use these parts:
 //!
 //! ```text
 //! painter           frame, axes, grid and gestures; each scene adds its layers

@@ -34,7 +34,7 @@ pub struct ConditionSource<'a> {
     pub variant: Option<(&'a str, &'a ConditionAnalysis)>,
 }
 
-/// A model of the condition that is shown even if a model is isolated.
+/// A model of the condition, unless the isolation of another model suppresses it.
 #[derive(Clone, Debug)]
 pub(super) struct SourceModel {
     pub(super) id: ModelId,

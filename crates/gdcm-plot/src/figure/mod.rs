@@ -14,7 +14,7 @@
 //! | [`condition_source`], [`responses`] | curves for a condition, from models and corrections |
 //! | [`layout`], [`letters`], [`label_places`] | places for panels, letters and labels |
 //! | [`paint`], `paint_axes`, `paint_marks`, `paint_dots`, `paint_words` | shapes at their places |
-//! | [`thinning`], [`tables`] | points left out; numbers in a figure |
+//! | [`thinning`], [`tables`] | omission of invisible points; values of a figure |
 //!
 //! Every view in the window has a function here that describes its figure, and the command `gdcm
 //! figure` calls the same function through [`FigureRequest::figure`].

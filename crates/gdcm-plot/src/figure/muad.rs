@@ -1,5 +1,5 @@
 //! Envelopes of maximum unnoticeable added dynamics (MUAD, MIL-STD-1797A): about a response, among
-//! its errors, and the frequencies at which a mismatch exceeds them.
+//! its errors, and the frequencies at which a mismatch leaves them.
 //!
 //! The envelopes are defined for the ratio of model to reference.
 

@@ -18,7 +18,8 @@ pub enum Level {
 }
 
 impl Level {
-    /// Returns the value at omega \[rad/s\]. A sampled level is NaN between its samples.
+    /// Returns the value at omega \[rad/s\]. A sampled level is NaN except at its
+    /// samples.
     pub fn at(&self, omega: f64) -> f64 {
         match self {
             Self::Constant(value) => *value,

@@ -382,7 +382,8 @@ pub fn airspeed_curves(
 }
 
 /// Returns the range of all values within the frequency band \[rad/s\], extended to values outside
-/// the band by at most [`OUTSIDE_PART`] of its height on either side; `None` without finite values.
+/// the band by at most 40 % of its height on either side; of all values if none lies in the band;
+/// `None` without finite values.
 pub fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -> Option<Range> {
     let mut all = Vec::new();
     let mut inside = Vec::new();

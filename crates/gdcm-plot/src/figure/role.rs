@@ -9,7 +9,7 @@ use super::drawing::{Color, Dash, Hue, Stroke};
 /// Role of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Role {
-    /// Physics model at the measured trim.
+    /// Physics model at the unperturbed trim.
     Nominal,
     /// Physics model at a perturbed trim.
     Perturbed,

@@ -1,21 +1,20 @@
-//! Results as figures, figures as SVG, PDF and PNG.
+//! Figures of results, written as SVG, PDF and PNG.
 //!
-//! **Question answered:** how is a result drawn, on paper and (painted by the window) on the
-//! screen?
+//! **Question answered:** how is a result drawn, on paper and on the screen?
 //!
 //! | module | contents |
 //! |---|---|
 //! | [`figure`] | the description of a figure for every view, and its shapes at their places |
 //! | [`paper`] | a painted figure as SVG, PDF or PNG |
 //!
-//! A figure travels in four steps:
+//! A figure is made in four steps:
 //!
 //! 1. **Described** ([`figure::figure`], [`figure::marks`]): plots with panels, axes and marks in
 //!    the units of the result. Every view has a function that describes its figure, such as
 //!    [`figure::bode::bode_figure`]; nothing in the description depends on paper or screen.
-//! 2. **Axes** ([`figure::axis`]): ranges left open are fitted to the marks, ticks follow from the
+//! 2. **Axes** ([`figure::axis`]): open ranges are fitted to the marks, ticks follow from the
 //!    room, values become fractions of a frame.
-//! 3. **Thinned** ([`figure::thinning`]): points that would not be seen are left out.
+//! 3. **Thinned** ([`figure::thinning`]): points that would not be visible are omitted.
 //! 4. **Painted**: on paper as a [`figure::drawing::Drawing`], which [`paper`] writes to a file; on
 //!    the screen by the window, panel by panel ([`figure::Panel::shapes`]).
 //!

@@ -1,5 +1,5 @@
 //! Interactive axes: the wheel zooms, dragging pans, a double click or a secondary click opens the
-//! form for the limits.
+//! form for the axis limits.
 
 use egui::{
     CursorIcon, Popup, PopupCloseBehavior, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo, vec2,
@@ -49,7 +49,7 @@ impl AxisStrip<'_> {
     fn ui(&self, ui: &Ui, view: &mut BodeView) {
         let PaneScene { pane, scene, .. } = self.pane;
         let name = self.axis.name(scene, pane);
-        // Not focusable by Tab: the plot itself offers the same actions on the keyboard.
+        // Not focusable by Tab: the plot itself has the same actions on the keyboard.
         let sense = Sense::CLICK | Sense::DRAG;
         let response = ui.interact(self.place, ui.scope_id().with(&name), sense);
         response.widget_info(|| WidgetInfo::labeled(Role::ScrollBar, true, &name));
@@ -83,7 +83,7 @@ impl AxisStrip<'_> {
         }
     }
 
-    /// Draws the form for the limits beside the axis, if it is open for this axis.
+    /// Draws the limits form beside the axis, if it is open for this axis.
     fn limits_ui(&self, ui: &Ui, strip: &Response, view: &mut BodeView) {
         let PaneScene {
             pane,

@@ -10,9 +10,9 @@ use super::pane_scene::PaneScene;
 use super::panel_text::caption_font;
 use crate::gui::widgets::palette::Palette;
 
-/// Half-width of the strip that grabs an end \[pt\].
+/// Half-width of the strip in which an end can be grabbed \[pt\].
 const GRAB_RADIUS: f32 = 4.0;
-/// Least ratio between the ends, so that the band is never empty.
+/// Minimum ratio of the upper to the lower end, so that the band is never empty.
 const LEAST_RATIO: f64 = 1.05;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,7 +103,7 @@ struct Handle {
 }
 
 impl Handle {
-    /// Paints the end; with its frequency above the plot if it is held.
+    /// Paints the end, and its frequency above the plot while it is being dragged.
     fn paint(&self, ui: &Ui, is_held: bool, unit: FrequencyUnit, palette: &Palette) {
         let stroke = if is_held {
             Stroke::new(2.0, palette.accent)
@@ -118,7 +118,7 @@ impl Handle {
         }
     }
 
-    /// Paints the frequency in the line above the plot, where it does not cover the curves.
+    /// Paints the frequency above the plot, where it does not cover the curves.
     fn paint_frequency(&self, ui: &Ui, unit: FrequencyUnit, palette: &Palette) {
         let painter = ui.painter();
         let text = unit.readout(self.omega);

@@ -1,5 +1,5 @@
-//! Bode plot: magnitude over phase of every model of a condition for a pair, or the corresponding
-//! errors used by the fit.
+//! Bode plot: magnitude above phase of every model of a condition, for one response, or the
+//! corresponding errors used by the fit.
 
 use egui::{CursorIcon, Pos2, Response, Ui, UiBuilder, Vec2, vec2};
 use egui_plot::PlotTransform;
@@ -25,9 +25,10 @@ use super::reference_lines::PaneLines;
 use super::thinning::is_finite;
 use crate::gui::widgets::palette::Palette;
 
-/// Least size with room for two plots \[pt\].
+/// Minimum size with room for two plots \[pt\].
 const LEAST_SIZE: Vec2 = vec2(140.0, 130.0);
-/// Distance from a reference line within which the pointer is on it, whatever lies below \[pt\].
+/// Within this distance from a reference line, the pointer is on the line, whatever lies below
+/// \[pt\].
 const ON_LINE: f32 = 1.0;
 
 /// Draws a Bode plot into the remaining space in `ui`.
@@ -56,7 +57,7 @@ pub fn bode_ui(
         drawn = shown.cloned().collect();
         visible.curves = &drawn;
     }
-    // While an end of the band is dragged, the view must not move under the pointer.
+    // While a band end is dragged, the view must not move under the pointer.
     if scene.omega_range.is_none() && !ui.input(|input| input.pointer.any_down()) {
         view.follow_curves(scene.curves);
     }
@@ -94,7 +95,7 @@ pub fn bode_ui(
     events
 }
 
-/// Returns the request for a pressed digit: it switches the chip with this number.
+/// Returns the request for a pressed digit, which toggles the role chip with this number.
 fn pressed_role(ui: &Ui, scene: &BodeScene<'_>, palette: &Palette) -> Option<CurveCommand> {
     let digit = pressed_digit(ui)?;
     let chips = role_chips(scene.curves, scene.hidden_roles, palette);
@@ -102,8 +103,8 @@ fn pressed_role(ui: &Ui, scene: &BodeScene<'_>, palette: &Palette) -> Option<Cur
     Some(CurveCommand::ToggleRole(chip.role))
 }
 
-/// Returns the switches for all curves, including hidden curves, and the current restrictions on
-/// the plot.
+/// Returns the chips of all roles, including hidden roles, and of the current restrictions of the
+/// plot.
 fn plot_chips<'a>(scene: &BodeScene<'a>, view: &BodeView, palette: &Palette) -> Chips<'a> {
     let mut roles = role_chips(scene.curves, scene.hidden_roles, palette);
     let hovered = view.hovered.as_ref();
@@ -244,8 +245,8 @@ impl Pointing {
     }
 }
 
-/// Returns the curve under the pointer: the nearest curve, unless a reference line, which is drawn
-/// on top, is as near or has the pointer on it.
+/// Returns the curve under the pointer: the nearest curve; `None` if a reference line is as near or
+/// within [`ON_LINE`], because reference lines are drawn on top.
 fn curve_at(
     scene: &BodeScene<'_>,
     pane: Pane,
@@ -264,7 +265,7 @@ fn curve_at(
     }
 }
 
-/// Returns whether a click on a curve decides something, as it does unless this is the reference.
+/// Returns whether a click on the curve has an effect: on every curve except the reference.
 fn takes_clicks(scene: &BodeScene<'_>, hit: Hit) -> bool {
     scene.reference != Some(&scene.curves[hit.curve].id)
 }
@@ -276,9 +277,9 @@ fn set_hovered(view: &mut BodeView, hovered: Option<CurveId>, events: &mut Vec<B
     }
 }
 
-/// Returns the event for a click. A click means the nearest curve, and nothing if this is the
-/// reference. The second click of a double click undoes the first if that was on a curve, and fits
-/// the plot on empty ground.
+/// Returns the event of a click on the nearest curve; a click on the reference has no effect. The
+/// second click of a double click undoes the first if that was on a curve; on empty ground, it fits
+/// the plot.
 fn handle_click(
     pane: Pane,
     scene: &BodeScene<'_>,
@@ -306,7 +307,7 @@ fn handle_click(
     }
 }
 
-/// Returns the clicked curve, unless a click on it decides nothing.
+/// Returns the clicked curve; `None` for the reference, on which a click has no effect.
 fn clicked_curve(
     pane: Pane,
     scene: &BodeScene<'_>,

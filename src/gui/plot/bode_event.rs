@@ -1,4 +1,4 @@
-//! Bode events: gestures and menu entries, as requests to the owner.
+//! Bode events: gestures and chosen menu entries, for the owner of the plot to handle.
 
 use super::curve_command::CurveCommand;
 use super::drawn_curves::CurveId;
@@ -9,7 +9,7 @@ pub enum BodeEvent {
     /// Another curve, or none, is under the pointer.
     Hovered(Option<CurveId>),
     Clicked(CurveId),
-    /// The last click began a double click: its effect is to be undone.
+    /// A curve was double-clicked: the effect of the first click is to be undone.
     TakenBack(CurveId),
     /// A curve was clicked with Alt pressed.
     Isolated(CurveId),
@@ -20,9 +20,9 @@ pub enum BodeEvent {
     },
     /// The band was released after dragging.
     BandReleased,
-    /// Another display of curves, or marks at frequencies, were requested.
+    /// A change to the curve display or to the marked frequencies was requested.
     Display(CurveCommand),
-    /// The model is to be rejected, with a reason.
+    /// The model is to be rejected for the entered reason.
     RejectedBecause(CurveId, String),
     /// An entry of a curve's menu was chosen.
     Wished(CurveId, CurveWish),

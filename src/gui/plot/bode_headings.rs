@@ -1,4 +1,4 @@
-//! Texts around the Bode panes: contents, effect of the correction, curve names.
+//! Texts around the Bode panes: quantities, effect of the correction, curve names.
 
 use egui::{Align2, Rect, Ui, pos2};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -20,7 +20,7 @@ use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 /// Gap between two texts in a heading \[pt\].
 const GAP: f32 = 12.0;
 
-/// Roles whose curves have names beside them.
+/// Roles whose curves are named in the right margin.
 const NAMED: [Role; 5] = [
     Role::IdentifiedRepresentative,
     Role::Corrected,
@@ -37,8 +37,8 @@ pub(super) struct BodeHeadings<'a> {
 }
 
 impl BodeHeadings<'_> {
-    /// Draws contents, effect of the correction, values at the cursor, names beside the heavy
-    /// curves, and whether newer curves are expected.
+    /// Draws the quantities, the effect of the correction, the values at the cursor, the names of
+    /// the heavy curves, and a note while the curves are being updated.
     pub(super) fn ui(&self, ui: &Ui, layout: &BodeLayout) {
         let scene = self.scene;
         for pane in PANES {
@@ -75,7 +75,7 @@ impl BodeHeadings<'_> {
         }
     }
 
-    /// Paints quantity and unit; returns the right end.
+    /// Paints quantity and unit; returns the right end of the text.
     fn paint_quantity(&self, ui: &Ui, line: Rect, pane: Pane) -> f32 {
         let label = self.scene.quantity.axis_label(pane);
         let (name, unit) = label.split_once(" [").unwrap_or((&label, ""));
@@ -86,8 +86,8 @@ impl BodeHeadings<'_> {
         row_text(ui, line, beside, unit, BODY_SIZE, self.palette.dim_text).right()
     }
 
-    /// Paints a note at the right in a heading: verdict, price of the leads, and the cost as far as
-    /// there is room.
+    /// Paints a note at the right of a heading: verdict, cost of the leads, and J as far as there
+    /// is room.
     fn paint_note(&self, ui: &Ui, room: Rect, note: &PaneNote, price: Option<String>) {
         let palette = self.palette;
         let color = if note.warns {
@@ -105,7 +105,7 @@ impl BodeHeadings<'_> {
         row_text(ui, rest, -0.01, &cost, BODY_SIZE, palette.dim_text);
     }
 
-    /// Returns the names beside the heavy curves and the reference lines, and the price paid for
+    /// Returns the names of the heavy curves and of the reference lines, and the magnitude added by
     /// the leads.
     fn pane_labels(&self, pane: Pane, transform: &PlotTransform) -> Vec<EndLabel> {
         let Self {
@@ -153,8 +153,8 @@ impl BodeHeadings<'_> {
     }
 }
 
-/// Returns the magnitude added by the leads, if there is no margin for it beside the
-/// bracket.
+/// Returns the magnitude added by the leads as text for the heading, if there is no margin for it
+/// beside the bracket.
 fn price_in_heading(scene: &BodeScene<'_>, pane: Pane) -> Option<String> {
     if pane != Pane::Magnitude || scene.names_curves {
         return None;
@@ -173,7 +173,7 @@ fn paint_frequency_unit(ui: &Ui, frame: Rect, scene: &BodeScene<'_>, palette: &P
     );
 }
 
-/// Returns the last visible point in a role's first curve.
+/// Returns the last visible point of the first curve of a role.
 fn curve_end(scene: &BodeScene<'_>, role: Role, pane: Pane, last_omega: f64) -> Option<PlotPoint> {
     let curve = scene.curves.iter().find(|curve| curve.role == role)?;
     let omega = curve.omega.last()?.min(last_omega);

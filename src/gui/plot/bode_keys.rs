@@ -5,9 +5,9 @@ use egui::{EventFilter, Key, Modifiers, Response, Ui, vec2};
 use super::bode_view::BodeView;
 use super::drawn_curves::Pane;
 
-/// Share of the visible range per arrow key.
+/// Pan step of an arrow key, as a share of the visible range.
 const STEP: f32 = 0.1;
-/// Zoom factor per press of the + key.
+/// Zoom factor of the + key.
 const CLOSER: f64 = 1.25;
 
 /// Handles the keys if the pane has the focus: arrows pan, + and − zoom (with Shift only the
@@ -26,7 +26,7 @@ pub(super) fn handle_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut B
         return;
     };
     let is_shifted = ui.input(|input| input.modifiers.shift);
-    // The view follows the arrow, and the drawing moves in the opposite direction.
+    // The view moves in the direction of the arrow, the drawing in the opposite direction.
     let along = presses(ui, Key::ArrowRight) - presses(ui, Key::ArrowLeft);
     let up = presses(ui, Key::ArrowUp) - presses(ui, Key::ArrowDown);
     let closer = presses(ui, Key::Plus) + presses(ui, Key::Equals) - presses(ui, Key::Minus);
@@ -48,7 +48,7 @@ pub(super) fn handle_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut B
     }
 }
 
-/// Takes a key's presses out of the input and counts them.
+/// Removes the presses of a key from the input and returns their number.
 fn presses(ui: &Ui, key: Key) -> f32 {
     ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as f32
 }

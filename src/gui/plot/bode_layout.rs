@@ -1,4 +1,4 @@
-//! Bode layout: places for panes, and for the texts and strips around them.
+//! Bode layout: places of the panes, and of the texts and strips around them.
 
 use egui::{Rect, pos2, vec2};
 
@@ -8,25 +8,25 @@ use super::readout::STRIP_HEIGHT;
 
 /// Vertical axis width \[pt\], equal in both panes so that the frequencies align.
 pub(super) const VALUE_AXIS_WIDTH: f32 = 40.0;
-/// Share of the height for the magnitude.
+/// Share of the height of the magnitude pane.
 const MAGNITUDE_PART: f32 = 0.52;
-/// Line height above a pane \[pt\].
+/// Height of the line above a pane \[pt\].
 const HEADING: f32 = 20.0;
 /// Space above and below the read-out \[pt\].
 const GAP: f32 = 6.0;
-/// Space at the right for the frequency unit \[pt\].
+/// Margin at the right for the frequency unit \[pt\].
 const UNIT_MARGIN: f32 = 36.0;
-/// Space at the right for curve names \[pt\].
+/// Margin at the right for curve names \[pt\].
 const CURVE_NAME_MARGIN: f32 = 78.0;
-/// Space at the right for reference-line names \[pt\].
+/// Margin at the right for names of reference lines \[pt\].
 const LINE_NAME_MARGIN: f32 = 118.0;
-/// Least plot height with room for the values between the panes \[pt\].
+/// Minimum plot height with room for the values between the panes \[pt\].
 const LEAST_WITH_STRIP: f32 = 300.0;
 const COHERENCE_HEIGHT: f32 = 52.0;
-/// Least plot height with room for the coherence strip \[pt\].
+/// Minimum plot height with room for the coherence strip \[pt\].
 const LEAST_WITH_COHERENCE: f32 = 380.0;
 
-/// Places for headings, panes and strips.
+/// Places of headings, panes and strips.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct BodeLayout {
     /// Lines above the panes.
@@ -51,7 +51,8 @@ impl BodeLayout {
             inner = inner.with_max_y(strip.top() - GAP);
             coherence = Some(strip);
         }
-        // The strip keeps its room without values, so that nothing moves when the pointer arrives.
+        // The strip keeps its room when it is empty, so that nothing moves when the pointer
+        // arrives.
         let has_readout = scene.readout.is_some() && inner.height() >= LEAST_WITH_STRIP;
         let between = if has_readout {
             STRIP_HEIGHT + 2.0 * GAP

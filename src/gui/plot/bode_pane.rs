@@ -22,9 +22,9 @@ use super::reference_lines::PaneLines;
 use super::ticks::Ticks;
 use crate::gui::widgets::palette::Palette;
 
-/// Greatest distance between a drawn line and its curve \[pt\].
+/// Maximum distance between a drawn line and its curve \[pt\].
 const TOLERANCE: f64 = 0.1;
-/// Strip height along the lower edge \[pt\].
+/// Height of the strip along the lower edge \[pt\].
 const STRIP_HEIGHT: f32 = 5.0;
 
 /// Draws a pane, and pans and zooms it with the pointer.
@@ -42,7 +42,7 @@ pub(super) fn pane_ui(ui: &mut Ui, pane: PaneScene<'_>, view: &mut BodeView) -> 
         rect: pane.rect,
         name: &description,
         across: PanelAxis {
-            // A single frequency axis, below both panes.
+            // The frequency axis is drawn once, below both panes.
             is_drawn: pane.pane == Pane::Phase,
             ..PanelAxis::new(Ticks::Frequency(scene.unit), TICKS_HEIGHT)
         },
@@ -79,8 +79,8 @@ pub(super) fn pane_ui(ui: &mut Ui, pane: PaneScene<'_>, view: &mut BodeView) -> 
     shown.response
 }
 
-/// Handles dragging: the primary button pans, with Shift it draws a box over curves; the secondary
-/// button draws a box to zoom into.
+/// Handles dragging: the primary button pans, or with Shift draws a box that selects curves; the
+/// secondary button draws a box to zoom into.
 fn handle_drag(ui: &Ui, scene: PaneScene<'_>, response: &Response, view: &mut BodeView) {
     let PaneScene { pane, palette, .. } = scene;
     let Some(frame) = view.frame(pane) else {
@@ -103,7 +103,7 @@ fn handle_drag(ui: &Ui, scene: PaneScene<'_>, response: &Response, view: &mut Bo
     }
 }
 
-/// Zooms about the pointer by wheel and pinching; the sideways wheel zooms only the frequency axis.
+/// Zooms about the pointer by wheel and pinching; the sideways wheel zooms the frequency axis only.
 fn zoom_by_scrolling(pane: Pane, response: &Response, view: &mut BodeView) {
     if let Some(gesture) = ZoomGesture::find(&response.ctx, response) {
         view.zoom(pane, gesture.pointer, gesture.across(), gesture.upward());
@@ -158,7 +158,7 @@ impl<'a> PaneScene<'a> {
         add_shade(plot, min.log10()..=max.log10(), fill);
     }
 
-    /// Dims the frequencies outside the band: these are drawn but do not count.
+    /// Dims the frequencies outside the band: they are drawn but do not count.
     fn veil_outside(self, plot: &mut PlotUi<'_>) {
         let veil = self.palette.background.gamma_multiply(0.4);
         let (min, max) = self.scene.band;
@@ -166,8 +166,8 @@ impl<'a> PaneScene<'a> {
         add_shade(plot, max.log10()..=f64::INFINITY, veil);
     }
 
-    /// Draws a band's visible part, in segments: non-finite values and jumps of a wrapped
-    /// phase leave a gap.
+    /// Draws the visible part of a band in segments; non-finite values and jumps of a wrapped phase
+    /// leave a gap.
     fn add_band(self, plot: &mut PlotUi<'_>, band: &BodeBand, view: &PlotBounds) {
         let values = match self.pane {
             Pane::Magnitude => &band.magnitude_db,
@@ -185,8 +185,8 @@ impl<'a> PaneScene<'a> {
         }
     }
 
-    /// Draws the curves, the most important on top. If a great many are at the bottom, these are
-    /// drawn as an image, and the curve under the pointer again as lines.
+    /// Draws the curves, the most important on top. If `image` holds the curves at the bottom, it
+    /// is drawn instead of their lines; the emphasized curves among them are drawn on top as lines.
     fn add_curves(self, plot: &mut PlotUi<'a>, drawn: &'a DrawnCurves, image: Option<StillImage>) {
         let looks = self.looks;
         let mut curves: Vec<(usize, &BodeCurve)> = self.scene.curves.iter().enumerate().collect();
@@ -221,8 +221,8 @@ impl<'a> PaneScene<'a> {
     }
 }
 
-/// Returns whether any of the band between two points, each a place with its lower and upper
-/// value, is visible.
+/// Returns whether any part of the band between two points `[log10 omega, lower, upper]` is
+/// visible.
 fn is_in_view(from: &[f64; 3], to: &[f64; 3], view: &PlotBounds) -> bool {
     let [min_x, min_y] = view.min();
     let [max_x, max_y] = view.max();

@@ -1,5 +1,5 @@
-//! Bode content: magnitude and phase of every model of a condition for a pair, or the
-//! corresponding errors used by the fit.
+//! Content of a Bode plot: magnitude and phase of every model of a condition, for one response, or
+//! the corresponding errors used by the fit.
 
 use std::collections::BTreeSet;
 
@@ -25,33 +25,33 @@ pub struct BodeScene<'a> {
     pub curves: &'a [BodeCurve],
     /// Labelled reference lines across the panes.
     pub rules: &'a [ReferenceLine],
-    /// Reference in the comparison: a click on it decides nothing.
+    /// Reference curve of the comparison; clicking it does not reject or restore its model.
     pub reference: Option<&'a CurveId>,
     pub bands: &'a [BodeBand],
     /// Measured coherence, in a strip below the panes.
     pub coherence: &'a [CoherenceCurve],
-    /// Least coherence at which a frequency counts.
+    /// Minimum coherence at which a frequency counts.
     pub least_coherence: f64,
-    /// Frequencies marked along each lower edge \[rad/s\].
+    /// Frequency ranges marked along the lower edge of each pane \[rad/s\].
     pub strips: &'a [(f64, f64)],
-    /// Frequency range after fitting \[rad/s\]; `None` for that covered by the curves.
+    /// Frequency range after fitting \[rad/s\]; the range of the curves if `None`.
     pub omega_range: Option<(f64, f64)>,
-    /// Cursor controlled by another plot \[rad/s\].
+    /// Cursor set by another plot \[rad/s\].
     pub cursor: Option<f64>,
     /// Marked frequencies \[rad/s\].
     pub pinned: &'a [f64],
-    /// Frequencies, with their names, at which the response is read \[rad/s\].
+    /// Names and frequencies \[rad/s\] at which a bandwidth is read.
     pub crossings: &'a [(&'static str, f64)],
-    /// Values at the cursor for every role.
+    /// Values of every role at the cursor.
     pub readout: Option<&'a Readout>,
-    /// Note at the right above each pane: the correction's effect, and whether it is a warning.
+    /// Note at the right above each pane: J and the verdict on the correction.
     pub notes: [Option<&'a PaneNote>; 2],
-    /// Remaining phase error: the area between the corrected and the identified model, within the
+    /// Remaining phase error: the area between the corrected and the identified curve, within the
     /// band.
     pub missing: Option<&'a BodeBand>,
-    /// Region where curves only illustrate the price paid for leads; `None` without leads.
+    /// Frequencies above the band, where curves only show the cost of leads; `None` without leads.
     pub invalid: Option<&'a InvalidRegion>,
-    /// Whether bands are drawn; `None` if there are no bands.
+    /// Whether uncertainty bands are drawn; `None` if there are none.
     pub shows_bands: Option<bool>,
     /// Role drawn above all others.
     pub raised: Option<Role>,
@@ -59,12 +59,12 @@ pub struct BodeScene<'a> {
     pub names_curves: bool,
     /// Roles whose curves are hidden; `None` if there are none.
     pub hidden_roles: Option<&'a BTreeSet<Role>>,
-    /// Current restrictions.
+    /// Chips of the current restrictions.
     pub chips: &'a [Chip],
     /// Lower and upper end of the comparison band \[rad/s\].
     pub band: (f64, f64),
     pub unit: FrequencyUnit,
-    /// Whether the curves are older than the settings: they are dimmed until new curves arrive.
+    /// Whether the curves are older than the settings; they are dimmed until new curves arrive.
     pub stale: bool,
     /// Message shown if there is nothing to draw.
     pub message: Option<&'a str>,
@@ -81,27 +81,26 @@ pub struct PaneNote {
     pub warns: bool,
 }
 
-/// Frequencies above the band, where the corrected model is invalid and shows the price of its
+/// Frequencies above the band, where the corrected model is invalid and shows the cost of its
 /// leads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InvalidRegion {
-    /// Upper end, which is also where the curves end \[rad/s\].
+    /// Upper end, where the curves end too \[rad/s\].
     pub up_to: f64,
     /// "not valid above 12 rad/s".
     pub words: String,
-    /// Corrected magnitudes with and without leads at its end \[dB\].
+    /// Corrected magnitudes with and without leads at the upper end \[dB\].
     pub ends_db: Option<[f64; 2]>,
 }
 
 impl<'a> BodeScene<'a> {
-    /// Returns "+19.4 dB": the magnitude added by the leads where the curves end.
+    /// Returns "+19.4 dB": the magnitude added by the leads at the end of the curves.
     pub(super) fn price_words(&self) -> Option<String> {
         let [with, without] = self.invalid?.ends_db?;
         Some(format!("{} dB", signed(with - without, 1)))
     }
 
-    /// Creates a scene with a pair's responses in decibels, degrees and rad/s, and nothing
-    /// else.
+    /// Creates a scene of a pair's responses in decibels, degrees and rad/s, without anything else.
     pub fn new(pair_title: &'a str, curves: &'a [BodeCurve], band: (f64, f64)) -> Self {
         Self {
             pair_title,

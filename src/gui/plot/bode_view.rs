@@ -1,4 +1,4 @@
-//! Bode state between frames: visible ranges and screen positions.
+//! Bode state kept between frames: visible ranges and screen positions.
 
 use egui::{Pos2, Rect, Vec2};
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
@@ -14,23 +14,23 @@ use super::plot_axis::PlotAxis;
 use super::quantity::ValueUnit;
 use super::viewed_range::{ViewedRange, bounds_of};
 
-/// Decades that can be visible.
+/// Permitted widths of the visible frequency range \[decades\].
 const DECADES: Range = Range {
     min: 1e-3,
     max: 12.0,
 };
-/// Values of `log10 omega` that can be visible, far inside the range of floats.
+/// Permitted values of `log10 omega`, far inside the range of floating-point numbers.
 const LOG_OMEGA: Range = Range {
     min: -30.0,
     max: 30.0,
 };
-/// Space above and below the curves after fitting, relative to their height.
+/// Margin above and below the curves after fitting, relative to their height.
 const FIT_MARGIN: f64 = 0.04;
 
 /// State of a Bode plot between frames.
 ///
-/// Recomputed curves do not move the view; only the engineer does. Value ranges that have not been
-/// zoomed are fitted once to another response or condition.
+/// The view moves only at the engineer's request, not when curves are recomputed. For another
+/// response or condition, value ranges that have not been zoomed are fitted once.
 #[derive(Clone, Debug)]
 pub struct BodeView {
     log_omega: ViewedRange,
@@ -40,7 +40,7 @@ pub struct BodeView {
     /// Frequency under the pointer \[rad/s\].
     pub pointed_omega: Option<f64>,
     pub(super) last_clicked: Option<CurveId>,
-    /// Subject of the menu that is open or was open last.
+    /// Subject of the menu that is open or was last open.
     pub(super) menu_subject: Option<MenuSubject>,
     /// Whether a box is being drawn to select curves.
     pub(super) is_selecting: bool,
@@ -50,7 +50,7 @@ pub struct BodeView {
     pub(super) limits: Option<LimitsForm>,
     must_fit_frequencies: bool,
     must_fit_values: bool,
-    /// Frequency range when last followed, as `log10 omega`.
+    /// Range of `log10 omega` of the curves when the view last followed them.
     followed: Option<Range>,
     /// Panes as last drawn.
     pub(super) drawn: [DrawnPane; 2],
@@ -73,7 +73,7 @@ pub(super) struct SelectionBox {
     pub(super) area: Rect,
 }
 
-/// Returns the range from the first to the last frequency, as `log10 omega`.
+/// Returns the range of `log10 omega` from the first to the last frequency.
 fn log_omega_of(curves: &[BodeCurve]) -> Option<Range> {
     Range::of(
         curves
@@ -128,7 +128,7 @@ impl Default for BodeView {
 }
 
 impl BodeView {
-    /// Fits all axes to the data at the next frame, including zoomed axes.
+    /// Requests that all axes, including zoomed axes, be fitted to the data in the next frame.
     pub fn request_fit(&mut self) {
         self.log_omega.release();
         for values in &mut self.values {
@@ -138,20 +138,20 @@ impl BodeView {
         self.must_fit_values = true;
     }
 
-    /// Fits other curves' values at the next frame, on axes that have not been zoomed; the
-    /// frequencies stay.
+    /// Requests that the values be fitted to other curves in the next frame, on axes that have not
+    /// been zoomed; the frequencies stay.
     pub fn request_refit(&mut self) {
         self.must_fit_values = true;
     }
 
-    /// Fits a pane's values at the next frame, because their unit changes.
+    /// Requests that the values of a pane be fitted in the next frame, because their unit changes.
     pub fn release_values(&mut self, pane: Pane) {
         self.values[pane as usize].release();
         self.must_fit_values = true;
     }
 
-    /// Fits the frequencies if those in the curves have changed, unless the engineer chose the
-    /// range.
+    /// Requests a fit if the frequency range of the curves has changed, unless the engineer chose
+    /// the visible range.
     pub(super) fn follow_curves(&mut self, curves: &[BodeCurve]) {
         let ends = log_omega_of(curves);
         if ends.is_some() && ends != self.followed {
@@ -199,28 +199,28 @@ impl BodeView {
         self.values[pane as usize].range()
     }
 
-    /// Returns a pane's last transform: x is `log10 omega`, y is in dB or in degrees.
+    /// Returns the transform of a pane as last drawn: x is `log10 omega`, y is in dB or degrees.
     pub fn transform(&self, pane: Pane) -> Option<&PlotTransform> {
         self.drawn[pane as usize].transform.as_ref()
     }
 
-    /// Returns a pane's last frame, without its axes.
+    /// Returns the frame of a pane as last drawn, without its axes.
     pub(super) fn frame(&self, pane: Pane) -> Option<Rect> {
         Some(*self.transform(pane)?.frame())
     }
 
-    /// Returns where `value` at `omega` \[rad/s\] lies on the screen.
+    /// Returns the screen position of `value` at `omega` \[rad/s\].
     pub fn screen_position(&self, pane: Pane, omega: f64, value: f64) -> Option<Pos2> {
         let transform = self.transform(pane)?;
         Some(transform.position_from_point(&PlotPoint::new(omega.log10(), value)))
     }
 
-    /// Returns a pane's visible range as egui_plot bounds.
+    /// Returns the visible range of a pane as egui_plot bounds.
     pub(super) fn bounds(&self, pane: Pane) -> PlotBounds {
         bounds_of([self.log_omega.range(), self.value_range(pane)])
     }
 
-    /// Pans a pane by a distance on the screen.
+    /// Pans a pane by a screen distance.
     pub(super) fn pan(&mut self, pane: Pane, by: Vec2) {
         let Some(transform) = self.transform(pane) else {
             return;
@@ -256,7 +256,7 @@ impl BodeView {
         }
     }
 
-    /// Fits an axis to all curves at the next frame.
+    /// Requests that an axis be fitted to all curves in the next frame.
     pub(super) fn fit_axis(&mut self, axis: PlotAxis) {
         self.axis_mut(axis).release();
         match axis {
@@ -276,8 +276,8 @@ impl BodeView {
         self.values[pane as usize].choose(Range::new(a.y, b.y));
     }
 
-    /// Fits all curves, including rejected ones, if requested. Without data the request
-    /// stays pending.
+    /// Fits all curves, including rejected curves, if requested. Without data, the request stays
+    /// pending.
     pub(super) fn fit_if_requested(&mut self, scene: &BodeScene<'_>) {
         let computed = scene
             .omega_range

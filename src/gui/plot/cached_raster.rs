@@ -1,4 +1,4 @@
-//! Cached raster image for many static curves.
+//! Cached raster image of many static curves.
 
 use egui::{
     Color32, ColorImage, Context, Pos2, Rect, Shape, Stroke, TextureHandle, TextureOptions, pos2,
@@ -9,19 +9,19 @@ use vello_cpu::{Pixmap, RenderContext, RenderSettings, Resources};
 
 use super::curve_style::CurveStyle;
 
-/// Least curve count for which an image is worth its memory: filling their lines takes longer than
-/// everything else in a frame.
+/// Minimum number of curves for which an image is worth its memory: filling their lines takes
+/// longer than all other work in a frame.
 pub(super) const MANY: usize = 200;
-/// Greatest distance between a drawn and a true circle \[pt\].
+/// Maximum distance between a drawn and a true circle \[pt\].
 const TOLERANCE: f64 = 0.05;
 
-/// Content of an image, which is valid as long as this stays the same.
+/// Content of an image; the image is valid as long as its content is unchanged.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct StillScene {
     /// Place on the screen \[pt\].
     pub(super) frame: Rect,
     pub(super) pixels_per_point: f32,
-    /// Serial number and style for each curve, from bottom to top.
+    /// Serial number and style of each curve, from bottom to top.
     pub(super) curves: Vec<(u64, CurveStyle)>,
 }
 
@@ -49,8 +49,8 @@ impl std::fmt::Debug for CachedRaster {
 }
 
 impl CachedRaster {
-    /// Returns the image if `scene` has not changed since the last frame; `shapes` returns
-    /// its content.
+    /// Returns the image if `scene` has not changed since the last frame; `shapes` creates its
+    /// content.
     pub(super) fn image_of(
         &mut self,
         ctx: &Context,
@@ -62,7 +62,8 @@ impl CachedRaster {
                 scene: Some(scene),
                 image: None,
             };
-            // A changing scene is drawn as lines; the next frame shows whether it has come to rest.
+            // A changing scene is drawn as lines; the next frame shows whether it has become
+            // static.
             ctx.request_repaint();
             return None;
         }
@@ -82,7 +83,7 @@ impl CachedRaster {
     }
 }
 
-/// Whole pixels on the screen.
+/// Screen area of whole pixels.
 struct PixelArea {
     /// Place \[pt\].
     rect: Rect,
@@ -91,7 +92,7 @@ struct PixelArea {
     pixels: [u16; 2],
 }
 
-/// Returns the whole pixels around `frame`, if an image can be so large.
+/// Returns the whole pixels around `frame`; `None` if an image cannot be that large.
 fn whole_pixels(frame: Rect, pixels_per_point: f32) -> Option<PixelArea> {
     let min = (frame.min * pixels_per_point).floor();
     let max = (frame.max * pixels_per_point).ceil();
@@ -103,7 +104,7 @@ fn whole_pixels(frame: Rect, pixels_per_point: f32) -> Option<PixelArea> {
     })
 }
 
-/// Returns a side in pixels, if an image can be so long.
+/// Returns a length in pixels; `None` if it is outside the limits of an image.
 fn pixel_count(length: f32) -> Option<u16> {
     if (1.0..=f32::from(u16::MAX)).contains(&length) {
         Some(length as u16)
@@ -139,7 +140,7 @@ fn filled(shapes: &[Shape], area: &PixelArea) -> ColorImage {
     )
 }
 
-/// Fills strokes, and discs for dots.
+/// Fills strokes, and the discs of dots.
 fn fill(context: &mut RenderContext, shape: &Shape) {
     match shape {
         Shape::Vec(shapes) => {
@@ -185,8 +186,8 @@ fn take_color(context: &mut RenderContext, color: Color32) {
     context.set_paint(AlphaColor::from_rgba8(red, green, blue, alpha));
 }
 
-/// Image on whole pixels. (A `PlotImage` lies below every other item, including bands, and has its
-/// size in the plot's coordinates.)
+/// Image on whole pixels. (A `PlotImage` would lie below all other items, including bands, and
+/// would be scaled in plot coordinates.)
 #[derive(Clone)]
 pub(super) struct StillImage {
     texture: TextureHandle,

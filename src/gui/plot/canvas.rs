@@ -1,5 +1,5 @@
-//! Screen canvas for the shapes of printed figures, enlarged and in the colours of the theme; and
-//! the legend line above the plots of a figure.
+//! Canvas that draws the shapes of printed figures on the screen, enlarged and in the colours of
+//! the theme; and the legend line above the plots of a figure.
 
 use egui::epaint::TextShape;
 use egui::{
@@ -13,7 +13,7 @@ use gdcm_plot::figure::paint::dot_shapes;
 
 use crate::gui::widgets::palette::Palette;
 
-/// Screen points per paper point: printed lines are finer by this factor.
+/// Screen points per paper point; printed lines are thinner by this factor.
 pub(super) const SCALE: f32 = 1.8;
 /// Font size \[pt on paper\].
 pub(super) const LETTERS_PT: f64 = 10.5 / SCALE as f64;
@@ -36,7 +36,7 @@ pub(super) fn area(rect: Rect) -> Area {
 }
 
 impl Canvas<'_> {
-    /// Converts a place on paper to the screen.
+    /// Converts a paper position to the screen.
     pub(super) fn at(&self, [x, y]: [f64; 2]) -> Pos2 {
         self.origin + SCALE * vec2(x as f32, y as f32)
     }
@@ -47,7 +47,7 @@ impl Canvas<'_> {
         [offset.x.into(), offset.y.into()]
     }
 
-    /// Draws shapes, later shapes over earlier ones.
+    /// Draws shapes in order, so that later shapes cover earlier ones.
     pub(super) fn paint(&self, shapes: &[Drawn]) {
         for shape in shapes {
             self.paint_shape(shape);
@@ -103,8 +103,8 @@ impl Canvas<'_> {
         }
     }
 
-    /// Draws a filled outline. An outline without area has no direction at its ends: it is drawn as
-    /// the line it looks like.
+    /// Draws a filled outline. An outline without area has no direction at its ends and is drawn as
+    /// a line.
     fn polygon(&self, points: Vec<Pos2>, fill: Color32, stroke: Stroke) {
         let bounds = Rect::from_points(&points);
         if bounds.is_positive() {
@@ -138,8 +138,8 @@ impl Canvas<'_> {
         self.painter.extend(shapes);
     }
 
-    /// Fills the area between two lines over the same places; the second returns from the end of
-    /// the first.
+    /// Fills the area between two lines over the same x values; the second line is listed backwards
+    /// after the first.
     fn fill_between(&self, outline: &[Pos2], color: Color32) {
         let mut mesh = Mesh::default();
         for place in 0..outline.len() / 2 {
@@ -158,7 +158,7 @@ impl Canvas<'_> {
         let color = self.palette.color(text.color);
         let font = FontId::proportional(SCALE * text.size_pt as f32);
         let galley = self.painter.layout_no_wrap(text.words.clone(), font, color);
-        // Distance of the base line from the top of the text.
+        // Distance from the top of the text to its base line.
         let base = match galley.rows.first().and_then(|row| row.glyphs.first()) {
             Some(glyph) => glyph.pos.y,
             None => 0.0,
@@ -178,7 +178,7 @@ impl Canvas<'_> {
 /// Sample size \[pt\].
 const SAMPLE_SIZE: Vec2 = vec2(18.0, 14.0);
 
-/// Draws a sample and a name for each key among the figure's marks, as in the printed legend.
+/// Draws a sample and a name for each key of the figure's marks, as in the printed legend.
 pub fn figure_legend_ui(ui: &mut Ui, figure: &Figure, palette: &Palette) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(4.0, 0.0);

@@ -1,4 +1,4 @@
-//! Chart content: lines, bands and marks with error bars over a linear or logarithmic axis.
+//! Chart content: lines, bands and marks with error bars, over a linear or logarithmic axis.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ pub enum ChartAxis {
 }
 
 impl ChartAxis {
-    /// Returns a value's place along the axis.
+    /// Returns the coordinate of a value along the axis: the value or its logarithm.
     pub(super) fn place(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
@@ -29,8 +29,8 @@ impl ChartAxis {
 /// Chart line.
 #[derive(Clone, Debug)]
 pub struct ChartLine {
-    /// Points, ascending along the horizontal axis; invisible points and details finer than a pixel
-    /// are not drawn.
+    /// Points in ascending order along the horizontal axis; details finer than a pixel and points
+    /// outside the view are not drawn.
     pub points: Arc<[[f64; 2]]>,
     pub color: Color32,
     /// Width \[pt\].
@@ -38,20 +38,20 @@ pub struct ChartLine {
     pub dashed: bool,
 }
 
-/// Area between two lines over the same places.
+/// Area between two lines over the same x values.
 #[derive(Clone, Debug)]
 pub struct ChartBand {
-    /// Places, lower and upper values.
+    /// `[x, lower value, upper value]`.
     pub points: Vec<[f64; 3]>,
     pub color: Color32,
 }
 
-/// Marks with the same style.
+/// Marks of the same style.
 #[derive(Clone, Debug)]
 pub struct ChartMarks {
-    /// Places, values, and vertical error bars (half-lengths, 0 for none).
+    /// `[x, value, half-length of the vertical error bar]`; a half-length of 0 means no bar.
     pub points: Vec<[f64; 3]>,
-    /// Half-lengths of the horizontal error bars; empty for none.
+    /// Half-lengths of the horizontal error bars; empty if there are none.
     pub sideways: Vec<f64>,
     pub color: Color32,
     pub filled: bool,
@@ -59,7 +59,7 @@ pub struct ChartMarks {
     pub crosses: bool,
 }
 
-/// Marked horizontal stretch.
+/// Highlighted horizontal range.
 #[derive(Clone, Debug)]
 pub struct ChartSpan {
     pub ends: [f64; 2],
@@ -71,18 +71,18 @@ pub struct ChartSpan {
 pub struct Chart<'a> {
     /// Title, which is also its accessible name.
     pub title: &'a str,
-    /// Words right in the title line, with their colours.
+    /// Texts at the right of the title line, with their colours.
     pub notes: Vec<(String, Color32)>,
     pub across: ChartAxis,
-    /// Horizontal label; an empty label keeps the axis low.
+    /// Label of the horizontal axis; an empty label reduces the height of the axis.
     pub across_label: &'a str,
     pub value_label: &'a str,
-    /// Whether the visible values fill the height: then only the horizontal axis can be zoomed and
-    /// panned.
+    /// Whether the visible values always fill the height; only the horizontal axis can then be
+    /// zoomed and panned.
     pub fits_values: bool,
-    /// Charts in a group share the visible horizontal stretch.
+    /// Charts with the same group share the visible horizontal range.
     pub group: Option<Id>,
-    /// Marked stretches.
+    /// Highlighted horizontal ranges.
     pub spans: Vec<ChartSpan>,
     /// Areas, below all lines.
     pub bands: Vec<ChartBand>,
@@ -93,17 +93,17 @@ pub struct Chart<'a> {
     pub verticals: Vec<f64>,
     /// Image below everything else.
     pub image: Option<ChartImage>,
-    /// Whether dragging chooses a horizontal stretch instead of panning;
+    /// Whether dragging selects a horizontal range instead of panning;
     /// [`chosen_stretch`](super::stretch::chosen_stretch) returns it for the group.
     pub chooses: bool,
 }
 
-/// Image over a stretch along both axes; the vertical axis shows frequencies \[rad/s\].
+/// Image within ranges of both axes; its vertical axis shows frequencies \[rad/s\].
 #[derive(Clone, Copy, Debug)]
 pub struct ChartImage {
     /// Texture with the highest frequency at the top.
     pub texture: TextureId,
-    /// Left and right edge.
+    /// Left and right edges.
     pub across: [f64; 2],
     /// Frequencies at the lower and upper edges \[rad/s\].
     pub omega: [f64; 2],

@@ -1,4 +1,4 @@
-//! Chart layers, from bottom to top: image, stretches, areas, lines and marks.
+//! Chart layers, from bottom to top: image, highlighted ranges, areas, lines and marks.
 
 use egui::{Stroke, vec2};
 use egui_plot::{Line, LineStyle, MarkerShape, PlotImage, PlotPoint, PlotPoints, PlotUi, Points};
@@ -10,14 +10,14 @@ use super::layers::{add_area, add_dotted_vertical, add_shade};
 use super::thinning::{pixel_of, thinned_between};
 use crate::gui::widgets::palette::Palette;
 
-/// Greatest distance between a drawn line and its data \[pt\].
+/// Maximum distance between a drawn line and its data \[pt\].
 const TOLERANCE: f64 = 0.1;
-/// Upper bound on a screen's width \[pixels\].
+/// Maximum width of a screen \[pixels\].
 const MOST_PIXELS: f64 = 10_000.0;
 const MARK_RADIUS: f32 = 3.0;
 
-/// Adds the chart's content to its panel. Lines and marks are items of egui_plot, because the
-/// panel fits its ranges to them.
+/// Adds the content of a chart to its panel. Lines and marks are egui_plot items, because the panel
+/// fits its ranges to them.
 pub(super) fn add_layers(plot: &mut PlotUi<'_>, chart: &Chart<'_>, palette: &Palette) {
     if let Some(image) = &chart.image {
         add_image(plot, image);
@@ -67,7 +67,7 @@ fn add_image(plot: &mut PlotUi<'_>, image: &ChartImage) {
     plot.image(PlotImage::new("", image.texture, middle, size).allow_hover(false));
 }
 
-/// Returns the visible horizontal ends: unbounded if the plot is about to be fitted.
+/// Returns the ends of the visible horizontal range: unbounded if the plot is about to be fitted.
 pub(super) fn visible_ends(plot: &PlotUi<'_>) -> [f64; 2] {
     if plot.auto_bounds().x {
         return [f64::NEG_INFINITY, f64::INFINITY];
@@ -76,7 +76,7 @@ pub(super) fn visible_ends(plot: &PlotUi<'_>) -> [f64; 2] {
     [bounds.min()[0], bounds.max()[0]]
 }
 
-/// Returns the points to draw. A line over frequencies has few.
+/// Returns the points to draw. A line over frequencies has few points and is not thinned.
 fn visible_points(
     plot: &PlotUi<'_>,
     across: ChartAxis,
@@ -93,8 +93,7 @@ fn visible_points(
     }
 }
 
-/// Returns the pixel as last drawn; before the first drawing, a pixel finer than that
-/// on any screen.
+/// Returns the pixel size as last drawn; before the first drawing, a size finer than on any screen.
 fn pixel_in(plot: &PlotUi<'_>, points: &[[f64; 2]]) -> Pixel {
     let pixel = pixel_of(plot.transform(), plot.ctx().pixels_per_point(), TOLERANCE);
     if pixel.width.is_finite() && pixel.width > 0.0 {

@@ -1,4 +1,4 @@
-//! Chart on the screen: its frame, its gestures and the texts above.
+//! Chart on the screen: its frame, its gestures, and the texts above.
 
 use egui::{Align2, Rect, Response, Ui, Vec2, Vec2b, pos2, vec2};
 use egui_plot::PlotUi;
@@ -17,16 +17,16 @@ use super::viewed_range::{ZoomLimit, ranges_of, zoomed_within};
 use crate::gui::widgets::palette::Palette;
 
 const TITLE_HEIGHT: f32 = 18.0;
-/// Room for the longest number, so that stacked frames align \[pt\].
+/// Width with room for the longest number, so that stacked frames align \[pt\].
 const VALUE_AXIS_WIDTH: f32 = 54.0;
 const RIGHT_MARGIN: f32 = 8.0;
 /// Gap between two notes \[pt\].
 const NOTE_GAP: f32 = 8.0;
-/// Space left and right, relative to the width.
+/// Margin at the left and at the right, relative to the width.
 const EDGE: f64 = 0.01;
-/// Space above and below, relative to the height.
+/// Margin above and below, relative to the height.
 const VALUE_EDGE: f32 = 0.08;
-/// Least distance between numbers along a linear horizontal axis \[pt\].
+/// Minimum distance between tick labels of a linear horizontal axis \[pt\].
 const TICK_GAP: f64 = 50.0;
 
 /// Draws a chart into `rect`: dragging pans, the wheel zooms, a double click shows everything.
@@ -66,7 +66,7 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
     let drawn = shown.inner;
     let is_whole = drawn[0] == f64::NEG_INFINITY;
     if !is_whole && drawn != [across.min, across.max] {
-        // The lines were drawn for the view of the previous frame.
+        // The lines were drawn for the visible range of the previous frame.
         ui.request_repaint();
     }
     let line = rect.with_max_y(rect.top() + TITLE_HEIGHT);
@@ -112,7 +112,7 @@ fn vertical_axis(chart: &Chart<'_>) -> PanelAxis {
     PanelAxis::new(ticks, VALUE_AXIS_WIDTH).labelled(chart.value_label)
 }
 
-/// Paints the title at the left in a line, the notes at the right.
+/// Paints the title at the left of a line, and the notes at the right.
 fn paint_title(ui: &Ui, line: Rect, chart: &Chart<'_>, palette: &Palette) {
     let painter = ui.painter();
     let mut at = pos2(line.left(), line.top() + 0.5 * TITLE_HEIGHT);
@@ -130,7 +130,7 @@ fn zoom_by_scrolling(plot: &mut PlotUi<'_>, chart: &Chart<'_>) {
     let fits_values = chart.fits_values;
     let Some(gesture) = ZoomGesture::find(plot.ctx(), plot.response()) else {
         if fits_values && !plot.auto_bounds().y {
-            // The drag has ended the automatic fit.
+            // Dragging has turned off the automatic fit.
             plot.set_auto_bounds(Vec2b::new(plot.auto_bounds().x, true));
         }
         return;
@@ -150,13 +150,13 @@ fn zoom_by_scrolling(plot: &mut PlotUi<'_>, chart: &Chart<'_>) {
         plot.set_plot_bounds_y(y.min..=y.max);
     }
     plot.set_auto_bounds(Vec2b::new(false, fits_values));
-    // Keeps the surrounding area from scrolling as well.
+    // Prevents the surrounding area from scrolling as well.
     plot.ctx()
         .input_mut(|input| input.smooth_scroll_delta = Vec2::ZERO);
 }
 
-/// Returns the greatest ranges that zooming out reaches: the data along a time axis, a decade or
-/// ten widths for other data, anything without data.
+/// Returns the maximum ranges when zooming out: the data range along a time axis, a decade beyond
+/// or ten times the range of other data, no limit without data.
 fn zoom_limits(chart: &Chart<'_>) -> [Range; 2] {
     let mut across = Vec::new();
     let mut values = Vec::new();

@@ -1,4 +1,4 @@
-//! Coherence strip below the panes: measured responses only.
+//! Coherence strip below the panes, for measured responses.
 
 use egui::{Align2, Id, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, pos2};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -12,19 +12,19 @@ use crate::gui::widgets::palette::Palette;
 
 /// Coherence at the upper edge of the strip.
 const HIGHEST: f64 = 1.05;
-/// Distance between numbers and strip \[pt\].
+/// Distance between the tick labels and the strip \[pt\].
 const BESIDE: f32 = 6.0;
 
-/// Coherence over the same frequencies as a pane.
+/// Coherence over the frequencies of a pane.
 pub(super) struct CoherenceStrip<'a> {
     pub(super) place: Rect,
     pub(super) scene: &'a BodeScene<'a>,
-    /// Transform of the pane.
+    /// Transform of the pane above, which defines the horizontal positions.
     pub(super) transform: &'a PlotTransform,
 }
 
 impl CoherenceStrip<'_> {
-    /// Draws the coherence, with the least coherence that counts.
+    /// Draws the coherence, and the minimum coherence that counts.
     pub(super) fn ui(&self, ui: &Ui, palette: &Palette) {
         let Self {
             place,
@@ -62,7 +62,7 @@ impl CoherenceStrip<'_> {
     }
 }
 
-/// Paints symbol and limits at the left.
+/// Paints the symbol and the limits of the axis at the left.
 fn paint_axis(painter: &Painter, strip: Rect, palette: &Palette) {
     for value in [0.0, 1.0] {
         let y = height_of(strip, value).clamp(strip.top() + 5.0, strip.bottom() - 5.0);
@@ -83,7 +83,7 @@ fn paint_axis(painter: &Painter, strip: Rect, palette: &Palette) {
     );
 }
 
-/// Returns the height of a coherence on the screen \[pt\].
+/// Returns the vertical screen position of a coherence \[pt\].
 fn height_of(strip: Rect, coherence: f64) -> f32 {
     strip.bottom() - strip.height() * (coherence / HIGHEST) as f32
 }

@@ -1,4 +1,4 @@
-//! Requests to change how curves over frequency are shown.
+//! Requests to change the display of curves over frequency.
 
 use std::collections::BTreeSet;
 
@@ -7,34 +7,35 @@ use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use super::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use super::{CurveId, Role};
 
-/// Request to change how curves are shown.
+/// Request to change the display of curves.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CurveCommand {
     /// Changes the unit of magnitudes.
     ReadMagnitudes(MagnitudeUnit),
-    /// Changes the form of phases.
+    /// Changes the representation of phases.
     DrawPhases(PhaseUnit),
-    /// Changes the form of phase differences.
+    /// Changes the unit of phase errors.
     DrawPhaseErrors(PhaseErrorUnit),
     /// Hides or shows the curves of a role.
     ToggleRole(Role),
-    /// Draws the curves of this role alone; repeated, draws all of them.
+    /// Shows the curves of this role alone; repeated, shows the curves of all roles.
     ShowRoleAlone(Role),
     /// Draws the curves of this role above all others; repeated, restores the usual order.
     RaiseRole(Role),
-    /// Shows or hides the bands of the identified models.
+    /// Shows or hides the uncertainty bands of the identified models.
     ShowBands(bool),
     /// Hides a model.
     HideModel(ModelId),
-    /// Shows every model, and the roles shown by default.
+    /// Shows every model, and the roles visible by default.
     ShowHidden,
-    /// Shifts the phase of a curve by whole turns: condition, response, curve, turns up.
+    /// Shifts the phase of a curve: condition, response, curve, number of whole turns upwards.
     Turn(ConditionId, Pair, CurveId, i32),
-    /// Highlights a frequency \[rad/s\] in every plot; repeated in each frame.
+    /// Shows the cursor at a frequency \[rad/s\] in every plot; sent again in each frame.
     PointAt(f64),
     /// Marks a frequency \[rad/s\]; a third mark replaces the first.
     PinCursor(f64),
-    /// Sets the frequencies, with their names, that define the bandwidth of the displayed response.
+    /// Sets the names and frequencies \[rad/s\] from which the bandwidth of the displayed response
+    /// is computed.
     MarkCrossings(Vec<(&'static str, f64)>),
     /// Removes the marked frequencies.
     UnpinCursors,

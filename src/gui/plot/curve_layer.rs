@@ -1,4 +1,4 @@
-//! Curve layer: order, styles and lines, and the image that replaces many static curves.
+//! Curve layer: drawing order, styles and lines, and the image that replaces many static curves.
 
 use egui::{Context, Pos2, Shape};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -11,17 +11,16 @@ use crate::gui::widgets::palette::Palette;
 /// Opacity while curves are being recomputed.
 pub(super) const STALE: f32 = 0.5;
 
-/// Pane as last drawn: place, lines, and the image of its static lines.
+/// Pane as last drawn: transform, lines, and the image of its static lines.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnPane {
-    /// Last transform, where x is `log10 omega`; `None` if there was
-    /// nothing to draw.
+    /// Transform as last drawn, where x is `log10 omega`; `None` if there was nothing to draw.
     pub(super) transform: Option<PlotTransform>,
     pub(super) curves: DrawnCurves,
     pub(super) image: CachedRaster,
 }
 
-/// Emphasis and size of the curves in a pane.
+/// Emphasis and line size of the curves of a pane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CurveLooks<'a> {
     /// Curve under the pointer.
@@ -35,7 +34,7 @@ pub(super) struct CurveLooks<'a> {
 }
 
 impl CurveLooks<'_> {
-    /// Returns whether the pointer is on a curve, or on its counterpart in another view.
+    /// Returns whether the curve is emphasized: the pointer is on it here or in another view.
     pub(super) fn is_emphasized(&self, curve: &BodeCurve) -> bool {
         curve.highlighted || self.pointed == Some(&curve.id)
     }
@@ -69,7 +68,7 @@ impl CurveLooks<'_> {
     }
 }
 
-/// Adds the lines through these runs of points to the shapes on the screen.
+/// Adds the lines through sequences of points to the shapes on the screen.
 pub(super) fn add_curve_lines(
     runs: &[Vec<PlotPoint>],
     style: CurveStyle,
@@ -85,14 +84,14 @@ pub(super) fn add_curve_lines(
     }
 }
 
-/// Returns whether a curve only shows the spread of its bundle, together with many others.
+/// Returns whether a curve only shows the scatter of its bundle and may be part of an image.
 pub(super) fn lies_at_the_bottom(curve: &BodeCurve) -> bool {
     curve.role.layer(curve.rejected) <= Role::Perturbed.layer(false)
 }
 
 impl DrawnPane {
-    /// Returns the image of the curves at the bottom, if there are a great many and they are
-    /// static.
+    /// Returns the image of the curves at the bottom if these are static and at least
+    /// [`MANY`] in number.
     pub(super) fn image_of_many(
         &mut self,
         ctx: &Context,

@@ -78,8 +78,8 @@ fn name_ui(ui: &mut Ui, curve: &BodeCurve, palette: &Palette) {
     ui.separator();
 }
 
-/// Draws the field for the rejection's reason, if the curve has a model to reject; returns
-/// whether the rejection was confirmed.
+/// Draws the field for the rejection reason, if the curve belongs to a model that can be rejected;
+/// returns whether the rejection was confirmed.
 fn reason_ui(ui: &mut Ui, curve: &BodeCurve, reason: &mut String) -> bool {
     if !matches!(curve.id, CurveId::Model(_)) || curve.rejected {
         return false;
@@ -143,8 +143,8 @@ fn curve_wishes_ui(
     wished
 }
 
-/// Draws the actions on a curve's model, in whichever plot; nothing if the curve has no model.
-/// Returns the chosen action.
+/// Draws the actions on a curve's model, in any plot; nothing if the curve has no model. Returns
+/// the chosen action.
 pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWish> {
     if !matches!(curve.id, CurveId::Model(_)) {
         return None;

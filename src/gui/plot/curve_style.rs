@@ -8,9 +8,9 @@ use gdcm_plot::figure::drawing::{Dash, Hue};
 
 use crate::gui::widgets::palette::Palette;
 
-/// Gap between dashes, relative to their length.
+/// Length of the gaps between dashes, relative to the dashes.
 const GAP_OF_DASH: f32 = 0.618;
-/// Dot length between dashes \[pt\].
+/// Length of the dots between dashes \[pt\].
 const DOT_LENGTH: f32 = 1.8;
 
 /// Colour, width and pattern of a curve.
@@ -19,14 +19,14 @@ pub struct CurveStyle {
     pub color: Color32,
     /// Width \[pt\].
     pub width: f32,
-    /// Pattern, which distinguishes roles in the same colour.
+    /// Pattern, which distinguishes roles of the same colour.
     pub dash: Dash,
     /// Dash length, or distance between dots \[pt\].
     pub length: f32,
 }
 
 impl CurveStyle {
-    /// Returns the style of this line under the pointer.
+    /// Returns the style of this line when emphasized: opaque and wider.
     pub fn emphasized(self) -> Self {
         let color = self.color.to_opaque();
         // Dots need a wider spacing to remain dots.
@@ -60,12 +60,12 @@ impl CurveStyle {
         }
     }
 
-    /// Returns whether the line has many pieces, whose places depend on its start.
+    /// Returns whether the line is dashed or dotted; the pattern depends on where the line starts.
     pub fn is_broken(&self) -> bool {
         self.dash != Dash::Solid
     }
 
-    /// Adds this line along `path`, in screen coordinates.
+    /// Adds the line along `path`, given in screen coordinates.
     pub fn add_shapes(&self, path: Vec<Pos2>, shapes: &mut Vec<Shape>) {
         let stroke = Stroke::new(self.width, self.color);
         let length = self.length;
@@ -93,7 +93,7 @@ impl CurveStyle {
 }
 
 impl Palette {
-    /// Returns the colour of a meaning in this theme.
+    /// Returns the colour in this theme for a colour given by its meaning.
     pub fn color(&self, color: Color) -> Color32 {
         let of_hue = match color.hue {
             Hue::Background => self.background,
@@ -119,7 +119,7 @@ impl Palette {
         }
     }
 
-    /// Returns a line's style in this theme, with the engineer's line width.
+    /// Returns the style of a line in this theme, with the line width chosen by the engineer.
     pub fn curve_style(&self, line: gdcm_plot::figure::drawing::Stroke) -> CurveStyle {
         let length = match line.dash {
             Dash::Solid => 0.0,

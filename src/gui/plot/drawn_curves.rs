@@ -1,4 +1,4 @@
-//! Cache for the visible points in a pane.
+//! Cache of the visible points of a pane.
 
 use std::sync::Arc;
 
@@ -13,13 +13,14 @@ use crate::gui::widgets::palette::Palette;
 /// Panes, from top to bottom.
 pub(crate) const PANES: [Pane; 2] = [Pane::Magnitude, Pane::Phase];
 
-/// Distance outside the view within which points are drawn, as a share of the view: lines have a
-/// width.
+/// Margin around the view in which points are still drawn, as a share of the view, because lines
+/// have a width.
 const LINE_MARGIN: f64 = 0.02;
-/// The same for dashes and dots: a small pan must not change where they begin.
+/// Margin around the view for dashed and dotted lines: a small pan must not change where the
+/// pattern begins.
 const PATTERN_MARGIN: f64 = 1.0;
 
-/// Visible part of both axes, and its finest detail.
+/// Visible part of both axes, and the size of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct VisiblePart {
     pub(super) bounds: PlotBounds,
@@ -27,8 +28,8 @@ pub(super) struct VisiblePart {
 }
 
 impl VisiblePart {
-    /// Returns the visible part under this `transform`, where lines may be `tolerance_pt`
-    /// points away from their curves.
+    /// Returns the visible part for this `transform`; lines may deviate from their curves by
+    /// `tolerance_pt` points.
     pub(super) fn new(transform: &PlotTransform, pixels_per_point: f32, tolerance_pt: f64) -> Self {
         Self {
             bounds: *transform.bounds(),
@@ -37,7 +38,7 @@ impl VisiblePart {
     }
 }
 
-/// Visible points in a pane: with a thousand models, finding them takes longer than
+/// Visible points of a pane, cached because with a thousand models finding them takes longer than
 /// drawing them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnCurves {
@@ -48,19 +49,19 @@ pub(super) struct DrawnCurves {
     made: u64,
 }
 
-/// Thinned points, and the numbers they were made from.
+/// Thinned points of a curve, and the values from which they were computed.
 #[derive(Clone, Debug)]
 struct DrawnCurve {
     omega: Arc<[f64]>,
     values: Arc<[f64]>,
     margin: f64,
     runs: Vec<Vec<PlotPoint>>,
-    /// Serial number among all curves thinned.
+    /// Serial number among all curves thinned so far.
     serial: u64,
 }
 
 impl DrawnCurves {
-    /// Recomputes the points where curves have changed since the last frame.
+    /// Recomputes the points of curves that have changed since the last frame.
     pub(super) fn update(
         &mut self,
         curves: &[BodeCurve],
@@ -102,7 +103,7 @@ impl DrawnCurves {
         self.curves = drawn;
     }
 
-    /// Returns whether exactly these curves were drawn, in this order.
+    /// Returns whether the cached points belong to exactly these curves, in this order.
     fn are_drawn_from(&self, curves: &[BodeCurve], pane: Pane, palette: &Palette) -> bool {
         self.curves.len() == curves.len()
             && self
@@ -127,8 +128,8 @@ impl DrawnCurves {
     }
 }
 
-/// Returns the place of the matching curve among those kept. Usually the curves are those from the
-/// last frame, in the same order, so that `likely` is tried first.
+/// Returns the index of the matching curve in `kept`. The index `likely` is tried first, because
+/// curves usually keep their order.
 fn kept_place(
     kept: &[Option<DrawnCurve>],
     likely: usize,
@@ -149,7 +150,7 @@ fn thin(run: &[[f64; 2]], pixel: Pixel) -> Vec<PlotPoint> {
 }
 
 impl DrawnCurve {
-    /// Returns whether `curve` still has the same numbers and the same margin.
+    /// Returns whether the values and the margin of `curve` are unchanged.
     fn is_drawn_from(&self, curve: &BodeCurve, pane: Pane, margin: f64) -> bool {
         self.margin == margin
             && are_same(&self.values, curve.shared_values(pane))
@@ -157,8 +158,8 @@ impl DrawnCurve {
     }
 }
 
-/// Returns whether two slices hold the same numbers: usually they are in the same place in memory.
-/// Gaps are NaN, so numbers are compared by their bits.
+/// Returns whether two slices contain the same values, bit by bit because gaps are NaN; usually
+/// they have the same address.
 fn are_same(one: &Arc<[f64]>, other: &Arc<[f64]>) -> bool {
     Arc::ptr_eq(one, other)
         || one
@@ -167,7 +168,7 @@ fn are_same(one: &Arc<[f64]>, other: &Arc<[f64]>) -> bool {
             .eq(other.iter().map(|value| value.to_bits()))
 }
 
-/// Returns the distance outside the view within which a curve is drawn, relative to the view.
+/// Returns the margin around the view in which a curve is drawn, as a share of the view.
 fn margin(curve: &BodeCurve, palette: &Palette) -> f64 {
     if palette.role_style(curve.role, curve.rejected).is_broken() {
         PATTERN_MARGIN
@@ -197,7 +198,7 @@ mod tests {
         drawn.update(curves, Pane::Magnitude, view(height), &Palette::dark());
     }
 
-    /// Addresses of the points in memory, which change once they are recomputed.
+    /// Memory addresses of the points, which change when the points are recomputed.
     fn places(drawn: &DrawnCurves) -> Vec<*const PlotPoint> {
         drawn
             .curves

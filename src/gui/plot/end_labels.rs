@@ -1,31 +1,31 @@
-//! Labels in the right margin, at the height where their lines end.
+//! Labels in the right margin, at the heights of the line ends.
 
 use egui::{Align2, Color32, Rect, Ui, pos2};
 
 use super::panel_text::caption_font;
 
-/// Least distance between two labels \[pt\].
+/// Minimum distance between two labels \[pt\].
 const LABEL_GAP: f32 = 14.0;
-/// Least distance from the frame's corners \[pt\].
+/// Minimum distance from the corners of the frame \[pt\].
 const MARGIN: f32 = 5.0;
 /// Distance from the frame \[pt\].
 const BESIDE: f32 = 6.0;
 
-/// Line label in the margin.
+/// Label of a line in the margin.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct EndLabel {
-    /// Height on the screen \[pt\].
+    /// Vertical screen position \[pt\].
     pub(super) y: f32,
     pub(super) text: String,
     pub(super) color: Color32,
 }
 
-/// Limits a height to the room beside `frame`.
+/// Limits a vertical screen position to the margin beside `frame`.
 pub(super) fn height_beside(frame: Rect, y: f32) -> f32 {
     y.clamp(frame.top() + MARGIN, frame.bottom() - MARGIN)
 }
 
-/// Paints the labels beside `frame`, apart from one another.
+/// Paints the labels beside `frame` without overlap.
 pub(super) fn paint_end_labels(ui: &Ui, frame: Rect, mut labels: Vec<EndLabel>) {
     labels.sort_by(|a, b| a.y.total_cmp(&b.y));
     spread(&mut labels, frame.bottom() - MARGIN);
@@ -37,7 +37,7 @@ pub(super) fn paint_end_labels(ui: &Ui, frame: Rect, mut labels: Vec<EndLabel>) 
     }
 }
 
-/// Shifts labels, sorted by height, down until they no longer overlap, then up again if they leave
+/// Moves labels, sorted by height, down until they no longer overlap, then up again if they leave
 /// the plot.
 fn spread(labels: &mut [EndLabel], bottom: f32) {
     for index in 1..labels.len() {

@@ -1,4 +1,4 @@
-//! Figure marks on the screen: as on paper, and emphasized under the pointer.
+//! Marks of a figure on the screen: as on paper, and emphasized under the pointer.
 
 use egui::{Color32, Painter, Pos2, Rect, Stroke, Ui};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -19,13 +19,13 @@ const RING_WIDTH: f32 = 1.4;
 /// Magnification of a highlighted dot.
 const EMPHASIZED: f64 = 1.3;
 
-/// Shapes as last drawn: placing labels takes longer than drawing them.
+/// Shapes as last drawn, cached because placing labels takes longer than drawing them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnMarks {
     drawn: Option<DrawnPanel>,
 }
 
-/// Shapes of a panel, and the arguments from which they were made.
+/// Shapes of a panel, and the arguments from which they were computed.
 #[derive(Clone, Debug)]
 struct DrawnPanel {
     panel: Panel,
@@ -40,7 +40,7 @@ impl DrawnMarks {
         Some(&self.drawn.as_ref()?.panel)
     }
 
-    /// Returns the panel's shapes for these ranges, recomputed only if changed.
+    /// Returns the shapes of the panel for these ranges, recomputed only after a change.
     fn shapes(&mut self, panel: &Panel, area: Area, ranges: [Range; 2]) -> &[Shape] {
         let is_same = self.drawn.as_ref().is_some_and(|drawn| {
             drawn.area == area && drawn.ranges == ranges && drawn.panel == *panel
@@ -61,23 +61,23 @@ impl DrawnMarks {
     }
 }
 
-/// Marks to draw, and which are emphasized.
+/// Marks to draw, and the emphasized marks among them.
 pub(super) struct MarkScene<'a> {
     pub(super) panel: &'a Panel,
     pub(super) transform: PlotTransform,
-    /// Column marks, if columns are interactive instead of dots.
+    /// Marks of the columns, if columns are interactive instead of dots.
     pub(super) columns: &'a [MarkId],
     /// Mark in focus.
     pub(super) selected: Option<&'a MarkId>,
     /// Mark highlighted in this figure or by another view.
     pub(super) emphasized: Option<&'a MarkId>,
-    /// Place on the axes of the mark under the pointer.
+    /// Axis coordinates of the mark under the pointer.
     pub(super) pointed_at: Option<[f64; 2]>,
     pub(super) palette: &'a Palette,
 }
 
 impl MarkScene<'_> {
-    /// Draws the marks; those near the frame reach beyond it.
+    /// Draws the marks; those near the edge of the frame may extend beyond it.
     pub(super) fn paint(&self, ui: &Ui, drawn: &mut DrawnMarks) {
         let frame = *self.transform.frame();
         let clip = frame.expand(RING).intersect(ui.clip_rect());
@@ -150,8 +150,8 @@ impl MarkScene<'_> {
     }
 }
 
-/// Returns the values at these places along the horizontal axis; on the screen, a
-/// logarithmic axis has logarithms.
+/// Returns the values of a range of coordinates along the horizontal axis; on the screen, the
+/// coordinates of a logarithmic axis are logarithms.
 fn values_at(panel: &Panel, places: Range) -> Range {
     match panel.x.scale {
         Scale::Logarithmic => Range::new(10f64.powf(places.min), 10f64.powf(places.max)),

@@ -1,4 +1,4 @@
-//! Figure panel: axes, the mark under the pointer, zooming and panning.
+//! Panel of a figure: axes, the mark under the pointer, zooming and panning.
 
 use egui::{Align2, Id, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -18,20 +18,20 @@ use super::ticks::Ticks;
 use super::viewed_range::{ZoomLimit, bounds_of, ranges_of, zoomed_within};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE, medium};
 
-/// Title height above the first panel \[pt\].
+/// Height of the title above the first panel \[pt\].
 pub(super) const TITLE_HEIGHT: f32 = 18.0;
-/// Vertical axis width \[pt\].
+/// Width of the vertical axis \[pt\].
 pub(super) const VALUE_AXIS_WIDTH: f32 = 38.0;
 const RIGHT_MARGIN: f32 = 8.0;
 /// Gap between panels \[pt\].
 const PANEL_GAP: f32 = 4.0;
-/// Least distance between ticks \[pt\].
+/// Minimum distance between ticks \[pt\].
 const TICK_GAP: f64 = 26.0;
-/// The same in a low plot, which has as many numbers as fit \[pt\].
+/// Minimum distance between ticks in a compact figure, which has as many tick labels as fit \[pt\].
 const COMPACT_TICK_GAP: f64 = 17.0;
-/// Greatest visible width, relative to the whole panel.
+/// Maximum visible width, relative to the whole panel.
 const FARTHEST: f64 = 10.0;
-/// Least visible width.
+/// Minimum visible width.
 const LEAST_WIDTH: f64 = 1e-4;
 
 /// State of a panel between frames.
@@ -39,13 +39,14 @@ const LEAST_WIDTH: f64 = 1e-4;
 pub(super) struct PanelView {
     /// Visible ranges, if zoomed or panned.
     pub(super) ranges: Option<[Range; 2]>,
-    /// Last transform; on the screen, a logarithmic horizontal axis has logarithms.
+    /// Transform as last drawn; on the screen, the coordinates of a logarithmic horizontal axis are
+    /// logarithms.
     pub(super) transform: Option<PlotTransform>,
     pub(super) marks: DrawnMarks,
 }
 
 impl PanelView {
-    /// Adopts the horizontal range from another panel.
+    /// Adopts the horizontal range of another panel.
     pub(super) fn share_places(&mut self, panel: &Panel, other: &Self) {
         let Some([x, _]) = other.ranges else {
             self.ranges = None;
@@ -59,12 +60,12 @@ impl PanelView {
     }
 }
 
-/// Figure panel at its place.
+/// Panel of a figure at its position.
 pub(super) struct PlacedPanel<'a> {
     pub(super) scene: &'a FigureScene<'a>,
-    /// Plot index in the figure.
+    /// Index of the plot in the figure.
     pub(super) plot: usize,
-    /// Panel index in the plot, from top to bottom.
+    /// Index of the panel in the plot, from top to bottom.
     pub(super) number: usize,
     pub(super) id: Id,
     pub(super) rect: Rect,
@@ -146,13 +147,14 @@ impl PlacedPanel<'_> {
         }
     }
 
-    /// Returns whether the vertical axis has numbers: in a compact figure only in the first column.
+    /// Returns whether the vertical axis has tick labels: in a compact figure, only in the first
+    /// column.
     fn has_values(&self, ui: &Ui) -> bool {
         let is_first_column = self.rect.left() - ui.max_rect().left() < 0.5 * self.rect.width();
         !self.scene.is_compact || is_first_column
     }
 
-    /// Returns the place for frame and axes.
+    /// Returns the area of the frame with its axes.
     fn frame_with_axes(&self, has_values: bool) -> Rect {
         let above = if self.number == 0 {
             TITLE_HEIGHT
@@ -222,8 +224,8 @@ impl PlacedPanel<'_> {
         })
     }
 
-    /// Describes the dots for screen readers; the plot itself handles pointing and clicking, and
-    /// takes the nearest dot.
+    /// Describes the dots for screen readers. Pointing and clicking are handled by the plot itself,
+    /// which picks the nearest dot.
     fn describe_dots(&self, ui: &Ui, transform: &PlotTransform) {
         let plot = self.scene.first_plot + self.plot;
         for dot in self.panel().dots() {
@@ -238,8 +240,8 @@ impl PlacedPanel<'_> {
         }
     }
 
-    /// Draws the name above a plot, with a bar in the accent colour if it is in focus; beside the
-    /// last plot in a compact figure, the horizontal unit.
+    /// Draws the name above a plot, with a bar in the accent colour if the plot is in focus; in a
+    /// compact figure, also the unit of the horizontal axis beside the last plot.
     fn title_ui(&self, ui: &Ui, frame: Rect) {
         let palette = self.palette;
         let is_accented = self.scene.accented == Some(self.plot);
@@ -272,7 +274,7 @@ impl PlacedPanel<'_> {
     }
 }
 
-/// Returns the distance between numbers or names along a horizontal axis.
+/// Returns the distance between the tick labels or names of a horizontal axis.
 fn spacing_across(ui: &Ui, panel: &Panel, palette: &Palette) -> TickSpacing {
     let named = panel.x.names.as_deref().unwrap_or_default();
     if named.is_empty() {
@@ -292,7 +294,7 @@ fn spacing_across(ui: &Ui, panel: &Panel, palette: &Palette) -> TickSpacing {
     }
 }
 
-/// Returns a label, or only its unit if the label is longer than its axis.
+/// Returns a label, or only its unit if the label is longer than the axis.
 fn label_within(ui: &Ui, label: &str, room: f32, palette: &Palette) -> String {
     if tick_width(ui, label, palette) > room
         && let Some(unit) = label.rfind('[')
@@ -302,7 +304,7 @@ fn label_within(ui: &Ui, label: &str, room: f32, palette: &Palette) -> String {
     label.to_owned()
 }
 
-/// Returns a text's width beside an axis \[pt\].
+/// Returns the width of a text beside an axis \[pt\].
 fn tick_width(ui: &Ui, text: &str, palette: &Palette) -> f32 {
     let galley = ui
         .painter()
@@ -320,7 +322,7 @@ fn navigate(panel: &Panel, response: &Response, transform: &PlotTransform, view:
         let fixed = transform.value_from_position(gesture.pointer);
         for (axis, fixed) in [fixed.x, fixed.y].into_iter().enumerate() {
             let limit = limits[axis].range(whole[axis]);
-            // An axis whose whole range was dragged beyond the limit stays as it is.
+            // An axis whose whole range was dragged beyond the limit keeps its range.
             if let Some(zoomed) = zoomed_within(shown[axis], factor, fixed, limit) {
                 shown[axis] = zoomed;
             }
@@ -335,7 +337,8 @@ fn navigate(panel: &Panel, response: &Response, transform: &PlotTransform, view:
     }
 }
 
-/// Returns the zoom limits: the data along a time axis, a decade or ten widths for other data.
+/// Returns the zoom limits: the data range along a time axis, a decade beyond or ten times the
+/// range of other data.
 fn zoom_limits(panel: &Panel) -> [ZoomLimit; 2] {
     let widths = ZoomLimit::TenWidths { least: LEAST_WIDTH };
     let across = match panel.x.scale {
@@ -346,7 +349,8 @@ fn zoom_limits(panel: &Panel) -> [ZoomLimit; 2] {
     [across, widths]
 }
 
-/// Returns a panel's full ranges; on the screen, a logarithmic horizontal axis has logarithms.
+/// Returns the full ranges of a panel; on the screen, the coordinates of a logarithmic horizontal
+/// axis are logarithms.
 fn whole(panel: &Panel) -> [Range; 2] {
     let x = panel.shown(Along::X);
     let y = panel.shown(Along::Y);

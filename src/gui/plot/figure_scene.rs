@@ -1,4 +1,4 @@
-//! A figure with its interaction on the screen, and the events in it.
+//! Content of a figure with its interaction on the screen, and its events.
 
 use egui::{Modifiers, Vec2};
 
@@ -7,23 +7,23 @@ use gdcm_words::derivation::ExplainTarget;
 
 use super::questions::NamedFigure;
 
-/// Descriptions for a figure's plots.
+/// Descriptions of a figure's plots and marks.
 pub trait FigureWords {
     /// Describes a plot for screen readers.
     fn plot(&self, plot: usize) -> String;
 
-    /// Describes a dot at a place on the axes for screen readers; `None` if dots are not described
-    /// individually.
+    /// Describes a dot at these axis coordinates for screen readers; `None` if dots are not
+    /// described individually.
     fn dot(&self, _plot: usize, _id: &MarkId, _at: [f64; 2]) -> Option<String> {
         None
     }
 
-    /// Returns the status line for a mark under the pointer; `None` for no text.
+    /// Returns the status text of the mark under the pointer; `None` for no text.
     fn pointed(&self, _plot: usize, _id: &MarkId, _at: [f64; 2]) -> Option<String> {
         None
     }
 
-    /// Returns the values with a derivation at a mark.
+    /// Returns the values at a mark whose derivation can be displayed.
     fn questions(&self, _plot: usize, _id: &MarkId) -> Vec<NamedFigure> {
         Vec::new()
     }
@@ -35,32 +35,32 @@ impl FigureWords for Figure {
     }
 }
 
-/// Figure with its interaction on the screen. Panels are stacked; interactive marks
-/// are in the first panel.
+/// Figure with its interaction on the screen. Panels are stacked; only the first panel has
+/// interactive marks.
 pub struct FigureScene<'a> {
-    /// Distinguishes the widgets from those in other figures.
+    /// Name that distinguishes the widgets from those of other figures.
     pub name: &'static str,
     pub figure: &'a Figure,
     /// Mark in focus.
     pub selected: Option<MarkId>,
     /// Mark highlighted by another view.
     pub highlighted: Option<MarkId>,
-    /// Marks at the names along the horizontal axes, if the columns are interactive instead of the
+    /// Marks of the names along the horizontal axes, if the columns are interactive instead of the
     /// dots.
     pub columns: &'a [MarkId],
     /// Whether the plots can be zoomed and panned.
     pub zooms: bool,
-    /// Least plot size \[pt\].
+    /// Minimum plot size \[pt\].
     pub least: Vec2,
     /// Message shown if there is nothing to draw.
     pub message: &'a str,
-    /// Whether the vertical label appears once per row, at the left, and the unit
-    /// of the horizontal axis at its end.
+    /// Whether the vertical label is shown only at the left of each row, and only the unit of the
+    /// horizontal axis, at its end.
     pub is_compact: bool,
     /// Plot in focus, which has a bar in the accent colour.
     pub accented: Option<usize>,
     pub words: &'a dyn FigureWords,
-    /// Number that this figure's first plot has in the descriptions and in events.
+    /// Index of this figure's first plot in descriptions and events.
     pub first_plot: usize,
 }
 
@@ -93,12 +93,12 @@ impl<'a> FigureScene<'a> {
 /// Event in a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FigureEvent {
-    /// The mark under the pointer.
+    /// This mark is under the pointer.
     Pointed(MarkId),
-    /// Its description.
+    /// Description of the mark under the pointer.
     Told(String),
-    /// A mark was clicked in this plot, with these modifier keys.
+    /// A mark in the plot with this index was clicked, with these modifier keys.
     Clicked(usize, MarkId, Modifiers),
-    /// A derivation was requested.
+    /// The derivation of a value was requested.
     Asked(ExplainTarget),
 }

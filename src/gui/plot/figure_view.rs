@@ -14,18 +14,18 @@ use super::questions::Questions;
 use super::tiles::{TiledArea, Tiles, tiles_ui};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Strip at the left with the common vertical label \[pt\].
+/// Width of the strip at the left for the common vertical label \[pt\].
 const LABEL_STRIP: f32 = 16.0;
-/// Room for the unit beside the last plot in a compact figure \[pt\].
+/// Margin for the unit beside the last plot of a compact figure \[pt\].
 const UNIT_MARGIN: f32 = 14.0;
 
 /// State of a figure between frames.
 #[derive(Clone, Debug, Default)]
 pub struct FigureView {
     hovered: Option<MarkId>,
-    /// Place on the axes of the dot under the pointer.
+    /// Axis coordinates of the dot under the pointer.
     pointed_at: Option<[f64; 2]>,
-    /// Subject, if known.
+    /// Subject of the figure; empty before the first.
     subject: String,
     plots: Vec<PlotView>,
     questions: Questions,
@@ -34,19 +34,19 @@ pub struct FigureView {
 #[derive(Clone, Debug, Default)]
 struct PlotView {
     first: PanelView,
-    /// The other panels, from top to bottom.
+    /// Panels below the first, from top to bottom.
     lower: Vec<PanelView>,
 }
 
 impl FigureView {
-    /// Fits all plots at the next frame.
+    /// Requests that all plots be fitted in the next frame.
     pub fn request_fit(&mut self) {
         for plot in &mut self.plots {
             plot.first.ranges = None;
         }
     }
 
-    /// Sets the subject: a new subject fits all plots.
+    /// Sets the subject; a change fits all plots.
     pub fn set_subject(&mut self, subject: &str) {
         if self.subject != subject {
             subject.clone_into(&mut self.subject);
@@ -54,22 +54,22 @@ impl FigureView {
         }
     }
 
-    /// Returns the place on the axes where the dot under the pointer lies.
+    /// Returns the axis coordinates of the dot under the pointer.
     pub fn pointed_at(&self) -> Option<[f64; 2]> {
         self.pointed_at
     }
 
-    /// Returns a plot's visible ranges as last drawn.
+    /// Returns the visible ranges of a plot, if zoomed or panned.
     pub fn ranges(&self, plot: usize) -> Option<[Range; 2]> {
         self.plots.get(plot)?.first.ranges
     }
 
-    /// Returns a plot's last transform.
+    /// Returns the transform of a plot as last drawn.
     pub fn transform(&self, plot: usize) -> Option<&PlotTransform> {
         self.plots.get(plot)?.first.transform.as_ref()
     }
 
-    /// Returns the screen position for a place on a plot's axes.
+    /// Returns the screen position of axis coordinates in a plot.
     pub fn position(&self, plot: usize, [x, y]: [f64; 2]) -> Option<Pos2> {
         let transform = self.transform(plot)?;
         Some(transform.position_from_point(&PlotPoint::new(x, y)))
@@ -82,7 +82,7 @@ impl FigureView {
         self.position(plot, [dot.x, dot.y])
     }
 
-    /// Reports the events at the mark under the pointer in a plot.
+    /// Reports the events on the mark under the pointer in a plot.
     fn report(
         &mut self,
         scene: &FigureScene<'_>,
@@ -130,8 +130,8 @@ pub fn figure_ui(
     events
 }
 
-/// Returns the number of rows into which a figure's plots are arranged, with no plot smaller than
-/// `least`.
+/// Returns the number of rows in which the plots of a figure are arranged, with no plot smaller
+/// than `least`.
 pub fn rows(figure: &Figure, size: Vec2, least: Vec2) -> usize {
     match figure.plots.len() {
         0 => 0,
@@ -188,7 +188,7 @@ pub fn figure_within_ui(
     events
 }
 
-/// Returns the vertical label, if all plots share it.
+/// Returns the vertical label if all plots share the vertical axis.
 fn common_label(figure: &Figure) -> Option<&str> {
     if !figure.shared.y {
         return None;
@@ -197,7 +197,7 @@ fn common_label(figure: &Figure) -> Option<&str> {
     Some(&panel.y.label)
 }
 
-/// Paints the common vertical label, upright at the left edge.
+/// Paints the common vertical label, running upwards at the left edge.
 fn upright_label_ui(ui: &Ui, rect: Rect, label: &str, palette: &Palette) {
     let font = FontId::proportional(SMALL_SIZE);
     let galley = ui
@@ -217,8 +217,8 @@ struct FigurePainter<'a> {
 }
 
 impl FigurePainter<'_> {
-    /// Draws a plot's stacked panels into `rect`, over the same part of their horizontal axis;
-    /// returns the first panel's response.
+    /// Draws the stacked panels of a plot into `rect` with the same horizontal range; returns the
+    /// response of the first panel.
     fn plot_ui(&self, ui: &mut Ui, rect: Rect, plot: usize, view: &mut PlotView) -> PlacedResponse {
         let panels = &self.scene.figure.plots[plot].panels;
         let total: f64 = panels.iter().map(|panel| panel.weight).sum();

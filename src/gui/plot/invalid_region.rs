@@ -1,5 +1,5 @@
-//! Frequencies above the band at which the corrected model is invalid: a hatched region, and the
-//! magnitude added by the leads.
+//! Frequencies above the band at which the corrected model is invalid: hatching, a strip with a
+//! text, and the magnitude added by the leads.
 
 use egui::{Align2, FontId, Rect, Shape, Stroke, Ui, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform, PlotUi};
@@ -11,7 +11,7 @@ use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 /// Distance between hatching lines \[pt\].
 const HATCH_STEP: f32 = 7.0;
-/// Least width with room for words \[pt\].
+/// Minimum width with room for the text \[pt\].
 const LEAST_STRIP: f32 = 40.0;
 
 /// Hatches the frequencies above `omega` \[rad/s\].
@@ -26,7 +26,7 @@ pub(super) fn add_hatching(plot: &mut PlotUi<'_>, omega: f64, palette: &Palette)
     }));
 }
 
-/// Adds lines descending to the left at 45 degrees, clipped to the region.
+/// Adds lines that descend to the left at 45 degrees, clipped to the region.
 fn hatch(region: Rect, stroke: Stroke, shapes: &mut Vec<Shape>) {
     let width = region.right() - region.left();
     let height = region.height();
@@ -42,7 +42,7 @@ fn hatch(region: Rect, stroke: Stroke, shapes: &mut Vec<Shape>) {
     }
 }
 
-/// Strip over the upper edge at the frequencies where the model is invalid.
+/// Strip along the upper edge at the frequencies where the model is invalid.
 pub(super) struct InvalidStrip<'a> {
     /// Upper end of the band \[rad/s\].
     pub(super) band_end: f64,
@@ -51,7 +51,7 @@ pub(super) struct InvalidStrip<'a> {
 }
 
 impl InvalidStrip<'_> {
-    /// Paints the strip with the highest valid frequency, and the magnitude added by the leads.
+    /// Paints the strip with its text, and the magnitude added by the leads.
     pub(super) fn paint(&self, ui: &Ui, palette: &Palette) {
         let Self {
             band_end,

@@ -1,4 +1,4 @@
-//! Layers common to several plots: shades, areas, lines across a panel.
+//! Layers used by several plots: shades, areas, lines across a panel.
 
 use std::ops::RangeInclusive;
 
@@ -11,12 +11,12 @@ use egui_plot::{
 /// Distance between dots \[pt\].
 const DOT_SPACING: f32 = 4.0;
 
-/// Shades a horizontal stretch.
+/// Shades a horizontal range.
 pub(super) fn add_shade(plot: &mut PlotUi<'_>, stretch: RangeInclusive<f64>, fill: Color32) {
     plot.span(Span::new("", stretch).fill(fill).border_width(0.0));
 }
 
-/// Fills the area between two lines through `points`: places, lower and upper values, all finite.
+/// Fills the area between two lines through `points`: `[x, lower value, upper value]`, all finite.
 pub(super) fn add_area(plot: &mut PlotUi<'_>, points: &[[f64; 3]], fill: Color32) {
     let places = column(points, 0);
     let lower = column(points, 1);
@@ -29,12 +29,12 @@ fn column(points: &[[f64; 3]], index: usize) -> Vec<f64> {
     points.iter().map(|point| point[index]).collect()
 }
 
-/// Draws a line across the panel at a place on the horizontal axis.
+/// Draws a vertical line across the panel at a horizontal coordinate.
 pub(super) fn add_vertical(plot: &mut PlotUi<'_>, place: f64, stroke: Stroke) {
     plot.vline(vertical(place, stroke));
 }
 
-/// Draws a dotted line across the panel at a place on the horizontal axis.
+/// Draws a dotted vertical line across the panel at a horizontal coordinate.
 pub(super) fn add_dotted_vertical(plot: &mut PlotUi<'_>, place: f64, stroke: Stroke) {
     let style = LineStyle::Dotted {
         spacing: DOT_SPACING,
@@ -48,15 +48,15 @@ fn vertical(place: f64, stroke: Stroke) -> VLine {
 
 type Drawing<'a> = Box<dyn Fn(&PlotTransform, &mut Vec<Shape>) + 'a>;
 
-/// Layer with shapes in screen coordinates. It has no part in fitting and hovering by
-/// egui_plot.
+/// Layer of shapes in screen coordinates, ignored when egui_plot fits ranges and finds hovered
+/// items.
 pub(super) struct DrawnItem<'a> {
     base: PlotItemBase,
     draw: Drawing<'a>,
 }
 
 impl<'a> DrawnItem<'a> {
-    /// Creates a layer from the function that adds its shapes to the panel.
+    /// Creates a layer from the function that adds its shapes.
     pub(super) fn new(draw: impl Fn(&PlotTransform, &mut Vec<Shape>) + 'a) -> Self {
         Self {
             base: PlotItemBase::new(String::new()),

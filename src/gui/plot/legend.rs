@@ -17,23 +17,23 @@ use super::drawn_curves::BodeCurve;
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
 const CHIP_HEIGHT: f32 = 22.0;
-/// Line height with the gap below \[pt\].
+/// Line height, including the gap below \[pt\].
 const LINE_HEIGHT: f32 = 27.0;
 /// Gap between two chips \[pt\].
 const GAP: f32 = 5.0;
-/// Sample length \[pt\].
+/// Length of a curve sample \[pt\].
 const SAMPLE: f32 = 18.0;
-/// The same in a tight chip \[pt\].
+/// Length of a curve sample in a shortened chip \[pt\].
 const TIGHT_SAMPLE: f32 = 12.0;
 const SAMPLE_GAP: f32 = 6.0;
-/// Padding at both ends \[pt\].
+/// Padding at both ends of a chip \[pt\].
 const PAD: f32 = 6.0;
-/// Longest model name beside its role \[characters\].
+/// Maximum length of a model name beside its role \[characters\].
 const NAME_LENGTH: usize = 22;
-/// Line width in the sample of a band \[pt\].
+/// Line width of the sample of a band \[pt\].
 const BAND_SAMPLE_WIDTH: f32 = 7.0;
 
-/// Chip that switches curves.
+/// Chip that shows or hides the curves of a role.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RoleChip {
     pub(super) role: Role,
@@ -41,12 +41,13 @@ pub(super) struct RoleChip {
     pub(super) look: CurveStyle,
     /// Whether the role's curves are drawn.
     pub(super) shown: bool,
-    /// Whether the pointer is on such a curve, or on its counterpart in another view.
+    /// Whether a curve of the role is emphasized, here or in another view.
     pub(super) lit: bool,
 }
 
 impl RoleChip {
-    /// Removes a single model's or variant's name, and shortens the longest words.
+    /// Replaces a text that contains the name of a single model or variant, and shortens the
+    /// longest texts.
     fn shorten(&mut self) {
         match self.role {
             Role::Representative => "repr.".clone_into(&mut self.text),
@@ -72,7 +73,8 @@ pub(super) fn role_chips(
         let Some(first) = members.first() else {
             continue;
         };
-        // A single chip for kept and rejected nominal models: dotted only if none is kept.
+        // Kept and rejected nominal models share a chip: its line is dotted only if all are
+        // rejected.
         let rejected = members.iter().all(|curve| curve.rejected);
         chips.push(RoleChip {
             role,
@@ -85,7 +87,8 @@ pub(super) fn role_chips(
     chips
 }
 
-/// Returns the role's name, with that of its only curve if that says more.
+/// Returns the name of the role, extended or replaced by the name of its only curve where that is
+/// more specific.
 fn chip_text(role: Role, members: &[&BodeCurve]) -> String {
     let name = role.name();
     match (role, members) {
@@ -116,26 +119,26 @@ pub struct Chip {
 }
 
 pub(super) struct Chips<'a> {
-    /// Suffix that distinguishes these chips from those in other plots.
+    /// Suffix that distinguishes these chips from the chips of other plots.
     pub(super) plot: &'a str,
     pub(super) roles: Vec<RoleChip>,
-    /// Whether bands are drawn; `None` if there are no bands.
+    /// Whether uncertainty bands are drawn; `None` if there are none.
     pub(super) bands: Option<bool>,
     pub(super) states: &'a [Chip],
-    /// Whether samples and words are shortened, for lack of room.
+    /// Whether samples and texts are shortened for lack of room.
     pub(super) is_tight: bool,
 }
 
 /// Chips as drawn.
 pub(super) struct ChipsResponse {
-    /// Height taken by all lines \[pt\].
+    /// Height of all lines \[pt\].
     pub(super) height: f32,
-    /// Effect of the clicked chip.
+    /// Event of the clicked chip.
     pub(super) event: Option<BodeEvent>,
 }
 
 impl Chips<'_> {
-    /// Shortens samples and words.
+    /// Shortens samples and texts.
     pub(super) fn tighten(&mut self) {
         self.is_tight = true;
         for chip in &mut self.roles {
@@ -143,7 +146,7 @@ impl Chips<'_> {
         }
     }
 
-    /// Returns the total width of the chips side by side \[pt\].
+    /// Returns the total width of the chips in a single line \[pt\].
     pub(super) fn width(&self, ui: &Ui) -> f32 {
         let sample = self.sample();
         let bands = self.bands.map(|_| self.bands_text());
@@ -155,7 +158,7 @@ impl Chips<'_> {
         switches.chain(states).sum::<f32>() - GAP
     }
 
-    /// Draws the chips in lines from the upper left corner.
+    /// Draws the chips in lines, starting at the upper left corner.
     pub(super) fn ui(&self, ui: &Ui, area: Rect, palette: &Palette) -> ChipsResponse {
         let mut row = Row {
             area,
@@ -226,7 +229,7 @@ impl Chips<'_> {
         })
     }
 
-    /// Returns whether the switch was clicked.
+    /// Draws the chip of the uncertainty bands; returns whether it was clicked.
     fn bands_chip_ui(&self, ui: &Ui, row: &mut Row, is_shown: bool, palette: &Palette) -> bool {
         let style = CurveStyle {
             color: palette.identified.gamma_multiply(0.45),
@@ -260,7 +263,7 @@ impl Chips<'_> {
     }
 }
 
-/// Returns the width without a sample, and with the gap beside it \[pt\].
+/// Returns the width of a chip without its sample, including the gap to the next chip \[pt\].
 fn chip_width(ui: &Ui, text: &str) -> f32 {
     let font = FontId::proportional(SMALL_SIZE);
     let galley = ui
@@ -287,13 +290,13 @@ struct Sample {
 }
 
 impl ChipFace<'_> {
-    /// Returns whether the chip switches curves that are hidden.
+    /// Returns whether the curves of the chip are hidden.
     fn is_hidden(&self) -> bool {
         self.sample.is_some_and(|sample| !sample.is_shown)
     }
 }
 
-/// Place for the next chip.
+/// Position of the next chip.
 struct Row {
     area: Rect,
     corner: egui::Pos2,
@@ -302,8 +305,8 @@ struct Row {
 }
 
 impl Row {
-    /// Draws a chip with a curve sample, pale and dashed if hidden; in the accent colour if
-    /// it has no sample.
+    /// Draws a chip: with a curve sample, pale and dashed if the curves are hidden; in the accent
+    /// colour if it has no sample.
     fn chip_ui(&mut self, ui: &Ui, face: &ChipFace<'_>, palette: &Palette) -> Response {
         let color = if face.is_hidden() {
             palette.dim_text
@@ -352,7 +355,7 @@ impl Row {
         response.on_hover_cursor(CursorIcon::PointingHand)
     }
 
-    /// Returns the next chip's place, in the next line if there is no room in this line.
+    /// Returns the place of the next chip, on a new line if the current line has no room.
     fn next_place(&mut self, width: f32) -> Rect {
         let size = vec2(width, CHIP_HEIGHT);
         if self.corner.x + size.x > self.area.right() && self.corner.x > self.area.left() {

@@ -27,7 +27,7 @@ pub(super) enum FormAnswer {
 }
 
 impl LimitsForm {
-    /// Opens the form beside a pane, with the limits as numbers.
+    /// Opens the form beside a pane, with the current limits as text.
     pub(super) fn new(axis: PlotAxis, pane: Pane, texts: [String; 2]) -> Self {
         Self {
             axis,
@@ -43,7 +43,7 @@ impl LimitsForm {
         self.axis == axis && self.pane == pane
     }
 
-    /// Returns the typed limits.
+    /// Returns the limits as typed.
     pub(super) fn texts(&self) -> &[String; 2] {
         &self.texts
     }

@@ -1,4 +1,5 @@
-//! Plots: each takes a scene and its state from the last frame, and returns the engineer's actions.
+//! Plots: each is drawn from a scene and its state of the last frame, and returns the engineer's
+//! actions.
 //!
 //! Every panel with axes is drawn by `painter`. A scene (`bode_scene`, `figure_scene`,
 //! `chart`, `overview`) describes its content; the parts below serve all of them:

@@ -1,4 +1,4 @@
-//! Gestures common to the plots: zooming by wheel and pinching, boxes, digits.
+//! Gestures used by several plots: zooming by wheel and pinching, selection boxes, digits.
 
 use egui::{
     Context, Key, Modifiers, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui, Vec2,
@@ -6,7 +6,7 @@ use egui::{
 
 use crate::gui::widgets::palette::Palette;
 
-/// Takes a pressed digit from 1 to 9 out of the input.
+/// Removes a pressed digit from 1 to 9 from the input and returns it.
 pub(super) fn pressed_digit(ui: &Ui) -> Option<usize> {
     const DIGITS: [Key; 9] = [
         Key::Num1,
@@ -27,19 +27,19 @@ pub(super) fn pressed_digit(ui: &Ui) -> Option<usize> {
     None
 }
 
-/// Zoom factor per notch.
+/// Zoom factor of a wheel notch.
 const NOTCH: f32 = 1.1;
-/// Scroll distance per notch \[pt\].
+/// Scroll distance of a wheel notch \[pt\].
 const NOTCH_PT: f32 = 40.0;
 
 /// Zoom requested by wheel or pinching.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ZoomGesture {
-    /// Place that stays.
+    /// Screen position that zooming leaves unchanged.
     pub(super) pointer: Pos2,
-    /// Factors in x and y from the wheel, or from pinching.
+    /// Zoom factors in x and y by the wheel or by pinching.
     both: Vec2,
-    /// Factor in x from the sideways wheel, and from any wheel with Shift.
+    /// Zoom factor in x by the sideways wheel, or by the wheel with Shift.
     sideways: f32,
 }
 
@@ -59,17 +59,17 @@ impl ZoomGesture {
         })
     }
 
-    /// Returns the factor for the horizontal axis.
+    /// Returns the zoom factor of the horizontal axis.
     pub(super) fn across(self) -> f64 {
         f64::from(self.both.x * self.sideways)
     }
 
-    /// Returns the factor for the vertical axis.
+    /// Returns the zoom factor of the vertical axis.
     pub(super) fn upward(self) -> f64 {
         f64::from(self.both.y)
     }
 
-    /// Returns the combined factor for a plot with a single zoomable axis.
+    /// Returns the combined zoom factor of a plot with a single zoomable axis.
     pub(super) fn along_one_axis(self) -> f64 {
         let pinched = (self.both.x * self.both.y).sqrt();
         f64::from(pinched * self.sideways)
@@ -81,11 +81,11 @@ fn factor_of(points: f32) -> f32 {
     NOTCH.powf(points / NOTCH_PT)
 }
 
-/// Least side; a smaller box is accidental \[pt\].
+/// Minimum side of a box; a smaller box is accidental \[pt\].
 const LEAST_SIDE: f32 = 5.0;
 
-/// Draws the selection box while it is dragged over `frame` with `button`; returns it when it is
-/// finished.
+/// Draws the selection box while it is dragged over `frame` with `button`; returns the finished
+/// box.
 pub(super) fn drawn_box_ui(
     ui: &Ui,
     plot: &Response,
@@ -99,7 +99,8 @@ pub(super) fn drawn_box_ui(
     }
     let pointer = ui.input(|input| input.pointer.latest_pos());
     let pressed_at = ui.input(|input| input.pointer.press_origin());
-    // When the button is released, the drag origin is already gone: the last frame's is stored.
+    // When the button is released, the input no longer contains the drag origin; it was stored in
+    // the last frame.
     let memory = plot.id.with("box origin");
     let origin = pressed_at.or_else(|| ui.data(|data| data.get_temp(memory)))?;
     ui.data_mut(|data| data.insert_temp(memory, origin));

@@ -21,18 +21,18 @@ use super::sketch::{Sketch, range_text};
 use crate::gui::widgets::controls::{elided, row_text};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Size of the corner between the names of outputs and inputs \[pt\].
+/// Width of the row names and height of the column names \[pt\].
 const HEADER: Vec2 = vec2(52.0, 22.0);
 /// Gap between two cells \[pt\].
 const GAP: f32 = 4.0;
-/// Share of the height for the magnitude if the phase is shown too.
+/// Share of the height of the magnitude if the phase is shown too.
 const MAGNITUDE_PART: f32 = 0.58;
-/// Least cell size with texts \[pt\].
+/// Minimum size of a cell with texts \[pt\].
 const LEAST_WITH_TEXT: Vec2 = vec2(96.0, 54.0);
-/// Line height above the curves in a cell \[pt\].
+/// Height of the line above the curves of a cell \[pt\].
 const CELL_HEAD: f32 = 16.0;
 
-/// Response in the overview.
+/// Response shown in a cell of the overview.
 #[derive(Clone, Debug)]
 pub struct OverviewCell<'a> {
     pub pair: Pair,
@@ -65,7 +65,7 @@ pub enum OverviewEvent {
     PairClicked(Pair),
     /// A curve is under the pointer.
     Hovered(CurveId),
-    /// Description for the element under the pointer.
+    /// Description of the element under the pointer.
     Told(String),
     /// A curve was clicked with Alt pressed.
     Isolated(CurveId),
@@ -90,7 +90,7 @@ pub struct OverviewView {
 }
 
 impl OverviewView {
-    /// Returns a cell's last transform.
+    /// Returns the transform of a cell as last drawn.
     fn transform(&self, pair: Pair, pane: Pane) -> Option<&PlotTransform> {
         self.sketches.get(&(pair, pane))?.transform.as_ref()
     }
@@ -114,13 +114,13 @@ impl OverviewView {
         cell.curves.get(best?.curve)
     }
 
-    /// Returns where a magnitude lies on the screen: `log10 omega` and decibels.
+    /// Returns the screen position of a magnitude, given as `log10 omega` and decibels.
     pub fn position_in(&self, pair: Pair, log_omega: f64, magnitude_db: f64) -> Option<Pos2> {
         let transform = self.transform(pair, Pane::Magnitude)?;
         Some(transform.position_from_point(&PlotPoint::new(log_omega, magnitude_db)))
     }
 
-    /// Returns the centre of a cell's magnitude on the screen.
+    /// Returns the screen centre of the magnitude in a cell.
     pub fn screen_position(&self, pair: Pair) -> Option<Pos2> {
         let transform = self.transform(pair, Pane::Magnitude)?;
         Some(transform.frame().center())
@@ -167,7 +167,8 @@ pub fn overview_ui(
     events
 }
 
-/// Returns the decades over which curves exist. Frequencies ascend: their ends are sufficient.
+/// Returns the range of `log10 omega` of all curves. Frequencies ascend, so that their ends
+/// suffice.
 fn log_omega_of(cells: &[OverviewCell<'_>]) -> Option<Range> {
     let mut ends = Vec::new();
     for curve in cells.iter().flat_map(|cell| cell.curves) {
@@ -227,7 +228,7 @@ impl Table {
     }
 }
 
-/// Draws the switch in the table's corner.
+/// Draws the phase switch in the corner of the table.
 fn phase_switch_ui(ui: &mut Ui, table: &Table, view: &mut OverviewView) {
     let place = Rect::from_min_size(table.rect.min, HEADER - vec2(4.0, 4.0));
     let switch = Button::selectable(view.show_phase, RichText::new("phase").size(SMALL_SIZE))
@@ -241,7 +242,7 @@ fn phase_switch_ui(ui: &mut Ui, table: &Table, view: &mut OverviewView) {
     }
 }
 
-/// Response at its place in the table.
+/// Response at its position in the table.
 struct PlacedCell<'a> {
     cell: &'a OverviewCell<'a>,
     place: Rect,
@@ -311,8 +312,8 @@ impl PlacedCell<'_> {
         }
     }
 
-    /// Paints the vertical ranges, as the cell has no axis, and its note: above its curves,
-    /// not on them.
+    /// Paints the vertical ranges, because the cell has no axis, and its note: above the curves,
+    /// which they must not cover.
     fn paint_head(&self, ui: &Ui, head: Rect, ranges: &str) {
         let palette = self.palette;
         let head = head.shrink2(vec2(3.0, 0.0));
@@ -322,7 +323,7 @@ impl PlacedCell<'_> {
         row_text(ui, head, 0.0, &ranges, SMALL_SIZE, palette.dim_text);
     }
 
-    /// Shades the comparison band, and closes a pane below.
+    /// Shades the comparison band, and draws the lower edge of a pane.
     fn paint_band(&self, painter: &Painter, rect: Rect) {
         let (min, max) = self.band;
         let ends = self.place_across(rect, min)..=self.place_across(rect, max);
@@ -332,13 +333,13 @@ impl PlacedCell<'_> {
         painter.hline(rect.x_range(), rect.bottom(), line);
     }
 
-    /// Returns where a frequency \[rad/s\] lies across a pane, limited to the pane.
+    /// Returns the horizontal screen position of a frequency \[rad/s\], limited to the pane.
     fn place_across(&self, rect: Rect, omega: f64) -> f32 {
         let fraction = (omega.log10() - self.log_omega.min) / self.log_omega.width();
         rect.left() + fraction.clamp(0.0, 1.0) as f32 * rect.width()
     }
 
-    /// Handles the events in the cell: a click brings its response into focus, the others concern
+    /// Handles the events in the cell: a click brings its response into focus; all others concern
     /// the curve under the pointer.
     fn events(&self, response: &Response, view: &mut OverviewView) -> Vec<OverviewEvent> {
         let pointer = response.hover_pos().or(response.interact_pointer_pos());
@@ -374,7 +375,7 @@ impl PlacedCell<'_> {
         events
     }
 
-    /// Returns the open menu's curve, if it is in this cell.
+    /// Returns the curve whose menu is open, if it is in this cell.
     fn menu_curve(&self, view: &OverviewView) -> Option<&BodeCurve> {
         let menu = view.menu_curve.as_ref()?;
         if menu.pair != self.cell.pair {
@@ -384,7 +385,7 @@ impl PlacedCell<'_> {
     }
 }
 
-/// Returns a cell's panes and their places.
+/// Returns the panes of a cell and their places.
 fn pane_rects(rect: Rect, show_phase: bool) -> Vec<(Pane, Rect)> {
     if !show_phase {
         return vec![(Pane::Magnitude, rect)];

@@ -1,5 +1,5 @@
-//! Panel painter: frame, axes, grid, and the layers added by the scene. Every plot with axes
-//! is drawn here.
+//! Panel painter: frame, axes and grid, and the layers added by the scene. Draws every plot with
+//! axes.
 
 use egui::{Color32, Id, Rect, Response, Sense, Ui, UiBuilder, Vec2, Vec2b, WidgetInfo};
 use egui_plot::{Axis, Plot, PlotTransform, PlotUi};
@@ -8,7 +8,7 @@ use super::panel_axis::PanelAxis;
 use super::ticks::GRID_SPACING;
 use crate::gui::widgets::palette::Palette;
 
-/// Panel on the screen, except for its content.
+/// Panel on the screen, without its content.
 pub(super) struct PanelPainter<'a> {
     pub(super) id: Id,
     /// Place of the panel with its axes.
@@ -18,22 +18,22 @@ pub(super) struct PanelPainter<'a> {
     pub(super) across: PanelAxis,
     pub(super) values: PanelAxis,
     pub(super) gestures: Gestures,
-    /// Whether the ground below the panel already has its colour. Without a graphics processor
-    /// every pixel filled twice costs time.
+    /// Whether the background below already has the right colour: without a graphics processor,
+    /// filling every pixel twice takes time.
     pub(super) is_transparent: bool,
     pub(super) palette: &'a Palette,
 }
 
-/// Gestures handled by the panel itself; any others are up to its owner.
+/// Gestures handled by the panel itself; its owner handles all others.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Gestures {
     /// Reports clicks and drags.
     Reported,
     /// Reports clicks only.
     Clicks,
-    /// Dragging pans, pinching and dragging an axis zooms.
+    /// Dragging pans; pinching, and dragging an axis, zoom.
     PanAndZoom,
-    /// As [`Self::PanAndZoom`], and the ranges follow the data until a gesture changes them; a
+    /// Like [`Self::PanAndZoom`], and the ranges follow the data until a gesture changes them; a
     /// double click fits them again.
     Following(Follow),
 }
@@ -43,16 +43,16 @@ pub(super) enum Gestures {
 pub(super) struct Follow {
     /// Axes along which dragging pans.
     pub(super) pans: Vec2b,
-    /// Space at either end, relative to the axis' length.
+    /// Margin at either end, relative to the length of the axis.
     pub(super) margins: Vec2,
-    /// Panels in a group share their horizontal range.
+    /// Panels with the same group share their horizontal range.
     pub(super) group: Option<Id>,
 }
 
 /// Panel as drawn.
 pub(super) struct PanelResponse<R> {
     pub(super) response: Response,
-    /// Transform from the places on the axes to the screen.
+    /// Transform from axis coordinates to the screen.
     pub(super) transform: PlotTransform,
     /// Value returned by the content.
     pub(super) inner: R,
@@ -106,7 +106,7 @@ impl PanelPainter<'_> {
     }
 }
 
-/// Creates a plot without interaction, whose ranges are set by its content.
+/// Creates a plot without interaction; its content sets the ranges.
 fn quiet_plot<'p>(id: Id, palette: &Palette) -> Plot<'p> {
     Plot::new(id)
         .id(id)
@@ -139,7 +139,7 @@ fn following<'p>(plot: Plot<'p>, follow: Follow) -> Plot<'p> {
     }
 }
 
-/// Takes the frame colours in `ui` from the palette, whatever the surrounding style.
+/// Sets the frame colours in `ui` from the palette, regardless of the surrounding style.
 pub(super) fn use_frame_colors(ui: &mut Ui, palette: &Palette) {
     let visuals = ui.visuals_mut();
     visuals.extreme_bg_color = palette.background;

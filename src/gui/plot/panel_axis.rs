@@ -8,11 +8,11 @@ use egui_plot::{Axis, AxisHints, GridInput, GridMark};
 use super::ticks::{LABEL_SPACING, Ticks, named_marks};
 use crate::gui::widgets::palette::{Palette, SMALL_SIZE};
 
-/// Font size in tick labels \[pt\].
+/// Font size of tick labels \[pt\].
 const TICK_SIZE: f32 = 11.0;
-/// Axis height with tick labels only \[pt\].
+/// Height of an axis with tick labels only \[pt\].
 pub(super) const TICKS_HEIGHT: f32 = 15.0;
-/// Axis height with tick labels and a label \[pt\].
+/// Height of an axis with tick labels and an axis label \[pt\].
 pub(super) const LABELLED_HEIGHT: f32 = 33.0;
 
 pub(super) fn tick_font() -> FontId {
@@ -23,28 +23,28 @@ pub(super) fn tick_font() -> FontId {
 pub(super) struct PanelAxis {
     pub(super) ticks: Ticks,
     pub(super) spacing: TickSpacing,
-    /// Quantity and unit beside the numbers; may be empty.
+    /// Quantity and unit beside the tick labels; may be empty.
     pub(super) label: String,
-    /// Height if horizontal, width if vertical \[pt\].
+    /// Height of a horizontal axis, width of a vertical axis \[pt\].
     pub(super) thickness: f32,
-    /// Whether numbers and label are drawn; without them the axis takes no room and leaves its grid
-    /// lines.
+    /// Whether tick labels and axis label are drawn; otherwise the axis takes no room and only its
+    /// grid lines are drawn.
     pub(super) is_drawn: bool,
 }
 
-/// Distance between the numbers along an axis.
+/// Spacing of the tick labels of an axis.
 #[derive(Clone, Debug)]
 pub(super) enum TickSpacing {
-    /// Distance that suits the kind of ticks.
+    /// Usual distance of these ticks.
     Usual,
-    /// As the usual distance, and room for the widest number where a digit has this width \[pt\].
+    /// Like `Usual`, with room for the widest number; a digit is this wide \[pt\].
     WidestNumber { digit_pt: f64 },
     /// Names at 0, 1, 2 … instead of numbers, without grid lines.
     Names { names: Vec<String>, widest_pt: f64 },
 }
 
 impl PanelAxis {
-    /// Creates an axis with numbers and without a label; `thickness` in \[pt\].
+    /// Creates an axis with tick labels and without an axis label; `thickness` in \[pt\].
     pub(super) fn new(ticks: Ticks, thickness: f32) -> Self {
         Self {
             ticks,

@@ -1,10 +1,10 @@
-//! Texts in and around panels: caption font, and the message in an empty plot.
+//! Texts in and around panels: the caption font, and the message in an empty plot.
 
 use egui::{Align2, FontId, Rect, Sense, Ui, WidgetInfo};
 
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
-/// Returns the font for titles, axis labels, legends and dot labels.
+/// Returns the font of titles, axis labels, legends and dot labels.
 pub(super) fn caption_font() -> FontId {
     FontId::proportional(SMALL_SIZE)
 }

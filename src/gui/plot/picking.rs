@@ -1,4 +1,4 @@
-//! Picking: the nearest curve or dot under the pointer, not the topmost.
+//! Picking: finds the nearest (not the topmost) curve or dot under the pointer.
 
 use egui::{Pos2, Rect, pos2, vec2};
 use egui_plot::{PlotPoint, PlotTransform};
@@ -9,16 +9,16 @@ use gdcm_plot::figure::{MarkId, Panel};
 use super::drawn_curves::{BodeCurve, CurveId, LogFrequencies, Pane};
 use super::thinning::is_finite;
 
-/// Greatest distance between the pointer and a curve under it \[pt\].
+/// Maximum distance between the pointer and a picked curve \[pt\].
 pub const PICK_RADIUS: f32 = 8.0;
-/// Greatest distance between the pointer and a dot under it \[pt\].
+/// Maximum distance between the pointer and a picked dot \[pt\].
 const DOT_RADIUS: f32 = 10.0;
 
 /// Curve under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hit {
     pub(super) curve: usize,
-    /// Frequency at its point nearest to the pointer \[rad/s\].
+    /// Frequency of the curve's point nearest to the pointer \[rad/s\].
     pub(super) omega: f64,
     /// Distance from the pointer \[pt\].
     pub(super) distance: f32,
@@ -65,7 +65,7 @@ pub(super) fn nearest(
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PointedMark {
     pub(super) id: MarkId,
-    /// Place on the axes.
+    /// Axis coordinates of the dot.
     pub(super) at: [f64; 2],
 }
 
@@ -113,7 +113,7 @@ pub(super) fn touched(
     found
 }
 
-/// Returns whether a line through `points`, with gaps where they are not finite, meets `area`.
+/// Returns whether a line through `points`, with gaps at non-finite points, meets `area`.
 fn runs_through(
     points: impl Iterator<Item = [f64; 2]>,
     area: Rect,
@@ -132,7 +132,7 @@ fn runs_through(
     false
 }
 
-/// Returns a point's position on the screen; `None` for a gap.
+/// Returns the screen position of a point; `None` for a gap.
 fn position_of(point: [f64; 2], transform: &PlotTransform) -> Option<Pos2> {
     if is_finite(&point) {
         Some(transform.position_from_point(&PlotPoint::from(point)))
@@ -143,9 +143,9 @@ fn position_of(point: [f64; 2], transform: &PlotTransform) -> Option<Pos2> {
 
 /// Returns whether a segment passes through `area`.
 ///
-/// Of the segment `from + t (to - from)`, 0 <= t <= 1, each pair of edges leaves an interval of t
+/// Each pair of edges limits t in the segment `from + t (to - from)`, 0 <= t <= 1, to an interval
 /// (Liang and Barsky, "A new concept and method for line clipping", ACM TOG 3(1), 1984); the
-/// segment meets the area if the intervals intersect.
+/// segment meets the area if these intervals intersect.
 fn meets(from: Pos2, to: Pos2, area: Rect) -> bool {
     let along = to - from;
     let mut first = 0.0f32;
@@ -175,8 +175,8 @@ pub(super) struct ClosestPoint {
     pub(super) distance: f32,
 }
 
-/// Returns the point nearest to `pointer`; `None` if no part of the line lies within
-/// [`PICK_RADIUS`] to its left or right.
+/// Returns the point of a line nearest to `pointer`; `None` if no part of the line lies within
+/// [`PICK_RADIUS`] horizontally.
 pub(super) fn closest_point(
     points: impl Iterator<Item = [f64; 2]>,
     pointer: Pos2,
@@ -237,7 +237,7 @@ mod tests {
         }
     }
 
-    /// A decade and 100 dB on 100 by 100 points: a decibel is a point.
+    /// A decade and 100 dB on 100 by 100 points: one decibel is one point high.
     fn transform() -> PlotTransform {
         let frame = Rect::from_min_max(pos2(0.0, 0.0), pos2(100.0, 100.0));
         PlotTransform::new(

@@ -1,4 +1,4 @@
-//! Bode axes: names and units, and the numbers typed for their limits.
+//! Bode axes: names and units, and the limits typed by the engineer.
 
 use gdcm_model::number_format::compact;
 use gdcm_plot::figure::Range;
@@ -45,12 +45,12 @@ impl PlotAxis {
         }
     }
 
-    /// Formats both ends for typing.
+    /// Formats both limits as editable text.
     pub(super) fn texts(self, scene: &BodeScene<'_>, range: Range) -> [String; 2] {
         [range.min, range.max].map(|place| compact(self.ticks(scene).number(place)))
     }
 
-    /// Parses the range between two typed numbers, or returns the reason why it cannot be shown.
+    /// Parses the range between two typed limits, or returns the reason why it cannot be shown.
     pub(super) fn range(self, scene: &BodeScene<'_>, texts: &[String; 2]) -> Result<Range, String> {
         let min = self.place(scene, &texts[0])?;
         let max = self.place(scene, &texts[1])?;
@@ -61,7 +61,7 @@ impl PlotAxis {
         }
     }
 
-    /// Parses a typed number, with either minus sign, to a place on the axis.
+    /// Parses a typed number, with either minus sign, to an axis coordinate.
     fn place(self, scene: &BodeScene<'_>, text: &str) -> Result<f64, String> {
         let text = text.trim();
         let kind = match self {

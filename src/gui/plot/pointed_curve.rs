@@ -1,4 +1,4 @@
-//! Description of the curve under the pointer: its name and its values there.
+//! Description of the curve under the pointer: its name, and its values at the pointer.
 
 use gdcm_model::number_format::decimals;
 use gdcm_model::response::wrap;
@@ -8,7 +8,7 @@ use super::bode_view::BodeView;
 use super::drawn_curves::{BodeCurve, Pane};
 use super::quantity::BodeQuantity;
 
-/// Formats frequency, name and values for the curve under the pointer in a single line.
+/// Formats frequency, name and values of the curve under the pointer in a single line.
 pub fn pointed_words(
     view: &BodeView,
     curves: &[BodeCurve],
@@ -50,8 +50,8 @@ fn value_text(quantity: BodeQuantity<'_>, curve: &BodeCurve, omega: f64) -> Stri
     text
 }
 
-/// Returns " (−99° less 1 turn)" if a phase \[deg\] lies on another branch than its principal
-/// value.
+/// Returns " (−99° less 1 turn)" if a phase \[deg\] differs from its principal value by whole
+/// turns.
 fn branch_text(phase_deg: f64) -> Option<String> {
     let principal = wrap(phase_deg.to_radians()).to_degrees();
     let turns = ((phase_deg - principal) / 360.0).round();

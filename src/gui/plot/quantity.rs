@@ -1,4 +1,4 @@
-//! Quantities and units in the two stacked panes.
+//! Quantities and units of the two stacked panes.
 
 use gdcm_model::number_format::{compact, decimals};
 use gdcm_model::units::db_to_ratio;
@@ -38,13 +38,13 @@ pub enum ResponsePlace {
 
 /// Texts that distinguish the controls of a plot from those of others.
 struct PlotNames {
-    /// Id salt of its widgets.
+    /// Id salt of the plot's widgets.
     salt: &'static str,
-    /// Suffix behind the label of a control.
+    /// Suffix of a control's label.
     label: &'static str,
-    /// Suffix behind the name of a pane.
+    /// Suffix of a pane's name.
     pane: &'static str,
-    /// Suffix behind a pane within a sentence.
+    /// Suffix of a pane's name within a sentence.
     place: &'static str,
 }
 
@@ -85,7 +85,7 @@ impl BodeQuantity<'_> {
     /// Responses in every condition, in decibels and degrees.
     pub const RESPONSE_OF_EVERY_CONDITION: BodeQuantity<'static> =
         Self::in_place(ResponsePlace::EveryCondition);
-    /// Model found in a file, in decibels and degrees.
+    /// Responses of a model found in a file, in decibels and degrees.
     pub const RESPONSE_OF_FOUND_MODEL: BodeQuantity<'static> =
         Self::in_place(ResponsePlace::FoundModel);
 
@@ -111,18 +111,18 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Returns the id salt that distinguishes this plot's widgets from others.
+    /// Returns the id salt that distinguishes the widgets of this plot from others.
     pub(super) fn salt(self) -> &'static str {
         self.names().salt
     }
 
-    /// Returns the suffix that distinguishes this plot's labels from the Bode plot's.
+    /// Returns the suffix that distinguishes the labels of this plot from those of the Bode plot.
     pub(super) fn label_suffix(self) -> &'static str {
         self.names().label
     }
 
-    /// Returns whether the plot shows the displayed condition, not a comparison across conditions
-    /// or a file.
+    /// Returns whether the plot shows the displayed condition, rather than a comparison across
+    /// conditions or a model found in a file.
     pub(crate) fn is_of_condition(self) -> bool {
         matches!(
             self,
@@ -139,7 +139,7 @@ impl BodeQuantity<'_> {
         format!("{pane:?}{}", self.names().pane)
     }
 
-    /// Returns a pane within a sentence: "magnitude plot".
+    /// Returns the name of a pane within a sentence: "magnitude plot".
     pub(super) fn place(self, pane: Pane) -> String {
         let pane = format!("{pane:?}").to_lowercase();
         format!("{pane}{}", self.names().place)
@@ -166,7 +166,7 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Returns the label for a pane's numbers, with the unit in which they are drawn.
+    /// Returns the label of a pane's values, with the unit in which they are drawn.
     pub(crate) fn drawn_label(self, pane: Pane) -> String {
         match self {
             Self::Response { .. } => Self::RESPONSE.axis_label(pane),
@@ -205,7 +205,7 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Returns a pane's least height after fitting.
+    /// Returns the minimum height of a pane's range after fitting.
     pub(super) fn least_height(self, pane: Pane) -> f64 {
         match (self, pane) {
             (Self::Response { .. }, Pane::Magnitude) => 4.0,
@@ -216,18 +216,18 @@ impl BodeQuantity<'_> {
     }
 }
 
-/// Display unit in a pane. For the first two, drawn values are in decibels.
+/// Display unit of a pane. For the first two, the drawn values are in decibels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueUnit {
     Decibel,
-    /// Ratio equivalent to the decibels, on a logarithmic axis.
+    /// Ratio corresponding to the decibels, on a logarithmic axis.
     Ratio,
     Degree,
     Millisecond,
 }
 
 impl ValueUnit {
-    /// Returns the suffix behind a value: " dB", "°".
+    /// Returns the suffix after a value: " dB", "°".
     pub fn suffix(self) -> &'static str {
         match self {
             Self::Decibel => " dB",
@@ -246,7 +246,7 @@ impl ValueUnit {
         }
     }
 
-    /// Returns the permitted visible widths.
+    /// Returns the permitted widths of the visible range.
     pub(super) fn widths(self) -> Range {
         match self {
             Self::Decibel | Self::Ratio => Range {
@@ -287,7 +287,7 @@ mod tests {
     fn a_ratio_is_read_from_its_decibels_and_back() {
         let ticks = ValueUnit::Ratio.ticks();
         let drawn = ticks.place(2.0);
-        // 20 log10 2, with a rounding error for each function.
+        // 20 log10 2, with a rounding error of each function.
         assert!((drawn - 6.020_599_913_279_624).abs() < 1e-12);
         assert!((ticks.number(drawn) - 2.0).abs() < 1e-12);
         assert!(!ticks.place(0.0).is_finite() && !ticks.place(-1.0).is_finite());

@@ -1,4 +1,4 @@
-//! Menu for values under the pointer whose derivations can be shown.
+//! Menu of the values under the pointer whose derivations can be displayed.
 
 use egui::{Id, Response};
 
@@ -6,7 +6,7 @@ use gdcm_words::derivation::ExplainTarget;
 
 use crate::gui::widgets::controls::QUESTION;
 
-/// Value with a derivation, and its name.
+/// Name of a value, and the target of its derivation.
 pub type NamedFigure = (String, ExplainTarget);
 
 /// Values listed in an open menu.
@@ -22,8 +22,8 @@ struct OpenMenu {
 }
 
 impl Questions {
-    /// Opens a plot's menu on a secondary click on the values `pointed`; returns the value
-    /// chosen in it.
+    /// Opens the menu of a plot on a secondary click on the values `pointed`; returns the value
+    /// chosen in the menu.
     pub(super) fn ui(
         &mut self,
         response: &Response,

@@ -1,4 +1,4 @@
-//! Read-out: values at the pointer for every role, in a strip between the panes.
+//! Read-out: values of every role at the pointer, in a strip between the panes.
 
 use egui::{FontId, Rect, Role as WidgetRole, Sense, Stroke, Ui, WidgetInfo, vec2};
 
@@ -6,20 +6,20 @@ use super::curve_style::Role;
 use crate::gui::widgets::controls::{elided, painted_text, row_text};
 use crate::gui::widgets::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
-/// Strip height \[pt\].
+/// Height of the strip \[pt\].
 pub(super) const STRIP_HEIGHT: f32 = 40.0;
-/// Least cell width \[pt\].
+/// Minimum width of a cell \[pt\].
 const LEAST_CELL: f32 = 96.0;
-/// Column width for frequency and difference, whose names are longer, relative to
-/// a role's column.
+/// Width of the columns of frequency and difference, whose names are longer, relative to the column
+/// of a role.
 const WIDE_COLUMN: f32 = 1.25;
-/// Padding left and right in a column \[pt\].
+/// Padding at the left and at the right of a column \[pt\].
 const PAD: f32 = 8.0;
-/// Sample length, and gap beside it \[pt\].
+/// Length of a sample, and of the gap beside it \[pt\].
 const SAMPLE: f32 = 14.0;
 const SAMPLE_GAP: f32 = 6.0;
 
-/// Values for a role, or the difference between two roles.
+/// Values of a role, or differences between two roles.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadoutCell {
     /// Role; `None` for a difference.
@@ -28,7 +28,7 @@ pub struct ReadoutCell {
     pub name: String,
     /// Magnitude and phase, each with its unit.
     pub values: [String; 2],
-    /// Whether magnitude and phase are worth a warning.
+    /// Whether the magnitude and the phase are drawn as warnings.
     pub warns: [bool; 2],
 }
 
@@ -68,7 +68,7 @@ impl ReadoutCell {
         }
     }
 
-    /// Returns "nominal" if there is no room for "nominal, rejected".
+    /// Returns the name, or only "nominal" if there is no room for "nominal, rejected".
     fn name_within(&self, ui: &Ui, room: f32) -> String {
         let shown = elided(ui, &self.name, room, SMALL_SIZE);
         match self.name.split_once(", ") {
@@ -78,7 +78,7 @@ impl ReadoutCell {
     }
 }
 
-/// Values at a frequency for every role.
+/// Values of every role at a frequency.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Readout {
     /// "ω at the pointer".
@@ -97,8 +97,8 @@ impl Readout {
     }
 }
 
-/// Draws a read-out between the panes, its cells side by side; without enough room, the first roles
-/// are omitted first.
+/// Draws a read-out between the panes, its cells side by side; if there is not enough room, the
+/// first cells are omitted.
 pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette: &Palette) {
     ui.painter().rect_filled(strip, 6.0, palette.raised);
     let most = ((strip.width() / LEAST_CELL) as usize).saturating_sub(1);
@@ -120,7 +120,7 @@ pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette:
     response.widget_info(|| WidgetInfo::labeled(WidgetRole::Label, true, readout.sentence()));
 }
 
-/// Returns a column's place in a strip with the frequency and `cells` cells.
+/// Returns the place of a column in a strip with the frequency and `cells` cells.
 fn column(strip: Rect, place: usize, cells: usize) -> Rect {
     let left = strip.left() + width_before(place, cells) * strip.width();
     let right = strip.left() + width_before(place + 1, cells) * strip.width();

@@ -10,10 +10,10 @@ use super::end_labels::EndLabel;
 use super::picking::closest_point;
 use crate::gui::widgets::palette::Palette;
 
-/// Reference lines in a pane.
+/// Reference lines of a pane.
 #[derive(Clone, Copy)]
 pub(super) struct PaneLines<'a> {
-    /// Lines in both panes.
+    /// Lines of both panes.
     pub(super) lines: &'a [ReferenceLine],
     pub(super) pane: Pane,
     pub(super) transform: &'a PlotTransform,
@@ -36,7 +36,8 @@ impl<'a> PaneLines<'a> {
         ui.painter().with_clip_rect(frame).extend(shapes);
     }
 
-    /// Returns the distance between `pointer` and the nearest line \[pt\]; `None` if none is near.
+    /// Returns the distance between `pointer` and the nearest line \[pt\]; `None` if no line is
+    /// within [`PICK_RADIUS`](super::picking::PICK_RADIUS) horizontally.
     pub(super) fn distance(self, pointer: Pos2) -> Option<f32> {
         let mut least: Option<f32> = None;
         for line in self.iter() {
@@ -51,7 +52,7 @@ impl<'a> PaneLines<'a> {
         least
     }
 
-    /// Returns the labels, each at the height where its line leaves the plot, with any further text
+    /// Returns the labels, each at the height at which its line leaves the plot, with any note
     /// below.
     pub(super) fn labels(self, palette: &Palette) -> Vec<EndLabel> {
         let frame = *self.transform.frame();
@@ -80,14 +81,14 @@ impl<'a> PaneLines<'a> {
     }
 }
 
-/// Returns a line's points over the visible frequencies.
+/// Returns the points of a line over the visible frequencies.
 fn visible_points(level: &Level, transform: &PlotTransform) -> Vec<[f64; 2]> {
     let bounds = transform.bounds();
     level.points(bounds.min()[0], bounds.max()[0])
 }
 
-/// Returns a line's path on the screen. Parts far outside the frame are skipped, because their
-/// many dashes would take time.
+/// Returns the path of a line on the screen. Parts far outside the frame are skipped, because
+/// drawing their many dashes would take time.
 fn path(level: &Level, transform: &PlotTransform) -> Vec<Pos2> {
     let frame = transform.frame();
     let mut path = Vec::new();

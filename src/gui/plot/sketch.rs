@@ -11,11 +11,11 @@ use super::drawn_curves::{BodeCurve, Pane, VisiblePart};
 use super::viewed_range::{bounds_of, ranges_of};
 use crate::gui::widgets::palette::Palette;
 
-/// Greatest distance between a drawn line and its curve \[pt\].
+/// Maximum distance between a drawn line and its curve \[pt\].
 const TOLERANCE: f64 = 0.25;
-/// Space above and below the curves, relative to their height.
+/// Margin above and below the curves, relative to their height.
 const MARGIN: f64 = 0.06;
-/// Least visible height \[dB\] or \[deg\].
+/// Minimum visible height \[dB\] or \[deg\].
 const LEAST_HEIGHT: f64 = 1.0;
 
 /// Small plot of curves.
@@ -29,7 +29,7 @@ pub(super) struct Sketch<'a> {
 }
 
 impl Sketch<'_> {
-    /// Draws all values, with a little space above and below, the most important curves on top.
+    /// Draws all values with a small margin above and below, the most important curves on top.
     pub(super) fn paint(&self, painter: &Painter, drawn: &mut DrawnPane) {
         drawn.transform = self.transform();
         let Some(transform) = drawn.transform else {
@@ -62,7 +62,7 @@ impl Sketch<'_> {
     }
 }
 
-/// Describes the last visible values; empty if there was nothing to draw.
+/// Describes the range of the values as last drawn; empty if there was nothing to draw.
 pub(super) fn range_text(drawn: &DrawnPane, pane: Pane) -> String {
     let Some(transform) = drawn.transform else {
         return String::new();

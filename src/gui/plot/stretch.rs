@@ -1,29 +1,29 @@
-//! Stretch that is chosen by dragging in a group of charts.
+//! Horizontal range selected by dragging in a group of charts.
 
 use egui::{Id, Pos2, Ui};
 use egui_plot::PlotUi;
 
-/// Horizontal stretch chosen by dragging.
+/// Horizontal range selected by dragging.
 #[derive(Clone, Copy, Debug)]
 struct DraggedStretch {
-    /// Start and current place.
+    /// Start and current coordinate.
     ends: [f64; 2],
     has_ended: bool,
 }
 
-/// Returns the id under which a group's stretch is kept.
+/// Returns the id under which the selected range of a group is stored.
 fn stretch_id(group: Id) -> Id {
     group.with("stretch")
 }
 
-/// Keeps the stretch that is being dragged in a panel.
+/// Stores the range that is being selected in a panel.
 pub(super) fn choose_by_dragging(plot: &PlotUi<'_>, group: Id) {
     let response = plot.response();
     if !response.dragged() && !response.drag_stopped() {
         return;
     }
     let place = |at: Pos2| plot.plot_from_screen(at).x;
-    // A drag is only recognised some points after the button was pressed.
+    // A drag is recognised only after some points of movement, so the press position is used.
     let pressed_at = plot.ctx().input(|input| input.pointer.press_origin());
     let pointer = plot.ctx().input(|input| input.pointer.latest_pos());
     let id = stretch_id(group);
@@ -42,8 +42,8 @@ pub(super) fn choose_by_dragging(plot: &PlotUi<'_>, group: Id) {
     });
 }
 
-/// Returns the stretch chosen by dragging in a chart group, lower end first, and whether the
-/// drag has ended; a finished stretch is returned once.
+/// Returns the range selected by dragging in a group of charts, lower end first, and whether the
+/// drag has ended; a finished selection is returned once.
 pub fn chosen_stretch(ui: &Ui, group: Id) -> Option<([f64; 2], bool)> {
     let id = stretch_id(group);
     let stretch = ui.data(|data| data.get_temp::<DraggedStretch>(id))?;

@@ -1,11 +1,11 @@
-//! Thinning: only visible points are drawn, no finer than the pixels.
+//! Thinning: only visible points are drawn, and no details finer than a pixel.
 
 use egui_plot::{PlotBounds, PlotTransform};
 
 use gdcm_plot::figure::thinning::{Pixel, thinned};
 
-/// Returns the pixel under this `transform`, where lines may be `tolerance_pt` points away
-/// from their curves.
+/// Returns the pixel size for this `transform`; lines may deviate from their curves by
+/// `tolerance_pt` points.
 pub(super) fn pixel_of(
     transform: &PlotTransform,
     pixels_per_point: f32,
@@ -18,8 +18,8 @@ pub(super) fn pixel_of(
     }
 }
 
-/// Returns the points between `ends` and the next on either side, no finer than the pixels. All
-/// `points` have to be finite and ascend in x.
+/// Returns the points between `ends` and the next point on either side, without details finer than
+/// a pixel. All `points` must be finite and ascend in x.
 pub(super) fn thinned_between(points: &[[f64; 2]], ends: [f64; 2], pixel: Pixel) -> Vec<[f64; 2]> {
     let from = points
         .partition_point(|point| point[0] < ends[0])
@@ -29,8 +29,8 @@ pub(super) fn thinned_between(points: &[[f64; 2]], ends: [f64; 2], pixel: Pixel)
     thinned(points.get(from..to).unwrap_or_default(), pixel)
 }
 
-/// Splits points into runs that are finite throughout and come within `margin` of `view`, a share
-/// of its size.
+/// Splits points into sequences that are finite throughout and come within `margin` of `view`;
+/// `margin` is a share of its size.
 ///
 /// A non-finite point makes debug builds of egui_plot panic, and a curve far outside the view costs
 /// time in proportion to its points and, if dashed, to its length on the screen.

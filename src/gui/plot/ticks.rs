@@ -1,4 +1,4 @@
-//! Ticks and grid lines: places, and the numbers written there.
+//! Ticks and grid lines: their positions and labels.
 
 use egui::Rangef;
 use egui_plot::{GridInput, GridMark};
@@ -8,7 +8,7 @@ use gdcm_model::units::{db_to_ratio, ratio_to_db};
 use gdcm_plot::figure::Range;
 use gdcm_plot::figure::axis::{FrequencyUnit, Scale, Tick, TickGaps, ticks_of};
 
-/// Least distance between ticks on a vertical axis \[pt\].
+/// Minimum distance between ticks of a vertical axis \[pt\].
 pub(super) const VERTICAL_TICK_GAP: f64 = 27.0;
 
 /// Nominal distance between labelled marks \[pt\].
@@ -16,30 +16,32 @@ const LABELLED: f64 = 100.0;
 /// Nominal distance between minor marks \[pt\].
 const MINOR: f64 = 25.0;
 
-/// `grid_spacing` for which the nominal distances mean full and half strength.
+/// `grid_spacing` with which egui_plot draws marks at the nominal distances in full and half
+/// strength.
 pub(super) const GRID_SPACING: Rangef = Rangef {
     min: 1.0,
     max: 100.0,
 };
-/// `label_spacing` for which labelled marks have labels in full strength, and minor marks none.
+/// `label_spacing` with which egui_plot labels labelled marks in full strength, and minor marks not
+/// at all.
 pub(super) const LABEL_SPACING: Rangef = Rangef {
     min: 50.0,
     max: 51.0,
 };
 
-/// Least distance between two labels within a decade \[pt\].
+/// Minimum distance between two labels within a decade \[pt\].
 const DECADE_LABEL_GAP: f64 = 34.0;
-/// Least distance between two grid lines within a decade \[pt\].
+/// Minimum distance between two grid lines within a decade \[pt\].
 const DECADE_LINE_GAP: f64 = 5.0;
-/// Least distance between labelled ticks \[pt\]; letters are 11 high.
+/// Minimum distance between labelled ticks in a low plot \[pt\]; letters are 11 pt high.
 const CLOSEST: f64 = 13.0;
-/// Least gap between two names along an axis \[pt\].
+/// Minimum gap between two names along an axis \[pt\].
 const NAME_GAP: f64 = 6.0;
 
-/// Kind of tick labels along an axis.
+/// Kind of ticks of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Ticks {
-    /// Plain values with labels at this distance in points: decibels, knots, gains.
+    /// Plain values with labels at least this far apart \[pt\]: decibels, knots, gains.
     Decimal(f64),
     /// Plain values with labels at fractions of a turn.
     Degrees,
@@ -50,7 +52,7 @@ pub(super) enum Ticks {
 }
 
 impl Ticks {
-    /// Converts a place on the axis to its number.
+    /// Converts an axis coordinate to the displayed value.
     pub(super) fn number(self, place: f64) -> f64 {
         match self {
             Self::Decimal(_) | Self::Degrees => place,
@@ -59,7 +61,7 @@ impl Ticks {
         }
     }
 
-    /// Converts a number to its place on the axis; not finite if it has none.
+    /// Converts a displayed value to the axis coordinate; not finite if there is none.
     pub(super) fn place(self, number: f64) -> f64 {
         match self {
             Self::Decimal(_) | Self::Degrees => number,
@@ -68,7 +70,7 @@ impl Ticks {
         }
     }
 
-    /// Returns the ticks and grid lines between two places on an axis.
+    /// Returns the ticks and grid lines between two axis coordinates.
     pub(super) fn marks(self, bounds: (f64, f64), units_per_point: f64) -> Vec<GridMark> {
         let is_finite = [bounds.0, bounds.1, units_per_point]
             .into_iter()
@@ -78,7 +80,7 @@ impl Ticks {
         }
         let mut gap = self.label_gap();
         let mut found = self.ticks_between(bounds, units_per_point, gap);
-        // A single number does not show the scale: in a low plot the numbers are closer together.
+        // A single label does not show the scale: in a low plot the labels may be closer together.
         while count_labels(&found) < 2 && gap > CLOSEST {
             gap = (0.8 * gap).max(CLOSEST);
             found = self.ticks_between(bounds, units_per_point, gap);
@@ -98,7 +100,7 @@ impl Ticks {
         marks
     }
 
-    /// Returns the usual least distance between two labels \[pt\].
+    /// Returns the usual minimum distance between two labels \[pt\].
     fn label_gap(self) -> f64 {
         match self {
             Self::Decimal(gap) => gap,
@@ -107,7 +109,7 @@ impl Ticks {
         }
     }
 
-    /// Returns the ticks between two places, with labels at least `gap` points apart.
+    /// Returns the ticks between two axis coordinates, with labels at least `gap` points apart.
     fn ticks_between(self, bounds: (f64, f64), units_per_point: f64, gap: f64) -> Vec<Tick> {
         let scale = match self {
             Self::Decimal(_) => Scale::Linear,
@@ -124,8 +126,8 @@ impl Ticks {
         ticks_of(scale, range, length, gaps)
     }
 
-    /// Returns [`Self::marks`] for a horizontal axis, far enough apart for the widest label where a
-    /// letter is `digit` points wide.
+    /// Returns [`Self::marks`] of a horizontal axis, far enough apart for the widest label if a
+    /// digit is `digit` points wide.
     pub(super) fn marks_beside(
         self,
         bounds: (f64, f64),
@@ -156,8 +158,8 @@ fn count_labels(ticks: &[Tick]) -> usize {
     ticks.iter().filter(|tick| tick.label.is_some()).count()
 }
 
-/// Returns marks for `count` names at 0, 1, 2 …: only for every second, third … name if the widest
-/// does not fit otherwise.
+/// Returns marks for `count` names at 0, 1, 2 …; only for every n-th name if the widest name does
+/// not fit otherwise.
 pub(super) fn named_marks(input: &GridInput, count: usize, widest_pt: f64) -> Vec<GridMark> {
     let every = ((widest_pt + NAME_GAP) * input.base_step_size)
         .ceil()
@@ -176,7 +178,7 @@ pub(super) fn named_marks(input: &GridInput, count: usize, widest_pt: f64) -> Ve
 mod tests {
     use super::*;
 
-    /// Returns whether a mark on an axis of `units_per_point` has a label.
+    /// Returns whether a mark has a label on an axis with `units_per_point`.
     fn is_labelled(mark: GridMark, units_per_point: f64) -> bool {
         mark.step_size / units_per_point > f64::from(LABEL_SPACING.min)
     }
@@ -223,7 +225,7 @@ mod tests {
                 Ticks::Decimal(26.0).marks_beside(bounds, (bounds.1 - bounds.0) / points, 6.5);
             marks.into_iter().map(|mark| mark.value).collect()
         };
-        // "−120" and "−110" took 29 points of 27.
+        // "−120" and "−110" need 29 pt each; 27 pt are available.
         assert_eq!(
             values((-130.0, 8.0), 360.0),
             [-120.0, -100.0, -80.0, -60.0, -40.0, -20.0, 0.0]

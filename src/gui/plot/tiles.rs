@@ -1,14 +1,13 @@
-//! Small multiples: many plots of equal size in a row, or in the number of rows that makes them
-//! largest.
+//! Small multiples: plots of equal size, in the number of rows and columns that makes them largest.
 
 use egui::{Rect, ScrollArea, Ui, UiBuilder, Vec2, vec2};
 
-/// Preferred ratio of width to height.
+/// Preferred ratio of plot width to height.
 const ASPECT: f32 = 1.15;
-/// Gain in size required to accept a gap in the last row \[pt\].
+/// Minimum increase in plot size that justifies an empty tile in the last row \[pt\].
 const PRICE_OF_GAP: f32 = 4.0;
 
-/// Arrangement in rows and columns, and plot size.
+/// Number of rows and columns, and plot size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Tiles {
     pub(super) columns: usize,
@@ -47,8 +46,8 @@ impl Tiles {
         })
     }
 
-    /// Rates an arrangement by the size of the largest well-proportioned plot in a tile, less a
-    /// price for gaps in the last row \[pt\].
+    /// Rates an arrangement by the height of the largest plot of preferred proportions in a tile,
+    /// less a penalty for empty tiles \[pt\].
     fn usefulness(self, count: usize) -> f32 {
         let gaps = self.columns * self.rows - count;
         (self.size.x / ASPECT).min(self.size.y) - PRICE_OF_GAP * gaps as f32
@@ -61,7 +60,7 @@ impl Tiles {
         )
     }
 
-    /// Allocates all tiles and draws each.
+    /// Allocates and draws all tiles.
     fn ui(self, ui: &mut Ui, count: usize, tile_ui: &mut impl FnMut(&mut Ui, usize, Rect)) {
         let origin = ui.max_rect().left_top();
         let area = Rect::from_min_size(origin, self.total_size());
@@ -71,7 +70,7 @@ impl Tiles {
         }
     }
 
-    /// Returns a tile's place in an area that begins at `origin`.
+    /// Returns the area of a tile, with the first tile at `origin`.
     fn rect(self, index: usize, origin: egui::Pos2) -> Rect {
         let column = index % self.columns;
         let row = index / self.columns;
@@ -80,13 +79,13 @@ impl Tiles {
     }
 }
 
-/// Tiles to be drawn into an area.
+/// Area into which tiles are drawn.
 pub(super) struct TiledArea {
-    /// Distinguishes the scroll bars from those of other areas.
+    /// Name that distinguishes the scroll bars from those of other areas.
     pub(super) name: &'static str,
     pub(super) rect: Rect,
     pub(super) count: usize,
-    /// Least size of a tile \[pt\].
+    /// Minimum size of a tile \[pt\].
     pub(super) least: Vec2,
 }
 
@@ -106,7 +105,7 @@ pub(super) fn tiles_ui(
     let wanted = tiles.total_size();
     let fits = wanted.x <= rect.width() + 0.5 && wanted.y <= rect.height() + 0.5;
     if !fits {
-        // Tiles wider than the area leave some of the height to the scroll bar.
+        // If the tiles are wider than the area, the scroll bar takes some of their height.
         tiles.size.y = (tiles.size.y - ui.spacing().scroll.allocated_width()).max(least.y);
     }
     ui.scope_builder(UiBuilder::new().id_salt(name).max_rect(rect), |ui| {

@@ -1,27 +1,28 @@
-//! Visible range along an axis, and the limits for zooming and panning.
+//! Visible range of an axis, and the limits of zooming and panning.
 
 use egui_plot::PlotBounds;
 
 use gdcm_plot::figure::Range;
 
-/// Room beyond either end, relative to the data's width.
+/// Margin at either end, relative to the width of the data range; the total is ten times the width.
 const BEYOND: f64 = 4.5;
 
-/// Greatest range that zooming out reaches.
+/// Maximum range when zooming out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ZoomLimit {
     /// Data range: a record has no values before its start and after its end.
     Data,
-    /// Data range, and this share of its width on either side.
+    /// Data range, extended by this share of its width on either side.
     DataWithMargin(f64),
-    /// A decade beyond the data, on a logarithmic axis.
+    /// Data range of a logarithmic axis, extended by a decade on either side.
     Decade,
-    /// Ten times the data's width, and at least this width.
+    /// Ten times the width of the data range, and at least this width.
     TenWidths { least: f64 },
 }
 
 impl ZoomLimit {
-    /// Returns the greatest range on an axis with these data; on a logarithmic axis in decades.
+    /// Returns the maximum range for an axis with this data range; in decades for a logarithmic
+    /// axis.
     pub(super) fn range(self, data: Range) -> Range {
         match self {
             Self::Data => data,
@@ -32,7 +33,7 @@ impl ZoomLimit {
     }
 }
 
-/// Returns `range` magnified by `factor` about `fixed`, within `limit`; `None` if nothing within
+/// Returns `range` zoomed in by `factor` about `fixed`, within `limit`; `None` if nothing within
 /// the limit would be visible.
 pub(super) fn zoomed_within(range: Range, factor: f64, fixed: f64, limit: Range) -> Option<Range> {
     let zoomed = range.zoomed(factor, fixed);
@@ -59,20 +60,20 @@ pub(super) fn bounds_of([x, y]: [Range; 2]) -> PlotBounds {
     PlotBounds::from_min_max([x.min, y.min], [x.max, y.max])
 }
 
-/// Visible range. The engineer's choice persists until everything is to be fitted.
+/// Visible range of an axis. The engineer's choice persists until it is released.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ViewedRange {
     range: Range,
     is_chosen: bool,
-    /// Permitted widths.
+    /// Permitted widths of the range.
     widths: Range,
-    /// Permitted values.
+    /// Permitted values in the range.
     ends: Range,
 }
 
 impl ViewedRange {
-    /// Shows `range` until something is fitted; always a part of `ends` with a width in `widths`
-    /// after that.
+    /// Shows `range`, which need not respect the limits; every later range has a width in `widths`
+    /// and lies within `ends`.
     pub(super) fn new(range: Range, widths: Range, ends: Range) -> Self {
         Self {
             range,
@@ -82,7 +83,7 @@ impl ViewedRange {
         }
     }
 
-    /// Limits the view to a decade beyond the computed range, where `computed` is in decades.
+    /// Limits the view to a decade beyond the computed range `computed` \[decades\].
     pub(super) fn reach(&mut self, computed: Range) {
         self.ends = ZoomLimit::Decade.range(computed);
     }
@@ -114,7 +115,7 @@ impl ViewedRange {
         }
     }
 
-    /// Sets the range that fits the data, unless the engineer chose another.
+    /// Sets the range that fits the data, unless the engineer chose a range.
     pub(super) fn fit(&mut self, range: Range) {
         if let Some(range) = self.allowed(range)
             && !self.is_chosen
@@ -123,7 +124,7 @@ impl ViewedRange {
         }
     }
 
-    /// Drops the engineer's choice: the next fit applies.
+    /// Drops the engineer's choice, so that the next fit applies.
     pub(super) fn release(&mut self) {
         self.is_chosen = false;
     }

@@ -1,4 +1,4 @@
-//! Controls that choose: check boxes, switches, tabs and drop-down lists.
+//! Controls for choices: check boxes, switches, tabs and drop-down lists.
 
 use egui::{Button, ComboBox, Response, Role, Ui, WidgetInfo};
 
@@ -78,7 +78,7 @@ pub fn toggle_ui(ui: &mut Ui, (text, name): (&str, &str), is_on: bool, hint: &st
         .clicked()
 }
 
-/// Draws a tab of a view's page; returns whether it was clicked. Its accessible name is "Page
+/// Draws the tab of a page of a view; returns whether it was clicked. Its accessible name is "Page
 /// NAME".
 pub fn page_tab_ui(
     ui: &mut Ui,

@@ -1,5 +1,5 @@
-//! Building blocks for panels and forms: small texts, named controls, menu entries, list rows; and
-//! the fields.
+//! Building blocks of panels and forms: small texts, named controls, menu entries, list rows; also
+//! re-exports the fields.
 
 use egui::containers::panel::PanelState;
 use egui::{
@@ -101,13 +101,13 @@ pub fn entries_ui<N: Into<String>, C>(
     }
 }
 
-/// Row height \[pt\].
+/// Usual height of a list row \[pt\].
 pub const ROW_HEIGHT: f32 = 20.0;
 
-/// Clickable list row.
+/// State and height of a clickable list row.
 pub struct RowLook {
     pub is_selected: bool,
-    /// Whether its item is pointed at elsewhere in the window.
+    /// Whether the pointer is on the row's item elsewhere in the window.
     pub is_pointed: bool,
     /// Height \[pt\].
     pub height: f32,
@@ -153,7 +153,7 @@ pub fn row_ui(
 }
 
 /// Restores the default size of a named panel after a double click on its edge; call it before the
-/// panel is shown.
+/// panel is drawn.
 pub fn restore_panel_size(ui: &Ui, name: &str) {
     let panel = ui.scope_id().with(name);
     if ui
@@ -164,15 +164,15 @@ pub fn restore_panel_size(ui: &Ui, name: &str) {
     }
 }
 
-/// Horizontal extent available to text \[pt from the row's left edge\].
+/// Horizontal room for text, measured from the left edge of the row \[pt\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Room {
     pub left: f32,
     pub right: f32,
 }
 
-/// Paints text into its room, with the middle elided if it is too long; paints nothing without room
-/// for a letter.
+/// Paints text into its room, with the middle elided if it is too long; paints nothing if not even
+/// a letter fits.
 pub fn row_text_within(ui: &Ui, row: Rect, room: Room, text: &str, size: f32, color: Color32) {
     let shown = elided(ui, text, room.right - room.left, size);
     if !shown.is_empty() {
@@ -180,14 +180,14 @@ pub fn row_text_within(ui: &Ui, row: Rect, room: Room, text: &str, size: f32, co
     }
 }
 
-/// Returns text no wider than `room` \[pt\], with the middle elided if it is too long. Empty
-/// without room for a letter.
+/// Returns text no wider than `room` \[pt\], with the middle elided if it is too long; empty if not
+/// even a letter fits.
 pub fn elided(ui: &Ui, text: &str, room: f32, size: f32) -> String {
     elided_at(ui, text, room, size, 0.5)
 }
 
-/// As [`elided`], for a name in a list: if a neighbour would be shortened to the same text, the gap
-/// moves to the beginning or to the end.
+/// Like [`elided`], for a name in a list: if another name would be shortened to the same text, the
+/// gap moves to the beginning or to the end.
 pub fn elided_among(
     ui: &Ui,
     text: &str,
@@ -195,7 +195,7 @@ pub fn elided_among(
     room: f32,
     size: f32,
 ) -> String {
-    /// Share of the remaining letters that precedes the gap.
+    /// Share of the kept letters that precedes the gap.
     const HEADS: [f32; 3] = [0.5, 0.0, 1.0];
     for head in HEADS {
         let shown = elided_at(ui, text, room, size, head);
@@ -217,7 +217,7 @@ fn elided_at(ui: &Ui, text: &str, room: f32, size: f32, head: f32) -> String {
         return text.to_owned();
     }
     let letters: Vec<char> = text.chars().collect();
-    // The width grows with the number of kept letters: bisection finds the greatest number that
+    // The width grows with the number of kept letters: bisection finds the maximum number that
     // fits.
     let mut fits = 0;
     let mut too_wide = letters.len();
@@ -237,7 +237,7 @@ fn elided_at(ui: &Ui, text: &str, room: f32, size: f32, head: f32) -> String {
     }
 }
 
-/// Replaces all but `kept` letters by "…", after the share `head` of the kept letters.
+/// Replaces all but `kept` letters by "…", placed after the share `head` of the kept letters.
 fn with_gap(letters: &[char], kept: usize, head: f32) -> String {
     let before = (head * kept as f32) as usize;
     let after = letters.len() - (kept - before);
@@ -248,7 +248,7 @@ fn with_gap(letters: &[char], kept: usize, head: f32) -> String {
         .collect()
 }
 
-/// Returns the width that text takes on a single line \[pt\].
+/// Returns the width of text on a single line \[pt\].
 pub fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
     ui.fonts_mut(|fonts| {
         fonts
@@ -303,7 +303,7 @@ pub fn chevron(ui: &Ui, center: Pos2, is_open: bool, palette: &Palette) {
         .line(points, Stroke::new(1.3, palette.dim_text));
 }
 
-/// Menu text that opens a derivation, used everywhere.
+/// Text of the menu entry that opens a derivation.
 pub const QUESTION: &str = "How was this computed?";
 
 #[cfg(test)]

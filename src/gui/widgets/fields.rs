@@ -1,4 +1,4 @@
-//! Fields for text and numbers, with their number formats.
+//! Fields for text and numbers, with number formats.
 
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
@@ -34,7 +34,7 @@ pub fn name_text_field(response: &Response, name: &str, text: &str) {
     });
 }
 
-/// Returns whether Enter ended the editing.
+/// Returns whether editing was ended by Enter.
 pub fn is_entered(ui: &Ui, field: &Response) -> bool {
     field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
 }
@@ -71,8 +71,8 @@ pub fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) ->
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RefusedEntry(pub String);
 
-/// As [`entry_ui`], for a number; refuses anything else with the reason. The inner `None` is an
-/// emptied field.
+/// Like [`entry_ui`], for a number; refuses any other text with the reason. The inner `None` means
+/// that the field was emptied.
 pub fn number_entry_ui<C: From<RefusedEntry>>(
     ui: &mut Ui,
     name: &str,
@@ -102,40 +102,40 @@ pub fn typed_number(text: &str) -> Result<Option<f64>, String> {
     }
 }
 
-/// Number field height \[pt\].
+/// Height of a number field \[pt\].
 const FIELD_HEIGHT: f32 = 18.0;
-/// Passes after Escape in which egui may still commit the text being typed.
+/// Number of passes after Escape in which egui may still commit the typed text.
 const PASSES_AFTER_ESCAPE: u64 = 2;
 
-/// Field for a number.
+/// Numeric input with unit, limits and accessible name.
 pub struct NumberField<'a> {
     /// Accessible name, unique in the window.
     pub name: &'a str,
     /// Meaning, with the unit.
     pub hint: &'a str,
-    /// Unit for the typed number; empty if dimensionless.
+    /// Unit of the number; empty if dimensionless.
     pub unit: &'static str,
-    /// Whether the unit is shown behind the number.
+    /// Whether the unit is shown after the number.
     pub shows_unit: bool,
     pub range: RangeInclusive<f64>,
     pub is_whole: bool,
-    /// Change per dragged point and per arrow key.
+    /// Change per point of dragging and per press of an arrow key.
     pub step: f64,
-    /// Least width \[pt\]; 0 to fit the text.
+    /// Minimum width \[pt\]; 0 to fit the text.
     pub width: f32,
     pub digits: Digits,
 }
 
-/// Entry in this frame.
+/// Result of an edit in this frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Entered {
     /// New number, if it is valid.
     pub value: Option<f64>,
     /// Reason why the entry is refused.
     pub refusal: Option<String>,
-    /// Whether the number may still follow the pointer.
+    /// Whether the number is being dragged and may still change.
     pub is_dragged: bool,
-    /// Whether the decision is complete: released pointer or lost focus.
+    /// Whether the edit is complete: the pointer was released or the focus left the field.
     pub is_ended: bool,
 }
 
@@ -187,12 +187,12 @@ impl<'a> NumberField<'a> {
         entered
     }
 
-    /// Returns the key under which egui stores `item` for this field.
+    /// Returns the key under which this program stores `item` for this field.
     fn key(&self, item: &str) -> Id {
         Id::unique((item, self.name))
     }
 
-    /// Parses the typed number; an unedited text keeps the exact old value, which the text may
+    /// Parses the typed number; an unedited text returns the exact old value, which the text may
     /// round.
     fn read(
         &self,
@@ -276,8 +276,8 @@ pub fn focus_field(ctx: &Context, name: &str) {
     }
 }
 
-/// Parses a finite number with or without its unit; a lone comma is a decimal point, and the minus
-/// sign may be typographical.
+/// Parses a finite number with or without its unit; a single comma is a decimal separator, and the
+/// minus sign may be typographical.
 fn number_in(text: &str, unit: &str) -> Option<f64> {
     let text = text.trim();
     let text = text
@@ -317,7 +317,7 @@ fn significant(value: f64) -> String {
     }
 }
 
-/// Formats a gain with three decimals, two if the third is zero; a small gain with three
+/// Formats a gain with three decimals, or two if the third is zero; a gain below 0.1 with three
 /// significant digits.
 fn gain_text(gain: f64) -> String {
     if gain < 0.1 {

@@ -6,7 +6,7 @@ use egui::{Context, Id, Key, Modifiers, Rect, Stroke, StrokeKind, Ui, pos2};
 
 use super::palette::Palette;
 
-/// Window region, in the order that F6 visits them.
+/// Window region, in the order in which F6 visits them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Region {
     /// Plots in the front view.

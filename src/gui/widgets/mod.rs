@@ -1,4 +1,4 @@
-//! Widgets, tables, colours.
+//! Widgets, tables and colours.
 
 pub mod choices;
 pub mod controls;

@@ -1,4 +1,4 @@
-//! Window colours, dark and light, fonts by their use, and the engineer's curve style.
+//! Window colours, dark and light; font sizes by use; and the curve style chosen by the engineer.
 
 mod egui_style;
 
@@ -7,21 +7,22 @@ use serde::{Deserialize, Serialize};
 
 pub use egui_style::apply;
 
-/// Font size for captions: axes, units, bars, table headings, chips, status \[pt\].
+/// Font size of captions: axes, units, bars, table headings, chips, status \[pt\].
 pub const SMALL_SIZE: f32 = 11.0;
-/// Font size for running text: rows, controls, words \[pt\].
+/// Font size of running text: rows, controls, sentences \[pt\].
 pub const BODY_SIZE: f32 = 12.5;
-/// Font size for titles and for the verdict's counts \[pt\].
+/// Font size of titles and of the counts in the verdict \[pt\].
 pub const TITLE_SIZE: f32 = 15.0;
-/// Font size for the start page's heading \[pt\].
+/// Font size of the heading of the start page \[pt\].
 pub const DISPLAY_SIZE: f32 = 20.0;
 
-/// Returns the medium-weight font, for section headings, selection, constrained values, buttons.
+/// Returns the medium-weight font, used for section headings, selection, constrained values and
+/// buttons.
 pub fn medium(size: f32) -> FontId {
     FontId::new(size, FontFamily::Name(MEDIUM.into()))
 }
 
-/// Name of the medium weight among the font families.
+/// Name of the medium-weight font family.
 const MEDIUM: &str = "medium";
 
 /// Returns the caption font.
@@ -38,17 +39,17 @@ const fn hex(rgb: u32) -> Color32 {
     Color32::from_rgb((rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8)
 }
 
-/// Costs J between which [`Palette::heat`] is interpolated.
+/// Values of J between which [`Palette::heat`] is interpolated.
 pub const HEAT_COSTS: [f32; 5] = [0.0, 10.0, 30.0, 60.0, 110.0];
 
-/// Theme colours, each with a single meaning everywhere.
+/// Colours of a theme, each with a single meaning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Palette {
-    /// Whether the theme has light text on a dark ground.
+    /// Whether the theme has light text on a dark background.
     pub is_dark: bool,
-    /// Ground under plots and text fields.
+    /// Background of plots and text fields.
     pub background: Color32,
-    /// Ground under side panels and bars.
+    /// Background of side panels and bars.
     pub panel: Color32,
     /// Elements on a panel: buttons, legends, tooltips.
     pub raised: Color32,
@@ -60,7 +61,7 @@ pub struct Palette {
     pub text: Color32,
     /// Captions and units.
     pub dim_text: Color32,
-    /// Ground under a selection.
+    /// Background of a selection.
     pub selected: Color32,
     /// Nominal physics model.
     pub nominal: Color32,
@@ -78,17 +79,17 @@ pub struct Palette {
     pub warning: Color32,
     /// Met requirements.
     pub good: Color32,
-    /// Ground under an unmet verdict and an invalid region.
+    /// Background of an unmet verdict and of an invalid region.
     pub warning_ground: Color32,
-    /// Ground under a met verdict.
+    /// Background of a met verdict.
     pub good_ground: Color32,
-    /// Zero values and excluded names.
+    /// Text of zero values and of excluded names.
     pub quiet_text: Color32,
-    /// Bars, and ticks in boxes.
+    /// Marks of low emphasis: bars, and ticks in boxes.
     pub quiet_mark: Color32,
-    /// Colours for J at [`HEAT_COSTS`]: a single hue with rising lightness contrast.
+    /// Colours of J at [`HEAT_COSTS`]: a single hue with increasing contrast to the background.
     pub heat: [Color32; 5],
-    /// Factor on curve widths.
+    /// Factor on the widths of curves.
     pub line_width: f32,
 }
 
@@ -197,7 +198,7 @@ impl Palette {
         color.lerp_to_gamma(self.text, amount)
     }
 
-    /// Returns the colour of a cost J in a map of costs; constant beyond the last of
+    /// Returns the colour of a value of J in a heat map; constant beyond the last of
     /// [`HEAT_COSTS`].
     pub fn heat_of(&self, cost: f64) -> Color32 {
         let cost = (cost as f32).clamp(HEAT_COSTS[0], HEAT_COSTS[4]);
@@ -210,12 +211,12 @@ impl Palette {
         self.heat[above - 1].lerp_to_gamma(self.heat[above], part)
     }
 
-    /// Returns the text colour for a name beside a curve in `curve` colour.
+    /// Returns the colour of a name beside a curve of colour `curve`.
     pub fn name_of(&self, curve: Color32) -> Color32 {
         self.towards_text(curve, 0.3)
     }
 
-    /// Returns the text colour on the accent colour.
+    /// Returns the colour of text on the accent colour.
     pub fn on_accent(&self) -> Color32 {
         if self.is_dark {
             self.background
@@ -225,7 +226,7 @@ impl Palette {
     }
 }
 
-/// Colour set for the curve roles.
+/// Set of colours of the curve roles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum CurveColors {
     /// Red, blue, amber, green.
@@ -239,7 +240,7 @@ impl CurveColors {
     /// Every choice, in menu order.
     pub const ALL: [Self; 2] = [Self::Standard, Self::ForAllEyes];
 
-    /// Returns the menu entry's text.
+    /// Returns the text of the menu entry.
     pub fn name(self) -> &'static str {
         match self {
             Self::Standard => "Standard colours of curves",
@@ -253,7 +254,7 @@ impl CurveColors {
 #[serde(default)]
 pub struct PlotStyle {
     pub curve_colors: CurveColors,
-    /// Factor on curve widths.
+    /// Factor on the widths of curves.
     pub line_width: f32,
 }
 
@@ -261,8 +262,8 @@ impl PlotStyle {
     /// Selectable width factors.
     pub const LINE_WIDTHS: [f32; 6] = [0.5, 0.75, 1.0, 1.5, 2.0, 3.0];
 
-    /// Clamps the width factor to the visible range; another version may have written the
-    /// preference.
+    /// Clamps the width factor to the permitted range; the stored preference may come from another
+    /// version.
     pub fn within_limits(self) -> Self {
         let line_width = if self.line_width.is_finite() {
             self.line_width.clamp(0.5, 3.0)
@@ -282,9 +283,9 @@ impl Default for PlotStyle {
     }
 }
 
-/// Colours for nominal, perturbed, identified and corrected models. Among all colours near
-/// vermilion, blue, yellow and green with a contrast of 3 to the background, they maximise the least
-/// distance from each other and from grey over every kind of colour vision.
+/// Colours of nominal, perturbed, identified and corrected models. Among all colours near
+/// vermilion, blue, yellow and green with a contrast of 3 to the background, they maximise the
+/// minimum distance from each other and from grey over all kinds of colour vision.
 const fn for_all_eyes(is_dark: bool) -> [Color32; 4] {
     if is_dark {
         [hex(0xc65b04), hex(0x6996ff), hex(0xe8d525), hex(0x12e782)]
@@ -420,7 +421,7 @@ mod tests {
         }
     }
 
-    /// Transformations of linear colour for full colour vision and for each missing kind of cones.
+    /// Transformations of linear colour for full colour vision and for each missing kind of cone.
     /// Machado, Oliveira and Fernandes, "A Physiologically-based Model for Simulation of Color
     /// Vision Deficiency", IEEE TVCG 15(6), 2009, severity 1.0.
     const SIGHTS: [(&str, [[f32; 3]; 3]); 4] = [
@@ -469,7 +470,7 @@ mod tests {
         }
     }
 
-    /// Returns the opaque colour that underlies a translucent colour.
+    /// Returns the opaque colour of which a translucent colour is a faded version.
     fn opaque(color: Color32) -> Color32 {
         let [r, g, b, _] = color.to_srgba_unmultiplied();
         Color32::from_rgb(r, g, b)
@@ -491,7 +492,8 @@ mod tests {
             .sqrt()
     }
 
-    /// Sufficient for thin lines: ten times the just noticeable difference of large fields.
+    /// Minimum colour distance of thin lines: ten times the just noticeable difference of large
+    /// fields.
     const APART: f32 = 23.0;
 
     /// Returns the styles of every role in both themes.
@@ -531,8 +533,8 @@ mod tests {
         }
     }
 
-    /// Returns whether two roles have the same colour and differ in pattern or width only;
-    /// translucent colours return with a rounding error.
+    /// Returns whether two roles have the same colour and differ only in pattern or width;
+    /// translucent colours are compared with a tolerance for rounding.
     fn shares_color(a: &CurveStyle, b: &CurveStyle) -> bool {
         distance(a.color, b.color, &SIGHTS[0].1) < 2.3
     }

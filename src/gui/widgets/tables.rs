@@ -1,4 +1,4 @@
-//! Tables in the window, sorted by a click on a heading, copied or saved by a right-click.
+//! Tables in the window: a click on a heading sorts, a right-click copies or saves.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use gdcm_words::Table;
 use super::controls::{entries_ui, named};
 use super::palette::{Palette, SMALL_SIZE};
 
-/// Sort column and whether the order is descending; `None` for the original order.
+/// Sort column, and whether the order is descending; `None` for the original order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sorting(Option<(usize, bool)>);
 
@@ -33,8 +33,8 @@ impl Sorting {
         })
     }
 
-    /// As `order`, for the given number of rows and a function of row and column that returns a
-    /// cell.
+    /// Like [`Self::order`], for `rows` rows and a function that returns the cell at a row and a
+    /// column.
     pub fn order_of(self, rows: usize, cell: impl Fn(usize, usize) -> String) -> Vec<usize> {
         let mut order: Vec<usize> = (0..rows).collect();
         let Some((column, falling)) = self.0 else {
@@ -58,7 +58,7 @@ impl Sorting {
         order
     }
 
-    /// Returns the sort mark for a column's heading.
+    /// Returns the sort mark in the heading of a column.
     pub fn mark(self, column: usize) -> &'static str {
         match self.0 {
             Some((sorted, false)) if sorted == column => " ▲",
@@ -77,7 +77,7 @@ fn number_in(cell: &str) -> Option<f64> {
         .ok()
 }
 
-/// Click in a table.
+/// Clicked cell of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TableClick {
     /// Row index in the original order.
@@ -85,9 +85,9 @@ pub struct TableClick {
     pub column: usize,
 }
 
-/// Cell colours and focus.
+/// Colours of the cells, and the rows in focus.
 pub struct TableLook<'a> {
-    /// Text colour for a cell, by row and column; the default if `None`.
+    /// Text colour of a cell, by row and column; the default colour if `None`.
     pub color: &'a dyn Fn(usize, usize) -> Option<Color32>,
     /// Whether a row is in focus.
     pub selected: &'a dyn Fn(usize) -> bool,
@@ -106,7 +106,7 @@ impl TableLook<'_> {
 pub enum TableRequest {
     /// Copies this text to the clipboard.
     Copy(String),
-    /// Asks for the path of the table and saves it as CSV.
+    /// Asks for a path and saves the table there as CSV.
     Save(Arc<Table>),
 }
 
@@ -129,7 +129,7 @@ pub fn table_ui<C: From<TableRequest>>(
     .inner
 }
 
-/// As `table_ui`, in full size without scrolling.
+/// Like [`table_ui`], at full size without scrolling.
 pub fn table_grid_ui<C: From<TableRequest>>(
     ui: &mut Ui,
     table: &Table,
@@ -195,7 +195,7 @@ fn headings_ui<C: From<TableRequest>>(
     ui.end_row();
 }
 
-/// Draws a cell, with a number at its right edge.
+/// Draws a cell; numbers are aligned at the right edge.
 fn cell_ui(ui: &mut Ui, cell: &str, color: Color32) -> Response {
     let text = RichText::new(cell).size(SMALL_SIZE).color(color);
     let align = if number_in(cell).is_some() || cell == "-" {

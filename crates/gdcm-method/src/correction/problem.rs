@@ -84,10 +84,7 @@ pub enum ProblemError {
     },
     /// A constrained entry has no delta.
     #[error("the response of output {} to input {} has no delta {quantity}, so its {quantity} cannot be held", pair.output + 1, pair.input + 1)]
-    ConstrainedUndefined {
-        quantity: Quantity,
-        pair: Pair,
-    },
+    ConstrainedUndefined { quantity: Quantity, pair: Pair },
     /// A delta gain is not a positive number with a representable square.
     #[error("the delta gain of output {} and input {} is {gain}; it must be from 1e-50 to 1e50", pair.output + 1, pair.input + 1)]
     Gain {
@@ -104,15 +101,10 @@ pub enum ProblemError {
     },
     /// The bounds are not valid for the quantity ([`Bounds`]).
     #[error("{}", bounds_error(*quantity, *bounds))]
-    Bounds {
-        quantity: Quantity,
-        bounds: Bounds,
-    },
+    Bounds { quantity: Quantity, bounds: Bounds },
     /// `alpha` is negative or not a number.
     #[error("alpha is {alpha}; it must be a number from 0 to 1e12")]
-    Alpha {
-        alpha: f64,
-    },
+    Alpha { alpha: f64 },
     /// The quadratic program for the delays was not solved.
     #[error("the quadratic program of the delays was not solved: {reason}")]
     Program {

@@ -35,10 +35,7 @@ pub enum TestInputError {
     NoInput { input: usize, inputs: usize },
     /// The size is not finite, or the duration is not above zero and at most 600 s.
     #[error("test input: expected a size, and a duration above 0 s up to {LONGEST_S} s; found {} and {} s", number(*size), number(*duration_s))]
-    Numbers {
-        size: f64,
-        duration_s: f64,
-    },
+    Numbers { size: f64, duration_s: f64 },
     /// The model is in discrete time, or has channel delays that are not states.
     #[error(
         "expected a model in continuous time without delays: convert its delays to states first"

@@ -4,13 +4,13 @@ use super::axis::Range;
 
 /// Length of an arrow head, as a fraction of the spans of the arrows in a plot.
 const HEAD_LENGTH: f64 = 0.035;
-/// Half the width of an arrow head, as the same fraction.
+/// Half-width of an arrow head, as a fraction of the spans.
 const HEAD_HALF_WIDTH: f64 = 0.012;
-/// Minimum span, relative to the largest coordinate.
+/// Minimum span, relative to the largest absolute coordinate.
 const LEAST_SPAN: f64 = 1e-3;
 
-/// Returns the spans of points along x and y, the units in which arrow heads are measured; positive
-/// even for a single point.
+/// Returns the extents of the points along x and y, the units of arrow heads; positive even for a
+/// single point.
 pub(super) fn spans(points: &[[f64; 2]]) -> [f64; 2] {
     [0, 1].map(|axis| {
         let range = Range::of(points.iter().map(|point| point[axis]));

@@ -1,4 +1,4 @@
-//! Value of the correction: the change of J in each condition (M12, Figures 8 to 19).
+//! Effect of the correction: the change of J in each condition (M12, Figures 8 to 19).
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::CostChange;
@@ -23,7 +23,7 @@ const ZERO: Stroke = Stroke::solid(Color::DIM, 0.6);
 /// Bar width; conditions are 1 apart.
 const BAR: f64 = 0.27;
 
-/// A part of ΔJ and the style for its bars; in print, parts differ in darkness.
+/// A part of ΔJ and the style of its bars; in print, parts differ in darkness.
 struct Part {
     name: &'static str,
     color: Color,
@@ -53,7 +53,7 @@ const PARTS: [Part; 3] = [
     },
 ];
 
-/// Plots ΔJ and its parts for each pair in each condition; negative values are improvements.
+/// Plots ΔJ and its parts over the conditions, for each pair; negative values are improvements.
 pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: AssessmentChoice) -> Figure {
     let table = AssessmentTable::of(analysis, choice);
     let dataset = &analysis.study.dataset;
@@ -80,7 +80,7 @@ pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: Assessment
         .aspect(0.62)
 }
 
-/// Returns the choice in Figures 8 to 19: the nominal model under the schedule, with the average
+/// Returns the choice of Figures 8 to 19: the nominal model under the schedule, with the average
 /// from the settings.
 pub fn usual_choice(analysis: &Analysis) -> AssessmentChoice {
     AssessmentChoice {
@@ -90,7 +90,8 @@ pub fn usual_choice(analysis: &Analysis) -> AssessmentChoice {
     }
 }
 
-/// Draws a response's bars over the conditions; conditions without a change are marked as left out.
+/// Draws ΔJ of a response as bars over the conditions; conditions without an available ΔJ are
+/// labelled "left out".
 fn change_panel(dataset: &Dataset, table: &AssessmentTable, pair: Pair) -> Panel {
     let conditions = dataset.conditions();
     let names = conditions
@@ -135,7 +136,7 @@ fn left_out_note(x: f64) -> Note {
     }
 }
 
-/// Tabulates the signed ΔJ for each pair, or a `part` of it, in each condition under its heading.
+/// Tabulates the signed ΔJ, or a `part` of ΔJ, of each pair in each condition.
 pub fn change_table(
     title: impl Into<String>,
     (dataset, found): (&Dataset, &AssessmentTable),

@@ -6,7 +6,7 @@ pub use super::ticks::{Scale, Tick, TickGaps, ticks_of};
 
 /// Margin on either side of the shown values, relative to their range.
 const MARGIN: f64 = 0.05;
-/// Axis range without values.
+/// Range of an axis without values.
 const EMPTY: Range = Range {
     min: 1.0,
     max: 10.0,
@@ -14,20 +14,20 @@ const EMPTY: Range = Range {
 
 /// An axis: its quantity with the unit, its scale, and the range shown.
 ///
-/// A description may leave the range open. The panel then fits it to its marks
+/// If `range` is `None`, the panel fits the range to its marks
 /// ([`Panel::shown`](super::figure::Panel::shown)), extended by `including` and `least`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// Quantity and unit: `Frequency [rad/s]`.
     pub label: String,
     pub scale: Scale,
-    /// The range shown; fitted to the marks if `None`.
+    /// Displayed range; fitted to the marks if `None`.
     pub range: Option<Range>,
     /// Values that a fitted range contains.
     pub including: Vec<f64>,
     /// Minimum width of a fitted linear range, in the unit of the axis.
     pub least: f64,
-    /// Values with their names, which replace numeric ticks.
+    /// Values with their names, which replace the numeric ticks.
     pub names: Option<Vec<(f64, String)>>,
 }
 
@@ -58,7 +58,8 @@ impl Axis {
         Self::new(label, Scale::Logarithmic)
     }
 
-    /// Creates an axis with names at 0, 1, 2, …, and half a step beyond the first and the last.
+    /// Creates an axis with names at 0, 1, 2, …; the range extends half a step beyond the first and
+    /// the last name.
     pub fn named(
         label: impl Into<String>,
         names: impl IntoIterator<Item = impl Into<String>>,
@@ -90,7 +91,7 @@ impl Axis {
         self
     }
 
-    /// Returns the axis with a fitted range at least this wide, in its unit.
+    /// Returns the axis with a minimum width of the fitted range, in the unit of the axis.
     pub fn at_least(self, least: f64) -> Self {
         Self { least, ..self }
     }
@@ -119,7 +120,7 @@ impl Axis {
         }
     }
 
-    /// Returns whether a value has a position along the axis.
+    /// Returns whether a value can be drawn on the axis.
     fn can_show(&self, value: f64) -> bool {
         value.is_finite() && (self.scale != Scale::Logarithmic || value > 0.0)
     }
@@ -135,7 +136,7 @@ impl Axis {
         Some((self.place(value) - low) / (high - low))
     }
 
-    /// Returns the coordinate in which positions are linear.
+    /// Returns the coordinate along the axis: the value, or its logarithm on a logarithmic axis.
     fn place(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Logarithmic => value.log10(),
@@ -143,7 +144,8 @@ impl Axis {
         }
     }
 
-    /// Returns the ticks for `range` shown on `length_pt`, with labels at least `gap_pt` apart.
+    /// Returns the ticks of `range` on an axis `length_pt` long, with labels at least `gap_pt`
+    /// apart.
     pub(super) fn ticks(&self, range: Range, length_pt: f64, gap_pt: f64) -> Vec<Tick> {
         match &self.names {
             Some(names) => name_ticks(names, range, length_pt, gap_pt),
@@ -159,7 +161,7 @@ impl Axis {
     }
 }
 
-/// Returns a tick for each name in `range`; only every n-th if their room is too narrow.
+/// Returns a tick for each name in `range`, or for every n-th name if the names would be too close.
 fn name_ticks(names: &[(f64, String)], range: Range, length_pt: f64, gap_pt: f64) -> Vec<Tick> {
     let apart_pt = length_pt / range.width();
     let every = (gap_pt / apart_pt).ceil().max(1.0) as usize;

@@ -1,5 +1,5 @@
 //! Responses in one or several conditions: magnitude above phase over frequency (Figures 2 and 5),
-//! with the measured coherence below them; and all magnitudes in a condition, small.
+//! with the measured coherence below; and an overview of all magnitudes in a condition.
 
 use std::sync::Arc;
 
@@ -29,17 +29,17 @@ use super::responses::{
 };
 use super::role::Role;
 
-/// Background for the band of comparison.
+/// Background of the band of comparison.
 const BAND: Color = Color::of(Hue::Accent).tint(8);
 /// Background above the band if there are leads.
 const INVALID: Color = Color::of(Hue::Warning).tint(10);
 /// Line at a marked frequency.
 const CROSSING: Stroke = Stroke::dashed(Color::of(Hue::Text), 0.8, Dash::Short);
-/// Height for magnitudes, relative to 1 for phases.
+/// Height of the magnitude panel, relative to 1 for the phase panel.
 const MAGNITUDE_WEIGHT: f64 = 1.35;
 /// Margin above and below the curves, relative to their height.
 const MARGIN: f64 = 0.04;
-/// Minimum height for magnitudes \[dB\] and phases \[deg\].
+/// Minimum height of the magnitude range \[dB\] and of the phase range \[deg\].
 const LEAST_DB: f64 = 4.0;
 const LEAST_DEG: f64 = 20.0;
 
@@ -51,7 +51,7 @@ pub fn bode_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeO
     })
 }
 
-/// Plots a condition's response, with a strip for its coherence.
+/// Plots a response in a condition, with a strip for its coherence.
 fn condition_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -> Plot {
     let band = source.study.settings.band;
     let curves = source.response_curves(pair, options, &mut ResponseCache::default());
@@ -75,7 +75,7 @@ struct ResponsePlot<'a> {
     curves: &'a [BodeCurve],
     bands: &'a [BodeBand],
     references: &'a [ReferenceLine],
-    /// Unit for magnitudes drawn as ratios.
+    /// Unit of magnitudes drawn as ratios.
     ratio_unit: &'a str,
     band: BandOfComparison,
     options: &'a BodeOptions,
@@ -90,7 +90,7 @@ impl ResponsePlot<'_> {
             .panel(self.on_grounds(phase))
     }
 
-    /// Builds the magnitudes, with named crossings.
+    /// Builds the magnitude panel, with named crossings.
     fn magnitude_panel(&self) -> Panel {
         let range_db = self.options.values[0].or(self.fitted(Pane::Magnitude, LEAST_DB));
         let panel = match self.options.magnitude {
@@ -114,7 +114,7 @@ impl ResponsePlot<'_> {
         panel.with_all(crossings)
     }
 
-    /// Builds the phases, with crossings.
+    /// Builds the phase panel, with unnamed crossings.
     fn phase_panel(&self) -> Panel {
         let range_deg = self.options.values[1].or(self.fitted(Pane::Phase, LEAST_DEG));
         let axis = Axis::degrees("Phase [deg]").showing(range_deg);
@@ -141,8 +141,8 @@ impl ResponsePlot<'_> {
         }
     }
 
-    /// Returns the range that shows the visible curves within the band, or up to the end of the
-    /// range without leads, and is at least `least` high.
+    /// Returns the range of the visible curves within the band (with leads, up to the end of the
+    /// invalid frequencies), at least `least` high.
     fn fitted(&self, pane: Pane, least: f64) -> Option<Range> {
         let visible: Vec<BodeCurve> = self
             .curves
@@ -155,9 +155,9 @@ impl ResponsePlot<'_> {
         Some(range.with_margin(MARGIN, least))
     }
 
-    /// Returns the end \[rad/s\] of the range above the band in which a model with leads is not
-    /// valid: the last frequency of the visible curve without them, up to which the cost of leads
-    /// is drawn (M15.6). `None` without such a curve.
+    /// Returns the end \[rad/s\] of the frequencies above the band at which a model with leads is
+    /// not valid: the last frequency of the visible curve without leads, where the drawn cost of
+    /// leads ends (M15.6). `None` without such a curve.
     fn invalid_up_to(&self) -> Option<f64> {
         let without_leads = self
             .curves
@@ -166,7 +166,7 @@ impl ResponsePlot<'_> {
         without_leads.omega.last().copied()
     }
 
-    /// Returns the panel with backgrounds for its frequency ranges.
+    /// Returns the panel with shaded frequency ranges.
     fn on_grounds(&self, panel: Panel) -> Panel {
         let band = band_ground(self.band, self.options);
         match self.invalid_up_to() {
@@ -175,7 +175,7 @@ impl ResponsePlot<'_> {
         }
     }
 
-    /// Returns the background above the band, where a model with leads is not valid.
+    /// Returns the shading above the band, where a model with leads is not valid.
     fn invalid_ground(&self, up_to: f64) -> Band {
         Band {
             range: self.options.in_unit(self.band.max(), up_to),
@@ -185,7 +185,7 @@ impl ResponsePlot<'_> {
     }
 }
 
-/// Returns the background for the band of comparison.
+/// Returns the shading of the band of comparison.
 fn band_ground(band: BandOfComparison, options: &BodeOptions) -> Band {
     Band {
         range: options.in_unit(band.min(), band.max()),
@@ -241,8 +241,8 @@ pub fn airspeeds_figure(
     Some(figure.caption(settings_words(dataset, settings)))
 }
 
-/// Plots every response's magnitude in a condition, outputs down, inputs across, with J before and
-/// after the correction.
+/// Plots the magnitude of every response in a condition: outputs in rows, inputs in columns, with J
+/// before and after the correction.
 pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> Figure {
     let dataset = source.dataset();
     let plots = dataset
@@ -258,7 +258,8 @@ pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> F
         .aspect(0.55)
 }
 
-/// Plots a response's magnitude, with its J; a star after the title marks a constrained response.
+/// Plots the magnitude of a response, with its J; a star after the title marks a constrained
+/// response.
 fn overview_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -> Plot {
     let panels = FrequencyPanels {
         curves: &source.response_curves(pair, options, &mut ResponseCache::default()),

@@ -31,8 +31,8 @@ pub enum Pane {
     Phase,
 }
 
-/// A frequency response with its name and role; also an error, then with the phase panel in the
-/// unit for phase errors.
+/// A frequency response with its name and role. Also used for an error; its phase values then have
+/// the unit of phase errors.
 #[derive(Clone, Debug)]
 pub struct BodeCurve {
     pub id: CurveId,
@@ -42,9 +42,9 @@ pub struct BodeCurve {
     pub detail: String,
     pub role: Role,
     pub rejected: bool,
-    /// Whether another view points at the curve.
+    /// Whether the curve is pointed at in another view.
     pub highlighted: bool,
-    /// Whether the engineer hides the curve; the legend shows its role all the same.
+    /// Whether the engineer hides the curve; its role remains in the legend.
     pub hidden: bool,
     /// Frequencies \[rad/s\], ascending.
     pub omega: Arc<[f64]>,
@@ -55,7 +55,7 @@ pub struct BodeCurve {
 }
 
 impl BodeCurve {
-    /// Creates a visible curve without texts and without points.
+    /// Creates a visible curve without label, detail and points.
     pub fn new(id: CurveId, role: Role) -> Self {
         Self {
             id,
@@ -87,13 +87,12 @@ impl BodeCurve {
         }
     }
 
-    /// Returns the value in a panel at each frequency.
+    /// Returns the values of a panel, one at each frequency.
     pub fn values(&self, pane: Pane) -> &[f64] {
         self.shared_values(pane)
     }
 
-    /// Returns [`Self::values`] with their owner, by whose address a holder recognises whether the
-    /// values are unchanged.
+    /// Returns [`Self::values`] as a shared slice; an unchanged address means unchanged values.
     pub fn shared_values(&self, pane: Pane) -> &Arc<[f64]> {
         match pane {
             Pane::Magnitude => &self.magnitude_db,
@@ -101,7 +100,7 @@ impl BodeCurve {
         }
     }
 
-    /// Iterates over `[log10 omega, value]`; gaps are points that are not finite.
+    /// Iterates over `[log10 omega, value]`; a non-finite value marks a gap.
     pub fn points(&self, pane: Pane) -> impl Iterator<Item = [f64; 2]> + '_ {
         self.omega
             .iter()
@@ -109,8 +108,8 @@ impl BodeCurve {
             .map(|(omega, value)| [omega.log10(), *value])
     }
 
-    /// Returns [`Self::points`], with logarithms computed once for all curves on the same
-    /// frequencies.
+    /// Returns [`Self::points`]; `axis` keeps the logarithms for further curves with the
+    /// same frequencies.
     pub fn points_on<'a>(
         &'a self,
         axis: &'a mut LogFrequencies,
@@ -122,8 +121,8 @@ impl BodeCurve {
             .map(|(log_omega, value)| [*log_omega, *value])
     }
 
-    /// Returns the points in [`Self::points_on`] from `low` to `high` in `log10 omega`, and one
-    /// more on either side.
+    /// Returns the points of [`Self::points_on`] from `low` to `high` in `log10 omega`, and the
+    /// next point on either side.
     pub fn points_between<'a>(
         &'a self,
         axis: &'a mut LogFrequencies,
@@ -164,7 +163,7 @@ impl BodeCurve {
     }
 }
 
-/// Logarithms of the last curve's frequencies: curves in a plot mostly share theirs.
+/// Logarithms of the last curve's frequencies; most curves of a plot share their frequencies.
 #[derive(Clone, Debug, Default)]
 pub struct LogFrequencies {
     omega: Arc<[f64]>,

@@ -1,4 +1,4 @@
-//! Options for Bode plots and their relatives: contents, units and ranges.
+//! Options of figures over frequency: contents, units and ranges.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,7 +8,7 @@ use super::axis::{Axis, FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit,
 use super::bode_curve::CurveId;
 use super::role::Role;
 
-/// Options for a Bode plot: contents, units and ranges.
+/// Options of a figure over frequency: contents, units and ranges.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodeOptions {
     pub unit: FrequencyUnit,
@@ -21,14 +21,14 @@ pub struct BodeOptions {
     pub isolated: Option<ModelId>,
     /// Whole turns added to phases by hand.
     pub turns: BTreeMap<(ConditionId, Pair, CurveId), i32>,
-    /// Whether the envelopes of unnoticeable added dynamics are shown, about the identified
+    /// Whether the envelopes of maximum unnoticeable added dynamics are shown, about the identified
     /// response and among the errors.
     pub shows_muad: bool,
     /// Response whose zeros are shown among the poles.
     pub zeros_of: Option<Pair>,
     /// Names and frequencies \[rad/s\] at which a bandwidth is read, marked by vertical lines.
     pub crossings: Vec<(&'static str, f64)>,
-    /// Frequencies shown \[rad/s\]; fitted to the curves if `None`.
+    /// Displayed frequency range \[rad/s\]; fitted to the curves if `None`.
     pub omega: Option<Range>,
     /// Ranges in the upper panel \[dB\] and the lower panel \[deg\]; fitted to the band if `None`.
     pub values: [Option<Range>; 2],

@@ -14,7 +14,7 @@ use super::role::Role;
 
 /// Strip height, relative to 1 for the phase.
 const WEIGHT: f64 = 0.45;
-/// Line at the least trusted coherence.
+/// Line at the minimum coherence that counts.
 const TRUSTED: Stroke = Stroke::dashed(Color::DIM, 0.8, Dash::Short);
 
 /// Coherence of a measured response.
@@ -29,8 +29,8 @@ pub struct CoherenceCurve {
 }
 
 impl ConditionSource<'_> {
-    /// Returns a response's coherence for every visible identified model measured with it; the
-    /// representative comes last.
+    /// Returns the coherence of a response for every visible identified model measured with
+    /// coherence; the representative comes last.
     pub fn coherence_curves(&self, pair: Pair, options: &BodeOptions) -> Vec<CoherenceCurve> {
         let mut curves: Vec<CoherenceCurve> = self
             .models(BundleKind::Identified, options)
@@ -42,7 +42,7 @@ impl ConditionSource<'_> {
         curves
     }
 
-    /// Returns an identified model's coherence; `None` if it was not measured.
+    /// Returns the coherence of a response of an identified model; `None` if it was not measured.
     fn coherence_curve(&self, model: SourceModel, pair: Pair) -> Option<CoherenceCurve> {
         let identified = self.curves.condition.bundle(BundleKind::Identified);
         let Dynamics::Measured(response) = &identified[model.index].dynamics else {
@@ -63,8 +63,8 @@ impl ConditionSource<'_> {
         })
     }
 
-    /// Returns the least coherence at which a frequency counts: from the settings, otherwise the
-    /// default.
+    /// Returns the minimum coherence at which a frequency counts: the value from the settings,
+    /// otherwise the default.
     pub fn least_coherence(&self) -> f64 {
         self.study
             .settings

@@ -6,7 +6,7 @@ use gdcm_model::dataset::Dataset;
 use gdcm_model::dataset::condition::FlightState;
 use gdcm_study::decisions::choices::ConditionChoice;
 
-/// Classes that come first in their order, whatever the others are called.
+/// Names of the classes that come first in their order.
 const FIRST: [&str; 2] = ["low", "light"];
 
 /// Classes in a dataset. Conditions in the first altitude class are circles, others diamonds;
@@ -53,7 +53,8 @@ fn ordered(names: BTreeSet<String>) -> Vec<String> {
     names
 }
 
-/// Returns `low altitude` and `high weight`, as far as a condition has these classes.
+/// Returns the names of a condition's classes, such as `low altitude` and `high weight`; `None` for
+/// a missing class.
 pub fn class_names(state: &FlightState) -> [Option<String>; 2] {
     let altitude = state.altitude.as_ref();
     let weight = state.weight.as_ref();
@@ -64,7 +65,7 @@ pub fn class_names(state: &FlightState) -> [Option<String>; 2] {
 }
 
 /// Returns `low altitude, high weight`, or `optimum` for a condition without classes; followed by
-/// its absence from the schedule, if any.
+/// `held out` or `not in the schedule` where this applies.
 pub(super) fn class_words(state: &FlightState, choice: &ConditionChoice) -> String {
     let mut words: Vec<String> = class_names(state).into_iter().flatten().collect();
     if words.is_empty() {

@@ -1,5 +1,5 @@
-//! Source for figures about one condition: its models with their roles, the corrected versions of
-//! the representative, and the words that describe them.
+//! Data behind the figures of a condition: its models with their roles, the corrected versions of
+//! the representative, and the texts that describe them.
 
 use std::sync::Arc;
 
@@ -20,12 +20,12 @@ pub use super::bode_curve::CurveId;
 use super::bode_options::BodeOptions;
 use super::role::Role;
 
-/// Source for figures about one condition.
+/// Data behind the figures of a condition.
 #[derive(Clone, Copy, Debug)]
 pub struct ConditionSource<'a> {
     /// The dataset with its decisions.
     pub study: &'a Study,
-    /// The condition's result; without it, the responses can still be shown.
+    /// Result of the condition; without it, the responses can still be shown.
     pub analysis: Option<&'a ConditionAnalysis>,
     pub schedule: Option<&'a Schedule>,
     /// Responses of the condition's models.
@@ -34,7 +34,7 @@ pub struct ConditionSource<'a> {
     pub variant: Option<(&'a str, &'a ConditionAnalysis)>,
 }
 
-/// A model in the condition that is not suppressed by an isolated model.
+/// A model of the condition, unless the isolation of another model suppresses it.
 #[derive(Clone, Debug)]
 pub(super) struct SourceModel {
     pub(super) id: ModelId,
@@ -42,7 +42,7 @@ pub(super) struct SourceModel {
     pub(super) index: usize,
     pub(super) role: Role,
     pub(super) rejected: bool,
-    /// Whether the engineer hides it.
+    /// Whether the engineer hides the model or its role.
     pub(super) hidden: bool,
 }
 
@@ -51,7 +51,7 @@ pub(super) struct SourceModel {
 pub(super) struct CorrectedModel<'a> {
     /// Curve without points.
     pub(super) curve: BodeCurve,
-    /// Result that holds its couplings.
+    /// Result that contains its couplings.
     pub(super) result: &'a ConditionAnalysis,
     /// Index of the physics model.
     pub(super) model: usize,
@@ -62,7 +62,7 @@ pub(super) struct CorrectedModel<'a> {
 struct Version<'c> {
     id: CurveId,
     role: Role,
-    /// Words after the model's name in its label.
+    /// Text after the model's name in its label.
     words: &'static str,
     correction: &'c ChannelCorrection,
 }
@@ -104,7 +104,7 @@ impl<'a> ConditionSource<'a> {
             .map(|analysis| analysis.representative_name(kind))
     }
 
-    /// Returns the index of the identified model with which the others are compared: the
+    /// Returns the index of the identified model to which the other models are compared: the
     /// representative, or the first model before the bundle is compared.
     pub(super) fn reference(&self) -> usize {
         let name = self.representative(BundleKind::Identified);
@@ -126,8 +126,8 @@ impl<'a> ConditionSource<'a> {
         models
     }
 
-    /// Returns whether another model in the condition is isolated, and this model does not
-    /// represent its bundle.
+    /// Returns whether another model of the condition is isolated, so that this model is not shown;
+    /// representatives are never suppressed.
     fn is_suppressed(&self, id: &ModelId, options: &BodeOptions) -> bool {
         match &options.isolated {
             Some(isolated) if isolated.condition == id.condition => {
@@ -190,9 +190,9 @@ impl<'a> ConditionSource<'a> {
         parts.join(" · ")
     }
 
-    /// Returns the corrected versions of the representative physics model: with the condition's own
-    /// correction, with the scheduled correction, without leads, with couplings alone, and with the
-    /// correction of an overlaid variant; as far as they exist.
+    /// Returns the available corrected versions of the representative physics model: with the
+    /// condition's own correction, with the scheduled correction, without leads, with couplings
+    /// alone, and with the correction of an overlaid variant.
     pub(super) fn corrected_models(
         &self,
         pair: Pair,
@@ -322,7 +322,7 @@ pub fn condition_words(FlightState { id, name, .. }: &FlightState) -> String {
     }
 }
 
-/// Describes the dataset and the settings behind every figure.
+/// Describes the dataset and the settings, for the captions of all figures.
 pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
     let low = compact(settings.band.min());
     let high = compact(settings.band.max());

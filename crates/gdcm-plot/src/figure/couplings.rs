@@ -1,4 +1,4 @@
-//! Effect of couplings on their loop and on the poles (M16.4).
+//! Effect of couplings on their loop `I - K H` and on the poles (M16.4).
 
 use nalgebra::Complex;
 
@@ -21,12 +21,13 @@ const SHIFT: Stroke = Stroke::solid(Color::of(Hue::Corrected), 1.0);
 const RINGING: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
 const BAND: Color = Color::of(Hue::Accent).tint(12);
 pub(super) const AXIS: Stroke = Stroke::solid(Color::DIM, 0.6);
-/// Largest magnitude of poles shown, relative to the band's upper end.
+/// Maximum magnitude of the displayed poles, relative to the upper end of the band.
 const SHOWN_POLES: f64 = 1.5;
 
-/// Plots the least singular value of `I - K H` over frequency for every condition, `shown` on top;
-/// and the poles of that condition's physics representative without and with couplings. Without a
-/// selected condition, shows the condition nearest to ringing; `None` without conditions.
+/// Plots the minimum singular value of `I - K H` over frequency for every condition, `shown` on
+/// top; and the poles of the physics representative of that condition, without and with couplings.
+/// Without a selected condition, shows the condition with the smallest margin; `None` without
+/// conditions.
 pub fn couplings_figure(
     assessment: &CouplingsAssessment,
     shown: Option<ConditionId>,
@@ -46,7 +47,7 @@ pub fn couplings_figure(
     Some(figure)
 }
 
-/// Returns the condition with the least margin; conditions without a margin come last.
+/// Returns the condition with the smallest margin; conditions without a margin come last.
 fn nearest_to_ringing(assessment: &CouplingsAssessment) -> Option<ConditionId> {
     let ids = assessment.conditions.keys().copied();
     ids.min_by(|a, b| least_margin(assessment, *a).total_cmp(&least_margin(assessment, *b)))
@@ -59,7 +60,7 @@ fn least_margin(assessment: &CouplingsAssessment, id: ConditionId) -> f64 {
     }
 }
 
-/// Plots how far the loop is from ringing.
+/// Plots the minimum singular value of the loop over frequency.
 fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: FrequencyUnit) -> Plot {
     let frequencies: Vec<f64> = assessment
         .omega
@@ -95,7 +96,7 @@ fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: Frequen
     Plot::new("Loop at the sticks").panel(panel.with(curve))
 }
 
-/// Plots the pole shifts near the band.
+/// Plots the poles near the band, without and with couplings.
 fn pole_plot(assessment: &CouplingsAssessment, shown: ConditionId) -> Plot {
     let most_rad_s = SHOWN_POLES * assessment.band.max();
     let mut near: Vec<PoleShift> = Vec::new();

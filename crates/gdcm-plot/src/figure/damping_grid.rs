@@ -7,16 +7,16 @@ use super::marks::Guide;
 use super::ticks::step_above;
 
 const DAMPING_RATIOS: [f64; 6] = [0.1, 0.2, 0.4, 0.6, 0.8, 0.95];
-/// Length of the rays in a figure \[rad/s\], beyond every pole shown.
+/// Length of the rays in a figure \[rad/s\], beyond every displayed pole.
 const FAR: f64 = 1e3;
-/// Maximum arc count, and points in each arc.
+/// Maximum number of arcs, and number of intervals of each arc.
 const ARCS: u32 = 8;
 const ARC_POINTS: usize = 60;
 /// Fractions of plot width and height within which two labels would overlap.
 const BESIDE: [f64; 2] = [0.11, 0.07];
 
-/// Returns rays at constant damping ratio, `Re λ = -ζ |λ|`, above and below the real axis, for a
-/// figure without labels on them.
+/// Returns unlabelled rays at constant damping ratio, `Re λ = -ζ |λ|`, above and below the real
+/// axis.
 pub(super) fn rays() -> Vec<Guide> {
     let mut rays = Vec::new();
     for ratio in DAMPING_RATIOS {
@@ -31,9 +31,8 @@ pub(super) fn rays() -> Vec<Guide> {
     rays
 }
 
-/// Returns grid lines for a part of the s-plane with these real and imaginary ranges: rays at
-/// constant damping ratio, the upper rays labelled where they leave the part, and arcs at constant
-/// frequency.
+/// Returns the grid lines in the displayed ranges of the s-plane: rays at constant damping ratio,
+/// the upper rays labelled at the edge of the displayed part, and arcs at constant frequency.
 pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide> {
     let mut reach = 0.0f64;
     for end in [real.min, real.max, imaginary.min, imaginary.max] {
@@ -51,14 +50,15 @@ pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide
     guides.into_iter()
 }
 
-/// Returns rays for a part of the s-plane up to `reach` \[rad/s\]; a label too near the previous
-/// label is left out.
+/// Returns rays up to `reach` \[rad/s\] in the displayed ranges; a label too near the previous
+/// label is omitted.
 fn labelled_rays(real: Range, imaginary: Range, reach: f64) -> Vec<Guide> {
     let mut last_label: Option<[f64; 2]> = None;
     let mut rays = Vec::new();
     for ratio in DAMPING_RATIOS {
         let slope = (1.0 - ratio * ratio).sqrt() / ratio;
-        // Distance between the imaginary axis and the point at which the ray leaves the part.
+        // Distance between the imaginary axis and the point at which the ray leaves the displayed
+        // part.
         let edge = (-real.min).min(imaginary.max / slope).max(0.0);
         let place = [edge / real.width(), edge * slope / imaginary.width()];
         let is_labelled = edge > 0.0 && !last_label.is_some_and(|last| is_beside(place, last));
@@ -87,7 +87,7 @@ fn is_beside(place: [f64; 2], other: [f64; 2]) -> bool {
     (0..2).all(|axis| (place[axis] - other[axis]).abs() < BESIDE[axis])
 }
 
-/// Returns the left half of a circle about the origin, from above.
+/// Returns the left half of a circle about the origin, starting at the top.
 fn arc(radius: f64) -> Guide {
     let mut points = Vec::new();
     for k in 0..=ARC_POINTS {

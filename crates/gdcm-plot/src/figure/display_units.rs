@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use gdcm_model::number_format::three_digits;
 use gdcm_model::units::rad_s_to_hz;
 
-/// Unit for displayed frequencies; internally they are always rad/s.
+/// Display unit of frequencies; internally they are always in rad/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FrequencyUnit {
     #[default]
@@ -50,12 +50,12 @@ impl FrequencyUnit {
     }
 }
 
-/// Unit for magnitudes of responses.
+/// Display unit of magnitudes of responses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MagnitudeUnit {
     #[default]
     Decibel,
-    /// Output over input, in their units.
+    /// Ratio of output to input, in the units of both.
     Ratio,
 }
 
@@ -69,7 +69,7 @@ pub enum PhaseUnit {
     Wrapped,
 }
 
-/// Unit for phase errors.
+/// Display unit of phase errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PhaseErrorUnit {
     /// Δφ \[deg\].

@@ -1,5 +1,4 @@
-//! A figure laid out on paper: shapes and texts at their positions, written unchanged to every file
-//! format.
+//! A figure laid out on paper: shapes and texts at their positions, identical in every file format.
 
 use super::thinning::{Pixel, thinned};
 
@@ -47,14 +46,14 @@ pub struct Text {
     pub words: String,
     /// Font size \[pt\].
     pub size_pt: f64,
-    /// The part that lies at the position.
+    /// Part of the text that lies at the position.
     pub anchor: Anchor,
     /// Whether the text runs upwards.
     pub upright: bool,
     pub color: Color,
 }
 
-/// Part of a text at its position.
+/// Part of a text that lies at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     Start,
@@ -92,7 +91,7 @@ impl Text {
 }
 
 impl Anchor {
-    /// Returns the part of the text before its position, relative to its width.
+    /// Returns the part of the text's width that lies before its position.
     pub fn before(self) -> f64 {
         match self {
             Self::Start => 0.0,
@@ -209,7 +208,7 @@ impl Shape {
     }
 }
 
-/// Meaning of a colour. Paper and each theme in the window have their own colour for it.
+/// Meaning of a colour. Paper and each theme of the window assign it a colour of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Hue {
     /// Paper, and plot backgrounds in the window.
@@ -236,8 +235,8 @@ pub enum Hue {
     Warning,
     /// Proofs and improvements.
     Good,
-    /// From the colour for perturbed models, 0, to the colour for identified models, 255, as in
-    /// colour-blind-safe scales.
+    /// Airspeed, from 0 in the colour of perturbed models to 255 in the colour of identified
+    /// models; distinguishable by colour-blind readers.
     OfAirspeed(u8),
 }
 
@@ -280,7 +279,7 @@ fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
     mixed
 }
 
-/// A colour by its meaning and strength.
+/// A colour, given by its meaning and strength.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Color {
     pub hue: Hue,
@@ -298,7 +297,7 @@ impl Color {
     /// Grid lines.
     pub const GRID: Self = Self::of(Hue::Grid);
 
-    /// Creates a hue at full strength.
+    /// Creates a colour at full strength.
     pub const fn of(hue: Hue) -> Self {
         Self { hue, percent: 100 }
     }
@@ -318,7 +317,7 @@ impl Color {
     }
 }
 
-/// Dash pattern: distinguishes lines without colours.
+/// Dash pattern, which distinguishes lines without colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Dash {
     #[default]
@@ -333,7 +332,7 @@ pub enum Dash {
 }
 
 impl Dash {
-    /// Returns dash and gap lengths in turn \[pt\]; empty for a solid line.
+    /// Returns dash and gap lengths alternately \[pt\]; empty for a solid line.
     pub fn pattern_pt(self) -> &'static [f64] {
         match self {
             Self::Solid => &[],
@@ -387,8 +386,8 @@ impl Stroke {
 }
 
 impl Drawing {
-    /// Returns the drawing with fewer points: no omitted point is farther than `tolerance_pt` from
-    /// its line.
+    /// Returns the drawing with fewer points: every omitted point lies within `tolerance_pt` of the
+    /// remaining line.
     pub fn thinned(self, tolerance_pt: f64) -> Self {
         let pixel = Pixel {
             width: tolerance_pt,
@@ -401,7 +400,7 @@ impl Drawing {
     }
 }
 
-/// Thins open polylines, also those that are clipped.
+/// Thins open polylines, including those in clipped areas.
 fn thinned_shapes(shapes: Vec<Shape>, pixel: Pixel) -> Vec<Shape> {
     shapes
         .into_iter()

@@ -1,5 +1,4 @@
-//! Errors that the fit sees: distance from a response to its reference, frequency by frequency
-//! (M6).
+//! Errors used by the fit: deviation of a response from its reference at each frequency (M6).
 
 use std::sync::Arc;
 
@@ -24,7 +23,7 @@ use super::frequency_panels::{FrequencyPanels, figure_of_pairs};
 use super::muad::muad_among_errors;
 use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 
-/// Plots the errors that the fit sees for `pairs`: for every kept physics model, and for the
+/// Plots the errors used by the fit for `pairs`: for every kept physics model, and for the
 /// representative before and after its correction, with G, D and the bounds.
 pub fn error_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeOptions) -> Figure {
     figure_of_pairs(source, pairs, Some("Error"), |pair| {
@@ -60,8 +59,8 @@ fn error_plot(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -
 
 impl ConditionSource<'_> {
     /// Returns the errors over the band: for every kept physics model, for the reference as the
-    /// line at zero, and for the representative after each correction. `cache` keeps the numbers
-    /// until their sources change.
+    /// line at zero, and for the representative after each correction. `cache` keeps the computed
+    /// errors until their sources change.
     pub fn error_curves(
         &self,
         pair: Pair,
@@ -114,8 +113,8 @@ impl ConditionSource<'_> {
         drawn
     }
 
-    /// Returns G and D, the channel bounds, and quantiles of the representative's error among
-    /// `drawn`, hidden or not: the values that the fit derives from it (M6, M7).
+    /// Returns lines at G and D, at the channel bounds, and at the quantiles of the
+    /// representative's error among `drawn`, hidden or not (M6, M7).
     pub fn error_references(
         &self,
         pair: Pair,
@@ -144,7 +143,7 @@ impl ConditionSource<'_> {
     }
 }
 
-/// Distance from a response to the reference, with the phase on its branch.
+/// Deviation of a response from the reference, with the phase on its branch.
 #[derive(Clone, Debug)]
 struct ErrorShape {
     /// `20 log10 |H_sim| / |H_ref|`.
@@ -164,7 +163,7 @@ struct DrawnError {
 }
 
 impl DrawnError {
-    /// Returns a curve with these numbers over `omega` \[rad/s\].
+    /// Returns a curve with these values over `omega` \[rad/s\].
     fn apply(&self, curve: BodeCurve, omega: &Arc<[f64]>) -> BodeCurve {
         curve.with(omega, &self.magnitude_db, &self.phase)
     }
@@ -187,8 +186,8 @@ impl ErrorShape {
         })
     }
 
-    /// Returns the error after a gain and a delay in the simulated response (M10), which leave it
-    /// on its branch, as drawn over `omega` \[rad/s\].
+    /// Returns the error, as drawn over `omega` \[rad/s\], after a gain and a delay are added to
+    /// the simulated response (M10); the phase stays on its branch.
     fn drawn(&self, correction: GainDelay, omega: &[f64], unit: PhaseErrorUnit) -> DrawnError {
         let magnitude_db = correction
             .magnitudes_db(&self.mismatch_db, omega)
@@ -209,20 +208,20 @@ impl ErrorShape {
     }
 }
 
-/// Choices on which the errors of a response depend.
+/// Choices that determine the errors of a response.
 #[derive(Clone, Debug, PartialEq)]
 struct ErrorKey {
     pair: Pair,
-    /// Index of the identified model that the others are compared with.
+    /// Index of the identified model to which the others are compared.
     reference: usize,
     /// Band ends \[rad/s\].
     band: [f64; 2],
-    /// Least coherence that counts.
+    /// Minimum coherence that counts.
     least_coherence: Option<f64>,
     unit: PhaseErrorUnit,
 }
 
-/// Source of the errors of a response.
+/// Responses and choices from which an error is computed.
 #[derive(Clone, Debug)]
 struct ErrorSource {
     curves: Arc<ConditionCurves>,
@@ -235,7 +234,7 @@ impl ErrorSource {
     }
 
     /// Computes the error of a response over `omega`, the frequencies in the band. `None` if the
-    /// response or the reference is zero or not finite somewhere in it.
+    /// response or the reference is zero or not finite anywhere in the band.
     fn shape(&self, response: &FrequencyResponse, omega: &[f64]) -> Option<ErrorShape> {
         let reference = self.polar(self.curves.identified.get(self.key.reference)?)?;
         ErrorShape::new(
@@ -246,13 +245,13 @@ impl ErrorSource {
         )
     }
 
-    /// Returns a response in the band; `None` if it is zero or not finite somewhere in it.
+    /// Returns a response in the band; `None` if it is zero or not finite anywhere there.
     fn polar(&self, response: &FrequencyResponse) -> Option<PolarCurve> {
         PolarCurve::from_values(response.curve(self.key.pair).get(self.band_indices())?)
     }
 
-    /// Returns weights for the frequencies `omega`, from the reference's coherence; `None` without
-    /// a coherence.
+    /// Returns the weights of the frequencies `omega` from the coherence of the reference; `None`
+    /// without coherence.
     fn coherence_weights(&self, omega: &[f64]) -> Option<CoherenceWeights> {
         let identified = self.curves.condition.bundle(BundleKind::Identified);
         let flight = &identified.get(self.key.reference)?.dynamics;
@@ -277,12 +276,12 @@ struct ModelError {
     drawn: DrawnError,
 }
 
-/// Errors of a response for every physics model in a condition, kept until their source changes.
+/// Errors of a response for every physics model of a condition, kept until their source changes.
 #[derive(Debug, Default)]
 pub struct ErrorCache {
     source: Option<ErrorSource>,
     omega: Arc<[f64]>,
-    /// Zero at each frequency: the reference's error.
+    /// Zero at each frequency: error of the reference.
     zero: Arc<[f64]>,
     /// In model order; `None` for a model without an error.
     errors: Vec<Option<ModelError>>,
@@ -314,13 +313,13 @@ impl ErrorCache {
         Some(error.shape.clone())
     }
 
-    /// Computes the error of any other response.
+    /// Computes the error of a response that is not in the cache.
     fn shape(&self, response: &FrequencyResponse) -> Option<ErrorShape> {
         self.source.as_ref()?.shape(response, &self.omega)
     }
 }
 
-/// Creates a line at a delay, among phase errors.
+/// Creates the line of a delay in a phase-error panel.
 fn delay_rule(
     kind: ReferenceKind,
     label: String,
@@ -334,7 +333,7 @@ fn delay_rule(
     ReferenceLine::new(Pane::Phase, kind, label, level)
 }
 
-/// Creates a line at a gain, among magnitude errors.
+/// Creates the line of a gain in a magnitude-error panel.
 fn gain_rule(kind: ReferenceKind, label: String, gain: f64) -> ReferenceLine {
     let level = Level::Constant(ratio_to_db(gain));
     ReferenceLine::new(Pane::Magnitude, kind, label, level)
@@ -345,7 +344,7 @@ fn signed(value: f64) -> String {
     with_minus_sign(&format!("{value:.1}"))
 }
 
-/// Returns lines at delta gain G and delta delay D (M6), as far as they are defined.
+/// Returns lines at delta gain G and delta delay D (M6) where these are defined.
 fn delta_rules(
     analysis: &ConditionAnalysis,
     pair: Pair,
@@ -383,8 +382,8 @@ fn bound_rules(analysis: &ConditionAnalysis, unit: PhaseErrorUnit) -> Vec<Refere
     ]
 }
 
-/// Returns the quantiles `q` and `1 - q` in a response's error: the values in M7 if there were no
-/// other responses.
+/// Returns lines at the quantiles `q` and `1 - q` of a response's error: the values of M7 for this
+/// response alone.
 fn quantile_rules(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let mut ratios_db = curve.magnitude_db.to_vec();
     let mut delays_s = Vec::new();
@@ -437,7 +436,7 @@ mod tests {
         let reference = polar(&omega, 0.0, 0.0);
         let error = ErrorShape::new(&simulated, &reference, &omega, None).unwrap();
         let before = error.drawn(GainDelay::NONE, &omega, PhaseErrorUnit::Millisecond);
-        // Rounding of angles of a turn, divided by 0.1 rad/s.
+        // Rounding errors of angles in turns, divided by 0.1 rad/s.
         assert!(
             before
                 .phase

@@ -12,27 +12,27 @@ use super::drawing::{Color, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::marks::{Bars, DotShape, Dots, Intervals, Note, Place};
 
-/// Bar width; places on the axis are 1 apart.
+/// Bar width; positions on the axis are 1 apart.
 const BAR: f64 = 0.56;
-/// Spacing between dots at the same place.
+/// Offset between dots of the same position.
 const APART: f64 = 0.24;
-/// Interval of the unexplained rest.
+/// Confidence interval of the unexplained part.
 const INTERVAL: Stroke = Stroke::solid(Color::of(Hue::Nominal).tint(50), 2.4);
-/// Intervals are shown up to this many times the scatter.
+/// The axis includes interval ends up to this multiple of the largest scatter.
 const MOST_SEEN: f64 = 4.0;
-/// The shares end at 100 %; the numbers above them need the rest \[%\].
+/// Range of the variance axis \[%\]: the shares end at 100 %, with room for the ratios above.
 const SHARES: Range = Range {
     min: 0.0,
     max: 118.0,
 };
-/// Positions for those numbers, and for the note on a missing split \[%\].
+/// Heights of the ratios above the shares, and of the note on a missing split \[%\].
 const ABOVE: f64 = 109.0;
 const MIDDLE: f64 = 50.0;
 
-/// Reference for each scatter, in axis order.
+/// Reference of each scatter, in axis order.
 const ABOUT: [&str; 2] = ["airspeed", "schedule"];
 
-/// A share of the variance, and its colour; in print, shares differ in darkness.
+/// A share of the variance, with its colour; in print, shares differ in darkness.
 struct Share {
     name: &'static str,
     hue: Hue,
@@ -54,9 +54,9 @@ const STACK: [Share; 3] = [
     },
 ];
 
-/// Plots how the scatter splits for each pair, at equal airspeed and about the schedule: variance
-/// shares as stacked bars; below them the scatter, its expected value, and the unexplained rest
-/// with its interval. `None` without error bars, or if no pair has a scatter.
+/// Plots the contributions to the scatter for each pair, at equal airspeed and about the schedule:
+/// variance shares as stacked bars; below, the scatter, its expected value, and the unexplained
+/// part with its interval. `None` without error bars, or if no pair has a scatter.
 pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     let uncertainty = analysis.uncertainty.as_ref()?;
     let mut plots = Vec::new();
@@ -82,7 +82,7 @@ pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     Some(figure)
 }
 
-/// A split at its place on the axis.
+/// A split at its position on the axis.
 struct PlacedSplit<'a> {
     x: f64,
     split: Option<&'a VarianceDecomposition>,
@@ -105,8 +105,8 @@ fn axis() -> Axis {
     Axis::named("Scatter about", ABOUT)
 }
 
-/// Stacks the variance shares due to trim, identification and the rest; above them the scatter
-/// relative to its expected value.
+/// Stacks the variance shares due to trim, identification and unexplained causes; above, the ratio
+/// of the scatter to its expected value.
 fn shares_panel(scatter: &PairScatter) -> Panel {
     let mut stack = STACK.map(|share| Bars {
         name: share.name.to_owned(),
@@ -150,8 +150,8 @@ fn note(x: f64, y: f64, text: String, upright: bool) -> Note {
     }
 }
 
-/// Plots standard deviations in `ln k_o k_i` in percent: the scatter, its expected value, and the
-/// unexplained rest with its interval at this level.
+/// Plots standard deviations of `ln k_o k_i` in percent: the scatter, its expected value, and the
+/// unexplained part with its interval at this confidence level.
 fn deviations_panel(scatter: &PairScatter, level: f64) -> Panel {
     let mut total = empty_dots("scatter", DotShape::Circle, Color::INK);
     let mut expected = empty_dots("expected", DotShape::Diamond, Color::of(Hue::Perturbed));

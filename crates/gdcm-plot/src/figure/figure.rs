@@ -1,4 +1,4 @@
-//! Describes a figure: plots side by side, each with panels below one another, each with two axes
+//! Description of a figure: plots side by side; each has panels below one another, with two axes
 //! and marks. Nothing here depends on paper or screen.
 
 use super::axis::{Axis, Range};
@@ -9,26 +9,26 @@ pub use super::marks::{Along, Bars, Curve, Dot, DotShape, Dots, Note, Place, Rul
 
 /// A figure: plots in a table, a title above, a legend and a caption below.
 ///
-/// The description fixes contents and styles. Ranges that it leaves open follow from the marks
-/// ([`Panel::shown`], [`Self::with_ranges`]); positions follow from paper or screen.
+/// Contents and styles are fixed here. Open ranges follow from the marks ([`Panel::shown`],
+/// [`Self::with_ranges`]); positions follow from paper or screen.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figure {
     pub title: String,
-    /// Dataset, condition and settings, as needed to read the figure. No date, so that the same
-    /// analysis makes the same file.
+    /// Dataset, condition and settings needed to read the figure. Without a date, so that the same
+    /// analysis produces the same file.
     pub caption: String,
     /// Row by row.
     pub plots: Vec<Plot>,
-    /// Maximum plot count side by side.
+    /// Maximum number of plots side by side.
     pub columns: usize,
     pub shared: Shared,
-    /// Total frame height in a plot relative to the frame width.
+    /// Total height of the frames of a plot, relative to the frame width.
     pub aspect: f64,
-    /// Whether plots may shrink to the limit of readability, as a large table needs.
+    /// Whether plots may shrink to the limit of readability, for large tables of plots.
     pub dense: bool,
 }
 
-/// Axes with the same range in all plots; only the outer plots show their numbers.
+/// Axes with the same range in all plots; only the outer plots show tick labels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shared {
     pub x: bool,
@@ -66,7 +66,7 @@ impl Figure {
         self
     }
 
-    /// Returns the figure with at most `columns` plots side by side; 0 counts as 1.
+    /// Sets the maximum number of plots side by side; 0 counts as 1.
     pub fn columns(self, columns: usize) -> Self {
         Self {
             columns: columns.max(1),
@@ -86,7 +86,7 @@ impl Figure {
         self
     }
 
-    /// Returns the figure with another ratio between plot height and width.
+    /// Sets the ratio of plot height to width.
     pub fn aspect(self, aspect: f64) -> Self {
         Self { aspect, ..self }
     }
@@ -99,8 +99,8 @@ impl Figure {
         }
     }
 
-    /// Returns the figure with the common range of shared axes written into every panel, so that
-    /// each panel can be painted by itself.
+    /// Returns the figure with the common ranges of shared axes stored in every panel, so that each
+    /// panel can be painted separately.
     pub fn with_ranges(mut self) -> Self {
         let mut x = None;
         if self.shared.x {
@@ -177,7 +177,7 @@ impl Panel {
         self
     }
 
-    /// Returns the panel with another height relative to the other panels in its plot.
+    /// Sets the height relative to the other panels of the plot.
     pub fn weight(self, weight: f64) -> Self {
         Self { weight, ..self }
     }
@@ -190,8 +190,8 @@ impl Panel {
         })
     }
 
-    /// Returns the range along an axis: the given range, otherwise the range fitted to the marks in
-    /// this panel alone.
+    /// Returns the range of an axis: the given range, otherwise the range fitted to the marks of
+    /// this panel.
     pub fn shown(&self, along: Along) -> Range {
         let axis = match along {
             Along::X => &self.x,
@@ -201,7 +201,7 @@ impl Panel {
     }
 }
 
-/// Panels below one another with the same horizontal range, and a title.
+/// A title, and panels below one another with the same horizontal range.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
     /// Subject: `LON → Q`. May be empty.

@@ -47,7 +47,7 @@ pub enum FigureFormat {
     Png,
     /// A page as large as the figure, with embedded fonts.
     Pdf,
-    /// The numbers in all marks.
+    /// The values of all marks.
     Csv,
 }
 
@@ -64,7 +64,7 @@ impl FigureFormat {
         }
     }
 
-    /// Returns the name with its use, for a tooltip.
+    /// Returns the name with its purpose, for a tooltip.
     pub fn words(self) -> &'static str {
         match self {
             Self::Svg => "SVG, for documents and drawing programs",

@@ -15,31 +15,31 @@ use super::reference_line::{Level, ReferenceKind, ReferenceLine};
 use super::responses::BodeBand;
 use super::role::Role;
 
-/// Background for frequencies at which the remaining mismatch would be noticed.
+/// Background of frequencies at which a pilot notices the remaining mismatch (MUAD).
 const NOTICED: Color = Color::of(Hue::Warning).tint(20);
 /// Confidence band about an identified model.
 const UNCERTAIN: Color = Color::of(Hue::Identified).tint(22);
-/// Frame height relative to width in a single plot, and in several plots.
+/// Ratio of frame height to width in a figure with a single plot, and in a figure with several.
 const SINGLE_ASPECT: f64 = 0.72;
 const SHARED_ASPECT: f64 = 1.9;
 
-/// Contents of a response's panels.
+/// Contents of the panels of a response.
 pub(super) struct FrequencyPanels<'a> {
     pub(super) curves: &'a [BodeCurve],
     pub(super) references: &'a [ReferenceLine],
     pub(super) bands: &'a [BodeBand],
-    /// Marked frequency ranges \[rad/s\].
+    /// Highlighted frequency ranges \[rad/s\].
     pub(super) strips: &'a [(f64, f64)],
     pub(super) options: &'a BodeOptions,
 }
 
 impl FrequencyPanels<'_> {
-    /// Builds the panel for magnitudes or phases with this vertical axis.
+    /// Builds the magnitude or the phase panel with this vertical axis.
     pub(super) fn panel(&self, pane: Pane, axis: Axis) -> Panel {
         self.converted_panel(pane, axis, |value| value)
     }
 
-    /// Builds a panel with values converted to its vertical unit.
+    /// Builds a panel whose values are converted to the unit of its vertical axis.
     pub(super) fn converted_panel(&self, pane: Pane, axis: Axis, convert: fn(f64) -> f64) -> Panel {
         let strips = self.strips.iter().map(|&(from, to)| Band {
             range: self.options.in_unit(from, to),
@@ -81,7 +81,7 @@ impl FrequencyPanels<'_> {
         drawn
     }
 
-    /// Returns a panel's reference lines. A line without its own frequencies runs over those of the
+    /// Returns the reference lines of a panel. A line without its own frequencies uses those of the
     /// first curve.
     fn reference_marks(&self, pane: Pane, convert: fn(f64) -> f64) -> Vec<Mark> {
         let omega: &[f64] = match self.curves.first() {
@@ -114,8 +114,8 @@ impl FrequencyPanels<'_> {
     }
 }
 
-/// The last curve's frequencies in the displayed unit: curves in a plot mostly share theirs, and
-/// the figure's curves then share them too.
+/// Frequencies of the last curve in the displayed unit; curves that share their frequencies also
+/// share the converted values.
 #[derive(Default)]
 struct SharedFrequencies {
     omega: Arc<[f64]>,
@@ -133,8 +133,8 @@ impl SharedFrequencies {
     }
 }
 
-/// Draws a reference line: as a labelled rule if it is a constant target or bound, otherwise as a
-/// curve over its own frequencies or over `omega` \[rad/s\].
+/// Draws a reference line: a labelled rule for a constant target or bound, otherwise a curve over
+/// its own frequencies or over `omega` \[rad/s\].
 fn reference_mark(
     line: &ReferenceLine,
     omega: &[f64],
@@ -164,8 +164,8 @@ fn reference_mark(
         .into()
 }
 
-/// Builds a condition's figure with a plot for each pair side by side. Its title names `subject`,
-/// if any, the pair if there is only one, and the condition.
+/// Builds the figure of a condition with a plot for each pair, side by side. The title consists of
+/// `subject` (if any), the pair (if there is only one), and the condition.
 pub(super) fn figure_of_pairs(
     source: &ConditionSource<'_>,
     pairs: &[Pair],
@@ -186,7 +186,8 @@ pub(super) fn figure_of_pairs(
     side_by_side(source.dataset(), pairs, title, plot).caption(source.caption())
 }
 
-/// Builds a figure with a plot for each pair side by side. A single plot has no title and is wider.
+/// Builds a figure with a plot for each pair, side by side. A single plot has no title and a
+/// flatter frame.
 pub(super) fn side_by_side(
     dataset: &Dataset,
     pairs: &[Pair],

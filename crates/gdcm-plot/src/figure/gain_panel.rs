@@ -1,4 +1,4 @@
-//! Panel of a gain or delay: the optima of all conditions with their bounds, error bars and
+//! Panel of a gain or a delay: the optima of all conditions with their bounds, error bars and
 //! differences, and the schedule with its bands.
 
 use gdcm_method::schedule::Schedule;
@@ -18,27 +18,27 @@ use super::marks::{
 };
 use super::role::Role;
 
-/// Line without correction.
+/// Line at the value without correction.
 const NULL: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
-/// Lines for an error bar, and for its part due to identification.
+/// Lines of an error bar, and of its part due to identification.
 const BAR: Stroke = Stroke::solid(Color::of(Hue::Perturbed), 0.6);
 const INNER_BAR: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(50), 2.4);
-/// Maximum axis extension by error bars, relative to the range that dots span.
+/// Maximum extension of the axis by error bars, relative to the range of the dots.
 const BARS_EXTENSION: f64 = 0.5;
-/// Brackets for differences at the same airspeed.
+/// Brackets of differences at the same airspeed.
 const SIGNIFICANT_BRACKET: Stroke = Stroke::solid(Color::of(Hue::Warning), 0.7);
 const OTHER_BRACKET: Stroke = Stroke::solid(Color::DIM, 0.4);
-/// Names of both kinds of bracket, in the legend and among the numbers.
+/// Names of both kinds of bracket, in the legend and in the tables.
 pub(super) const SIGNIFICANT: &str = "significant difference, × expected";
 const NOT_SIGNIFICANT: &str = "difference, not significant";
 /// Background of the bounds.
 const BOUNDS: Color = Color::of(Hue::Accent).tint(16);
 /// Width of that background over airspeed \[kt\].
 const BOUNDS_WIDTH_KT: f64 = 3.0;
-/// Width of that background over conditions, which are 1 apart.
+/// Width of that background over conditions.
 const BOUNDS_WIDTH: f64 = 0.7;
 
-/// A gain or delay in an analysis, with its uncertainty if known.
+/// A gain or a delay in an analysis, with its uncertainty if available.
 pub(super) struct GainPanel<'a> {
     pub(super) quantity: GainQuantity,
     pub(super) analysis: &'a Analysis,
@@ -81,8 +81,8 @@ impl GainPanel<'_> {
         }
     }
 
-    /// Returns the vertical axis. Bars extend it by a limited part, so that the dots keep their
-    /// room.
+    /// Returns the vertical axis. Error bars extend it by a limited amount, so that the dots remain
+    /// spread out.
     fn value_axis(&self, bars: &[Intervals], label: &str) -> Axis {
         let measure = self.quantity.measure();
         let mut axis = Axis::linear(label)
@@ -142,7 +142,7 @@ impl GainPanel<'_> {
             if let Some(bar) = uncertainty.bar(placed.state.id, scalar)
                 && let Some(interval) = interval(bar, uncertainty.level)
             {
-                // Intervals of gains are intervals of their logarithm.
+                // Intervals of gains are given in logarithms.
                 let [low, high] = interval.map(|end| {
                     if scalar.is_delay() {
                         s_to_ms(end)
@@ -156,8 +156,8 @@ impl GainPanel<'_> {
         ends
     }
 
-    /// Returns, for each airspeed, the pair of net gains whose difference is largest relative to
-    /// its expected value (M13.4); significant differences come first.
+    /// Returns brackets at each airspeed between the two net gains with the largest ratio of
+    /// difference to expected value (M13.4); significant differences come first.
     fn brackets(&self) -> Vec<Brackets> {
         let (Some(uncertainty), GainQuantity::NetGain(pair), Across::Airspeed) =
             (self.uncertainty, self.quantity, self.across)
@@ -179,7 +179,7 @@ impl GainPanel<'_> {
         groups
     }
 
-    /// Returns brackets for significant differences, or for the others.
+    /// Returns the brackets of either the significant or the other differences.
     fn brackets_of(
         &self,
         uncertainty: &Uncertainty,
@@ -194,8 +194,8 @@ impl GainPanel<'_> {
             .collect()
     }
 
-    /// Returns the bracket for a difference, labelled with its ratio if it is significant; `None`
-    /// without results in both conditions.
+    /// Returns the bracket of a difference, labelled with its ratio if significant; `None` if a
+    /// condition has no result.
     fn bracket(&self, found: &AirspeedDifference, is_significant: bool) -> Option<Bracket> {
         let [first, second] = found.conditions;
         let first = self.analysis.condition(first)?;
@@ -214,7 +214,7 @@ impl GainPanel<'_> {
         })
     }
 
-    /// Returns both bands about the scheduled samples.
+    /// Returns both bands about the samples of the schedule.
     fn bands(&self, schedule: &Schedule, samples: &[[f64; 2]]) -> Vec<Envelope> {
         let Some(bands) = self.uncertainty.and_then(|found| found.bands.as_ref()) else {
             return Vec::new();
@@ -245,7 +245,7 @@ impl GainPanel<'_> {
         vec![confidence, scatter]
     }
 
-    /// Returns the search range for each optimum.
+    /// Returns the search bounds of each optimum.
     fn bounds(&self) -> Option<Spans> {
         let mut spans = Vec::new();
         for placed in self.results() {
@@ -268,7 +268,7 @@ impl GainPanel<'_> {
         })
     }
 
-    /// Returns a group for each condition class; conditions outside the schedule have separate
+    /// Returns a group for each condition class; conditions outside the schedule have their own
     /// groups.
     fn dots(&self) -> Vec<Dots> {
         let classes = Classes::of(&self.analysis.study.dataset);
@@ -289,7 +289,8 @@ impl GainPanel<'_> {
         groups
     }
 
-    /// Returns a condition's optimum, labelled with its number unless the axis shows it.
+    /// Returns the optimum of a condition, labelled with the condition's number unless the axis
+    /// shows it.
     fn dot(&self, placed: &PlacedResult<'_>) -> Dot {
         let id = placed.state.id;
         let label = match self.across {
@@ -304,7 +305,7 @@ impl GainPanel<'_> {
         }
     }
 
-    /// Returns the style for a condition's class, without dots.
+    /// Returns an empty group in the style of a condition's class.
     fn empty_group(&self, placed: &PlacedResult<'_>, classes: &Classes, name: &str) -> Dots {
         let choice = self.analysis.study.choice(placed.state.id);
         let shape = if classes.is_first_altitude(placed.state) {
@@ -323,11 +324,11 @@ impl GainPanel<'_> {
     }
 }
 
-/// Scheduled sample with the half-widths of its bands.
+/// Sample of the schedule with the half-widths of its bands.
 struct BandSample {
     x: f64,
     value: f64,
-    /// About the logarithm of the value.
+    /// Half-widths of the logarithm of the value.
     widths: BandWidths,
 }
 

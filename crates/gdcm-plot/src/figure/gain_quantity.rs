@@ -1,4 +1,4 @@
-//! Quantities that are drawn over conditions: net gains, channel gains and channel delays.
+//! Quantities drawn over the conditions: net gains, channel gains and channel delays.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::Schedule;
@@ -39,7 +39,7 @@ impl Measure {
         }
     }
 
-    /// Returns the least plot height, in the unit of the measure.
+    /// Returns the minimum height of the range, in the unit of the measure.
     pub fn least_height(self) -> f64 {
         match self {
             Self::Gain => 0.1,
@@ -47,7 +47,8 @@ impl Measure {
         }
     }
 
-    /// Returns the schedule if it can be drawn: over airspeed, and with values of this measure.
+    /// Returns the schedule if it can be drawn: over airspeed, and only if it contains this
+    /// measure.
     pub fn schedule_of(self, analysis: &Analysis, across: Across) -> Option<&Schedule> {
         let schedule = analysis.schedule.as_ref().ok()?;
         let has_values = self == Self::Gain || schedule.has_delays();
@@ -58,7 +59,7 @@ impl Measure {
         }
     }
 
-    /// Returns the axis label for channel values.
+    /// Returns the axis label of channel values.
     pub fn axis_label(self) -> &'static str {
         match self {
             Self::Gain => "Gain [-]",
@@ -77,7 +78,7 @@ pub enum Across {
     Conditions,
 }
 
-/// A quantity that the correction of each condition and the schedule define.
+/// A quantity defined by the correction of each condition and by the schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GainQuantity {
     /// Net gain of a response.
@@ -95,7 +96,7 @@ impl GainQuantity {
         }
     }
 
-    /// Returns whether it is a gain or a delay.
+    /// Returns whether the quantity is a gain or a delay.
     pub fn measure(self) -> Measure {
         match self {
             Self::NetGain(_) | Self::Gain(_) => Measure::Gain,
@@ -103,7 +104,7 @@ impl GainQuantity {
         }
     }
 
-    /// Returns its value in a correction, in the unit of the measure.
+    /// Returns the value in a correction, in the unit of the measure.
     pub fn of(self, correction: &ChannelCorrection) -> f64 {
         match self {
             Self::NetGain(pair) => correction.net_gain(pair),
@@ -121,8 +122,8 @@ impl GainQuantity {
         }
     }
 
-    /// Returns the search bounds for a condition's optimum, in the unit of the measure; `None` for
-    /// a net gain, which has no bounds.
+    /// Returns the search bounds of a condition's optimum, in the unit of the measure; `None` for a
+    /// net gain, which has no bounds.
     pub fn bounds(self, result: &ConditionAnalysis) -> Option<[f64; 2]> {
         match self {
             Self::NetGain(_) => None,
@@ -134,8 +135,8 @@ impl GainQuantity {
         }
     }
 
-    /// Samples the scheduled quantity from the lowest to the highest airspeed: `[airspeed, value]`
-    /// with the airspeed in kt.
+    /// Samples the scheduled quantity from the lowest to the highest airspeed as `[airspeed,
+    /// value]`, airspeed in kt.
     pub(super) fn samples(self, schedule: &Schedule) -> Vec<[f64; 2]> {
         let from = schedule.airspeeds.min_kt;
         let to = schedule.airspeeds.max_kt;
@@ -148,7 +149,7 @@ impl GainQuantity {
     }
 }
 
-/// A condition's result at its place on the horizontal axis.
+/// Result of a condition at its position on the horizontal axis.
 pub(super) struct PlacedResult<'a> {
     pub(super) x: f64,
     pub(super) state: &'a FlightState,

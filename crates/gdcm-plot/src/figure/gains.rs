@@ -17,14 +17,14 @@ use super::gain_quantity::placed_results;
 use super::marks::{Curve, DotShape, Dots, Mark, MarkId};
 use super::role::Role;
 
-/// Plot height relative to its width, without and with bars and brackets.
+/// Ratio of plot height to width, without and with bars and brackets.
 const ASPECT: f64 = 0.95;
 const ASPECT_WITH_BARS: f64 = 1.3;
-/// Size of dots for an overlaid variant, relative to the usual dot.
+/// Size of the dots of an overlaid variant, relative to the usual dot.
 const VARIANT_DOT: f64 = 0.7;
 
-/// Plots the net gain for each pair at each condition's optimum, and the schedule (Figures 6 and
-/// 7); with error bars and bands if `uncertainty` has them.
+/// Plots the net gain of each pair at the optimum of each condition, and the schedule (Figures 6
+/// and 7); with error bars and bands if `uncertainty` contains them.
 pub fn net_gain_figure(
     analysis: &Analysis,
     uncertainty: Option<&Uncertainty>,
@@ -51,8 +51,8 @@ pub fn net_gain_figure(
         .aspect(aspect(uncertainty))
 }
 
-/// Plots gain or delay in each channel at each condition's optimum, and the schedule (Figures 3 and
-/// 4); with error bars and bands if `uncertainty` has them.
+/// Plots gain or delay of each channel at the optimum of each condition, and the schedule (Figures
+/// 3 and 4); with error bars and bands if `uncertainty` contains them.
 pub fn channels_figure(
     analysis: &Analysis,
     uncertainty: Option<&Uncertainty>,
@@ -112,8 +112,8 @@ pub fn all_channels(dataset: &Dataset) -> Vec<Channel> {
     inputs.chain(outputs).collect()
 }
 
-/// Overlays a variant's optima and schedule on plots against airspeed, behind their dots: small
-/// open dots, and a dotted line. `quantities` are those in the plots, in the same order.
+/// Overlays the optima and the schedule of a variant on plots against airspeed, behind the existing
+/// dots: small open dots and a dotted line. `quantities` lists the quantity of each plot, in order.
 pub fn add_variant(
     figure: &mut Figure,
     quantities: &[GainQuantity],
@@ -158,8 +158,8 @@ fn variant_marks(quantity: GainQuantity, analysis: &Analysis, name: &str) -> Vec
     marks
 }
 
-/// Reduces net-gain plots for the screen, where labels appear under the pointer: keeps the label
-/// for the condition `selected`, and if differences are shown, the brackets for significant
+/// Simplifies net-gain plots for the screen, where labels appear under the pointer. Only the label
+/// of the condition `selected` remains and, if differences are shown, the brackets of significant
 /// differences with the labels at their ends.
 pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) {
     for panel in figure.plots.iter_mut().flat_map(|plot| &mut plot.panels) {

@@ -11,7 +11,7 @@
 //! leave out labels that cover too much, the worst first
 //! ```
 //!
-//! The same on the screen and on paper, in points; y runs downwards.
+//! Screen and paper use the same method, in points; y runs downwards.
 
 use super::drawing::Area;
 
@@ -24,7 +24,7 @@ struct Direction {
     offset: [f64; 2],
 }
 
-/// Directions tried around a dot, the preferred first.
+/// Directions tried around a dot, in order of preference.
 const DIRECTIONS: [Direction; 8] = [
     Direction {
         before: [0.0, 1.0],
@@ -59,13 +59,12 @@ const DIRECTIONS: [Direction; 8] = [
         offset: [0.0, 1.0],
     },
 ];
-/// Distances tried, beyond the radius of the dot \[pt\]; from the second on, a leader connects the
-/// dot to its label.
+/// Distances tried, beyond the radius of the dot \[pt\]; for all but the first, a leader connects
+/// the dot to its label.
 const GAPS: [f64; 6] = [1.5, 8.0, 15.0, 22.0, 30.0, 40.0];
-/// Passes in which every label is placed again, given the others: early labels make room for late
-/// labels.
+/// Number of passes; each places every label again, given the other labels.
 const SWEEPS: usize = 3;
-/// With more dots, no labels are placed: they would be unreadable and slow to place.
+/// Maximum number of labels; with more, none is placed: they would be unreadable and slow to place.
 const MOST_LABELS: usize = 300;
 
 /// Cost per square point that a label shares with another label, a dot, a bar or the outside.
@@ -77,29 +76,30 @@ const OUTSIDE: f64 = 30.0;
 const ON_PATH: f64 = 1.0;
 /// Cost per point along a leader across a label.
 const LEADER_ON_LABEL: f64 = 20.0;
-/// Cost for each dot that is nearer to a label than its own dot.
+/// Cost of each dot that is nearer to a label than its own dot.
 const AMBIGUOUS: f64 = 6.0;
-/// Cost for each direction before the chosen direction, and per point from the dot.
+/// Cost of each direction that precedes the chosen direction in [`DIRECTIONS`], and cost per point
+/// of distance from the dot.
 const LATER_DIRECTION: f64 = 0.2;
 const FARTHER: f64 = 0.6;
-/// A label with more than this fraction over other labels, dots or the outside is unreadable, as
-/// are those it covers.
+/// Maximum fraction of a label over other labels, dots or the outside: beyond it, the label and
+/// those below it are unreadable.
 const MOST_COVERED: f64 = 0.12;
-/// Side length for the square that approximates a dot, relative to its radius.
+/// Side of the square that approximates a dot, relative to the radius of the dot.
 const DOT_SIDE: f64 = 1.9;
 /// Space kept around other labels \[pt\].
 const LABEL_MARGIN: f64 = 1.0;
 /// Distance between sampled points along a line \[pt\].
 const STEP: f64 = 2.0;
-/// A dot that is nearer to a label by less than this does not mislead \[pt\].
+/// Another dot that is nearer to a label by less than this is not mistaken for its dot \[pt\].
 const SLACK: f64 = 0.5;
 
-/// Place of a label.
+/// Area of a label, with the end of its leader.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelPlace {
     /// Area of the text.
     pub area: Area,
-    /// The point of `area` at which the leader ends, if the label is away from its dot.
+    /// Point of `area` at which the leader ends; `None` for a label without a leader.
     pub leader: Option<[f64; 2]>,
 }
 
@@ -107,7 +107,7 @@ pub struct LabelPlace {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelledDot {
     pub center: [f64; 2],
-    /// Distance from the centre that labels keep \[pt\].
+    /// Minimum distance of labels from the centre \[pt\].
     pub radius: f64,
     /// Width and height of its label; no label is placed if its width is zero.
     pub size: [f64; 2],
@@ -132,7 +132,7 @@ impl LabelledDot {
     }
 }
 
-/// Obstacles for labels, besides the dots.
+/// Obstacles to labels, besides the dots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surroundings {
     /// The area for labels.
@@ -142,7 +142,7 @@ pub struct Surroundings {
     pub bars: Vec<Area>,
 }
 
-/// Places the labels of `dots`, in their order; `None` for a label without room.
+/// Places the labels of `dots`, in the same order; `None` for a label without room.
 pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<LabelPlace>> {
     let mut placing = Placing {
         dots,
@@ -160,14 +160,14 @@ pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<L
             placing.places[index] = placing.best_place(index);
         }
     }
-    // The worst label goes first: labels that it covered may then stay.
+    // The most covering label goes first: labels that it covered may then stay.
     while let Some(worst) = placing.most_covering(&labelled) {
         placing.places[worst] = None;
     }
     placing.places
 }
 
-/// Labels as placed so far.
+/// Labels placed so far.
 struct Placing<'a> {
     dots: &'a [LabelledDot],
     around: &'a Surroundings,
@@ -175,7 +175,7 @@ struct Placing<'a> {
     places: Vec<Option<LabelPlace>>,
 }
 
-/// Another dot's label.
+/// The label of another dot.
 struct OtherLabel {
     place: LabelPlace,
     /// Centre of its dot.
@@ -194,7 +194,7 @@ impl Placing<'_> {
         let others = self.other_labels(index);
         let mut best: Option<Candidate> = None;
         for candidate in candidates(self.dots[index]) {
-            // The preference alone makes most places worse than the best.
+            // Most places are already worse than the best by their direction and distance.
             if !is_better(candidate.cost, &best) {
                 continue;
             }
@@ -255,7 +255,7 @@ impl Placing<'_> {
         self.dots.iter().map(|dot| label.overlap(&dot.area())).sum()
     }
 
-    /// Returns how much of a label's area lies outside the bounds.
+    /// Returns the part of a label's area outside the bounds.
     fn outside(&self, label: &Area) -> f64 {
         label.size() - label.overlap(&self.around.bounds)
     }
@@ -270,7 +270,7 @@ impl Placing<'_> {
             .count()
     }
 
-    /// Returns the dot whose label covers the largest part, if that is too much.
+    /// Returns the dot whose label covers the largest part of its area, if above [`MOST_COVERED`].
     fn most_covering(&self, labelled: &[usize]) -> Option<usize> {
         let mut worst = None;
         let mut most = MOST_COVERED;
@@ -328,7 +328,8 @@ fn candidates(dot: LabelledDot) -> Vec<Candidate> {
     candidates
 }
 
-/// Returns the cost of leaders across labels: the label's own leader, and other leaders across it.
+/// Returns the cost of leaders across labels: of this leader across other labels, and of other
+/// leaders across this label.
 fn leaders_on_labels(place: &LabelPlace, center: [f64; 2], others: &[OtherLabel]) -> f64 {
     let mut length = 0.0;
     for other in others {

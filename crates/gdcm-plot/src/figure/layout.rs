@@ -1,4 +1,4 @@
-//! Places the panels of a figure on paper, with room for their numbers and labels.
+//! Places the panels of a figure on paper, with room for tick labels and axis labels.
 
 pub use super::letters::width;
 
@@ -8,14 +8,14 @@ use super::figure::{Figure, Plot};
 use super::marks::Along;
 use super::placed::{Placed, Side};
 
-/// Font size for numbers at ticks, legend, caption and texts at dots \[pt\]: the minimum that
-/// journals accept.
+/// Font size of tick labels, legend, caption and texts at dots \[pt\]: the minimum that journals
+/// accept.
 pub(super) const SMALL_PT: f64 = 7.0;
-/// Font size for axis labels and plot titles \[pt\].
+/// Font size of axis labels and plot titles \[pt\].
 pub(super) const LABEL_PT: f64 = 7.5;
-/// Line height for labels \[pt\].
+/// Line height of labels \[pt\].
 pub(super) const LABEL_LINE: f64 = 10.0;
-/// Line height for small text \[pt\].
+/// Line height of small text \[pt\].
 pub(super) const SMALL_LINE: f64 = 9.0;
 /// Tick length \[pt\].
 pub(super) const TICK: f64 = 2.2;
@@ -26,30 +26,30 @@ const COLUMN_GAP: f64 = 9.0;
 const ROW_GAP: f64 = 5.0;
 /// Space between the panels of a plot \[pt\].
 const PANEL_GAP: f64 = 4.0;
-/// Room for half a number, right of the frames \[pt\].
+/// Room right of the frames for half a tick label \[pt\].
 const RIGHT: f64 = 6.0;
-/// Minimum plot width, including the numbers at its left \[pt\].
+/// Minimum plot width, including the tick labels at its left \[pt\].
 const LEAST_WIDTH: f64 = 88.0;
 /// Minimum plot width in a dense figure \[pt\].
 const LEAST_DENSE_WIDTH: f64 = 40.0;
-/// Minimum width and total height for the frames in a plot \[pt\].
+/// Minimum width, and minimum total height, of the frames of a plot \[pt\].
 const LEAST_FRAME: f64 = 22.0;
-/// Maximum height for all plots, which leaves room for a caption on an A4 page \[pt\].
+/// Maximum height of all plots, which leaves room for a caption on an A4 page \[pt\].
 const MOST_HEIGHT: f64 = 640.0;
-/// Minimum distance between numbers on a vertical axis \[pt\].
+/// Minimum distance between tick labels on a vertical axis \[pt\].
 const VERTICAL_GAP: f64 = 11.0;
-/// Minimum distance between number centres on a horizontal axis \[pt\].
+/// Minimum distance between the centres of tick labels on a horizontal axis \[pt\].
 const HORIZONTAL_GAP: f64 = 12.0;
-/// Minimum space between numbers on a horizontal axis \[pt\].
+/// Minimum space between tick labels on a horizontal axis \[pt\].
 const NUMBER_SPACE: f64 = 5.0;
-/// Axis range in a figure without panels.
+/// Axis range of a figure without panels.
 const EMPTY: Range = Range { min: 0.0, max: 1.0 };
 
-/// Panels at their places.
+/// Panels at their positions.
 #[derive(Debug)]
 pub(super) struct Layout<'f> {
     pub(super) panels: Vec<Placed<'f>>,
-    /// Lower end \[pt\].
+    /// Lower end of the panels \[pt\].
     pub(super) bottom: f64,
 }
 
@@ -105,7 +105,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the total frame height in a plot.
+    /// Returns the total height of the frames of a plot.
     fn plot_height(&self, frame_width: f64) -> f64 {
         let rows = self.rows as f64;
         let around: f64 = (0..self.rows)
@@ -117,7 +117,7 @@ impl<'f> PlotTable<'f> {
             .max(LEAST_FRAME)
     }
 
-    /// Returns the room above the frames in a row, for titles.
+    /// Returns the room for titles above the frames of a row.
     fn above(&self, row: usize) -> f64 {
         let has_title = self
             .row(row)
@@ -125,7 +125,7 @@ impl<'f> PlotTable<'f> {
         if has_title { LABEL_LINE + 2.0 } else { 3.0 }
     }
 
-    /// Returns the room below the frames in a row, for numbers and labels.
+    /// Returns the room for tick labels and axis labels below the frames of a row.
     fn below(&self, row: usize) -> f64 {
         let has_numbers = self.row(row).any(|index| self.has_x_numbers(index));
         if has_numbers {
@@ -141,20 +141,20 @@ impl<'f> PlotTable<'f> {
         from..(from + self.columns).min(self.figure.plots.len())
     }
 
-    /// Returns whether a plot's horizontal axis has numbers: always if it is not shared, otherwise
-    /// at the bottom of its column only.
+    /// Returns whether the horizontal axis of a plot has tick labels: always if it is not shared,
+    /// otherwise only at the bottom of each column.
     fn has_x_numbers(&self, index: usize) -> bool {
         !self.figure.shared.x || index + self.columns >= self.figure.plots.len()
     }
 
-    /// Returns whether a plot's vertical axis has numbers: always if it is not shared, otherwise at
-    /// the left of its row only.
+    /// Returns whether the vertical axis of a plot has tick labels: always if it is not shared,
+    /// otherwise only at the left of each row.
     fn has_y_numbers(&self, index: usize) -> bool {
         !self.figure.shared.y || index.is_multiple_of(self.columns)
     }
 
-    /// Returns whether a panel's vertical axis has a label: at the left of each row, and wherever
-    /// its quantity differs from that.
+    /// Returns whether the vertical axis of a panel has a label: in the first plot of each row, and
+    /// in each plot whose label differs from that of the first.
     fn has_y_label(&self, index: usize, panel: usize) -> bool {
         let first = index - index % self.columns;
         index == first || self.y_label(index, panel) != self.y_label(first, panel)
@@ -165,7 +165,7 @@ impl<'f> PlotTable<'f> {
         Some(&panel.y.label)
     }
 
-    /// Returns the plots with which a plot has a range in common, itself included.
+    /// Returns the plots that share their range with a plot, itself included.
     fn sharing(&self, index: usize, is_shared: bool) -> &'f [Plot] {
         if is_shared {
             &self.figure.plots
@@ -174,7 +174,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the horizontal range for all panels in a plot.
+    /// Returns the common horizontal range of all panels of a plot.
     fn x_range(&self, index: usize) -> Range {
         self.sharing(index, self.figure.shared.x)
             .iter()
@@ -184,7 +184,7 @@ impl<'f> PlotTable<'f> {
             .unwrap_or(EMPTY)
     }
 
-    /// Returns the vertical range for a panel, counted from the top of its plot.
+    /// Returns the vertical range of a panel, counted from the top of its plot.
     fn y_range(&self, index: usize, panel: usize) -> Range {
         self.sharing(index, self.figure.shared.y)
             .iter()
@@ -194,7 +194,7 @@ impl<'f> PlotTable<'f> {
             .unwrap_or(EMPTY)
     }
 
-    /// Returns the frame heights in a plot.
+    /// Returns the heights of the frames of a plot.
     fn heights(&self, index: usize, plot_height: f64) -> Vec<f64> {
         let panels = &self.figure.plots[index].panels;
         let room = plot_height - PANEL_GAP * panels.len().saturating_sub(1) as f64;
@@ -230,7 +230,7 @@ impl<'f> PlotTable<'f> {
         let is_lowest = panel + 1 == plot.panels.len();
         let range = self.x_range(index);
         let has_numbers = is_lowest && self.has_x_numbers(index);
-        // On narrow frames, the first label in a row serves for all.
+        // On narrow frames, only the first plot of a row shows the label.
         let has_room = LABEL_PT * width(&axis.label) <= frame_width + COLUMN_GAP;
         Side {
             range,
@@ -241,7 +241,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Returns the room left of each column, for numbers and labels.
+    /// Returns the room left of each column, for tick labels and axis labels.
     fn gutters(&self, frame_width: f64) -> Vec<f64> {
         let plot_height = self.plot_height(frame_width);
         (0..self.columns)
@@ -284,7 +284,7 @@ impl<'f> PlotTable<'f> {
         }
     }
 
-    /// Places a plot's panels below one another in the area for its frames.
+    /// Places the panels of a plot below one another within `frames`.
     fn place_plot(&self, index: usize, frames: Area) -> Vec<Placed<'f>> {
         let plot = &self.figure.plots[index];
         let heights = self.heights(index, frames.height);
@@ -314,19 +314,19 @@ fn widest(ticks: &[Tick]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Returns ticks whose labels do not touch. The tick count follows from the label widths, which
-/// follow from the tick count: two guesses suffice.
+/// Returns ticks whose labels do not touch. The number of ticks depends on the label widths, which
+/// in turn depend on the number of ticks: two iterations suffice.
 fn horizontal_ticks(axis: &Axis, range: Range, length_pt: f64) -> Vec<Tick> {
     let close = axis.ticks(range, length_pt, HORIZONTAL_GAP);
     let ticks = axis.ticks(range, length_pt, label_gap(&close));
     match &axis.names {
-        // Names have a fixed width: the first guess includes all names.
+        // Names have a fixed width: the first iteration includes all names.
         Some(_) => ticks,
         None => axis.ticks(range, length_pt, label_gap(&ticks)),
     }
 }
 
-/// Returns the tick distance \[pt\] at which these labels do not touch.
+/// Returns the distance between ticks \[pt\] at which these labels do not touch.
 fn label_gap(ticks: &[Tick]) -> f64 {
     (SMALL_PT * widest(ticks) + NUMBER_SPACE).max(HORIZONTAL_GAP)
 }

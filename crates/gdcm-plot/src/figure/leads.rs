@@ -1,5 +1,5 @@
-//! Delays and leads in each channel of one condition, up to ten times the band: the limit of the
-//! model's validity, and the cost of leads.
+//! Delays and leads of each channel in a condition, up to ten times the upper end of the band: the
+//! limit of the model's validity, and the cost of leads.
 
 use gdcm_method::correction::lead_price::ABOVE_BAND;
 use gdcm_method::correction::{Channel, ChannelCorrection, LeadPrice};
@@ -24,8 +24,8 @@ const LIMIT: Stroke = Stroke::solid(Color::of(Hue::Warning), 1.2);
 const BEYOND: Color = Color::of(Hue::Warning).tint(14);
 
 /// Plots gain and phase of the delay or lead in each channel, without the gains k, from the band to
-/// ten times its upper end; the channels of each pair and their combined effect on the response are
-/// emphasised. A row of two plots for each of `pairs`.
+/// ten times its upper end: a row of two plots for each of `pairs`. The two channels of the pair,
+/// and their product, are emphasised.
 pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
     let title = format!("Leads · {}", source.condition_words());
     let caption = format!(
@@ -42,7 +42,7 @@ pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
     figure
 }
 
-/// Delay or lead in a channel, or in two channels together, as drawn.
+/// Delay or lead of a channel, or of two channels in series, as drawn.
 struct LeadCurve {
     name: String,
     /// Entry in the legend.
@@ -51,13 +51,13 @@ struct LeadCurve {
     dynamics: GainDelay,
 }
 
-/// Delays and leads around one response.
+/// Delays and leads for a response.
 struct PairLeads {
     pair: Pair,
     pair_name: String,
     /// Frequencies \[rad/s\].
     omega: Vec<f64>,
-    /// For the other channels, for input and output, and for both together.
+    /// Curves of the other channels, of input and output, and of both in series.
     curves: Vec<LeadCurve>,
     /// Cost of the leads; `None` without leads.
     price: Option<LeadPrice>,
@@ -126,7 +126,7 @@ impl PairLeads {
         ]
     }
 
-    /// Returns `: ` and the cost of the leads for the response; empty without leads.
+    /// Returns `: ` and the cost of the leads in the response; empty without leads.
     fn price_words(&self) -> String {
         let price = self.price.as_ref();
         match price.and_then(|price| price.pair_words(self.pair)) {
@@ -135,7 +135,7 @@ impl PairLeads {
         }
     }
 
-    /// Builds a panel with a curve through the `values` of each delay or lead.
+    /// Builds a panel with a curve of the `values` of each delay or lead.
     fn panel(&self, y: Axis, values: impl Fn(GainDelay) -> Vec<f64>) -> Panel {
         let mut panel = Panel::new(Axis::logarithmic("Frequency [rad/s]"), y);
         for curve in &self.curves {
@@ -150,7 +150,7 @@ impl PairLeads {
     }
 }
 
-/// Returns the delay and the leads in one or two channels in series.
+/// Returns the delay and the leads of one channel, or of two channels in series.
 fn dynamics(correction: &ChannelCorrection, channels: &[Channel]) -> GainDelay {
     let delay_s: f64 = channels
         .iter()
@@ -164,8 +164,7 @@ fn dynamics(correction: &ChannelCorrection, channels: &[Channel]) -> GainDelay {
     ])
 }
 
-/// Adds the background beyond the band, with an entry in the legend, and the line at which it
-/// begins.
+/// Adds the background above the band, with an entry in the legend, and the line at the limit.
 fn with_limit(panel: Panel, price: &LeadPrice) -> Panel {
     let ground = Band {
         range: Range::new(price.limit_rad_s, price.above_rad_s()),
@@ -177,7 +176,7 @@ fn with_limit(panel: Panel, price: &LeadPrice) -> Panel {
         .with(Rule::vertical(price.limit_rad_s, LIMIT))
 }
 
-/// Returns logarithmically spaced frequencies \[rad/s\] between two limits, both included.
+/// Returns logarithmically spaced frequencies \[rad/s\] from `min` to `max`, both included.
 fn frequencies(min: f64, max: f64) -> Vec<f64> {
     let mut omega = Vec::new();
     for point in 0..POINTS {

@@ -6,14 +6,14 @@ use super::drawing::{Color, Stroke};
 use super::marks::{DotShape, Mark};
 use super::role::Role;
 
-/// An entry of a legend: a sample, and the text after it.
+/// An entry of a legend: a sample followed by a text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     pub text: String,
     pub sample: Sample,
 }
 
-/// Sample in a mark's style.
+/// Sample in the style of a mark.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sample {
     Line(Stroke),
@@ -40,7 +40,7 @@ pub(super) fn entries<'m>(marks: impl Iterator<Item = &'m Mark>) -> Vec<Entry> {
     entries
 }
 
-/// Returns a mark's entry; `None` for a mark without a key.
+/// Returns the entry of a mark; `None` for a mark without a key.
 fn entry(mark: &Mark) -> Option<Entry> {
     match mark {
         Mark::Curve(curve) => Some(Entry {
@@ -86,9 +86,9 @@ fn entry(mark: &Mark) -> Option<Entry> {
     }
 }
 
-/// Returns a text's place among the roles; texts that name no role come after all roles.
+/// Returns the rank of a text in the legend; texts that name no role come after all roles.
 fn rank(text: &str) -> usize {
-    // A single physics model takes the place of the nominal model.
+    // A single physics model has the rank of the nominal model.
     let text = if text == RequirementRole::Physics.name() {
         Role::Nominal.key(false)
     } else {
@@ -100,8 +100,8 @@ fn rank(text: &str) -> usize {
         .unwrap_or(Role::ALL.len())
 }
 
-/// Returns whether a text names a role. A rejected nominal model has an entry of its own, in the
-/// place of the nominal role; other rejected models share the entry of the rejected role.
+/// Returns whether a text names a role. A rejected nominal model has its own entry, with the rank
+/// of the nominal role; other rejected models share the entry of the rejected role.
 fn names_role(text: &str, role: Role) -> bool {
     text == role.key(false) || (role == Role::Nominal && text == role.key(true))
 }

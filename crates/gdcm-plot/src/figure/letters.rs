@@ -1,12 +1,12 @@
-//! Letters in the fonts with their widths, and text broken into lines.
+//! Glyphs of the fonts with their widths, and text broken into lines.
 
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
 
 use gdcm_model::message_text::sanitized;
 
-/// The fonts, with the names by which an SVG viewer may find them. Later fonts serve characters
-/// that the earlier ones lack.
+/// Fonts, with the names by which an SVG viewer may find them. A later font supplies the characters
+/// missing in the earlier font.
 pub const FONTS: [(&str, &[u8]); 2] = [
     ("Ubuntu", epaint_default_fonts::UBUNTU_LIGHT),
     ("Hack", epaint_default_fonts::HACK_REGULAR),
@@ -27,7 +27,7 @@ pub struct Letter {
     pub advance: f64,
 }
 
-/// Returns the letters in a text line; characters without a shape are spelled out.
+/// Returns the letters of a text line; control characters are shown as escape sequences.
 pub fn letters(words: &str) -> Vec<Letter> {
     let fonts: Vec<FontRef<'_>> = FONTS
         .iter()
@@ -39,8 +39,8 @@ pub fn letters(words: &str) -> Vec<Letter> {
         .collect()
 }
 
-/// Returns a character's glyph in the first font that has it, otherwise the empty box in the first
-/// font.
+/// Returns the glyph of a character in the first font that contains it, otherwise the empty box of
+/// the first font.
 fn letter(fonts: &[FontRef<'_>], character: char) -> Option<Letter> {
     let found = fonts
         .iter()
@@ -64,8 +64,8 @@ pub fn width(words: &str) -> f64 {
     letters(words).iter().map(|letter| letter.advance).sum()
 }
 
-/// Breaks a text between words into lines no wider than `most`, relative to the font size. A word
-/// that is wider has a line to itself.
+/// Breaks a text between words into lines no wider than `most`, relative to the font size. A wider
+/// word has its own line.
 pub(super) fn wrapped(text: &str, most: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ').filter(|word| !word.is_empty()) {

@@ -1,6 +1,6 @@
 //! Marks in a panel: curves, dots, bars, areas, lines and notes, in axis units.
 //!
-//! | mark | shape | extends the axes | has numbers | in the legend |
+//! | mark | shape | extends the axes | in the tables | in the legend |
 //! |---|---|---|---|---|
 //! | [`Curve`] | line through points | yes | yes | if it has a key |
 //! | [`Dots`] | symbols with labels | yes | yes | if it has a key |
@@ -43,20 +43,20 @@ pub enum Mark {
 /// A line through points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Subject, used as a column heading among the numbers.
+    /// Name, used as a column heading in the tables.
     pub name: String,
     /// Text in the legend, if any; marks with the same text share an entry.
     pub key: Option<String>,
     pub stroke: Stroke,
     pub x: Arc<[f64]>,
-    /// A value that is not finite leaves a gap.
+    /// A non-finite value leaves a gap.
     pub y: Arc<[f64]>,
 }
 
 /// Dots of the same style.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dots {
-    /// Subject, used as a heading among the numbers.
+    /// Name, used as a heading in the tables.
     pub name: String,
     /// Text in the legend, if any; marks with the same text share an entry.
     pub key: Option<String>,
@@ -69,7 +69,7 @@ pub struct Dots {
     pub dots: Vec<Dot>,
 }
 
-/// Subject by which a window recognises the dot under the pointer.
+/// Identity by which the window recognises the dot under the pointer.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum MarkId {
     Condition(ConditionId),
@@ -104,7 +104,7 @@ pub enum DotShape {
 /// Vertical bars of the same style.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bars {
-    /// Heading among the numbers, and entry in the legend.
+    /// Heading in the tables, and entry in the legend.
     pub name: String,
     pub color: Color,
     /// Width in x units.
@@ -129,7 +129,7 @@ pub struct Band {
 /// Shaded vertical ranges, each at an x: the search ranges of values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spans {
-    /// Heading among the numbers, and entry in the legend.
+    /// Heading in the tables, and entry in the legend.
     pub name: String,
     pub color: Color,
     /// Width in x units.
@@ -138,22 +138,23 @@ pub struct Spans {
     pub spans: Vec<[f64; 3]>,
 }
 
-/// The area between two lines over the same x: tolerance about a curve.
+/// The area between two lines over the same x, such as a tolerance about a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Envelope {
-    /// Heading among the numbers, and entry in the legend.
+    /// Heading in the tables, and entry in the legend.
     pub name: String,
     pub color: Color,
-    /// Line style; `None` for a shaded area without lines. On paper an area with lines stays white.
+    /// Style of both lines; `None` for a shaded area without lines. On paper, an area with lines is
+    /// not shaded.
     pub edge: Option<Stroke>,
-    /// `[x, lower end, upper end]`, ascending in x; an end that is not finite leaves a gap.
+    /// `[x, lower end, upper end]`, ascending in x; a non-finite end leaves a gap.
     pub points: Vec<[f64; 3]>,
 }
 
-/// Confidence intervals, each a vertical line at an x.
+/// Confidence intervals, drawn as vertical lines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Intervals {
-    /// Heading among the numbers, and entry in the legend.
+    /// Heading in the tables, and entry in the legend.
     pub name: String,
     pub stroke: Stroke,
     /// `[x, lower end, upper end]`.
@@ -163,7 +164,7 @@ pub struct Intervals {
 /// Brackets, each between two different values at the same x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Brackets {
-    /// Heading among the numbers, and entry in the legend.
+    /// Heading in the tables, and entry in the legend.
     pub name: String,
     pub stroke: Stroke,
     pub brackets: Vec<Bracket>,
@@ -182,7 +183,7 @@ pub struct Bracket {
 /// A straight line across the panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
-    /// Axis to which `at` belongs: a value along y makes a horizontal line.
+    /// Axis of the value `at`: a value along y makes a horizontal line.
     pub along: Along,
     pub at: f64,
     pub stroke: Stroke,
@@ -208,7 +209,7 @@ pub struct Note {
 /// Position of a note.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
-    /// Centred about a point in axis units.
+    /// Centred on a point in axis units.
     Value {
         x: f64,
         y: f64,
@@ -280,7 +281,7 @@ impl Curve {
         }
     }
 
-    /// Iterates over `[x, y]`; a gap has a y that is not finite.
+    /// Iterates over `[x, y]`; a non-finite y marks a gap.
     pub fn points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         self.x.iter().zip(self.y.iter()).map(|(x, y)| [*x, *y])
     }
@@ -335,7 +336,7 @@ impl Envelope {
         }
     }
 
-    /// Returns the line through the lower ends (`end` 1) or the upper ends (`end` 2).
+    /// Returns the line through the lower ends (`end` = 1) or the upper ends (`end` = 2).
     fn edge_curve(&self, stroke: Stroke, end: usize) -> Curve {
         let points = self.points.iter().map(|point| [point[0], point[end]]);
         Curve::through(&self.name, stroke, points)
@@ -343,7 +344,7 @@ impl Envelope {
 }
 
 impl Bars {
-    /// Iterates over the `[lower, upper]` ends, stacking included.
+    /// Iterates over the `[lower, upper]` ends of the bars, including stacking.
     pub(super) fn ends(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         let feet = self.feet.iter().copied().chain(std::iter::repeat(0.0));
         self.bars
@@ -354,7 +355,7 @@ impl Bars {
 }
 
 impl Rule {
-    /// Creates a horizontal line at `y`, without a text.
+    /// Creates an unlabelled horizontal line at `y`.
     pub fn horizontal(y: f64, stroke: Stroke) -> Self {
         Self {
             along: Along::Y,
@@ -364,7 +365,7 @@ impl Rule {
         }
     }
 
-    /// Creates a vertical line at `x`, without a text.
+    /// Creates an unlabelled vertical line at `x`.
     pub fn vertical(x: f64, stroke: Stroke) -> Self {
         Self {
             along: Along::X,
@@ -394,8 +395,8 @@ impl Along {
 }
 
 impl Mark {
-    /// Returns the values that an axis must include for this mark; the axis drops those that are
-    /// not finite.
+    /// Returns the values that an axis must include for this mark; the axis ignores non-finite
+    /// values.
     pub(super) fn values(&self, along: Along) -> Vec<f64> {
         match self {
             Mark::Curve(curve) => curve

@@ -14,7 +14,7 @@
 //! | [`condition_source`], [`responses`] | curves for a condition, from models and corrections |
 //! | [`layout`], [`letters`], [`label_places`] | places for panels, letters and labels |
 //! | [`paint`], `paint_axes`, `paint_marks`, `paint_dots`, `paint_words` | shapes at their places |
-//! | [`thinning`], [`tables`] | points left out; numbers in a figure |
+//! | [`thinning`], [`tables`] | omission of invisible points; values of a figure |
 //!
 //! Every view in the window has a function here that describes its figure, and the command `gdcm
 //! figure` calls the same function through [`FigureRequest::figure`].
@@ -119,9 +119,9 @@ pub enum FigureKind {
     /// Responses in a condition (Figures 2 and 5).
     #[default]
     Bode,
-    /// Errors that the fit sees in these responses.
+    /// Errors used by the fit in these responses.
     Error,
-    /// All responses in a condition, small.
+    /// Overview of all responses in a condition.
     Overview,
     /// Net gains against airspeed (Figures 6 and 7).
     NetGain,
@@ -129,15 +129,15 @@ pub enum FigureKind {
     Channels,
     /// Contributions to the scatter in net gains.
     Evidence,
-    /// Value of the correction (Figures 8 to 19).
+    /// Change of J by the correction (Figures 8 to 19).
     Assessment,
     /// Poles of all models in a condition.
     Poles,
-    /// Delay or lead in each channel of a condition, up to ten times the band.
+    /// Delay or lead of each channel in a condition, up to ten times the upper end of the band.
     Leads,
-    /// Effect of couplings on their loop and on a condition's poles.
+    /// Effect of couplings on their loop, and on the poles in a condition.
     Couplings,
-    /// Phase delay over bandwidth in attitude responses, or models over time.
+    /// Phase delay over bandwidth of attitude responses, or models over time.
     Requirements,
     /// A response in every condition, coloured by airspeed.
     Airspeeds,
@@ -205,8 +205,8 @@ pub enum OverTime {
     Record(Arc<RecordHistory>, usize),
 }
 
-/// A request for a figure: its kind, contents and options. Each kind uses the fields that concern
-/// it.
+/// A request for a figure: its kind, contents and options. Each kind uses only the fields relevant
+/// to it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FigureRequest {
     pub kind: FigureKind,
@@ -218,7 +218,7 @@ pub struct FigureRequest {
     pub across: Across,
     /// [`usual_choice`] if `None`.
     pub assessed: Option<AssessmentChoice>,
-    /// The model that stands for each condition in [`FigureKind::Airspeeds`].
+    /// Role of the model drawn for each condition in [`FigureKind::Airspeeds`].
     pub across_role: AcrossRole,
     pub bode: BodeOptions,
     pub couplings: Option<Arc<CouplingsAssessment>>,

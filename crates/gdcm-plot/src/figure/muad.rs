@@ -1,7 +1,7 @@
 //! Envelopes of maximum unnoticeable added dynamics (MUAD, MIL-STD-1797A): about a response, among
 //! its errors, and the frequencies at which a mismatch leaves them.
 //!
-//! The envelopes are defined for model over reference.
+//! The envelopes are defined for the ratio of model to reference.
 
 use gdcm_method::fidelity::{Muad, leaves};
 use gdcm_model::response::wrap;
@@ -18,7 +18,8 @@ const LOWER: usize = 0;
 const UPPER: usize = 1;
 
 /// Returns the envelopes about the identified representative among `drawn`, hidden or not: a pilot
-/// does not notice the difference to a response within both. Empty unless the options show them.
+/// does not notice a deviation from the identified response that stays between them. Empty unless
+/// enabled in the options.
 pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLine> {
     let identified = drawn
         .iter()
@@ -47,9 +48,9 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
     lines
 }
 
-/// Returns the envelopes among errors, over the frequencies `omega` \[rad/s\]. The drawn ratio is
-/// reference over model, so that the magnitude envelopes are mirrored; the drawn phase error is
-/// that of the model.
+/// Returns the envelopes among errors, over the frequencies `omega` \[rad/s\]. Magnitude errors are
+/// drawn as the ratio of reference to model, so the magnitude envelopes are mirrored; phase errors
+/// are drawn as model minus reference.
 pub(super) fn muad_among_errors(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let mut lines = Vec::new();
     for (end, label) in [
@@ -79,8 +80,8 @@ fn envelope(pane: Pane, label: &str, points: Vec<[f64; 2]>) -> ReferenceLine {
     ReferenceLine::new(pane, ReferenceKind::Envelope, label, Level::Sampled(points))
 }
 
-/// Returns the frequency ranges \[rad/s\] at which the error in the corrected curve among `drawn`
-/// leaves the envelopes. Empty unless the options show them.
+/// Returns the frequency ranges \[rad/s\] at which the error of the corrected curve among `drawn`
+/// leaves the envelopes. Empty unless enabled in the options.
 pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
     let corrected = drawn.iter().find(|curve| curve.id == CurveId::Corrected);
     let Some(curve) = corrected else {

@@ -1,4 +1,5 @@
-//! Paints a figure on paper, and a single panel on any canvas: shapes and texts at their positions.
+//! Paints a whole figure on paper, or a single panel on any canvas: shapes and texts at their
+//! positions.
 
 pub use super::paint_dots::dot_shapes;
 
@@ -23,10 +24,10 @@ const LEGEND_GAP: f64 = 3.0;
 const CAPTION_GAP: f64 = 1.0;
 /// Line around a panel's frame.
 const FRAME: Stroke = Stroke::solid(Color::DIM, 0.6);
-/// Widths for a line sample, and for other samples, in the legend \[pt\].
+/// Widths of a line sample and of other samples in the legend \[pt\].
 const LINE_SAMPLE: f64 = 22.0;
 const SAMPLE: f64 = 9.0;
-/// Patch height in the legend \[pt\].
+/// Height of a shaded sample in the legend \[pt\].
 const PATCH: f64 = 6.0;
 /// Space between a sample and its text, and between entries \[pt\].
 const SAMPLE_GAP: f64 = 4.0;
@@ -43,7 +44,7 @@ const CAPTION: TextStyle = TextStyle {
     color: Color::DIM,
 };
 
-/// Style for a text block.
+/// Style of a text block.
 struct TextStyle {
     size_pt: f64,
     /// Line height \[pt\].
@@ -74,7 +75,7 @@ impl Figure {
         }
     }
 
-    /// Returns the caption, with a count of labels without room, if any.
+    /// Returns the caption, with the number of omitted labels, if any.
     fn printed_caption(&self, labels_left_out: usize) -> String {
         match labels_left_out {
             0 => self.caption.clone(),
@@ -109,7 +110,7 @@ impl Page {
         }
     }
 
-    /// Paints a figure's panels; returns how many labels have no room.
+    /// Paints the panels of a figure; returns the number of labels without room.
     fn paint_panels(&mut self, figure: &Figure) -> usize {
         let layout = Layout::new(figure, self.inner_pt, self.bottom);
         let mut labels_left_out = 0;
@@ -155,7 +156,7 @@ impl Page {
     }
 }
 
-/// Paints a sample from its left end in the middle of its line.
+/// Paints a sample from its left end, vertically centred at `y`.
 fn sample_shapes(sample: Sample, [start, y]: [f64; 2], sample_width: f64) -> Vec<Shape> {
     match sample {
         Sample::Line(stroke) => {
@@ -238,8 +239,8 @@ fn paint_over_lines(placed: &Placed<'_>, mut shapes: Vec<Shape>) -> PaintedPanel
 
 impl Panel {
     /// Paints the marks in `frame` \[pt\] with these x and y ranges and this font size \[pt\]; also
-    /// returns how many labels have no room. For a canvas that draws frame, axes and grid by
-    /// itself, and on which areas with edges are shaded.
+    /// returns the number of labels without room. Intended for a canvas that draws frame, axes and
+    /// grid itself and shades areas with edges.
     pub fn shapes(&self, frame: Area, [x, y]: [Range; 2], letters_pt: f64) -> (Vec<Shape>, usize) {
         let placed = Placed {
             panel: self,

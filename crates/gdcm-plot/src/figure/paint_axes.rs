@@ -1,4 +1,4 @@
-//! Paints a panel's axes: grid, ticks, numbers and labels.
+//! Paints the axes of a panel: grid, ticks, tick labels and axis labels.
 
 use super::axis::Axis;
 use super::drawing::{Anchor, Area, Color, Shape, Stroke, Text};
@@ -9,7 +9,7 @@ use super::placed::{Placed, Side};
 
 const TICK_LINE: Stroke = Stroke::solid(Color::DIM, 0.6);
 const GRID: Stroke = Stroke::solid(Color::GRID, 0.4);
-/// Length without a number, relative to other ticks.
+/// Length of an unlabelled tick, relative to a labelled tick.
 const MINOR: f64 = 0.6;
 
 /// Paints the grid: a line at each tick, except on an axis with names.
@@ -32,7 +32,7 @@ pub(super) fn grid(placed: &Placed<'_>) -> Vec<Shape> {
     lines
 }
 
-/// Paints ticks, numbers and label below a frame.
+/// Paints ticks, tick labels and axis label below a frame.
 pub(super) fn horizontal_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for tick in &side.ticks {
@@ -53,7 +53,7 @@ pub(super) fn horizontal_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shap
         }
     }
     if side.has_label {
-        // A label wider than the frame begins at its left edge.
+        // A label wider than the frame begins at the left edge of the frame.
         let is_wide = LABEL_PT * width(&axis.label) > frame.width;
         let (part, anchor) = if is_wide {
             (0.0, Anchor::Start)
@@ -68,7 +68,7 @@ pub(super) fn horizontal_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shap
     shapes
 }
 
-/// Paints ticks, numbers and label left of a frame.
+/// Paints ticks, tick labels and axis label left of a frame.
 pub(super) fn vertical_axis(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for tick in &side.ticks {

@@ -8,7 +8,7 @@ use super::placed::{HOOK, Placed};
 
 /// Radius of the usual dot \[pt\].
 const DOT: f64 = 2.1;
-/// Line width for an open dot, a cross or a plus in the usual size \[pt\].
+/// Line width of an open dot, a cross or a plus in the usual size \[pt\].
 const DOT_LINE: f64 = 0.9;
 /// Line from a dot to a label away from it.
 const LEADER: Stroke = Stroke::solid(Color::DIM.tint(60), 0.4);
@@ -91,8 +91,9 @@ impl DotStyle {
         }
     }
 
-    /// Paints two lines with these ends, relative to the radius: a single line that turns back over
-    /// the middle would have no direction there, and its corner no place on the screen.
+    /// Paints two crossing lines with these ends, relative to the radius. They are separate shapes:
+    /// a single polyline would double back on itself, and its corner could not be drawn on the
+    /// screen.
     fn lines(self, center: [f64; 2], lines: [[[f64; 2]; 2]; 2]) -> Vec<Shape> {
         let mut shapes = Vec::new();
         for ends in lines {
@@ -103,7 +104,7 @@ impl DotStyle {
     }
 }
 
-/// Radius, fill and line for a dot's outline.
+/// Radius, fill and line of a dot.
 struct DotPen {
     radius: f64,
     fill: Option<Color>,
@@ -145,8 +146,8 @@ struct Label<'m> {
     color: Color,
 }
 
-/// Paints whole dots if their centre is in the frame, with their labels around them, and the labels
-/// for brackets beside these. Leaders lie below the dots, texts above.
+/// Paints the dots whose centre is in the frame, uncut by the frame, with their labels around them,
+/// and the labels beside brackets. Leaders lie below the dots, texts above.
 pub(super) fn dots_and_labels(placed: &Placed<'_>) -> PaintedDots {
     let mut dots = Vec::new();
     let mut labels = Vec::new();
@@ -234,7 +235,7 @@ fn labelled_dot(placed: &Placed<'_>, center: [f64; 2], radius: f64, label: &str)
     }
 }
 
-/// Returns the obstacles for labels.
+/// Returns the obstacles to labels.
 fn surroundings(placed: &Placed<'_>) -> Surroundings {
     let mut path = Vec::new();
     let mut bars = Vec::new();
@@ -270,7 +271,7 @@ fn surroundings(placed: &Placed<'_>) -> Surroundings {
     }
 }
 
-/// Returns whether dots may refer to a curve: solid, with an entry in the legend.
+/// Returns whether dots may belong to a curve: a solid line with an entry in the legend.
 fn is_subject_of_dots(curve: &Curve) -> bool {
     curve.key.is_some() && curve.stroke.dash == Dash::Solid
 }

@@ -5,21 +5,21 @@ use super::marks::{Along, Bars, Brackets, Curve, Envelope, Guide, Intervals, Mar
 use super::placed::Placed;
 use super::thinning::{Pixel, thinned};
 
-/// Maximum distance between a thinned line and its original points \[pt\]: a tenth of the thinnest
-/// line.
+/// Maximum distance between a thinned line and its original points \[pt\]: a tenth of the width of
+/// the thinnest line.
 const TOLERANCE: f64 = 0.04;
 const FINEST: Pixel = Pixel {
     width: TOLERANCE,
     tolerance: TOLERANCE,
 };
-/// Positions farther out \[pt\] count as gaps.
+/// Maximum absolute coordinate \[pt\]; positions farther out count as gaps.
 const FAR_OUT: f64 = 1e6;
 const GUIDE: Stroke = Stroke::solid(Color::DIM.tint(40), 0.4);
 /// Line around a bar.
 const BAR_EDGE: Stroke = Stroke::solid(Color::DIM, 0.3);
 
-/// Paints the backgrounds, which lie below the grid: bands first, then spans and areas without
-/// edges.
+/// Paints the backgrounds, which lie below the grid: bands first, then spans, then envelopes
+/// without edges.
 pub(super) fn grounds(placed: &Placed<'_>) -> Vec<Shape> {
     let mut shapes = bands(placed);
     for mark in &placed.panel.marks {
@@ -80,7 +80,7 @@ pub(super) fn envelope_areas(placed: &Placed<'_>, envelope: &Envelope) -> Vec<Sh
     areas
 }
 
-/// Returns the runs between gaps with at least two values.
+/// Returns the sequences of at least two values between gaps.
 fn runs<T: Copy>(values: &[Option<T>]) -> Vec<Vec<T>> {
     values
         .split(Option::is_none)
@@ -120,7 +120,7 @@ pub(super) fn mark_lines(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
     }
 }
 
-/// Paints a curve between its gaps, thinned for print.
+/// Paints the parts of a curve between gaps, thinned for print.
 fn curve_lines(placed: &Placed<'_>, curve: &Curve) -> Vec<Shape> {
     let mut positions = Vec::new();
     for point in curve.points() {
@@ -164,8 +164,7 @@ fn interval_lines(placed: &Placed<'_>, intervals: &Intervals) -> Vec<Shape> {
         .collect()
 }
 
-/// Paints each bracket as a line: from the end of a hook along the spine to the end of the other
-/// hook.
+/// Paints each bracket as a single line: hook, spine, hook.
 fn bracket_lines(placed: &Placed<'_>, brackets: &Brackets) -> Vec<Shape> {
     let mut lines = Vec::new();
     for bracket in &brackets.brackets {

@@ -1,4 +1,4 @@
-//! Paints a panel's texts: labels at rules and guides, and notes.
+//! Paints the texts in a panel: labels of rules and guides, and notes.
 
 use super::drawing::{Anchor, Area, Color, Shape, Text};
 use super::layout::{SMALL_LINE, SMALL_PT};
@@ -6,7 +6,7 @@ use super::letters::{HALF_HEIGHT, width};
 use super::marks::{Along, Guide, Mark, Note, Place, Rule};
 use super::placed::Placed;
 
-/// Paints a rule's label at its upper or right end, on white, so that curves may run behind it.
+/// Paints the label of a rule at its upper or right end, on white, so that curves may pass behind.
 pub(super) fn rule_label(placed: &Placed<'_>, rule: &Rule) -> Vec<Shape> {
     if rule.label.is_empty() {
         return Vec::new();
@@ -37,7 +37,7 @@ pub(super) fn rule_label(placed: &Placed<'_>, rule: &Rule) -> Vec<Shape> {
     ]
 }
 
-/// Paints a guide's label, or a note; `None` for other marks and for a text without room.
+/// Paints the label of a guide, or a note; `None` for other marks and for a text without room.
 pub(super) fn mark_words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
     let text = match mark {
         Mark::Guide(guide) => guide_label(placed, guide)?,
@@ -47,7 +47,7 @@ pub(super) fn mark_words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
     Some(Shape::Text(text.colored(Color::DIM)))
 }
 
-/// Returns a guide's label below its last visible point.
+/// Returns the label of a guide, below its last visible point.
 fn guide_label(placed: &Placed<'_>, guide: &Guide) -> Option<Text> {
     if guide.label.is_empty() {
         return None;
@@ -69,7 +69,7 @@ fn note_text(placed: &Placed<'_>, note: &Note) -> Option<Text> {
             let is_named = placed.panel.x.names.is_some();
             let slot = placed.frame.width / placed.x.range.width();
             if is_named && !upright && size_pt * width(&note.text) > slot {
-                // A wider text would cover the text about the next name.
+                // A wider text would overlap the text at the next name.
                 return None;
             }
             let [x, y] = placed.at([x, y])?;

@@ -1,4 +1,4 @@
-//! A panel at its place on paper or on the screen, and the positions of values in it.
+//! A panel at its position on paper or on the screen, and the positions of values in the panel.
 
 use super::axis::{Range, Tick};
 use super::drawing::Area;
@@ -7,10 +7,10 @@ use super::marks::{Along, Bracket};
 
 /// Distance between a bracket and its values \[pt\].
 const BRACKET: f64 = 5.0;
-/// Hook length at both ends \[pt\].
+/// Length of the hooks at both ends of a bracket \[pt\].
 pub(super) const HOOK: f64 = 1.8;
 
-/// A panel at its place.
+/// A panel at its position.
 #[derive(Debug)]
 pub(super) struct Placed<'f> {
     pub(super) panel: &'f Panel,
@@ -24,19 +24,19 @@ pub(super) struct Placed<'f> {
     pub(super) letters_pt: f64,
 }
 
-/// An axis at its place: visible range, ticks and label.
+/// An axis at its position: visible range, ticks and label.
 #[derive(Debug)]
 pub(super) struct Side {
     pub(super) range: Range,
     pub(super) ticks: Vec<Tick>,
     pub(super) has_numbers: bool,
     pub(super) has_label: bool,
-    /// Room for the numbers across the axis \[pt\].
+    /// Room for the tick labels across the axis \[pt\].
     pub(super) depth: f64,
 }
 
 impl Side {
-    /// Creates an axis without ticks and label.
+    /// Creates an axis without ticks and without a label.
     pub(super) fn bare(range: Range) -> Self {
         Self {
             range,
@@ -48,7 +48,7 @@ impl Side {
     }
 }
 
-/// Bracket ends \[pt\], in the same order as its values.
+/// Ends of a bracket's lines \[pt\], in the order of the bracket's values.
 pub(super) struct PlacedBracket {
     /// Ends of the line beside the values.
     pub(super) spine: [[f64; 2]; 2],
@@ -57,15 +57,15 @@ pub(super) struct PlacedBracket {
 }
 
 impl Placed<'_> {
-    /// Returns a point's position; `None` if an axis cannot show it. A point outside the ranges has
-    /// a position outside the frame.
+    /// Returns the position of a point, which lies outside the frame if the point is outside the
+    /// ranges; `None` if an axis cannot show the point.
     pub(super) fn at(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let x = self.panel.x.fraction(x, self.x.range)?;
         let y = self.panel.y.fraction(y, self.y.range)?;
         Some(self.frame.at(x, y))
     }
 
-    /// Returns the ends of the line across the frame at a value.
+    /// Returns the ends of the line at a value, across the whole frame.
     pub(super) fn across(&self, along: Along, value: f64) -> Option<[[f64; 2]; 2]> {
         match along {
             Along::X => {
@@ -79,13 +79,13 @@ impl Placed<'_> {
         }
     }
 
-    /// Returns both end positions for a vertical range `[x, lower end, upper end]`.
+    /// Returns the positions of both ends of a vertical range `[x, lower end, upper end]`.
     pub(super) fn vertical(&self, [x, low, high]: [f64; 3]) -> Option<[[f64; 2]; 2]> {
         Some([self.at([x, low])?, self.at([x, high])?])
     }
 
-    /// Returns a bracket's ends: to the left of its values, or to their right if there is no room
-    /// to the left.
+    /// Returns the lines of a bracket: to the left of its values, or to their right if there is no
+    /// room on the left.
     pub(super) fn bracket(&self, bracket: &Bracket) -> Option<PlacedBracket> {
         let [from, to] = bracket.ends;
         let from = self.at([bracket.x, from])?;

@@ -1,4 +1,4 @@
-//! Poles of every model in a condition in the s-plane, and the zeros of a response.
+//! Poles of every model of a condition in the s-plane, and the zeros of a response.
 
 use nalgebra::Complex;
 
@@ -19,7 +19,7 @@ use super::figure::{Figure, Panel, Plot};
 use super::marks::{Dot, DotShape, Dots, Mark, MarkId, Rule};
 use super::role::Role;
 
-/// Real and imaginary ranges for slow modes \[rad/s\]: the rigid-body modes of a helicopter.
+/// Real and imaginary ranges of slow modes \[rad/s\]: the rigid-body modes of a helicopter.
 const SLOW: [Range; 2] = [
     Range {
         min: -1.2,
@@ -30,18 +30,18 @@ const SLOW: [Range; 2] = [
         max: 2.2,
     },
 ];
-/// Margins in the whole s-plane along the real and the imaginary axis, relative to the range.
+/// Margins of the whole s-plane along the real and the imaginary axis, relative to the range.
 const MARGINS: [f64; 2] = [0.06, 0.08];
-/// Least width and height in the whole s-plane \[rad/s\].
+/// Minimum width and height of the whole s-plane \[rad/s\].
 const LEAST: f64 = 1.0;
 
-/// Zeros of a model for the selected response.
+/// Function that returns the zeros of a model for the selected response.
 type ZerosOf<'a> = &'a dyn Fn(&ModelId) -> Vec<Complex<f64>>;
 
-/// Plots the poles of every model in a condition, all poles and a window about the slow modes;
-/// physics models ×, identified models +. `zeros_of` gives a model's zeros for the response
-/// selected in the options, if any; `shifts` gives the pole shifts in the physics representative
-/// due to couplings.
+/// Plots the poles of every model of a condition: all poles, and the region of the slow modes;
+/// physics models ×, identified models +. `zeros_of` returns the zeros of a model for the response
+/// selected in the options, if any; `shifts` are the pole shifts of the physics representative due
+/// to couplings.
 pub fn poles_figure(
     source: &ConditionSource<'_>,
     modes: &ConditionModes,

@@ -1,6 +1,6 @@
-//! Range shown along an axis.
+//! Displayed range of an axis.
 
-/// Range shown along an axis: finite, `min < max`.
+/// Displayed range of an axis: finite ends, `min < max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     pub min: f64,
@@ -8,7 +8,7 @@ pub struct Range {
 }
 
 impl Range {
-    /// The whole real line, as a limit that limits nothing.
+    /// The whole real line: no limit.
     pub const ALL: Self = Self {
         min: f64::NEG_INFINITY,
         max: f64::INFINITY,
@@ -22,7 +22,7 @@ impl Range {
         }
     }
 
-    /// Returns the smallest range with every finite value; `None` if no value is finite.
+    /// Returns the smallest range that contains every finite value; `None` if no value is finite.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut range = Self {
             min: f64::INFINITY,
@@ -64,8 +64,8 @@ impl Range {
         self.including(other.min).including(other.max)
     }
 
-    /// Returns this range widened by `fraction` times its width on either side, and to at least
-    /// `least`, about the same middle.
+    /// Returns this range widened by `fraction` times its width on either side, and to a width of
+    /// at least `least`, about the same middle.
     pub fn with_margin(self, fraction: f64, least: f64) -> Self {
         let half = (0.5 * self.width() * (1.0 + 2.0 * fraction)).max(0.5 * least);
         Self {
@@ -82,7 +82,7 @@ impl Range {
         }
     }
 
-    /// Returns this range magnified `factor` times about `fixed`, which keeps its place on the
+    /// Returns this range zoomed in by `factor` about `fixed`, which keeps its position on the
     /// axis.
     pub fn zoomed(self, factor: f64, fixed: f64) -> Self {
         if factor == 1.0 {
@@ -98,7 +98,7 @@ impl Range {
     /// Returns this range if its width lies in `widths`, otherwise the range with the same middle
     /// and the nearest width that does. `None` for a range that is not finite.
     ///
-    /// Keeps zooming and panning away from widths at which numbers lose their meaning.
+    /// Prevents zooming and panning to widths at which floating-point values lose their precision.
     pub fn limited(self, widths: Self) -> Option<Self> {
         let width = self.width();
         let middle = self.middle();

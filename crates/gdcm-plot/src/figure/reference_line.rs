@@ -1,9 +1,9 @@
-//! Reference lines for responses and errors: targets, bounds, quantiles and envelopes.
+//! Reference lines of responses and errors: targets, bounds, quantiles and envelopes.
 
 use super::bode_curve::Pane;
 use super::drawing::{Color, Dash, Hue, Stroke};
 
-/// Points on a line that is not straight over `log10 omega`.
+/// Number of intervals between the points of a line that is not straight over `log10 omega`.
 const POINTS: usize = 80;
 
 /// Frequency dependence of a reference line.
@@ -11,15 +11,15 @@ const POINTS: usize = 80;
 pub enum Level {
     /// The same value at every frequency.
     Constant(f64),
-    /// Slope times omega \[rad/s\]: the phase of a delay.
+    /// Slope times omega \[rad/s\], such as the phase of a delay.
     PerOmega(f64),
     /// `[omega, value]` with omega \[rad/s\] ascending.
     Sampled(Vec<[f64; 2]>),
 }
 
 impl Level {
-    /// Returns the value at omega \[rad/s\]. A sampled level has values at its samples only, and is
-    /// NaN elsewhere.
+    /// Returns the value at omega \[rad/s\]. A sampled level is NaN except at its
+    /// samples.
     pub fn at(&self, omega: f64) -> f64 {
         match self {
             Self::Constant(value) => *value,
@@ -51,13 +51,13 @@ impl Level {
 /// Meaning of a reference line, in the order in which labels are placed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ReferenceKind {
-    /// Delta gain G or delta delay D, the fit's targets.
+    /// Delta gain G or delta delay D, the targets of the fit.
     Delta,
     /// Lower or upper channel bound.
     Bound,
-    /// Quantile over the band.
+    /// Quantile of the error over the band.
     Quantile,
-    /// Envelope of unnoticeable added dynamics.
+    /// Envelope of maximum unnoticeable added dynamics.
     Envelope,
 }
 
@@ -72,7 +72,7 @@ impl ReferenceKind {
         }
     }
 
-    /// Returns the entry in a figure's legend, for lines without a label in the plot.
+    /// Returns the entry in the legend, for lines without a label in the plot.
     pub fn key(self) -> &'static str {
         match self {
             Self::Delta => "delta gain, delta delay",
@@ -90,7 +90,7 @@ pub struct ReferenceLine {
     pub kind: ReferenceKind,
     /// `G 0.83 (−1.7 dB)`.
     pub label: String,
-    /// Continuation of the label if there is room: `, median over the band`. May be empty.
+    /// Continuation of the label, shown if there is room: `, median over the band`. May be empty.
     pub note: String,
     pub level: Level,
 }

@@ -1,5 +1,5 @@
-//! Requirements: phase delay over bandwidth for every attitude response (M17.1), with the
-//! engineer's level boundaries.
+//! Requirements: phase delay over bandwidth of every attitude response (M17.1), with the engineer's
+//! level boundaries.
 
 use gdcm_method::requirements::LevelBoundaries;
 use gdcm_method::requirements::level_boundary::LevelBoundary;
@@ -17,31 +17,32 @@ use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::marks::{Curve, Dot, DotShape, Dots, Envelope, Intervals, Mark, MarkId};
 
-/// Arrow from the physics model of a condition to the corrected model.
+/// Arrow from the physics model to the corrected model of a condition.
 const ARROW: Stroke = Stroke::solid(Color::DIM.tint(70), 0.7);
 const INTERVAL: Stroke = Stroke::solid(Color::DIM, 0.7);
 const LEVEL: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
 /// Upper end of shaded areas \[ms\], above every drawn phase delay.
 const BEYOND_MS: f64 = 1e4;
-/// Strength \[%\] of the widest shaded area; each narrower area adds as much, up to the maximum.
+/// Strength \[%\] of the widest shaded area, and its increase for each narrower area, up to the
+/// maximum.
 const BEYOND_TINT: usize = 12;
 const MOST_BEYOND_TINT: usize = 48;
-/// Strength \[%\] for a dot whose numbers rest on the model beyond the band.
+/// Strength \[%\] of a dot whose bandwidth or phase delay depends on the model above the band.
 const RESTS_TINT: u8 = 45;
 
-/// Names under which a finding lists its numbers.
+/// Names of bandwidth and phase delay in a finding.
 const BANDWIDTH: &str = "omega_bw_rad_s";
 const PHASE_DELAY: &str = "phase_delay_s";
 
-/// Returns a response's point in the plot, bandwidth \[rad/s\] and phase delay \[ms\], if both are
-/// defined.
+/// Returns a response's position in the plot, bandwidth \[rad/s\] and phase delay \[ms\], if both
+/// are defined.
 pub fn bandwidth_place(finding: &BandwidthFinding) -> Option<[f64; 2]> {
     let omega_bw_rad_s = finding.omega_bw_rad_s?;
     let phase_delay_s = finding.phase_delay_s?;
     Some([omega_bw_rad_s, s_to_ms(phase_delay_s)])
 }
 
-/// Returns the responses with a bandwidth and a phase delay in some condition, without duplicates.
+/// Returns the responses with a bandwidth and a phase delay in any condition, without duplicates.
 pub fn bandwidth_pairs(requirements: &Requirements) -> Vec<Pair> {
     let mut pairs: Vec<Pair> = Vec::new();
     for finding in &requirements.bandwidth {
@@ -52,9 +53,9 @@ pub fn bandwidth_pairs(requirements: &Requirements) -> Vec<Pair> {
     pairs
 }
 
-/// Plots phase delay over bandwidth for each attitude response: a dot for each condition and model,
+/// Plots phase delay over bandwidth of each attitude response: a dot for each condition and model,
 /// an arrow from the physics model to the corrected model, available intervals, and the engineer's
-/// levels. Dots whose numbers rest on a model beyond the band are pale.
+/// levels. Dots are pale if the bandwidth or the phase delay depends on the model above the band.
 pub fn requirements_figure(
     requirements: &Requirements,
     dataset: &Dataset,
@@ -85,8 +86,8 @@ pub fn requirements_figure(
         .plots(plots)
 }
 
-/// Shades the areas beyond the boundaries, with less bandwidth and more phase delay: the widest
-/// first, narrower areas darker. A boundary that turns back along x is not shaded.
+/// Shades the areas beyond the boundaries (lower bandwidth, higher phase delay): the widest first,
+/// narrower areas darker. A boundary whose bandwidths do not ascend is not shaded.
 fn areas_beyond(levels: &LevelBoundaries, axis: &str) -> Vec<Envelope> {
     let mut rising: Vec<&LevelBoundary> = levels
         .of_axis(axis)
@@ -129,7 +130,7 @@ fn boundaries(levels: &LevelBoundaries, axis: &str) -> Vec<Curve> {
     lines
 }
 
-/// Findings for a response in all conditions.
+/// Findings on a response in all conditions.
 struct PairFindings<'a> {
     requirements: &'a Requirements,
     pair: Pair,
@@ -148,7 +149,7 @@ impl<'a> PairFindings<'a> {
         self.iter().filter(move |finding| finding.role == role)
     }
 
-    /// Draws arrows, intervals, and dots over both.
+    /// Draws arrows and intervals, and the dots on top.
     fn marks(&self) -> Vec<Mark> {
         let mut marks: Vec<Mark> = Vec::new();
         marks.extend(self.arrows().into_iter().map(Mark::from));
@@ -185,7 +186,7 @@ impl<'a> PairFindings<'a> {
         arrows
     }
 
-    /// Draws intervals for phase delays, as vertical lines.
+    /// Draws the intervals of phase delays as vertical lines.
     fn delay_intervals(&self) -> Option<Intervals> {
         let mut ends = Vec::new();
         for finding in self.iter() {
@@ -205,7 +206,7 @@ impl<'a> PairFindings<'a> {
         })
     }
 
-    /// Draws intervals for bandwidths, as horizontal lines.
+    /// Draws the intervals of bandwidths as horizontal lines.
     fn bandwidth_intervals(&self) -> Vec<Curve> {
         let mut lines = Vec::new();
         for finding in self.iter() {
@@ -220,8 +221,8 @@ impl<'a> PairFindings<'a> {
         lines
     }
 
-    /// Draws the models with this role whose numbers rest, or do not rest, on the model beyond the
-    /// band.
+    /// Draws the models with this role: either those with a bandwidth or phase delay that depends
+    /// on the model above the band, or the others.
     fn dots(&self, role: RequirementRole, rests_beyond_band: bool) -> Dots {
         let (shape, color) = dot_style(role);
         let mut dots = if rests_beyond_band {
@@ -234,7 +235,7 @@ impl<'a> PairFindings<'a> {
             if rests == rests_beyond_band
                 && let Some([x, y]) = bandwidth_place(finding)
             {
-                // A number at the corrected model suffices to identify the condition.
+                // The condition's number at the corrected model suffices.
                 let label = if role == RequirementRole::Corrected {
                     finding.condition.to_string()
                 } else {

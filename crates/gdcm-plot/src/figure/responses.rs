@@ -1,5 +1,5 @@
-//! Curves of a response, for every model in a condition or for a model in every condition, and the
-//! uncertainty bands about them.
+//! Curves of a response, for every model of a condition or for a model in every condition, and the
+//! uncertainty bands about the curves.
 
 use std::sync::Arc;
 
@@ -24,13 +24,14 @@ use super::bode_options::BodeOptions;
 use super::condition_source::ConditionSource;
 use super::role::Role;
 
-/// Room that a fitted range leaves for values outside the band on either side, relative to the
-/// height within the band.
+/// Margin on either side of a fitted range for values outside the band, relative to the height of
+/// the range within the band.
 const OUTSIDE_PART: f64 = 0.4;
 
 impl ConditionSource<'_> {
-    /// Returns every curve for a response, hidden curves included; phases are aligned with the
-    /// reference. `cache` keeps the numbers, and their addresses, until their sources change.
+    /// Returns every curve of a response, including hidden curves; phases are aligned with the
+    /// reference. `cache` keeps the computed values, and their addresses, until their sources
+    /// change.
     pub fn response_curves(
         &self,
         pair: Pair,
@@ -73,17 +74,18 @@ impl ConditionSource<'_> {
     }
 }
 
-/// Presentation of a condition's response.
+/// Presentation of a response in a condition.
 struct Presentation<'a> {
     condition: ConditionId,
     pair: Pair,
     options: &'a BodeOptions,
-    /// Frequencies for all shapes \[rad/s\].
+    /// Frequencies of all shapes \[rad/s\].
     omega: &'a Arc<[f64]>,
 }
 
 impl Presentation<'_> {
-    /// Returns a curve with a shape's numbers, in the displayed phase and moved by its turns.
+    /// Returns a curve with the values of a shape, its phase displayed as chosen and shifted by
+    /// whole turns.
     fn curve(&self, curve: BodeCurve, shape: &ResponseShape) -> BodeCurve {
         let key = (self.condition, self.pair, curve.id.clone());
         let turns = self.options.turns.get(&key).copied().unwrap_or(0);
@@ -92,8 +94,8 @@ impl Presentation<'_> {
     }
 }
 
-/// Returns a continuous phase \[deg\] as drawn, moved up by `turns`. A wrapped phase has a gap at
-/// its jumps, instead of a line from edge to edge.
+/// Returns a continuous phase \[deg\] as drawn, shifted up by `turns`. A wrapped phase has a gap at
+/// each jump, instead of a line across the plot.
 fn displayed_phase(phase_deg: &Arc<[f64]>, unit: PhaseUnit, turns: i32) -> Arc<[f64]> {
     match (unit, turns) {
         (PhaseUnit::Unwrapped, 0) => Arc::clone(phase_deg),
@@ -105,7 +107,7 @@ fn displayed_phase(phase_deg: &Arc<[f64]>, unit: PhaseUnit, turns: i32) -> Arc<[
     }
 }
 
-/// Notes in a curve's detail that its phase was moved up by `turns`.
+/// Adds the shift of the phase by `turns` to the detail of a curve.
 fn noted_turns(mut curve: BodeCurve, turns: i32) -> BodeCurve {
     if turns != 0 {
         let moved = format!("phase {}°", signed(360.0 * f64::from(turns), 0));
@@ -118,7 +120,7 @@ fn noted_turns(mut curve: BodeCurve, turns: i32) -> BodeCurve {
     curve
 }
 
-/// Source for the shapes of a response.
+/// Data from which the shapes of a response are computed.
 #[derive(Debug)]
 struct ResponseSource {
     curves: Arc<ConditionCurves>,
@@ -139,11 +141,11 @@ impl ResponseSource {
 #[derive(Debug)]
 struct PhaseReference {
     shape: ResponseShape,
-    /// Count of leading frequencies over which phases are compared.
+    /// Number of leading frequencies over which phases are compared.
     points: usize,
 }
 
-/// Shapes of a response for every model in a condition, kept until their source changes.
+/// Shapes of a response for every model of a condition, kept until their source changes.
 #[derive(Debug, Default)]
 pub struct ResponseCache {
     source: Option<ResponseSource>,
@@ -154,8 +156,8 @@ pub struct ResponseCache {
 }
 
 impl ResponseCache {
-    /// Computes a response's shapes. Phases are aligned with the reference around the band.
-    /// Identified models end beyond that range, where they carry no information.
+    /// Computes the shapes of a response. Phases are aligned with the reference up to the limit of
+    /// the displayed band. Identified models end there, because they carry no information beyond.
     fn refresh(&mut self, source: ResponseSource, band: BandOfComparison) {
         if let Some(known) = &self.source
             && known.is_same(&source)
@@ -163,7 +165,7 @@ impl ResponseCache {
             return;
         }
         let curves = &source.curves;
-        // A grid's last frequency may exceed its end by a rounding error.
+        // The last frequency of a grid may exceed its limit by a rounding error.
         let limit = display_band(band).max() * (1.0 + 1e-9);
         let points = curves.grid.omega().partition_point(|omega| *omega <= limit);
         self.reference = curves
@@ -192,7 +194,7 @@ impl ResponseCache {
             .collect()
     }
 
-    /// Returns a response's shape, with its phase aligned with the reference.
+    /// Returns the shape of a response, with its phase aligned with the reference.
     fn aligned_shape(&self, response: &FrequencyResponse, pair: Pair) -> ResponseShape {
         let shape = ResponseShape::new(response.curve(pair));
         match &self.reference {
@@ -220,8 +222,8 @@ pub struct BodeBand {
     pub phase_deg: Vec<[f64; 2]>,
 }
 
-/// Returns the 95 % band for every identified model among `curves` that is visible, kept and has a
-/// known uncertainty.
+/// Returns the 95 % band of every identified model among `curves` that is visible, kept, and has an
+/// uncertainty.
 pub fn uncertainty_bands(dataset: &Dataset, pair: Pair, curves: &[BodeCurve]) -> Vec<BodeBand> {
     let mut bands = Vec::new();
     for curve in curves {
@@ -238,7 +240,7 @@ pub fn uncertainty_bands(dataset: &Dataset, pair: Pair, curves: &[BodeCurve]) ->
     bands
 }
 
-/// Returns the band about a curve, at frequencies at which deviations are known.
+/// Returns the band about a curve, at the frequencies within the grid of the deviations.
 fn band_about(curve: &BodeCurve, deviations: &ModelBands, pair: Pair) -> BodeBand {
     let sd_db = &deviations.sd_db()[pair];
     let sd_deg = &deviations.sd_deg()[pair];
@@ -258,7 +260,7 @@ fn band_about(curve: &BodeCurve, deviations: &ModelBands, pair: Pair) -> BodeBan
     band
 }
 
-/// Place of a frequency between two grid neighbours.
+/// Position of a frequency between two neighbours on a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct GridPlace {
     /// Index of the lower neighbour.
@@ -268,7 +270,7 @@ struct GridPlace {
 }
 
 impl GridPlace {
-    /// Finds `omega` in a grid with ascending frequencies; `None` outside.
+    /// Finds `omega` in a grid of ascending frequencies; `None` outside.
     fn find(grid: &[f64], omega: f64) -> Option<Self> {
         let upper = grid.partition_point(|at| *at <= omega);
         let lower = upper.checked_sub(1)?;
@@ -286,28 +288,28 @@ impl GridPlace {
         }
     }
 
-    /// Interpolates values on the grid linearly.
+    /// Interpolates values given on the grid linearly.
     fn interpolate(self, values: &[f64]) -> f64 {
         let low = values[self.lower];
         low + self.part * (values[self.lower + 1] - low)
     }
 }
 
-/// Shape of a response for the model in a condition.
+/// Shape of a response of the model in a condition.
 #[derive(Debug)]
 struct ModelShape {
     id: ModelId,
     shape: ResponseShape,
 }
 
-/// Source for the shapes of a response in several conditions.
+/// Data from which the shapes of a response in several conditions are computed.
 #[derive(Debug)]
 struct AirspeedSource {
     curves: Arc<AcrossCurves>,
     pair: Pair,
 }
 
-/// Shapes of a response for a model in each condition, kept until their source changes.
+/// Shapes of a response of one model in each condition, kept until their source changes.
 #[derive(Debug, Default)]
 pub struct AirspeedCache {
     source: Option<AirspeedSource>,
@@ -316,7 +318,7 @@ pub struct AirspeedCache {
 }
 
 impl AirspeedCache {
-    /// Computes a response's shapes; phases are aligned with the first model.
+    /// Computes the shapes of a response; phases are aligned with the first model.
     fn refresh(&mut self, curves: &Arc<AcrossCurves>, pair: Pair) {
         if let Some(known) = &self.source
             && Arc::ptr_eq(&known.curves, curves)
@@ -343,8 +345,8 @@ impl AirspeedCache {
     }
 }
 
-/// Returns a response of a model in each condition, coloured by airspeed, under the correction for
-/// `role`. Conditions that lack the model or the correction are skipped.
+/// Returns a response of one model in each condition, coloured by airspeed, with the correction
+/// that `role` selects. Conditions without the model or the correction are skipped.
 pub fn airspeed_curves(
     (dataset, analysis): (&Dataset, Option<&Analysis>),
     role: AcrossRole,
@@ -379,8 +381,9 @@ pub fn airspeed_curves(
     drawn
 }
 
-/// Returns the range that shows all values within the frequency band \[rad/s\], and values outside
-/// it as far as they leave room for the former; `None` without finite values.
+/// Returns the range of all values within the frequency band \[rad/s\], extended to values outside
+/// the band by at most 40 % of its height on either side; of all values if none lies in the band;
+/// `None` without finite values.
 pub fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -> Option<Range> {
     let mut all = Vec::new();
     let mut inside = Vec::new();
@@ -411,7 +414,7 @@ mod tests {
             PhaseUnit::Wrapped,
             0,
         );
-        // Two rounding errors of angles below 360.
+        // Two rounding errors of angles below 360 degrees.
         assert!((wrapped[1] + 170.0).abs() < 1e-12 && (wrapped[3] - 160.0).abs() < 1e-12);
         assert!(wrapped[2].is_nan(), "{wrapped:?}");
     }

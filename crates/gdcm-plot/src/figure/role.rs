@@ -1,4 +1,4 @@
-//! Role of a curve, and its appearance, which is the same in every figure.
+//! Role of a curve, and its appearance, the same in every figure.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use super::drawing::{Color, Dash, Hue, Stroke};
 /// Role of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Role {
-    /// Physics model at the trim itself.
+    /// Physics model at the unperturbed trim.
     Nominal,
     /// Physics model at a perturbed trim.
     Perturbed,
@@ -31,12 +31,12 @@ pub enum Role {
     Variant,
     /// Excluded model.
     Rejected,
-    /// A model of one among several conditions, from 0 for the slowest to 255 for the fastest.
+    /// Model in one of several conditions, from 0 at the lowest airspeed to 255 at the highest.
     OfAirspeed(u8),
 }
 
 impl Role {
-    /// The roles in a single condition, in legend order.
+    /// Roles in a single condition, in legend order.
     pub const ALL: [Self; 11] = [
         Self::Nominal,
         Self::Perturbed,
@@ -101,8 +101,8 @@ impl Role {
         }
     }
 
-    /// Returns a curve's displayed role: `Rejected` for a rejected curve, except that the nominal
-    /// model stays nominal.
+    /// Returns the displayed role: `Rejected` for a rejected curve, except that the nominal model
+    /// stays nominal.
     pub fn shown(self, rejected: bool) -> Self {
         if rejected && self != Self::Nominal {
             Self::Rejected
@@ -111,8 +111,8 @@ impl Role {
         }
     }
 
-    /// Returns the line in the window. Dashes and widths distinguish the roles without colours. A
-    /// rejected nominal model stays red, but dotted.
+    /// Returns the line style in the window. Dashes and widths distinguish the roles without
+    /// colour. A rejected nominal model stays red, but dotted.
     pub fn line(self, rejected: bool) -> Stroke {
         let nominal = Color::of(Hue::Nominal);
         let perturbed = Color::of(Hue::Perturbed);
@@ -124,7 +124,7 @@ impl Role {
             Self::Perturbed => Stroke::solid(perturbed.tint(80), 0.8),
             Self::Representative => Stroke::solid(perturbed, 1.4),
             Self::Identified => Stroke::dashed(identified, 1.2, Dash::Short),
-            // Wide: visible below the corrected curve that should lie on it.
+            // Wide, so that it is visible below the corrected curve, which should coincide with it.
             Self::IdentifiedRepresentative => Stroke::solid(identified, 4.0),
             Self::Corrected => Stroke::solid(corrected, 2.0),
             Self::Scheduled => Stroke::dashed(corrected, 1.6, Dash::Long),
@@ -136,12 +136,12 @@ impl Role {
         }
     }
 
-    /// Returns the line on paper: the window's line, thinned for print.
+    /// Returns the line style on paper: that of the window, thinner.
     pub fn stroke(self, rejected: bool) -> Stroke {
         self.line(rejected).printed()
     }
 
-    /// Returns the text in a figure's legend.
+    /// Returns the text in the legend of a figure.
     pub fn key(self, rejected: bool) -> &'static str {
         match self.shown(rejected) {
             Self::Nominal if rejected => "nominal (rejected)",
@@ -149,7 +149,7 @@ impl Role {
         }
     }
 
-    /// Returns the place in the drawing order: the most important roles come last, on top.
+    /// Returns the rank in the drawing order: the most important roles come last, on top.
     pub fn layer(self, rejected: bool) -> usize {
         match self.shown(rejected) {
             Self::Rejected => 0,

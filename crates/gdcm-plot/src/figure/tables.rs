@@ -1,5 +1,5 @@
-//! Numbers of a figure at full precision: as one long table for programs, or as a table for each
-//! panel for people.
+//! Values of a figure at full precision: one long table for programs, or a table for each panel for
+//! readers.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use super::axis::Axis;
 use super::figure::{Figure, Panel};
 use super::marks::{Along, Brackets, Curve, Dots, Mark};
 
-/// Columns in a figure's long table.
+/// Columns of a figure's long table.
 pub const LONG_COLUMNS: [&str; 8] = [
     "figure",
     "panel",
@@ -24,17 +24,17 @@ pub const LONG_COLUMNS: [&str; 8] = [
 ];
 
 impl Figure {
-    /// Returns all numbers as rows under [`LONG_COLUMNS`], a row for each point: the figure's
-    /// title, the panel (plot title, quantity), the curve, the text beside the point, and both
-    /// coordinates, each after its axis label. A labelled horizontal line has no x.
+    /// Returns all values as rows under [`LONG_COLUMNS`], a row for each point: title of the
+    /// figure, panel (plot title, quantity), curve, text beside the point, and both coordinates,
+    /// each after its axis label. A labelled horizontal line has no x.
     pub fn long_rows(&self) -> impl Iterator<Item = [String; 8]> + '_ {
         self.panels()
             .flat_map(|(title, panel)| panel.long_rows(&self.title, title))
     }
 
-    /// Returns the numbers in each panel: a column for each curve if all share their x, otherwise a
-    /// row for each point. Areas on other frequencies have separate tables, after all others.
-    /// Tables without rows are left out.
+    /// Returns a table for each panel: a column for each curve if all have the same x, otherwise a
+    /// row for each point. Areas over other x have separate tables, after all others. Tables
+    /// without rows are omitted.
     pub fn tables(&self) -> Vec<Table> {
         let mut tables = Vec::new();
         let mut tables_of_areas = Vec::new();
@@ -49,8 +49,7 @@ impl Figure {
     }
 }
 
-/// Removes control characters from a table, so that a terminal or a spreadsheet shows its names
-/// unchanged.
+/// Removes control characters from a table, which a terminal or a spreadsheet might interpret.
 fn without_control_codes(mut table: Table) -> Table {
     let cells = table
         .columns
@@ -62,7 +61,7 @@ fn without_control_codes(mut table: Table) -> Table {
     table
 }
 
-/// A mark's points, with the texts beside them.
+/// The points of a mark, with the texts beside them.
 struct Series {
     name: String,
     x: Arc<[f64]>,
@@ -114,7 +113,7 @@ impl Series {
         }
     }
 
-    /// Creates one series for the lower and one for the upper ends of vertical ranges.
+    /// Creates a series of the lower ends and a series of the upper ends of vertical ranges.
     fn from_ends(name: &str, ends: &[[f64; 3]]) -> Vec<Self> {
         let mut lower = Vec::new();
         let mut upper = Vec::new();
@@ -128,7 +127,7 @@ impl Series {
         ]
     }
 
-    /// Returns a mark's series; none for a mark without numbers.
+    /// Returns the series of a mark; none for a mark without values.
     fn from_mark(mark: &Mark) -> Vec<Self> {
         match mark {
             Mark::Curve(curve) => vec![Self::from_curve(curve)],
@@ -145,19 +144,18 @@ impl Series {
         }
     }
 
-    /// Returns the text beside a point; empty without one.
+    /// Returns the text beside a point; empty if there is none.
     fn label(&self, point: usize) -> &str {
         let label = self.labels.as_ref().and_then(|labels| labels.get(point));
         label.map(String::as_str).unwrap_or_default()
     }
 
-    /// Returns the point count.
     fn count(&self) -> usize {
         self.x.len().min(self.y.len())
     }
 }
 
-/// A value that holds for all x: a labelled horizontal line.
+/// A value independent of x: a labelled horizontal line.
 struct Constant<'m> {
     name: &'m str,
     value: f64,
@@ -176,7 +174,7 @@ impl<'m> Constant<'m> {
 }
 
 impl Panel {
-    /// Returns its name among the numbers, in a plot with this title.
+    /// Returns the name in the tables, for a plot with this title.
     fn name(&self, plot_title: &str) -> String {
         if plot_title.is_empty() {
             self.y.label.clone()
@@ -185,7 +183,7 @@ impl Panel {
         }
     }
 
-    /// Returns its rows in the long table.
+    /// Returns the rows in the long table.
     fn long_rows(&self, figure_title: &str, plot_title: &str) -> Vec<[String; 8]> {
         let name = self.name(plot_title);
         let mut rows = Vec::new();
@@ -243,10 +241,10 @@ fn rows_of_points(
     rows
 }
 
-/// A panel's tables.
+/// The tables of a panel.
 struct PanelTables {
     main: Table,
-    /// Areas on other frequencies than the first curve.
+    /// Areas over other x than the first curve.
     areas: Option<Table>,
 }
 
@@ -344,7 +342,7 @@ fn unit_of(label: &str) -> &str {
     label.rfind(" [").map(|at| &label[at..]).unwrap_or_default()
 }
 
-/// Formats an x: on an axis with names, the nearest name, otherwise the number.
+/// Formats an x: the nearest name on an axis with names, otherwise the value.
 fn x_cell(axis: &Axis, value: f64) -> String {
     let mut names = axis.names.iter().flatten();
     match names.find(|(at, _)| (at - value).abs() < 0.5) {

@@ -1,4 +1,4 @@
-//! Thins lines: leaves out points that would not be seen.
+//! Thins lines: omits points that would not be visible.
 
 use std::borrow::Cow;
 
@@ -28,9 +28,9 @@ impl Pixel {
     }
 }
 
-/// Returns the points in `run` that must be drawn: the extremes in each pixel column, and as many
-/// others as keep the lines between them within tolerance for every value. Both ends stay; a `run`
-/// that does not ascend in x is returned whole.
+/// Returns the points of `run` that must be drawn: the extremes in each pixel column, and as many
+/// others as keep the lines between them within tolerance at every omitted point. Both ends remain;
+/// a `run` that does not ascend in x is returned whole.
 pub fn thinned(run: &[[f64; 2]], pixel: Pixel) -> Vec<[f64; 2]> {
     if !run.is_sorted_by(|point, next| point[0] < next[0]) {
         return run.to_vec();
@@ -38,10 +38,10 @@ pub fn thinned(run: &[[f64; 2]], pixel: Pixel) -> Vec<[f64; 2]> {
     along_wedges(&column_extremes(run, pixel), pixel.tolerance)
 }
 
-/// Returns the first, the least, the greatest and the last point in each pixel column, in their
+/// Returns the first, the minimum, the maximum and the last point in each pixel column, in their
 /// order.
 fn column_extremes(run: &[[f64; 2]], pixel: Pixel) -> Cow<'_, [[f64; 2]]> {
-    // Most often no column holds three points, and no point can be omitted.
+    // Usually no column contains three points, so that no point can be omitted.
     if run
         .windows(3)
         .all(|points| points[2][0] - points[0][0] >= pixel.width)
@@ -59,8 +59,8 @@ fn column_extremes(run: &[[f64; 2]], pixel: Pixel) -> Cow<'_, [[f64; 2]]> {
     Cow::Owned(kept)
 }
 
-/// Returns the indices at the first, the least, the greatest and the last point in a column, in
-/// ascending order without duplicates.
+/// Returns the indices of the first, the minimum, the maximum and the last point in a column,
+/// ascending and without duplicates.
 fn extremes_of_column(points: &[[f64; 2]]) -> impl Iterator<Item = usize> {
     let mut least = 0;
     let mut greatest = 0;
@@ -68,7 +68,7 @@ fn extremes_of_column(points: &[[f64; 2]]) -> impl Iterator<Item = usize> {
         if point[1].total_cmp(&points[least][1]).is_lt() {
             least = index;
         }
-        // Among equal values: the first least point, the last greatest point.
+        // Among equal values: the first minimum, the last maximum.
         if point[1].total_cmp(&points[greatest][1]).is_ge() {
             greatest = index;
         }
@@ -79,7 +79,8 @@ fn extremes_of_column(points: &[[f64; 2]]) -> impl Iterator<Item = usize> {
     indices.into_iter()
 }
 
-/// Slopes at which lines from the last kept point pass all values since within tolerance.
+/// Range of slopes with which a line from the last kept point passes all later points within
+/// tolerance.
 struct Wedge {
     apex: [f64; 2],
     least_slope: f64,
@@ -87,7 +88,7 @@ struct Wedge {
 }
 
 impl Wedge {
-    /// Starts at a kept point, with every slope.
+    /// Starts at a kept point; any slope is possible.
     fn new(apex: [f64; 2]) -> Self {
         Self {
             apex,
@@ -96,12 +97,12 @@ impl Wedge {
         }
     }
 
-    /// Returns whether the line to a point passes all values within tolerance.
+    /// Returns whether the line to this point passes all earlier points within tolerance.
     fn contains(&self, [x, y]: [f64; 2]) -> bool {
         (self.least_slope..=self.greatest_slope).contains(&self.slope_to(x, y))
     }
 
-    /// Removes the slopes that do not pass a point within tolerance.
+    /// Excludes the slopes that miss a point by more than the tolerance.
     fn narrow(&mut self, [x, y]: [f64; 2], tolerance: f64) {
         self.least_slope = self.least_slope.max(self.slope_to(x, y - tolerance));
         self.greatest_slope = self.greatest_slope.min(self.slope_to(x, y + tolerance));
@@ -112,8 +113,8 @@ impl Wedge {
     }
 }
 
-/// Returns the points in `run` needed for straight lines between them to stay within `tolerance` at
-/// every omitted value.
+/// Returns the points of `run` that are needed to keep the straight lines between them within
+/// `tolerance` of every omitted point.
 ///
 /// ```text
 /// keep the first point: it is the apex from which a wedge opens
@@ -122,7 +123,7 @@ impl Wedge {
 ///     narrow the wedge to slopes that pass the point within tolerance
 /// keep the last point
 /// ```
-/// Linear in the point count. Williams, "An efficient algorithm for the piecewise linear
+/// Linear in the number of points. Williams, "An efficient algorithm for the piecewise linear
 /// approximation of planar curves", Computer Graphics and Image Processing 8, 1978.
 fn along_wedges(run: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     let Some((first, rest)) = run.split_first() else {
@@ -151,7 +152,7 @@ mod tests {
 
     use super::*;
 
-    /// Returns the value at `x` of the lines between `kept`.
+    /// Returns the value at `x` on the lines between `kept`.
     fn drawn_at(kept: &[[f64; 2]], x: f64) -> f64 {
         let after = kept
             .partition_point(|point| point[0] < x)
@@ -161,7 +162,7 @@ mod tests {
         y0 + (y1 - y0) * (x - x0) / (x1 - x0)
     }
 
-    /// Returns the largest distance in y of `points` from the lines between `kept`.
+    /// Returns the maximum vertical distance of `points` from the lines between `kept`.
     fn error(points: &[[f64; 2]], kept: &[[f64; 2]]) -> f64 {
         points
             .iter()
@@ -169,7 +170,7 @@ mod tests {
             .fold(0.0, f64::max)
     }
 
-    /// Returns the least and the greatest value of some points.
+    /// Returns the minimum and the maximum of the values of some points.
     fn extremes(points: &[[f64; 2]]) -> (f64, f64) {
         let start = (f64::INFINITY, f64::NEG_INFINITY);
         points.iter().fold(start, |(least, greatest), point| {
@@ -177,7 +178,7 @@ mod tests {
         })
     }
 
-    /// Returns pixels a hundred times narrower than the distance of points at 0, 1, 2 …
+    /// Returns pixels a hundred times narrower than the spacing of points at 0, 1, 2 …
     fn fine(tolerance: f64) -> Pixel {
         Pixel {
             width: 0.01,
@@ -185,8 +186,8 @@ mod tests {
         }
     }
 
-    /// Generates runs of points with spacings from far below to above a pixel, and with steps up,
-    /// down and level.
+    /// Generates points with spacings from far below to far above a pixel, and with upward,
+    /// downward and level steps.
     fn run() -> impl Strategy<Value = Vec<[f64; 2]>> {
         let step = (
             0.01..1.0f64,

@@ -1,4 +1,4 @@
-//! Ticks on a numeric axis: round values, labelled as densely as their room allows.
+//! Ticks of a numeric axis: round values, labelled as densely as the room permits.
 
 use gdcm_model::number_format::compact;
 
@@ -43,23 +43,23 @@ pub struct TickGaps {
     pub lines: f64,
 }
 
-/// Below this width \[decades\], a logarithmic axis may be labelled at equal steps.
+/// Maximum width \[decades\] of a logarithmic axis labelled at equal steps.
 const LINEAR_BELOW: f64 = 0.9;
 /// Round steps for angles \[deg\].
 const DEGREE_STEPS: [f64; 13] = [
     5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0, 720.0, 1800.0, 3600.0, 7200.0,
 ];
-/// Up to this step \[deg\], angles have decimal steps.
+/// Maximum step \[deg\] of the decimal steps of angles; wider steps come from [`DEGREE_STEPS`].
 const DECIMAL_DEGREES: f64 = 2.0;
-/// `log10(10 / 9)`: the narrowest gap between lines in a decade \[decades\].
+/// `log10(10 / 9)`: the smallest distance between lines in a decade \[decades\].
 const NINE_TO_TEN: f64 = 0.045_757_490_560_675_115;
-/// Minimum distance from 9 to 10 if all nine lines in a decade are labelled \[pt\]: a row with many
-/// close numbers is hard to read.
+/// Minimum distance from 9 to 10 at which all nine lines of a decade are labelled \[pt\]: many
+/// labels close together are hard to read.
 const NINE_LABELS_GAP: f64 = 44.0;
-/// Part of a step by which a tick may lie outside the range, after rounding.
+/// Part of a step by which a tick may exceed the range due to rounding.
 const STEP_SLACK: f64 = 1e-6;
 
-/// Returns the ticks for `range` shown on a length of `length_pt`, in ascending order.
+/// Returns the ticks of `range` on an axis `length_pt` long, in ascending order.
 pub fn ticks_of(scale: Scale, range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     let least = gaps.labels * range.width() / length_pt;
     match scale {
@@ -81,7 +81,7 @@ fn equal_steps(range: Range, step: f64) -> Vec<Tick> {
     ticks
 }
 
-/// Returns the smallest round angle step \[deg\] that is at least `least`.
+/// Returns the smallest round angle step \[deg\] not below `least`.
 fn degree_step(least: f64) -> f64 {
     match DEGREE_STEPS.into_iter().find(|step| *step >= least) {
         Some(step) if least > DECIMAL_DEGREES => step,
@@ -89,8 +89,8 @@ fn degree_step(least: f64) -> f64 {
     }
 }
 
-/// Returns the smallest of 1, 2 and 5 times a power of ten that is at least `least`; 1 if `least`
-/// is not positive and finite.
+/// Returns the smallest of 1, 2 and 5 times a power of ten not below `least`; 1 if `least` is not
+/// positive and finite.
 pub(super) fn step_above(least: f64) -> f64 {
     if !(least > 0.0 && least.is_finite()) {
         return 1.0;
@@ -105,13 +105,13 @@ pub(super) fn step_above(least: f64) -> f64 {
     10.0 * power
 }
 
-/// Returns ticks on a logarithmic axis: those in decades, or equal steps on a small part of a
-/// decade if these give more labels.
+/// Returns ticks of a logarithmic axis: within decades, or at equal steps if the range is a small
+/// part of a decade and equal steps have more labels.
 fn logarithmic_ticks(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     let decades = range.max.log10() - range.min.log10();
     let decade_pt = length_pt / decades;
     let in_decades = DecadeLabels::new(decade_pt, gaps).ticks(range);
-    // Equal steps are closest at the upper end.
+    // Equal steps are closest together at the upper end.
     let in_steps = equal_steps(
         range,
         step_above(gaps.equal_steps * range.max * std::f64::consts::LN_10 / decade_pt),

@@ -18,15 +18,15 @@ const INPUT: Stroke = Stroke::solid(Color::of(Hue::Text), 1.2);
 /// Flight data and their corridor.
 const FLOWN: Stroke = Stroke::solid(Color::of(Hue::Text), 1.0);
 const CORRIDOR: Color = Color::of(Hue::Text).tint(14);
-/// Height for the difference from flight, relative to 1 for the record.
+/// Height of the panel for the difference from flight, relative to 1 for the record.
 const DIFFERENCE_WEIGHT: f64 = 0.55;
 /// Additional line width outside the corridor \[pt\].
 const OUTSIDE_PT: f64 = 1.8;
-/// Plot height relative to its width.
+/// Ratio of plot height to width.
 const ASPECT: f64 = 0.4;
 
-/// Returns a model's line over time: as in a Bode plot, except that the identified line is as thin
-/// as the others.
+/// Returns the line of a model over time: as in a Bode plot, except that the identified line is as
+/// thin as the others.
 fn model_line(role: RequirementRole) -> Stroke {
     let role = match role {
         RequirementRole::Physics => Role::Representative,
@@ -41,7 +41,7 @@ fn empty_panel(label: &str) -> Panel {
     Panel::new(Axis::linear("time [s]"), Axis::linear(label))
 }
 
-/// Plots a test input, then each output with a curve for each model, over time. The caption gives
+/// Plots a test input over time, then each output with a curve for each model. The caption gives
 /// the reasons for missing curves.
 pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
     let time_s = answers.time_s();
@@ -89,7 +89,7 @@ fn answer_plot(name: &str, unit: &str, curves: Vec<Curve>) -> Plot {
     Plot::new(label).panel(panel.with_all(curves))
 }
 
-/// Returns an output for each model, the first model on top.
+/// Returns the curves of an output, one for each model, the first model on top.
 fn answer_curves(answers: &TestAnswers, time_s: &[f64], output: usize) -> Vec<Curve> {
     let mut curves = Vec::new();
     for (role, answer) in answers.models.iter().rev() {
@@ -102,9 +102,9 @@ fn answer_curves(answers: &TestAnswers, time_s: &[f64], output: usize) -> Vec<Cu
     curves
 }
 
-/// Plots an input from a record, then each quantity with a tolerance: flight data with their
-/// corridor and the response of each model, above the difference between model and flight, both
-/// thick outside the corridor. Every window starts anew.
+/// Plots an input of a record, then each quantity with a tolerance: flight data with their corridor
+/// and the response of each model; below, the difference between model and flight. Curves are thick
+/// outside the corridor. The simulation restarts at each window.
 pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: usize) -> Figure {
     let mut plots = vec![record_input_plot(history, dataset, input)];
     for quantity in &history.quantities {
@@ -142,7 +142,7 @@ fn record_input_plot(history: &RecordHistory, dataset: &Dataset, input: usize) -
     Plot::new(&label).panel(empty_panel(&label).with(curve))
 }
 
-/// Plots a quantity as recorded, and less flight.
+/// Plots a quantity as recorded, and below the difference from flight.
 fn quantity_plot(history: &QuantityHistory) -> Plot {
     let tolerance = &history.tolerance;
     let label = format!("{} [{}]", tolerance.quantity, history.unit);
@@ -159,11 +159,11 @@ fn quantity_plot(history: &QuantityHistory) -> Plot {
 #[derive(Clone, Copy, PartialEq)]
 enum Shown {
     Recorded,
-    /// Minus the flown value at the same sample.
+    /// Difference from the flown value at the same sample.
     LessFlight,
 }
 
-/// A sample in a window.
+/// A sample of a window.
 #[derive(Clone, Copy)]
 struct Sample<'a> {
     window: &'a ToleranceCheck,
@@ -202,8 +202,8 @@ impl Sample<'_> {
     }
 }
 
-/// A time in a record \[s\], with its sample. Windows are separate: each ends with a time without a
-/// sample, which leaves a gap.
+/// A time in a record \[s\], with its sample. Each window ends with a time without a sample, which
+/// leaves a gap.
 struct Instant<'a> {
     time_s: f64,
     sample: Option<Sample<'a>>,
@@ -242,8 +242,8 @@ fn values(check: &RecordCheck, value: impl Fn(Sample<'_>) -> f64) -> Vec<[f64; 2
     values
 }
 
-/// Draws the corridor, flight, and each model with its parts outside the corridor. The corridor is
-/// the corrected model's, otherwise the first model's.
+/// Draws the corridor, the flight data, and each model with its parts outside the corridor. The
+/// corridor is that of the corrected model, otherwise that of the first model.
 fn history_marks(history: &QuantityHistory, shown: Shown) -> Vec<Mark> {
     let corrected = history
         .models

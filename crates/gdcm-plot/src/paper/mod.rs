@@ -1,4 +1,4 @@
-//! A laid-out figure as SVG, PDF or PNG. The same figure makes the same bytes.
+//! A laid-out figure as SVG, PDF or PNG. The same figure always produces the same bytes.
 
 mod pdf;
 mod png;

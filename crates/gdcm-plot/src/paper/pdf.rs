@@ -1,5 +1,5 @@
-//! A drawing as PDF: a page as large as the drawing, text as text. No dates and no random names, so
-//! that the same drawing makes the same file.
+//! A drawing as PDF: a page as large as the drawing, with texts as text. No dates and no random
+//! names, so that the same drawing produces the same file.
 
 use std::io::{self, Write};
 
@@ -26,7 +26,7 @@ const QUARTER: f64 = 0.552_284_749_830_793_4;
 /// Returns the bytes of a PDF file.
 ///
 /// # Errors
-/// If a font cannot be reduced to the letters used, or a stream not be compressed.
+/// If a font cannot be reduced to the letters used, or a stream cannot be compressed.
 pub fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     let [catalog, pages, page, content, info] = [1, 2, 3, 4, 5].map(Ref::new);
     let drawn = Page::paint(drawing);
@@ -56,10 +56,10 @@ pub fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     Ok(pdf.finish())
 }
 
-/// A page under construction, in coordinates from its lower left corner up.
+/// A page under construction, with coordinates upwards from its lower left corner.
 struct Page {
     content: Content,
-    /// \[pt\].
+    /// Page height \[pt\].
     height: f64,
     used: UsedLetters,
 }
@@ -144,7 +144,7 @@ impl Page {
         self.content.move_to(start_x, start_y);
         let starts: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
         for [dx, dy] in starts {
-            // A quarter turn on from (dx, dy) is (-dy, dx).
+            // (dx, dy) turned by a quarter is (-dy, dx).
             let quarter = [
                 [dx - QUARTER * dy, dy + QUARTER * dx],
                 [QUARTER * dx - dy, QUARTER * dy + dx],
@@ -178,7 +178,7 @@ impl Page {
         }
     }
 
-    /// Fills and strokes the present path.
+    /// Fills and strokes the current path.
     fn draw(&mut self, fill: Option<Color>, stroke: Option<Stroke>) {
         match (fill, stroke) {
             (Some(_), Some(_)) => self.content.fill_nonzero_and_stroke(),
@@ -222,7 +222,7 @@ impl Page {
     }
 }
 
-/// Returns red, green and blue from 0 to 1.
+/// Returns red, green and blue as fractions from 0 to 1.
 fn parts(color: Color) -> [f32; 3] {
     color.rgb().map(|part| f32::from(part) / 255.0)
 }
@@ -235,7 +235,7 @@ const IDENTITY: SystemInfo<'static> = SystemInfo {
     supplement: 0,
 };
 
-/// The letters used, numbered by their first use in each font.
+/// The letters used, numbered in each font by their first use.
 #[derive(Default)]
 struct UsedLetters {
     /// In the same order as [`FONTS`].
@@ -246,7 +246,7 @@ struct UsedLetters {
 #[derive(Default)]
 struct Used {
     numbers: GlyphRemapper,
-    /// By their numbers, which begin with 1.
+    /// Letter number n is at index n - 1.
     letters: Vec<Letter>,
 }
 
@@ -262,7 +262,7 @@ impl UsedLetters {
         code
     }
 
-    /// Writes the used fonts as objects from `first` on; returns the name and object for each.
+    /// Writes the used fonts as objects from `first` on; returns the name and the object of each.
     fn write(&self, pdf: &mut Pdf, first: Ref) -> io::Result<Vec<(&'static str, Ref)>> {
         let mut next = first;
         let mut written = Vec::new();
@@ -275,7 +275,7 @@ impl UsedLetters {
     }
 }
 
-/// A font's objects in a file.
+/// PDF objects of a font.
 struct FontObjects {
     font: Ref,
     descendant: Ref,
@@ -285,7 +285,7 @@ struct FontObjects {
 }
 
 impl Used {
-    /// Writes the letters used from the font with this index in [`FONTS`]; returns its object.
+    /// Writes the used letters of the font with this index in [`FONTS`]; returns the font object.
     fn write(&self, pdf: &mut Pdf, index: usize, next: &mut Ref) -> io::Result<Ref> {
         let (name, bytes) = FONTS[index];
         let objects = FontObjects {
@@ -359,12 +359,12 @@ fn describe(pdf: &mut Pdf, objects: &FontObjects, name: Name<'_>, face: &FontRef
         .ascent(metrics.ascent)
         .descent(metrics.descent)
         .cap_height(metrics.cap_height.unwrap_or(metrics.ascent))
-        // No reader uses it for an embedded font.
+        // Required by the format; readers ignore it for an embedded font.
         .stem_v(80.0)
         .font_file2(objects.file);
 }
 
-/// Compresses bytes as PDF expects them.
+/// Compresses bytes in zlib format.
 fn packed(bytes: &[u8]) -> io::Result<Vec<u8>> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
     encoder.write_all(bytes)?;

@@ -28,7 +28,7 @@ const TOLERANCE: f64 = 0.01;
 /// Writes the drawing at 300 dots per inch.
 ///
 /// # Errors
-/// The error that prevents writing.
+/// If the file cannot be written.
 pub fn write_png(drawing: &Drawing, file: &mut dyn Write) -> io::Result<()> {
     let [width, height] = drawing
         .size
@@ -49,7 +49,7 @@ pub fn write_png(drawing: &Drawing, file: &mut dyn Write) -> io::Result<()> {
     writer.finish().map_err(unpacked)
 }
 
-/// Unwraps the I/O error, so that a full disk is reported as such.
+/// Returns the underlying I/O error, so that a full disk is reported as such.
 fn unpacked(error: EncodingError) -> io::Error {
     match error {
         EncodingError::IoError(error) => error,
@@ -59,7 +59,7 @@ fn unpacked(error: EncodingError) -> io::Error {
 
 /// Returns red, green and blue at each dot, row by row.
 fn pixels(drawing: &Drawing, width: u16, height: u16) -> Vec<u8> {
-    // Without processor-specific instructions: the same dots everywhere.
+    // Without processor-specific instructions, so that the dots are the same everywhere.
     let settings = RenderSettings {
         level: Level::baseline(),
         num_threads: 0,
@@ -82,7 +82,7 @@ fn pixels(drawing: &Drawing, width: u16, height: u16) -> Vec<u8> {
     context.flush();
     let mut pixmap = Pixmap::new(width, height);
     context.render(&mut pixmap, &mut Resources::new());
-    // The background is white throughout: nothing is transparent.
+    // The background is opaque white, so that premultiplied colours are the colours themselves.
     pixmap
         .data_as_u8_slice()
         .chunks_exact(4)
@@ -182,7 +182,7 @@ fn write(context: &mut RenderContext, text: &Text, fonts: &[FontRef<'_>]) {
             .get(letter.font)
             .and_then(|font| font.outline_glyphs().get(GlyphId::from(letter.glyph)));
         if let Some(outline) = outline {
-            // A damaged outline is skipped; those of the fonts here are sound.
+            // A damaged outline is skipped; the built-in fonts have none.
             let _ = outline.draw(
                 DrawSettings::unhinted(Size::new(1.0), LocationRef::default()),
                 &mut pen,

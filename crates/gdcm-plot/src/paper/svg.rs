@@ -8,10 +8,10 @@ use crate::figure::Color;
 use crate::figure::drawing::{Anchor, Area, Drawing, PT_PER_MM, Shape, Stroke, Text};
 use crate::figure::letters::{FONTS, width};
 
-/// Fallback fonts, similarly wide, for a viewer without ours.
+/// Fallback fonts of similar width, for a viewer without the original fonts.
 const OTHER_FONTS: &str = "Helvetica, Arial, sans-serif";
 
-/// Returns an SVG file's contents.
+/// Returns the contents of an SVG file.
 pub fn svg(drawing: &Drawing) -> String {
     let head = format!(
         "xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" {}",
@@ -20,8 +20,8 @@ pub fn svg(drawing: &Drawing) -> String {
     element(drawing, &head, "frame")
 }
 
-/// Returns the drawing as an element for an HTML page, which needs no name space. `name` is the
-/// prefix for its internal references: it must be unique on the page.
+/// Returns the drawing as an element of an HTML page, which needs no name space. `name` is the
+/// prefix of its internal references and must be unique on the page.
 pub fn inline_svg(drawing: &Drawing, name: &str) -> String {
     let label = escaped(&sanitized(&drawing.title));
     let head = format!(
@@ -37,7 +37,7 @@ fn size_attributes(drawing: &Drawing) -> String {
     format!("width=\"{width_mm}mm\" height=\"{height_mm}mm\" viewBox=\"0 0 {width} {height}\"")
 }
 
-/// Returns the element with these attributes in its head.
+/// Returns the SVG element; `head` contains its attributes.
 fn element(drawing: &Drawing, head: &str, name: &str) -> String {
     let [width, height] = drawing.size;
     let mut svg = Svg {
@@ -70,7 +70,7 @@ struct Svg<'a> {
     text: String,
     /// Prefix for the names of clip areas.
     name: &'a str,
-    /// Clip areas so far; their names end with their numbers.
+    /// Number of clip areas so far; each name ends with the number of the area.
     clips: usize,
 }
 
@@ -151,7 +151,7 @@ impl Svg<'_> {
         } else {
             String::new()
         };
-        // As long as laid out, whatever font the viewer has.
+        // Keeps the width of the layout, whatever font the viewer has.
         let length = number(size_pt * width(words));
         let length = format!(" textLength=\"{length}\" lengthAdjust=\"spacingAndGlyphs\"");
         let color = hex(*color);
@@ -180,7 +180,7 @@ fn path(points: &[[f64; 2]], closed: bool) -> String {
     text
 }
 
-/// Returns the attributes for fill and line.
+/// Returns the attributes of fill and line.
 fn paint(fill: Option<Color>, stroke: Option<Stroke>) -> String {
     let fill = match fill {
         Some(color) => hex(color),
@@ -212,8 +212,8 @@ fn hex(color: Color) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// Formats a length \[pt\] to two decimals, below any printer's resolution; without trailing zeros,
-/// and without a minus before zero.
+/// Formats a length \[pt\] with two decimals, finer than any printer; without trailing zeros and
+/// without a minus sign before zero.
 fn number(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

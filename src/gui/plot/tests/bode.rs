@@ -65,12 +65,12 @@ pub(super) fn point_on(harness: &Harness<'_, Model>, index: usize, k: usize) -> 
         .unwrap()
 }
 
-/// Returns a place in the magnitude plot that is far from every curve.
+/// Returns a position in the magnitude plot that is far from every curve.
 pub(super) fn empty_spot(harness: &Harness<'_, Model>) -> Pos2 {
     point_on(harness, 2, 60) + vec2(0.0, 40.0)
 }
 
-/// The same for a single curve.
+/// Like [`empty_spot`], for a plot with a single curve.
 fn empty_spot_of_one(harness: &Harness<'_, Model>) -> Pos2 {
     point_on(harness, 0, 60) + vec2(0.0, 40.0)
 }
@@ -546,7 +546,7 @@ fn a_secondary_click_on_the_ground_marks_the_frequency_there() {
     );
 }
 
-/// Counts the lines of many points that the last frame drew instead of an image.
+/// Counts the long lines in the last frame: curves drawn as lines instead of an image.
 fn long_lines(harness: &Harness<'_, Model>) -> usize {
     let is_long =
         |shape: &egui::Shape| matches!(shape, egui::Shape::Path(path) if path.points.len() > 10);

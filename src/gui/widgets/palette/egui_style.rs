@@ -1,4 +1,4 @@
-//! Style and fonts that egui takes from the palette.
+//! egui style and fonts derived from the palette.
 
 use std::sync::Arc;
 
@@ -64,13 +64,13 @@ impl Palette {
             noninteractive: self.widget(self.panel, self.panel, self.line),
             inactive: self.widget(self.raised, self.line, self.line),
             hovered: self.widget(pale, strong, outline),
-            // Pressed and focused boxes: an accent fill would look checked.
+            // Pressed and focused boxes: a fill in the accent colour would look checked.
             active: self.widget(self.selected, strong, self.accent),
             open: self.widget(pale, self.raised, self.line),
         }
     }
 
-    /// Returns the look of a control: button fill, fill of boxes and handles, outline.
+    /// Returns the style of a control: button fill, fill of boxes and handles, outline.
     fn widget(&self, weak_bg_fill: Color32, bg_fill: Color32, outline: Color32) -> WidgetVisuals {
         WidgetVisuals {
             bg_fill,
@@ -82,7 +82,7 @@ impl Palette {
         }
     }
 
-    /// Builds the whole egui style: small text, close spacing, thin scroll bars.
+    /// Builds the egui style: small text, narrow spacing, thin scroll bars.
     pub fn style(&self) -> Style {
         let mut style = Style {
             visuals: self.visuals(),
@@ -127,7 +127,7 @@ impl Palette {
     }
 }
 
-/// Returns both font weights, each followed by egui's own fonts for other scripts and rare symbols.
+/// Returns both font weights, each followed by egui's fonts for other scripts and rare symbols.
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::default();
     let monospaced = fonts
@@ -167,7 +167,7 @@ fn fonts() -> FontDefinitions {
     fonts
 }
 
-/// Gives both of egui's themes this program's style, so that egui's `set_theme` switches between
+/// Sets this program's style for both themes of egui, so that egui's `set_theme` switches between
 /// them.
 pub fn apply(ctx: &Context) {
     ctx.set_fonts(fonts());

@@ -16,8 +16,8 @@ use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_FREQUENCIES, MOST_STATES};
 /// the shape 2 x 2.
 ///
 /// Read flat, so that a file with empty lists cannot take more memory than its own length. The
-/// largest number of states limits a matrix; the largest numbers of channels and frequencies limit a
-/// response table.
+/// dimensions of a matrix are limited by the maximum number of states, those of a response table by
+/// the maximum numbers of channels and frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Nested<const DEPTH: usize> {
     /// Entries along each dimension; 0 if a previous dimension is empty.
@@ -26,7 +26,7 @@ pub(super) struct Nested<const DEPTH: usize> {
 }
 
 impl<const DEPTH: usize> Nested<DEPTH> {
-    /// Returns the largest number of entries in a list at a depth, 0 being the outermost.
+    /// Returns the maximum number of entries in a list at a depth, 0 being the outermost.
     const fn most(depth: usize) -> usize {
         match (DEPTH, depth) {
             (2, _) => MOST_STATES,

@@ -13,16 +13,16 @@ use tempfile::NamedTempFile;
 use super::file_error::FileError;
 use super::source::kind_of;
 
-/// Treatment of existing files where new files should go.
+/// Treatment of existing files at the paths of new files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
-    /// They are kept, and nothing is written.
+    /// Existing files are kept, and nothing is written.
     Keep,
-    /// The new files replace them.
+    /// The new files replace existing files.
     Replace,
 }
 
-/// A set of files that take their places together.
+/// A set of files that are put in their places together, or not at all.
 ///
 /// ```text
 /// check    reject places that must not be written to                   (before any work)
@@ -31,7 +31,7 @@ pub enum Existing {
 ///          on an error rename back what was kept aside
 /// ```
 ///
-/// No file system renames several files at once. A process killed between two of them leaves new
+/// No file system renames several files at once. A process killed between two renames leaves new
 /// files beside old ones; checksums, added last, reveal this.
 ///
 /// A set dropped before it is persisted changes nothing. Leftovers of a killed run are removed by
@@ -48,7 +48,7 @@ pub struct OutputSet {
 struct Staged {
     /// The requested place.
     path: PathBuf,
-    /// The file to which a link there leads, or the place itself.
+    /// The file to which a link at `path` leads, or `path` itself.
     target: PathBuf,
     temporary: NamedTempFile,
 }
@@ -371,7 +371,7 @@ fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> 
             }),
     );
     loop {
-        // Its own message would name the temporary file.
+        // The builder's error message would name the temporary file.
         let temporary = builder
             .tempfile_in(directory)
             .map_err(|error| io::Error::from(error.kind()))?;

@@ -2,7 +2,7 @@
 
 use gdcm_sysid::records::{ModeSpan, RecordColumn, RecordSource, RecordTable};
 
-/// Largest number of records in a file.
+/// Maximum number of records in a file.
 pub(crate) const MOST_RECORDS: usize = 1000;
 
 /// Columns that belong together, before their file is known.

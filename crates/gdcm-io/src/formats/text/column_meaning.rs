@@ -16,7 +16,7 @@ pub(super) enum Quantity {
     Frequency,
 }
 
-/// A unit that decides how a column is read.
+/// A unit that determines how a column is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum KnownUnit {
     RadianPerSecond,
@@ -45,7 +45,8 @@ pub(super) struct ColumnMeaning {
     pub(super) reason: String,
 }
 
-/// Words in column names. The first kind with a matching word applies: "phase error" is an error.
+/// Words in column names. The first quantity with a matching word applies: "phase error" is an
+/// error.
 const WORDS: [(Quantity, &[&str]); 7] = [
     (
         Quantity::Error,
@@ -290,7 +291,7 @@ fn without_ending<'n>(name: &'n str, ending: &str) -> Option<&'n str> {
     }
 }
 
-/// Whether a name ends with a known word that has at least two bytes, as the front of "freqHz" does.
+/// Whether a name ends with a known word of at least two bytes, as "freq" before "Hz" does.
 fn ends_with_known_word(name: &str) -> bool {
     let name = name.to_lowercase();
     WORDS

@@ -8,8 +8,9 @@ const VERSION: u64 = 1;
 /// Length that marks a missing text.
 const MISSING: u64 = u64::MAX;
 
-/// Unpacks texts from their words: version, dimension count, side lengths, text lengths, and UTF-16
-/// units, four to a word. Returns `None` for other numbers. A missing text becomes an empty text.
+/// Unpacks texts from their words: version, dimension count, dimensions, text lengths, and UTF-16
+/// units, four to a word. Returns `None` for words in another form. A missing text becomes an empty
+/// text.
 pub(super) fn unpack_texts(
     words: &[u64],
     budget: &ReadingBudget<'_>,

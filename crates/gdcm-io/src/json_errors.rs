@@ -71,7 +71,8 @@ fn syntax_error(
         };
         return FileError::content(path, ContentError::new(place, fault));
     }
-    // serde_json also classifies a value as a syntax error if it is not among the known words.
+    // serde_json also reports a syntax error in valid JSON if a value is not a text where one of
+    // several words is expected.
     if is_json_so_far(text) {
         let fault = ContentFault::Type {
             expected: "a text in quotation marks".to_owned(),

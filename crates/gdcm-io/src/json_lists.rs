@@ -67,7 +67,7 @@ impl<'de, const DEPTH: usize> Deserialize<'de> for Nested<DEPTH> {
 
 /// An array being read.
 struct Filling<const DEPTH: usize> {
-    /// List length at each depth, known once the first list has ended.
+    /// List length at each depth; `None` until the first list at this depth has ended.
     lengths: [Option<usize>; DEPTH],
     values: Vec<f64>,
 }
@@ -256,7 +256,7 @@ where
     }
 }
 
-/// Numbers by name, at most `MOST`; among numbers with the same name the last counts.
+/// Numbers by name, at most `MOST`; of numbers with the same name, the last is kept.
 pub(super) struct Numbers<const MOST: usize>(pub(super) BTreeMap<String, f64>);
 
 impl<'de, const MOST: usize> Deserialize<'de> for Numbers<MOST> {

@@ -25,10 +25,11 @@ pub enum Existing {
 /// A set of files that are put in their places together, or not at all.
 ///
 /// ```text
-/// check    reject places that must not be written to                   (before any work)
-/// add      write each beside its place, to the disk                    (a full disk shows here)
-/// persist  wait for other sets in the same directory; keep what each replaces aside; rename, in the order in which they were added;
-///          on an error rename back what was kept aside
+/// check    reject paths that must not be written to      (before any work)
+/// add      write each file beside its path, to the disk  (a full disk shows here)
+/// persist  wait for other sets in the same directory; keep the existing files under second names;
+///          rename the new files, in the order in which they were added;
+///          on an error restore the existing files
 /// ```
 ///
 /// No file system renames several files at once. A process killed between two renames leaves new
@@ -173,7 +174,7 @@ impl OutputSet {
         if self.staged.len() <= 1 {
             return Vec::new();
         }
-        // Each directory once, whatever the path to it: a set must not wait for its own lock.
+        // Each directory once, even if it has several paths: a set must not wait for its own lock.
         let mut directories = BTreeSet::new();
         for staged in &self.staged {
             let directory = directory_of(&staged.target);

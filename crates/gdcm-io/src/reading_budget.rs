@@ -49,7 +49,7 @@ pub enum VariableFault {
     Unsupported {
         variable: String,
         what: String,
-        /// How to obtain the data all the same; `{file}` and `{stem}` represent the file's name
+        /// How to export the data in another format; `{file}` and `{stem}` represent the file name
         /// with and without its extension.
         remedy: String,
     },

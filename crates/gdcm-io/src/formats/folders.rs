@@ -40,8 +40,8 @@ pub fn sources_folder(sources: &[PathBuf]) -> &Path {
     }
 }
 
-/// Lists the requested files, and the files with known endings in folders, sorted by name. Pipes,
-/// sockets and devices are skipped with a message.
+/// Lists the requested files, and the files with supported endings in folders, sorted by name.
+/// Pipes, sockets and devices in folders are skipped with a message.
 pub(super) fn list_files(
     paths: &[PathBuf],
     skipped: &mut Vec<String>,

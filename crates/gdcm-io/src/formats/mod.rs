@@ -1,9 +1,9 @@
 //! Number files from other programs: the format interface, the list of formats, and reading.
 //!
 //! ```text
-//! bytes -> format, by the first bytes                   (the name ending decides only between texts)
-//!       -> variables, a text, or the files in an archive    (the formats, which know nothing of models and records)
-//!       -> models or records                                (recognise)
+//! bytes -> format, by the first bytes         (the ending decides only between text formats)
+//!       -> variables, text or archived files  (the formats, independent of models and records)
+//!       -> models or records                  (recognise)
 //! ```
 //!
 //! A new format is an `Importer` in a file of its own in this folder, and an entry in `FORMATS`.
@@ -275,7 +275,7 @@ mod tests {
         assert_eq!(format(b" {\"A\": 1}", "a.txt"), JSON.name);
         assert_eq!(format(b"A = [1 2];", "a.m"), LITERALS.name);
         assert_eq!(format(b"1,2\n3,4\n", "a.csv"), TEXT.name);
-        // The ending does not affect how the same text is read.
+        // These texts are recognised by their content, whatever the ending.
         assert_eq!(
             format(b"% a model\nA = [1 2\n 3 4];", "a.txt"),
             LITERALS.name

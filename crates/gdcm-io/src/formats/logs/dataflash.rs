@@ -124,8 +124,7 @@ impl<'b, 'm> Messages<'b, 'm> {
         }
     }
 
-    /// Returns the next message with a known length, which may describe the lengths of later
-    /// messages.
+    /// Returns the next message of a type whose length is in `lengths`; skips any other bytes.
     fn next(&mut self, lengths: &Lengths) -> Result<Option<Message<'b>>, VariableFault> {
         while let Some([first, second, kind]) = array::<HEADER>(self.bytes, self.at) {
             self.budget.work(1, "")?;

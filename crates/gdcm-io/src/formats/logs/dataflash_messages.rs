@@ -1,4 +1,4 @@
-//! Messages in DataFlash logs, in binary and in text form: their layouts, and their samples by topic.
+//! Messages in binary and text DataFlash logs: their layouts, and their samples by topic.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;

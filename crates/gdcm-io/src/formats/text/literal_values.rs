@@ -250,7 +250,7 @@ impl ValueReader<'_, '_, '_> {
         }))
     }
 
-    /// Reads a matrix with numbers, transposed if a quote follows it, or with texts in double quotes.
+    /// Reads a matrix of numbers, transposed if a quote follows it, or of texts in double quotes.
     fn matrix(&mut self) -> Result<Value, ValueError> {
         let opening = self.scanner.position();
         let Rows {

@@ -157,7 +157,7 @@ impl<'t> Scanner<'t> {
         self.text[self.line_start..self.at].trim().is_empty()
     }
 
-    /// Whether the line continues with only a comment mark and this bracket, which begin or end a block
+    /// Whether the rest of the line is a comment mark and this bracket, which begin or end a block
     /// comment.
     fn is_block_mark(&self, bracket: char) -> bool {
         let line = self.rest_of_line().trim();

@@ -87,7 +87,7 @@ impl Separator {
     }
 }
 
-/// Iterator over the cells in a line, so that a line with a million cells takes no memory.
+/// Iterator over the cells in a line, so that a line with a million cells needs no list of them.
 pub(super) struct Cells<'t> {
     rest: Option<&'t str>,
     separator: Separator,

@@ -182,8 +182,8 @@ impl Numbering {
 }
 
 impl Column {
-    /// Returns the number for a word; an empty text for an empty cell, and for words beyond the
-    /// limit.
+    /// Returns the number that replaces a word; an empty text for an empty cell, and once a column
+    /// has more than `MOST_WORDS` words.
     fn number(&mut self, word: &str) -> String {
         if word.is_empty() || self.words.len() > MOST_WORDS {
             return String::new();

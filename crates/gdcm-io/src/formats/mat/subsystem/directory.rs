@@ -7,7 +7,7 @@ use crate::reading_budget::VariableFault;
 
 /// Bytes before the names: version, name count, and eight region offsets.
 const HEADER_BYTES: usize = 40;
-/// Newest known layout version.
+/// Newest supported layout version.
 const NEWEST: u32 = 4;
 
 /// Regions of 32-bit words after the names, by index.

@@ -3,7 +3,7 @@
 use crate::formats::variables::TextArray;
 use crate::reading_budget::{ReadingBudget, VariableFault};
 
-/// The only known version of the packing.
+/// The only supported version of the packing.
 const VERSION: u64 = 1;
 /// Length that marks a missing text.
 const MISSING: u64 = u64::MAX;
